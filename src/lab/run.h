@@ -1,0 +1,58 @@
+// Runs a scenario and sums it up.
+#pragma once
+
+#include <math.h>
+
+#include "src/lab/scenario.h"
+#include "src/lab/trace.h"
+
+// The result of a run. A quantity that did not occur is NaN (null in JSON).
+typedef struct summary {
+    status status;
+    char message[1024];             // "" if all went well
+    double first_contact_s;
+    double contact_impulse_Ns;      // impulse of the first impact
+    double first_pulse_peak_N;      // largest force from first contact to first release
+    double first_pulse_time_to_peak_s;
+    double first_pulse_s;           // length of the first pulse; NaN if it never ends
+    double peak_force_N;            // largest force of the whole run
+    double time_to_peak_s;          // after first contact
+    double impacts;
+    double separations;             // episodes after first contact with a gap above 1 um
+    double steady_force_N;          // mean over the last 0.1 s
+    double force_overshoot_percent; // of peak_force_N over steady_force_N
+    double settling_time_s;         // from first contact until within 5 % of steady_force_N for good
+    double max_penetration_m;
+    double motor_work_J;
+    double energy_residual_J;       // largest absolute value over the run
+    double steps;                   // time steps taken
+    double wall_time_s;             // computing time
+} summary;
+
+// Keys of the summary in the order of `run --json`, with the offset of each number.
+typedef struct summary_info {
+    const char *key;
+    size_t offset;
+    bool timing; // depends on the machine, not on the scenario
+} summary_info;
+extern const summary_info summary_table[];
+extern const int summary_count;
+
+// A summary's number by key; false if there is no such key.
+bool summary_get(const summary *s, const char *key, double *value);
+
+typedef struct run_result {
+    summary summary;
+    trace trace; // rows at every step and on both sides of every event; empty if not asked for
+} run_result;
+
+// Simulates the scenario. Returns STATUS_OK, or what stopped the run: then summary.message says
+// what, when and where, and everything computed until then is kept. run_finish in either case.
+// keep_trace = false keeps no rows (events and summary only).
+status run_scenario(const scenario *s, bool keep_trace, run_result *result);
+void run_finish(run_result *result);
+
+// Compares the summary with the scenario's expectations. Returns the number of those not met and
+// reports each as "file:line:column: quantity is ..., expected ...".
+int run_check_expectations(const scenario *s, const run_result *result, fault_handler report,
+                           void *context);

@@ -1,0 +1,62 @@
+// A scenario: parameters, scripted actions and expected results, read from a YAML file.
+#pragma once
+
+#include "src/parameters.h"
+
+typedef enum action_kind { ACTION_SET, ACTION_PUSH } action_kind;
+
+// Something the file asks for at an instant of the run.
+typedef struct action {
+    double time;    // [s]
+    action_kind kind;
+    int parameter;  // ACTION_SET: index in parameter_table
+    double value;   // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the last link,
+                    // positive towards growing angle [N s]
+} action;
+
+// A quantity of the run's summary that the file expects.
+typedef struct expectation {
+    char quantity[48]; // key of `run --json`, "first_contact_s"
+    bool is_null;      // expected not to have occurred
+    double value;      // in the quantity's unit
+    double tolerance;  // absolute, in the quantity's unit
+    int line, column;  // where it stands in the file, from 1
+} expectation;
+
+typedef struct scenario {
+    char *name;        // "thesis/fig-3-4", or the path it was read from
+    char *file;        // path of the file
+    char *title;       // one line
+    char *description; // several sentences, "" if none
+    parameters parameters; // resolved
+    action *actions;   // sorted by time
+    int action_count;
+    expectation *expectations;
+    int expectation_count;
+} scenario;
+
+// Called once for each fault in a file, with a whole sentence "file:line:column: what, expected".
+typedef void (*fault_handler)(void *context, const char *sentence);
+
+// Reads and validates the file. Every fault is reported through `report`; STATUS_BAD_SCENARIO if
+// there was any (STATUS_CANNOT_READ if the file cannot be opened), and then nothing is to be
+// freed. `name` is the scenario's name, NULL to use the path.
+status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
+                     void *context);
+
+// The same from memory; `path` is used in messages only.
+status scenario_parse(scenario *s, const char *text, size_t length, const char *path,
+                      const char *name, fault_handler report, void *context);
+
+void scenario_finish(scenario *s);
+
+// Applies "PATH=VALUE" (--set) and resolves the parameters anew.
+status scenario_override(scenario *s, const char *assignment, fault *f);
+
+// Finds a scenario by the name `list` shows ("thesis/fig-3-4") or by file, as SCENARIO on the
+// command line is meant, and reads it.
+status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context);
+
+// The names of all scenarios in the scenario folder, sorted; free each and the array.
+// The folder is $IMPACTLAB_SCENARIOS, or the source tree's when built there, or the installed one.
+status scenario_list(char ***names, int *count, fault *f);

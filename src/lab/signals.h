@@ -1,0 +1,59 @@
+// Every recorded quantity, and the one table that describes them: it feeds CSV headers, JSON, the
+// terminal's traces, figures and the manual.
+#pragma once
+
+#include <stddef.h>
+
+// One recorded row: the state at an instant and what belongs to that very state.
+typedef struct sample {
+    double time;                // t [s]
+    double hub_angle;           // theta1 [rad]
+    double first_angle;         // theta2, first link [rad]
+    double last_angle;          // theta3, last link [rad]
+    double hub_velocity;        // [rad/s]
+    double first_velocity;      // [rad/s]
+    double last_velocity;       // [rad/s]
+    double hub_acceleration;    // [rad/s2]
+    double first_acceleration;  // [rad/s2]
+    double last_acceleration;   // [rad/s2]
+    double gap;                 // distance of the contact point from the arm [m]
+    double gap_velocity;        // [m/s]
+    double force;               // contact force, impulses excluded [N]
+    double impulse;             // of the impact at this very instant [N s]
+    double contact;             // 1 while in contact, else 0
+    double sticking;            // 1 while the hub sticks, else 0
+    double voltage;             // command to the amplifier [V]
+    double motor_torque;        // kT/Ra times amplified command, before back EMF [N m]
+    double friction_torque;     // Coulomb friction at the hub, as it acts [N m]
+    double kinetic_energy;      // [J]
+    double strain_energy;       // [J]
+    double motor_work;          // done by motor_torque since the start [J]
+    double external_work;       // done by pushes since the start [J]
+    double viscous_loss;        // back EMF and viscous friction [J]
+    double friction_loss;       // Coulomb friction [J]
+    double damping_loss;        // structural damping [J]
+    double impact_loss;         // [J]
+    double energy_residual;     // what the ledger does not account for [J]
+} sample;
+
+typedef enum line_style { LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT } line_style;
+
+typedef struct signal_info {
+    const char *name;        // as in CSV headers and --plot, "contact_force"
+    const char *symbol;      // Pango markup, for figures
+    const char *ascii;       // the same in ASCII
+    const char *unit;        // "N", "rad/s2" is written "rad/s²" in figures by the plotter
+    const char *description; // one sentence without a full stop
+    int colour;              // slot in the palette, 0-7
+    line_style style;
+    size_t offset;           // in struct sample
+} signal_info;
+
+extern const signal_info signal_table[];
+extern const int signal_count;
+
+// Index of a signal by name, or -1.
+int signal_find(const char *name);
+
+// The signal's value in a row.
+double signal_value(const sample *row, int index);

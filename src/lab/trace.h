@@ -1,0 +1,44 @@
+// A recorded run: rows of samples, the link angles at each, and the events between them.
+#pragma once
+
+#include "src/lab/signals.h"
+#include "src/status.h"
+
+typedef enum event_kind {
+    EVENT_IMPACT,  // gap closes with an approach velocity: an impulse acts
+    EVENT_CONTACT, // contact goes on after an impact, or begins without one
+    EVENT_RELEASE, // the contact force reaches zero
+    EVENT_STICK,   // the hub comes to rest and friction holds it
+    EVENT_SLIP,    // the hub breaks away or turns back
+    EVENT_CHANGE,  // a scripted change of a parameter
+    EVENT_PUSH,    // a scripted push
+} event_kind;
+
+typedef struct event {
+    double time;    // [s]
+    event_kind kind;
+    double impulse; // impact: of the wall [N s]; push: as scripted; else 0
+    double speed;   // impact: approach speed [m/s]; else 0
+    double loss;    // impact: energy lost [J]; else 0
+    int index;      // change, push: which action of the scenario; else -1
+} event;
+
+// "impact", "contact", ...
+const char *event_name(event_kind kind);
+
+typedef struct trace {
+    sample *rows;
+    double *angles;  // row r: angles[r * angle_count ...], hub first if it has an angle of its own [rad]
+    event *events;
+    size_t row_count, row_capacity;
+    size_t event_count, event_capacity;
+    int angle_count;
+} trace;
+
+// An empty trace for angle_count link angles a row.
+void trace_init(trace *t, int angle_count);
+void trace_finish(trace *t);
+
+// Append a row (angles: angle_count values) or an event; STATUS_NO_MEMORY if there is no room.
+status trace_add_row(trace *t, const sample *row, const double *angles);
+status trace_add_event(trace *t, event e);

@@ -1,0 +1,405 @@
+#include "src/parameters.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#define AT(field)  offsetof(parameters, field)
+#define REAL       PARAMETER_REAL
+#define INTEGER    PARAMETER_INTEGER
+#define BOOLEAN    PARAMETER_BOOLEAN
+#define CHOICE     PARAMETER_CHOICE
+#define DERIVED    NAN // the default follows from other parameters, see parameters_resolve
+#define TIMED      true
+#define NOT_TIMED  false
+
+// k1 with which the printed model reproduces the thesis's tables. The thesis prints
+// 169 468 N m/rad, with which its own algorithm at h = 1 ms chatters; 92 lies in the range
+// 80-100 that matches Tables 4.1-4.3 best (docs/physics.md, hidden constants).
+#define K1_PRINTED_TABLES 92.0
+#define K1_THESIS         169468.0882
+
+// kT is printed as 0.249092 kg m/A; one kilogram-force is 9.80665 N.
+#define TORQUE_CONSTANT (0.249092 * 9.80665)
+
+const parameter_info parameter_table[] = {
+    // path, unit, type, offset, default (corrected), default (printed), min, max, choices, timed, description
+    {"arm.model", "", CHOICE, AT(arm.model), ARM_CORRECTED, ARM_PRINTED, 0, 1,
+     "corrected|printed", NOT_TIMED, "equations of motion: derived anew, or as the thesis prints them"},
+    {"arm.links", "", INTEGER, AT(arm.links), 2, 2, 1, 1024, NULL, NOT_TIMED,
+     "number of rigid links the beam is cut into (N)"},
+    {"arm.hub_joint", "", CHOICE, AT(arm.hub_joint), HUB_RIGID, HUB_SPRING, 0, 1, "rigid|spring",
+     NOT_TIMED, "joint between hub and first link: one body, or the spring k1"},
+    {"arm.length", "m", REAL, AT(arm.length), 1.0, 1.0, 0.01, 100, NULL, NOT_TIMED,
+     "length of the beam, all links together"},
+    {"arm.mass", "kg", REAL, AT(arm.mass), 0.40108, 0.40108, 1e-4, 1e4, NULL, NOT_TIMED,
+     "mass of the beam, all links together"},
+    {"arm.hub_inertia", "kg m2", REAL, AT(arm.hub_inertia), 5.2e-3, 5.2e-3, 0, 1e4, NULL, NOT_TIMED,
+     "moment of inertia of hub and motor shaft (I1)"},
+    {"arm.link_inertia", "kg m2", REAL, AT(arm.link_inertia), DERIVED, 1.67e-5, 0, 1e4, NULL,
+     NOT_TIMED, "moment of inertia of a link about its centre of mass (I2 = I3, N = 2 only)"},
+    {"arm.k1", "N m/rad", REAL, AT(arm.k1), K1_THESIS, K1_PRINTED_TABLES, 1e-6, 1e9, NULL, TIMED,
+     "stiffness of the hub joint (arm.hub_joint = spring)"},
+    {"arm.k2", "N m/rad", REAL, AT(arm.k2), 4.92, 4.92, 1e-6, 1e9, NULL, TIMED,
+     "stiffness of the middle joint of the two-link beam; each joint of N links has k2 N/2"},
+    {"arm.damping_ratio", "", REAL, AT(arm.damping_ratio), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "structural damping ratio of the first clamped-free mode"},
+    {"motor.voltage", "V", REAL, AT(motor.voltage), 1, 1, -1000, 1000, NULL, TIMED,
+     "command to the amplifier, held constant"},
+    {"motor.voltage_limit", "V", REAL, AT(motor.voltage_limit), 10, 10, 0, 1000, NULL, TIMED,
+     "largest command either way; beyond it the command saturates"},
+    {"motor.amplifier_gain", "", REAL, AT(motor.amplifier_gain), 6.02, 6.02, 0, 1000, NULL,
+     NOT_TIMED, "volts at the motor per volt of command"},
+    {"motor.torque_constant", "N m/A", REAL, AT(motor.torque_constant), TORQUE_CONSTANT,
+     TORQUE_CONSTANT, 0, 1000, NULL, NOT_TIMED, "torque per ampere (kT)"},
+    {"motor.back_emf", "V s/rad", REAL, AT(motor.back_emf), 2.443, 2.443, 0, 1000, NULL, NOT_TIMED,
+     "back electromotive force (kB)"},
+    {"motor.resistance", "ohm", REAL, AT(motor.resistance), 33.6, 33.6, 1e-3, 1e6, NULL, NOT_TIMED,
+     "armature resistance (Ra)"},
+    {"motor.viscous_friction", "N m s/rad", REAL, AT(motor.viscous_friction), 5.4192e-3, 5.4192e-3,
+     0, 1000, NULL, TIMED, "viscous friction at the hub (kfr)"},
+    {"motor.stiction", "N m", REAL, AT(motor.stiction), 0.045, 0.045, 0, 1000, NULL, TIMED,
+     "Coulomb friction torque at the hub, sliding and sticking (kst)"},
+    {"wall.kind", "", CHOICE, AT(wall.kind), WALL_POINT, WALL_POINT, 0, 2, "point|plane|none",
+     NOT_TIMED, "a fixed point the last link's line may not pass, a flat wall the tip may not pass, or none"},
+    {"wall.angle", "rad", REAL, AT(wall.angle), 0.1, 0.1, -3, 3, NULL, NOT_TIMED,
+     "direction of contact point or flat wall as seen from the hub axis"},
+    {"wall.restitution", "", REAL, AT(wall.restitution), 0, 0, 0, 1, NULL, TIMED,
+     "coefficient of restitution e of an impact (0: plastic)"},
+    {"method.name", "", CHOICE, AT(method.name), METHOD_EVENT, METHOD_NEWMARK, 0, 2,
+     "event|newmark|generalized-alpha", NOT_TIMED, "time integration"},
+    {"method.step", "s", REAL, AT(method.step), 1e-3, 1e-3, 1e-7, 1, NULL, NOT_TIMED,
+     "time step h, and the spacing of the recorded rows"},
+    {"method.beta", "", REAL, AT(method.beta), 0.4, 0.4, 0.01, 2, NULL, NOT_TIMED, "Newmark's beta"},
+    {"method.gamma", "", REAL, AT(method.gamma), 0.5, 0.5, 0, 2, NULL, NOT_TIMED, "Newmark's gamma"},
+    {"method.spectral_radius", "", REAL, AT(method.spectral_radius), 0.8, 0.8, 0, 1, NULL, NOT_TIMED,
+     "what generalised-alpha leaves of the highest modes in one step (rho at infinity)"},
+    {"method.rest_speed", "m/s", REAL, AT(method.rest_speed), 1e-4, 1e-4, 0, 1, NULL, NOT_TIMED,
+     "rest rule: an impact slower than this is plastic whatever e is"},
+    {"printed.spring_counted_twice", "", BOOLEAN, AT(printed.spring_counted_twice), 1, 1, 0, 1, NULL,
+     NOT_TIMED, "printed model: (2.16) carries the spring k2 that belongs in (2.17) alone"},
+    {"printed.force_at_link_end", "", BOOLEAN, AT(printed.force_at_link_end), 1, 1, 0, 1, NULL,
+     NOT_TIMED, "printed model: the contact force acts at the link's end instead of the contact point"},
+    {"printed.sign_dead_band", "", BOOLEAN, AT(printed.sign_dead_band), 1, 1, 0, 1, NULL, NOT_TIMED,
+     "printed model: sign() takes -0.01 for the lower edge of its dead band instead of -1e-5"},
+    {"printed.energy_cross_term", "", BOOLEAN, AT(printed.energy_cross_term), 1, 1, 0, 1, NULL,
+     NOT_TIMED, "printed model: kinetic energy of the predictor has eps w2 w3 for 2 l eps w2 w3"},
+    {"printed.reevaluation", "", CHOICE, AT(printed.reevaluation), REEVALUATE_RHS, REEVALUATE_RHS, 0,
+     1, "rhs|listing", NOT_TIMED,
+     "printed model: where the re-evaluation puts 2 l sin(d) w2 w3, as (3.13) has it or as the listing has it"},
+    {"printed.force_after_release", "", BOOLEAN, AT(printed.force_after_release), 1, 1, 0, 1, NULL,
+     NOT_TIMED, "printed model: the force is evaluated from the constrained system after release too"},
+    {"printed.feed_newmark_acceleration", "", BOOLEAN, AT(printed.feed_newmark_acceleration), 1, 1,
+     0, 1, NULL, NOT_TIMED,
+     "printed model: the next step starts from Newmark's own acceleration, not the re-evaluated one"},
+    {"printed.newton_iterations", "", INTEGER, AT(printed.newton_iterations), 1, 1, 1, 100, NULL,
+     NOT_TIMED, "printed model: Newton solves per time step"},
+    {"initial.angle", "rad", REAL, AT(initial.angle), 0, 0, -3, 3, NULL, NOT_TIMED,
+     "angle of hub and all links at the start"},
+    {"initial.velocity", "rad/s", REAL, AT(initial.velocity), 0, 0, -1000, 1000, NULL, NOT_TIMED,
+     "angular velocity of hub and all links at the start"},
+    {"run.duration", "s", REAL, AT(run.duration), 1, 1, 1e-6, 1e5, NULL, NOT_TIMED,
+     "simulated time"},
+};
+
+const int parameter_count = (int)(sizeof parameter_table / sizeof parameter_table[0]);
+
+_Static_assert(sizeof parameter_table / sizeof parameter_table[0] <=
+                   sizeof(((parameters *)0)->set),
+               "parameters.set has room for every parameter");
+
+int parameter_find(const char *path)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        if (strcmp(parameter_table[i].path, path) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+// Levenshtein distance of two short strings, at most `limit`.
+static int edit_distance(const char *a, const char *b, int limit)
+{
+    enum { LONGEST = 64 };
+    size_t la = strlen(a), lb = strlen(b);
+    int row[LONGEST + 1];
+    if (la > LONGEST || lb > LONGEST) {
+        return limit;
+    }
+    for (size_t j = 0; j <= lb; j++) {
+        row[j] = (int)j;
+    }
+    for (size_t i = 1; i <= la; i++) {
+        int diagonal = row[0];
+        row[0] = (int)i;
+        for (size_t j = 1; j <= lb; j++) {
+            int substitute = diagonal + (a[i - 1] != b[j - 1]);
+            diagonal = row[j];
+            int best = row[j] < row[j - 1] ? row[j] + 1 : row[j - 1] + 1;
+            row[j] = substitute < best ? substitute : best;
+        }
+    }
+    return row[lb] < limit ? row[lb] : limit;
+}
+
+const char *parameter_suggest(const char *path)
+{
+    const char *best = NULL;
+    int best_distance = 5;
+    for (int i = 0; i < parameter_count; i++) {
+        const char *known = parameter_table[i].path;
+        const char *tail = strchr(known, '.') + 1;
+        int whole = edit_distance(path, known, best_distance);
+        int short_form = strcmp(path, tail) == 0 ? 0 : best_distance;
+        int distance = whole < short_form ? whole : short_form;
+        if (distance < best_distance) {
+            best_distance = distance;
+            best = known;
+        }
+    }
+    return best;
+}
+
+static void store(parameters *p, const parameter_info *info, double value)
+{
+    char *at = (char *)p + info->offset;
+    switch (info->type) {
+    case PARAMETER_REAL:
+        memcpy(at, &value, sizeof value);
+        break;
+    case PARAMETER_BOOLEAN: {
+        bool truth = value != 0;
+        memcpy(at, &truth, sizeof truth);
+        break;
+    }
+    case PARAMETER_INTEGER:
+    case PARAMETER_CHOICE: {
+        int whole = (int)value;
+        memcpy(at, &whole, sizeof whole);
+        break;
+    }
+    }
+}
+
+double parameter_get(const parameters *p, int index)
+{
+    const parameter_info *info = &parameter_table[index];
+    const char *at = (const char *)p + info->offset;
+    double real;
+    bool truth;
+    int whole;
+    switch (info->type) {
+    case PARAMETER_REAL:
+        memcpy(&real, at, sizeof real);
+        return real;
+    case PARAMETER_BOOLEAN:
+        memcpy(&truth, at, sizeof truth);
+        return truth;
+    case PARAMETER_INTEGER:
+    case PARAMETER_CHOICE:
+        memcpy(&whole, at, sizeof whole);
+        return whole;
+    }
+    return NAN;
+}
+
+static double default_value(const parameter_info *info, int model)
+{
+    return model == ARM_PRINTED ? info->default_printed : info->default_corrected;
+}
+
+void parameters_defaults(parameters *p, arm_model_kind model)
+{
+    memset(p, 0, sizeof *p);
+    for (int i = 0; i < parameter_count; i++) {
+        store(p, &parameter_table[i], default_value(&parameter_table[i], model));
+    }
+}
+
+status parameter_set_number(parameters *p, int index, double value, fault *f)
+{
+    const parameter_info *info = &parameter_table[index];
+    const char *unit = info->unit, *space = unit[0] ? " " : "";
+    if (!isfinite(value)) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s is not a finite number, expected %g to %g%s%s",
+                         info->path, info->minimum, info->maximum, space, unit);
+    }
+    if (info->type != PARAMETER_REAL && value != floor(value)) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s = %g is not a whole number", info->path, value);
+    }
+    if (value < info->minimum || value > info->maximum) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s = %g is out of range, expected %g to %g%s%s",
+                         info->path, value, info->minimum, info->maximum, space, unit);
+    }
+    store(p, info, value);
+    p->set[index] = 1;
+    return STATUS_OK;
+}
+
+// Position of text in "a|b|c", or -1.
+static int choice_index(const char *choices, const char *text, size_t length)
+{
+    int index = 0;
+    for (const char *c = choices; c != NULL; index++) {
+        const char *bar = strchr(c, '|');
+        size_t n = bar ? (size_t)(bar - c) : strlen(c);
+        if (n == length && strncmp(c, text, n) == 0) {
+            return index;
+        }
+        c = bar ? bar + 1 : NULL;
+    }
+    return -1;
+}
+
+static const char *type_name(const parameter_info *info)
+{
+    return info->type == PARAMETER_INTEGER ? "a whole number" : "a number";
+}
+
+// Reads "0.1" or "0.1 rad" into value; text holds no surrounding space.
+static status parse_quantity(const parameter_info *info, const char *text, double *value, fault *f)
+{
+    char *end;
+    const char *digits = text + strspn(text, "+-");
+    // strtod would also take hexadecimal, "inf" and "nan"
+    if (!isdigit((unsigned char)digits[0]) && digits[0] != '.') {
+        bool infinite = strncasecmp(digits, "inf", 3) == 0 || strncasecmp(digits, "nan", 3) == 0 ||
+                        strncasecmp(digits, ".inf", 4) == 0 || strncasecmp(digits, ".nan", 4) == 0;
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is not %s, expected %g to %g%s%s",
+                         info->path, text, infinite ? "finite" : type_name(info), info->minimum,
+                         info->maximum, info->unit[0] ? " " : "", info->unit);
+    }
+    *value = strtod(text, &end);
+    if (end == text || (digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X'))) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is not %s", info->path, text,
+                         type_name(info));
+    }
+    while (isspace((unsigned char)*end)) {
+        end++;
+    }
+    if (*end != '\0' && strcmp(end, info->unit) != 0) {
+        if (info->unit[0] == '\0') {
+            return fault_set(f, STATUS_BAD_SCENARIO,
+                             "%s = '%.60s' carries a unit, expected a pure number", info->path, text);
+        }
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is in '%.20s', expected %s",
+                         info->path, text, end, info->unit);
+    }
+    return STATUS_OK;
+}
+
+status parameter_set_text(parameters *p, int index, const char *text, fault *f)
+{
+    const parameter_info *info = &parameter_table[index];
+    while (isspace((unsigned char)*text)) {
+        text++;
+    }
+    size_t length = strlen(text);
+    while (length > 0 && isspace((unsigned char)text[length - 1])) {
+        length--;
+    }
+    char word[128];
+    if (length == 0 || length >= sizeof word) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s has %s", info->path,
+                         length ? "a value of more than 127 characters" : "no value");
+    }
+    memcpy(word, text, length);
+    word[length] = '\0';
+    double value = 0;
+    if (info->type == PARAMETER_CHOICE) {
+        int choice = choice_index(info->choices, word, length);
+        if (choice < 0) {
+            return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is not known, expected one of %s",
+                             info->path, word, info->choices);
+        }
+        value = choice;
+    } else if (info->type == PARAMETER_BOOLEAN) {
+        int choice = choice_index("false|true|no|yes|off|on|0|1", word, length);
+        if (choice < 0) {
+            return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is neither true nor false",
+                             info->path, word);
+        }
+        value = choice % 2;
+    } else {
+        status s = parse_quantity(info, word, &value, f);
+        if (s != STATUS_OK) {
+            return s;
+        }
+    }
+    return parameter_set_number(p, index, value, f);
+}
+
+void parameter_format(const parameters *p, int index, char *text, size_t size)
+{
+    const parameter_info *info = &parameter_table[index];
+    double value = parameter_get(p, index);
+    if (info->type == PARAMETER_BOOLEAN) {
+        snprintf(text, size, "%s", value != 0 ? "true" : "false");
+    } else if (info->type == PARAMETER_CHOICE) {
+        const char *c = info->choices;
+        for (int i = 0; i < (int)value; i++) {
+            c = strchr(c, '|') + 1;
+        }
+        snprintf(text, size, "%.*s", (int)strcspn(c, "|"), c);
+    } else if (info->type == PARAMETER_INTEGER) {
+        snprintf(text, size, "%d", (int)value);
+    } else {
+        // the shortest text that reads back as the same number
+        for (int digits = 6; digits <= 17; digits++) {
+            snprintf(text, size, "%.*g", digits, value);
+            if (strtod(text, NULL) == value) {
+                break;
+            }
+        }
+    }
+}
+
+static bool is_set(const parameters *p, const char *path)
+{
+    return p->set[parameter_find(path)] != 0;
+}
+
+status parameters_resolve(parameters *p, fault *f)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        if (!p->set[i] && strcmp(info->path, "arm.model") != 0) {
+            store(p, info, default_value(info, p->arm.model));
+        }
+    }
+    if (is_set(p, "arm.link_inertia") && p->arm.links != 2) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "arm.link_inertia is for two links only, but arm.links = %d (other N take "
+                         "the inertia of a uniform rod)",
+                         p->arm.links);
+    }
+    if (isnan(p->arm.link_inertia)) {
+        double m = p->arm.mass / p->arm.links, l = p->arm.length / p->arm.links;
+        p->arm.link_inertia = m * l * l / 12; // uniform rod (errata B3)
+    }
+    if (p->arm.model == ARM_PRINTED) {
+        if (p->arm.links != 2) {
+            return fault_set(f, STATUS_BAD_SCENARIO,
+                             "the printed model has two links, but arm.links = %d", p->arm.links);
+        }
+        if (p->arm.hub_joint != HUB_SPRING) {
+            return fault_set(f, STATUS_BAD_SCENARIO,
+                             "the printed model has a hub spring, but arm.hub_joint = rigid");
+        }
+        if (p->method.name != METHOD_NEWMARK) {
+            return fault_set(f, STATUS_BAD_SCENARIO,
+                             "the printed model runs with method.name = newmark only");
+        }
+        if (p->wall.kind == WALL_PLANE) {
+            return fault_set(f, STATUS_BAD_SCENARIO,
+                             "the printed model knows wall.kind = point or none, not plane");
+        }
+    }
+    return STATUS_OK;
+}

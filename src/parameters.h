@@ -1,0 +1,139 @@
+// Every parameter of a run, and the one table that describes them.
+//
+// The table feeds scenario files, --set, sweeps, `show`, validation messages, the terminal's
+// sliders and the manual. A parameter is added here and nowhere else.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "src/status.h"
+
+typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
+typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING } hub_joint_kind;
+typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
+typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
+typedef enum listing_reevaluation { REEVALUATE_RHS, REEVALUATE_LISTING } listing_reevaluation;
+
+typedef struct arm_parameters {
+    int model;             // arm_model_kind
+    int links;             // number of links of the beam, N
+    int hub_joint;         // hub_joint_kind
+    double length;         // beam length, N links together [m]
+    double mass;           // beam mass, N links together [kg]
+    double hub_inertia;    // I1 [kg m2]
+    double link_inertia;   // I2 = I3 about the centre of mass, N = 2 only [kg m2]
+    double k1;             // hub joint spring [N m/rad]
+    double k2;             // joint spring of the two-link beam [N m/rad]; N links: k2 N/2 each
+    double damping_ratio;  // structural damping ratio of the first clamped-free mode [-]
+} arm_parameters;
+
+typedef struct motor_parameters {
+    double voltage;          // command before the amplifier [V]
+    double voltage_limit;    // largest command the D/A gives [V]
+    double amplifier_gain;   // [-]
+    double torque_constant;  // kT [N m/A]
+    double back_emf;         // kB [V s/rad]
+    double resistance;       // Ra [ohm]
+    double viscous_friction; // kfr [N m s/rad]
+    double stiction;         // kst, Coulomb friction torque [N m]
+} motor_parameters;
+
+typedef struct wall_parameters {
+    int kind;            // wall_kind
+    double angle;        // direction of the contact point (or the flat wall) from the hub [rad]
+    double restitution;  // coefficient of restitution e [-]
+} wall_parameters;
+
+typedef struct method_parameters {
+    int name;                // method_kind
+    double step;             // h [s]
+    double beta;             // Newmark's beta [-]
+    double gamma;            // Newmark's gamma [-]
+    double spectral_radius;  // generalised-alpha's rho at infinite frequency [-]
+    double rest_speed;       // approach speed below which an impact is plastic (rest rule) [m/s]
+} method_parameters;
+
+typedef struct printed_parameters {
+    bool spring_counted_twice;  // (2.16) carries k2 (errata B1)
+    bool force_at_link_end;     // contact force acts at l, not at the contact point (B5)
+    bool sign_dead_band;        // sign() uses -1e-2 where it means -1e-5 (C1)
+    bool energy_cross_term;     // energy predictor uses E2 w2 w3 for 2 l e w2 w3 (C2)
+    int reevaluation;           // listing_reevaluation: where C3's term stands
+    bool force_after_release;   // re-evaluates the force after release (C4)
+    bool feed_newmark_acceleration; // next step starts from Newmark's own acceleration (C5)
+    int newton_iterations;      // Newton solves per step
+} printed_parameters;
+
+typedef struct initial_parameters {
+    double angle;     // all bodies [rad]
+    double velocity;  // all bodies [rad/s]
+} initial_parameters;
+
+typedef struct run_parameters {
+    double duration; // [s]
+} run_parameters;
+
+typedef struct parameters {
+    arm_parameters arm;
+    motor_parameters motor;
+    wall_parameters wall;
+    method_parameters method;
+    printed_parameters printed;
+    initial_parameters initial;
+    run_parameters run;
+    unsigned char set[128]; // set[i] is 1 if parameter i was given, 0 if it is a default
+} parameters;
+
+typedef enum parameter_type {
+    PARAMETER_REAL,
+    PARAMETER_INTEGER,
+    PARAMETER_BOOLEAN,
+    PARAMETER_CHOICE
+} parameter_type;
+
+typedef struct parameter_info {
+    const char *path;        // "arm.k2"
+    const char *unit;        // "N m/rad", "" for a pure number
+    parameter_type type;
+    size_t offset;           // in struct parameters
+    double default_corrected;
+    double default_printed;
+    double minimum, maximum; // both included
+    const char *choices;     // "rigid|spring" in the order of the enumeration, or NULL
+    bool timed;              // may be changed during a run
+    const char *description; // one sentence without a full stop
+} parameter_info;
+
+// The table and its length.
+extern const parameter_info parameter_table[];
+extern const int parameter_count;
+
+// Index of a path in the table, or -1.
+int parameter_find(const char *path);
+
+// The path nearest to a misspelt one (for "did you mean"), or NULL if none is near.
+const char *parameter_suggest(const char *path);
+
+// All defaults of the given model (arm_model_kind), nothing marked as set.
+void parameters_defaults(parameters *p, arm_model_kind model);
+
+// Parses text as a value of parameter `index` and stores it, marked as set. A trailing unit equal
+// to the parameter's own is accepted ("0.1 rad"). On a wrong type, a value that is not finite or
+// one out of range nothing is stored and f says what was wrong and what was expected.
+status parameter_set_text(parameters *p, int index, const char *text, fault *f);
+
+// Stores a number (an enumeration's index for a choice, 0 or 1 for a boolean), checked as above.
+status parameter_set_number(parameters *p, int index, double value, fault *f);
+
+// The value as a number; NaN where an optional parameter has none.
+double parameter_get(const parameters *p, int index);
+
+// The value as text, as a scenario file would give it, without its unit.
+void parameter_format(const parameters *p, int index, char *text, size_t size);
+
+// Fills what depends on other parameters: defaults that follow arm.model for everything not set,
+// and arm.link_inertia of a uniform link. Checks combinations (arm.link_inertia with N != 2,
+// the printed model with N != 2 ...). Call after the last parameter was set.
+status parameters_resolve(parameters *p, fault *f);

@@ -1,0 +1,37 @@
+// What can go wrong, as a code for programs and a sentence for people.
+#pragma once
+
+#include <stdbool.h>
+
+// One list, two uses: the enumeration and the text of each code.
+#define STATUS_LIST(X)                                                                             \
+    X(STATUS_OK, "done")                                                                           \
+    X(STATUS_BAD_ARGUMENT, "bad argument")                                                         \
+    X(STATUS_BAD_SCENARIO, "bad scenario")                                                         \
+    X(STATUS_NOT_FINITE, "a state became infinite or not a number")                                \
+    X(STATUS_NEWTON_FAILED, "Newton's iteration did not converge")                                 \
+    X(STATUS_NO_PROGRESS, "events follow one another without time passing")                        \
+    X(STATUS_SINGULAR, "the system of equations is singular")                                      \
+    X(STATUS_NO_MEMORY, "out of memory")                                                           \
+    X(STATUS_CANNOT_WRITE, "a file could not be written")                                          \
+    X(STATUS_CANNOT_READ, "a file could not be read")                                              \
+    X(STATUS_EXPECTATION_FAILED, "an expected value was not met")
+
+typedef enum status {
+#define STATUS_ENUM(code, text) code,
+    STATUS_LIST(STATUS_ENUM)
+#undef STATUS_ENUM
+} status;
+
+// A fault: its code and one sentence that says what was wrong, where, and what was expected.
+typedef struct fault {
+    status code;
+    char text[1024];
+} fault;
+
+// The general text of a status code, never NULL.
+const char *status_text(status code);
+
+// Writes code and a printf-formatted sentence into f (f may be NULL) and returns code.
+status fault_set(fault *f, status code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
