@@ -1,0 +1,137 @@
+#include "src/arm/arm.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/arm/chain.h"
+
+double motor_torque_per_volt(const motor_parameters *m)
+{
+    return m->amplifier_gain * m->torque_constant / m->resistance;
+}
+
+double motor_damping(const motor_parameters *m)
+{
+    return m->viscous_friction + m->torque_constant * m->back_emf / m->resistance;
+}
+
+double motor_limited_voltage(const motor_parameters *m)
+{
+    return fmax(-m->voltage_limit, fmin(m->voltage, m->voltage_limit));
+}
+
+// First frequency of the straight chain clamped at the hub, from inverse iteration on
+// M x = (1/w^2) K x: bending moments of the inertia forces, summed twice, give the next shape.
+// Uniform rods: force on node and moment per unit acceleration of link k, see chain.h.
+static double first_clamped_frequency(const arm *a)
+{
+    // the angles of a quadratic deflection are a fair first shape; Rayleigh's quotient after one
+    // smoothing sweep is right to second order in the error of the shape
+    double l = a->link_length, m = a->link_mass;
+    double frequency = 0;
+    enum { LONGEST = 1024, SWEEPS = 6 };
+    double shape[LONGEST], next[LONGEST];
+    for (int k = 0; k < a->links; k++) {
+        shape[k] = k;
+    }
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        // deflections of the links' ends
+        double y = 0, force = 0, moment_beyond = 0;
+        double tip_y[LONGEST];
+        for (int k = 0; k < a->links; k++) {
+            y += l * shape[k];
+            tip_y[k] = y;
+        }
+        // M x as the moment on each joint, from the tip inwards
+        for (int k = a->links - 1; k >= 1; k--) {
+            double base = tip_y[k] - l * shape[k];
+            double own_force = m * (base + l * shape[k] / 2);
+            double moment = moment_beyond + force * l + own_force * l / 2 + a->link_inertia * shape[k];
+            moment_beyond = moment;
+            force += own_force;
+            next[k] = moment / a->joint_stiffness; // bend of joint k
+        }
+        double sum = 0, numerator = 0, denominator = 0;
+        next[0] = 0;
+        for (int k = 0; k < a->links; k++) {
+            sum += next[k];
+            next[k] = sum;
+            numerator += shape[k] * sum;
+            denominator += sum * sum;
+        }
+        frequency = denominator > 0 ? sqrt(numerator / denominator) : 0;
+        double scale = denominator > 0 ? 1 / sqrt(denominator) : 0;
+        for (int k = 0; k < a->links; k++) {
+            shape[k] = next[k] * scale;
+        }
+    }
+    return frequency;
+}
+
+// Upper estimate of the highest frequency of the straight, free chain: power iteration on
+// M^-1 K through the contact-free sweeps, times a margin.
+static double highest_frequency(const arm *source)
+{
+    enum { LONGEST = 1025, SWEEPS = 60 };
+    static const contact_mode free_mode = {false, HUB_FORWARD};
+    arm a = *source;
+    a.motor_torque = a.hub_damping = a.stiction = a.joint_damping = a.hub_joint_damping = 0;
+    a.wall = WALL_NONE;
+    chain_link work[LONGEST];
+    double q[LONGEST], w[LONGEST], alpha[LONGEST], value = 0;
+    const double small = 1e-6; // small angles: the linear range
+    memset(w, 0, sizeof w);
+    for (int k = 0; k < a.dof; k++) {
+        q[k] = (k % 2 ? -small : small) * (1 + 0.1 * k / a.dof);
+    }
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        chain_reaction reaction;
+        double size = 0;
+        chain_accelerations(&a, work, q, w, free_mode, alpha, &reaction);
+        double before = 0;
+        for (int k = 0; k < a.dof; k++) {
+            size += alpha[k] * alpha[k];
+            before += q[k] * q[k];
+        }
+        if (size == 0) {
+            return 0;
+        }
+        value = sqrt(size / before);
+        for (int k = 0; k < a.dof; k++) {
+            q[k] = -alpha[k] * small / sqrt(size);
+        }
+    }
+    return 1.05 * sqrt(value);
+}
+
+void arm_init(arm *a, const parameters *p)
+{
+    memset(a, 0, sizeof *a);
+    a->links = p->arm.links;
+    a->hub_spring = p->arm.hub_joint == HUB_SPRING;
+    a->first = a->hub_spring ? 1 : 0;
+    a->dof = a->links + a->first;
+    a->link_length = p->arm.length / a->links;
+    a->link_mass = p->arm.mass / a->links;
+    a->link_inertia = p->arm.link_inertia;
+    a->hub_inertia = p->arm.hub_inertia;
+    a->hub_stiffness = a->hub_spring ? p->arm.k1 : 0;
+    a->joint_stiffness = p->arm.k2 * a->links / 2;
+    a->motor_torque = motor_torque_per_volt(&p->motor) * motor_limited_voltage(&p->motor);
+    a->hub_damping = motor_damping(&p->motor);
+    a->stiction = p->motor.stiction;
+    a->wall = (wall_kind)p->wall.kind;
+    a->wall_cos = cos(p->wall.angle);
+    a->wall_sin = sin(p->wall.angle);
+    a->wall_x = p->arm.length * a->wall_cos;
+    a->wall_y = p->arm.length * a->wall_sin;
+    a->restitution = p->wall.restitution;
+    a->rest_speed = p->method.rest_speed;
+    if (p->arm.damping_ratio > 0 && a->links > 1) {
+        // torque c dot(bend) in each spring, c = 2 zeta k / w1, damps the first mode by zeta
+        double per_stiffness = 2 * p->arm.damping_ratio / first_clamped_frequency(a);
+        a->joint_damping = per_stiffness * a->joint_stiffness;
+        a->hub_joint_damping = per_stiffness * a->hub_stiffness;
+    }
+    a->highest_frequency = highest_frequency(a);
+}

@@ -1,0 +1,48 @@
+// What the arm is: hub, N links, springs, motor and wall as constants derived from the parameters.
+//
+// Coordinates. Every link has an absolute angle, measured from the reference direction and growing
+// towards the wall. With a rigid hub joint, hub and first link share one; with a spring the hub has
+// its own. Degree of freedom 0 is always the body the motor turns. The unit vector along link k is
+// r_k = (cos, sin), across it t_k = (-sin, cos).
+//
+// Contact. g(q) is the penetration: negative in free flight, zero in contact, gap = -g. The wall
+// acts with the generalised force -J^T f, J = dg/dq, f >= 0.
+#pragma once
+
+#include "src/parameters.h"
+
+typedef struct arm {
+    int links;               // N
+    int dof;                 // degrees of freedom n: N, or N + 1 with a hub spring
+    int first;               // index of the first link's angle: 0, or 1 with a hub spring
+    bool hub_spring;
+    double link_length;      // l [m]
+    double link_mass;        // m [kg]
+    double link_inertia;     // about the centre of mass [kg m2]
+    double hub_inertia;      // I1 [kg m2]
+    double hub_stiffness;    // k1, zero with a rigid hub joint [N m/rad]
+    double joint_stiffness;  // of each inner joint, k2 N/2 [N m/rad]
+    double hub_joint_damping; // structural damping of the hub spring [N m s/rad]
+    double joint_damping;    // structural damping of each inner joint [N m s/rad]
+    double motor_torque;     // kT/Ra times the amplified, limited command [N m]
+    double hub_damping;      // back EMF and viscous friction [N m s/rad]
+    double stiction;         // Coulomb friction torque at the hub [N m]
+    wall_kind wall;
+    double wall_cos, wall_sin; // direction of the wall [-]
+    double wall_x, wall_y;   // contact point (a, b) [m]
+    double restitution;      // e [-]
+    double rest_speed;       // impacts slower than this are plastic [m/s]
+    double highest_frequency; // upper estimate over the arm's free modes [rad/s]
+} arm;
+
+// Derives the constants from resolved parameters (corrected model). Cost grows linearly with N.
+void arm_init(arm *a, const parameters *p);
+
+// Torque of the motor per volt of command, gain kT / Ra [N m/V].
+double motor_torque_per_volt(const motor_parameters *m);
+
+// Damping torque per hub velocity, viscous friction plus back EMF kT kB / Ra [N m s/rad].
+double motor_damping(const motor_parameters *m);
+
+// The command after the D/A's limit [V].
+double motor_limited_voltage(const motor_parameters *m);

@@ -1,0 +1,144 @@
+#include "src/arm/chain_kernel.h"
+
+#include <stddef.h>
+
+void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
+                         contact_mode mode, double *alpha, chain_reaction *reaction)
+{
+    if (a->links == 2 && !a->hub_spring) {
+        chain_sweep(a, 2, false, work, q, w, mode, alpha, reaction);
+    } else {
+        chain_sweep(a, a->links, a->hub_spring, work, q, w, mode, alpha, reaction);
+    }
+}
+
+void chain_node(const arm *a, const double *q, int k, double *x, double *y)
+{
+    *x = *y = 0;
+    for (int i = 0; i < k; i++) {
+        *x += a->link_length * cos(q[a->first + i]);
+        *y += a->link_length * sin(q[a->first + i]);
+    }
+}
+
+// Geometry of contact at q, w.
+static wall_geometry wall_geometry_of(const arm *a, const double *q, const double *w, double *vx,
+                                      double *vy)
+{
+    int last = a->first + a->links - 1;
+    double x = 0, y = 0;
+    *vx = *vy = 0;
+    for (int k = a->first; k < last; k++) {
+        double c = cos(q[k]), s = sin(q[k]);
+        x += a->link_length * c;
+        y += a->link_length * s;
+        *vx -= a->link_length * s * w[k];
+        *vy += a->link_length * c * w[k];
+    }
+    return wall_geometry_at(a, x, y, *vx, *vy, cos(q[last]), sin(q[last]), w[last]);
+}
+
+double chain_penetration_rate(const arm *a, const double *q, const double *v)
+{
+    double vx, vy;
+    int last = a->first + a->links - 1;
+    wall_geometry wall = wall_geometry_of(a, q, v, &vx, &vy);
+    double arm_of_last =
+        wall.lever + a->link_length * (cos(q[last]) * wall.ey - sin(q[last]) * wall.ex);
+    return wall.ex * vx + wall.ey * vy + arm_of_last * v[last];
+}
+
+void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate)
+{
+    if (a->wall == WALL_NONE) {
+        if (g != NULL) {
+            *g = -INFINITY;
+        }
+        if (rate != NULL) {
+            *rate = 0;
+        }
+        return;
+    }
+    double vx, vy;
+    if (g != NULL) {
+        *g = wall_geometry_of(a, q, w, &vx, &vy).g;
+    }
+    if (rate != NULL) {
+        *rate = chain_penetration_rate(a, q, w);
+    }
+}
+
+// response = M^-1 of the generalised force of a force -(ex, ey) at the tip and a moment -lever on
+// the last link. The same two sweeps as chain_sweep, without velocities and springs.
+static void unit_response(const arm *a, chain_link *link, const double *q, double ex, double ey,
+                          double lever, bool hub_locked, double *response)
+{
+    const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
+    double pxx = 0, pxy = 0, pyy = 0, fx = ex, fy = ey;
+    for (int k = a->links - 1; k >= 0; k--) {
+        double c = cos(q[a->first + k]), s = sin(q[a->first + k]);
+        double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c;
+        double ux = l * ptx - m * half * s, uy = l * pty + m * half * c;
+        double d = a->link_inertia + m * half * half + l * l * (c * pty - s * ptx);
+        double moment = -l * (c * fy - s * fx) - (k == a->links - 1 ? lever : 0);
+        if (k == 0 && !a->hub_spring) {
+            d += a->hub_inertia;
+        }
+        if (k == 0 && !a->hub_spring && hub_locked) {
+            moment = 0;
+        }
+        link[k] = (chain_link){.c = c, .s = s, .inv_d = 1 / d, .ux = ux, .uy = uy,
+                               .unit = moment / d};
+        fx += ux * link[k].unit;
+        fy += uy * link[k].unit;
+        pxx += m - ux * ux / d;
+        pxy -= ux * uy / d;
+        pyy += m - uy * uy / d;
+    }
+    double bx = 0, by = 0;
+    response[0] = 0; // a hub behind a spring does not feel an impulse
+    for (int k = 0; k < a->links; k++) {
+        double jump = link[k].unit - (link[k].ux * bx + link[k].uy * by) * link[k].inv_d;
+        bx -= l * link[k].s * jump;
+        by += l * link[k].c * jump;
+        response[a->first + k] = jump;
+    }
+}
+
+void chain_contact_response(const arm *a, chain_link *work, const double *q, bool hub_locked,
+                            double *response, double *compliance)
+{
+    double vx, vy;
+    wall_geometry wall = wall_geometry_of(a, q, q, &vx, &vy); // velocities play no part here
+    unit_response(a, work, q, wall.ex, wall.ey, wall.lever, hub_locked, response);
+    *compliance = -chain_penetration_rate(a, q, response);
+}
+
+void chain_tip_response(const arm *a, chain_link *work, const double *q, double *response)
+{
+    int last = a->first + a->links - 1;
+    unit_response(a, work, q, sin(q[last]), -cos(q[last]), 0, false, response);
+}
+
+double chain_kinetic_energy(const arm *a, const double *q, const double *w)
+{
+    double l = a->link_length, vx = 0, vy = 0, twice = a->hub_inertia * w[0] * w[0];
+    for (int k = a->first; k < a->dof; k++) {
+        double across_x = -l * sin(q[k]) * w[k], across_y = l * cos(q[k]) * w[k];
+        double cx = vx + across_x / 2, cy = vy + across_y / 2;
+        twice += a->link_mass * (cx * cx + cy * cy) + a->link_inertia * w[k] * w[k];
+        vx += across_x;
+        vy += across_y;
+    }
+    return twice / 2;
+}
+
+double chain_strain_energy(const arm *a, const double *q)
+{
+    double twice = 0;
+    for (int k = 1; k < a->dof; k++) {
+        double bend = q[k] - q[k - 1];
+        twice += (k == a->first ? a->hub_stiffness : a->joint_stiffness) * bend * bend;
+    }
+    return twice / 2;
+}

@@ -1,0 +1,189 @@
+// The sweeps of chain.h as inline functions, so that the two-link arm, whose loops the compiler can
+// unroll, and the chain of any length share one source.
+#pragma once
+
+#include <math.h>
+
+#include "src/arm/chain.h"
+
+#define KERNEL static inline __attribute__((always_inline))
+
+// Where and how the wall acts on the last link.
+typedef struct wall_geometry {
+    double ex, ey;      // direction of the contact force's reaction, J_j = l t_j'e for inner links
+    double lever;       // distance of the contact point beyond the last link's end, s - l [m]
+    double g;           // penetration [m]
+    double convective;  // d2g/dt2 - J alpha - (base acceleration)'e, velocity terms of the last link
+} wall_geometry;
+
+// Geometry of contact from the last link's base (x, y) moving at (vx, vy), its direction (c, s) and
+// angular velocity w. With d = (a, b) - base:
+//   point: g = -t'd (3.9), dg/dt = s_c w + t'v (3.12), s_c = r'd,
+//          d2g/dt2 = s_c alpha + t'a - g w^2 - 2 w r'v (3.13)
+//   plane: g = n'tip, n = (-sin, cos) of the wall's direction
+KERNEL wall_geometry wall_geometry_at(const arm *a, double x, double y, double vx, double vy,
+                                      double c, double s, double w)
+{
+    wall_geometry wall;
+    double l = a->link_length;
+    if (a->wall == WALL_POINT) {
+        double dx = a->wall_x - x, dy = a->wall_y - y;
+        wall.ex = -s;
+        wall.ey = c;
+        wall.lever = c * dx + s * dy - l;
+        wall.g = s * dx - c * dy;
+        wall.convective = -wall.g * w * w - 2 * w * (c * vx + s * vy);
+    } else {
+        wall.ex = -a->wall_sin;
+        wall.ey = a->wall_cos;
+        wall.lever = 0;
+        wall.g = wall.ex * (x + l * c) + wall.ey * (y + l * s);
+        wall.convective = -l * w * w * (wall.ex * c + wall.ey * s);
+    }
+    return wall;
+}
+
+// Accelerations under `mode`; N and hub_spring are passed apart from the arm so that they can be
+// compile-time constants. The derivation stands in chain.h.
+KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, chain_link *link, const double *q,
+                        const double *w, contact_mode mode, double *alpha,
+                        chain_reaction *reaction)
+{
+    const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
+    const double own = a->link_inertia + m * half * half;
+    const double kj = a->joint_stiffness, cj = a->joint_damping;
+    const int first = hub_spring ? 1 : 0;
+    const double *theta = q + first, *omega = w + first;
+    const bool contact = mode.contact;
+
+    // directions of the links, and place and velocity of the last one's base
+    double x = 0, y = 0, vx = 0, vy = 0;
+    for (int k = 0; k < N; k++) {
+        sincos(theta[k], &link[k].s, &link[k].c);
+        if (k < N - 1) {
+            x += l * link[k].c;
+            y += l * link[k].s;
+            vx -= l * link[k].s * omega[k];
+            vy += l * link[k].c * omega[k];
+        }
+    }
+    wall_geometry wall = {0};
+    if (a->wall != WALL_NONE) {
+        wall = wall_geometry_at(a, x, y, vx, vy, link[N - 1].c, link[N - 1].s, omega[N - 1]);
+    }
+
+    // a single link on a rigid hub is held by the wall alone; friction then has no say
+    const bool held = contact && N == 1 && !hub_spring;
+    const bool stuck = mode.friction == HUB_STICK && !held;
+
+    // motor, damping and sliding friction at the hub
+    const double sliding = held ? 0 : -mode.friction * a->stiction;
+    double hub = a->motor_torque - a->hub_damping * w[0] + sliding;
+    double hub_joint = 0, damping_power = 0;
+    if (hub_spring) {
+        double rate = omega[0] - w[0];
+        hub_joint = a->hub_stiffness * (theta[0] - q[0]) + a->hub_joint_damping * rate;
+        damping_power = a->hub_joint_damping * rate * rate;
+        hub += hub_joint;
+    }
+
+    // tip to hub: eliminate each link's acceleration
+    double pxx = 0, pxy = 0, pyy = 0;            // P: mass shown by the links beyond
+    double qx = 0, qy = 0;                       // Q of velocity and springs
+    double ux2 = wall.ex, uy2 = wall.ey;         // Q of a unit contact force
+    double outer = 0;                            // torque of the joint beyond
+    double root_free = 0, root_unit = 0;         // moments on the first link before division
+    for (int k = N - 1; k >= 0; k--) {
+        double c = link[k].c, s = link[k].s, w2 = omega[k] * omega[k];
+        double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c; // P t
+        double prx = pxx * c + pxy * s, pry = pxy * c + pyy * s;   // P r
+        double ux = l * ptx - m * half * s, uy = l * pty + m * half * c;
+        double d = own + l * l * (c * pty - s * ptx);
+        double fx = qx - l * w2 * prx, fy = qy - l * w2 * pry;
+        double torque = outer;
+        if (k > 0) {
+            double rate = omega[k] - omega[k - 1];
+            outer = kj * (theta[k] - theta[k - 1]) + cj * rate;
+            damping_power += cj * rate * rate;
+            torque -= outer;
+        } else if (hub_spring) {
+            torque -= hub_joint;
+        } else {
+            torque += hub;
+            d += a->hub_inertia;
+        }
+        double moment = torque - l * (c * fy - s * fx);
+        double moment2 = -l * (c * uy2 - s * ux2);
+        if (k == N - 1) {
+            moment2 -= wall.lever;
+        }
+        if (k == 0) {
+            root_free = moment;
+            root_unit = moment2;
+            if (!hub_spring && stuck) {
+                moment = moment2 = 0; // a stuck hub has no acceleration
+            }
+        }
+        double inv_d = 1 / d;
+        link[k].inv_d = inv_d;
+        link[k].ux = ux;
+        link[k].uy = uy;
+        link[k].free = moment * inv_d;
+        link[k].unit = moment2 * inv_d;
+        if (k > 0) {
+            qx = fx - m * half * w2 * c + ux * link[k].free;
+            qy = fy - m * half * w2 * s + uy * link[k].free;
+            ux2 += ux * link[k].unit;
+            uy2 += uy * link[k].unit;
+            pxx += m - ux * ux * inv_d;
+            pxy -= ux * uy * inv_d;
+            pyy += m - uy * uy * inv_d;
+        }
+    }
+
+    // hub to tip: accelerations with and without the unit force
+    double ax = 0, ay = 0, bx = 0, by = 0; // base acceleration, free and per unit force
+    double *out = alpha + first;
+    for (int k = 0; k < N; k++) {
+        double c = link[k].c, s = link[k].s;
+        out[k] = link[k].free - (link[k].ux * ax + link[k].uy * ay) * link[k].inv_d;
+        if (contact) {
+            link[k].unit -= (link[k].ux * bx + link[k].uy * by) * link[k].inv_d;
+        }
+        if (k < N - 1) {
+            double w2 = omega[k] * omega[k];
+            ax -= l * (s * out[k] + c * w2);
+            ay += l * (c * out[k] - s * w2);
+            bx -= l * s * link[k].unit;
+            by += l * c * link[k].unit;
+        }
+    }
+
+    // d2g/dt2 = 0 gives the force
+    double last = wall.lever + l * (link[N - 1].c * wall.ey - link[N - 1].s * wall.ex); // J_N
+    double rate2 = wall.ex * ax + wall.ey * ay + last * out[N - 1] + wall.convective;
+    double force = 0;
+    if (contact) {
+        force = -rate2 / (wall.ex * bx + wall.ey * by + last * link[N - 1].unit);
+        for (int k = 0; k < N; k++) {
+            out[k] += force * link[k].unit;
+        }
+        rate2 = 0;
+    }
+    reaction->force = force;
+    reaction->gap_acceleration = -rate2;
+    reaction->gap = a->wall == WALL_NONE ? HUGE_VAL : -wall.g;
+    reaction->gap_rate = -(wall.ex * vx + wall.ey * vy + last * omega[N - 1]);
+    reaction->friction = sliding;
+    if (hub_spring) {
+        alpha[0] = hub / a->hub_inertia;
+        if (stuck) {
+            reaction->friction = -hub;
+            alpha[0] = 0;
+        }
+    } else if (stuck) {
+        reaction->friction = -(root_free + force * root_unit);
+    }
+    reaction->viscous_power = a->hub_damping * w[0] * w[0];
+    reaction->damping_power = damping_power;
+}

@@ -1,0 +1,568 @@
+#include "src/lab/run.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "src/solve/motion.h"
+#include "src/solve/printed_algorithm.h"
+
+#define AT(field) offsetof(summary, field)
+
+const summary_info summary_table[] = {
+    {"first_contact_s", AT(first_contact_s), false},
+    {"contact_impulse_Ns", AT(contact_impulse_Ns), false},
+    {"first_pulse_peak_N", AT(first_pulse_peak_N), false},
+    {"first_pulse_time_to_peak_s", AT(first_pulse_time_to_peak_s), false},
+    {"first_pulse_s", AT(first_pulse_s), false},
+    {"peak_force_N", AT(peak_force_N), false},
+    {"time_to_peak_s", AT(time_to_peak_s), false},
+    {"impacts", AT(impacts), false},
+    {"separations", AT(separations), false},
+    {"steady_force_N", AT(steady_force_N), false},
+    {"force_overshoot_percent", AT(force_overshoot_percent), false},
+    {"settling_time_s", AT(settling_time_s), false},
+    {"max_penetration_m", AT(max_penetration_m), false},
+    {"motor_work_J", AT(motor_work_J), false},
+    {"energy_residual_J", AT(energy_residual_J), false},
+    {"steps", AT(steps), false},
+    {"wall_time_s", AT(wall_time_s), true},
+};
+const int summary_count = (int)(sizeof summary_table / sizeof summary_table[0]);
+
+bool summary_get(const summary *s, const char *key, double *value)
+{
+    for (int i = 0; i < summary_count; i++) {
+        if (strcmp(summary_table[i].key, key) == 0) {
+            memcpy(value, (const char *)s + summary_table[i].offset, sizeof *value);
+            return true;
+        }
+    }
+    return false;
+}
+
+#define SEPARATION_GAP  1e-6 // a smaller gap is no separation [m]
+#define STEADY_WINDOW   0.1  // steady force: mean over the last of the run [s]
+#define SETTLED_BAND    0.05 // of the steady force
+#define MOST_EVENTS_AT_ONCE 100 // events without time passing before the run is given up
+
+// What a run in progress remembers besides the rows.
+typedef struct recording {
+    const scenario *scenario;
+    run_result *result;
+    bool keep_trace;
+    parameters now;          // parameters as changed by the script so far
+    int next_action;
+    double *times, *forces;  // force at every row, for the settling time
+    size_t count, capacity;
+    bool separated;          // gap above SEPARATION_GAP in the present flight
+    bool pulse_open;         // the first pulse has not ended
+} recording;
+
+static void summary_clear(summary *s)
+{
+    memset(s, 0, sizeof *s);
+    for (int i = 0; i < summary_count; i++) {
+        double none = NAN;
+        memcpy((char *)s + summary_table[i].offset, &none, sizeof none);
+    }
+    s->impacts = s->separations = s->steps = s->max_penetration_m = 0;
+    s->motor_work_J = s->energy_residual_J = 0;
+}
+
+static status remember_force(recording *r, double time, double force)
+{
+    if (r->count == r->capacity) {
+        size_t capacity = r->capacity ? 2 * r->capacity : 1024;
+        double *times = realloc(r->times, capacity * sizeof *times);
+        r->times = times ? times : r->times;
+        double *forces = realloc(r->forces, capacity * sizeof *forces);
+        r->forces = forces ? forces : r->forces;
+        if (times == NULL || forces == NULL) {
+            return STATUS_NO_MEMORY;
+        }
+        r->capacity = capacity;
+    }
+    r->times[r->count] = time;
+    r->forces[r->count++] = force;
+    return STATUS_OK;
+}
+
+// Time after which the remembered force stays within the band round `final` for good, with a
+// straight line between rows; NaN if the last row is outside.
+static double settled_since(const recording *r, double final)
+{
+    double band = SETTLED_BAND * fabs(final);
+    size_t i = r->count;
+    while (i > 0 && fabs(r->forces[i - 1] - final) <= band) {
+        i--;
+    }
+    if (i == r->count) {
+        return NAN;
+    }
+    if (i == 0) {
+        return r->times[0];
+    }
+    double outside = fabs(r->forces[i - 1] - final), inside = fabs(r->forces[i] - final);
+    double share = outside > inside ? (outside - band) / (outside - inside) : 1;
+    return r->times[i - 1] + share * (r->times[i] - r->times[i - 1]);
+}
+
+static void finish_summary(recording *r, double force_integral)
+{
+    summary *s = &r->result->summary;
+    double duration = r->scenario->parameters.run.duration;
+    s->steady_force_N = force_integral / fmin(STEADY_WINDOW, duration);
+    if (isnan(s->first_contact_s)) {
+        return;
+    }
+    if (s->steady_force_N > 0) {
+        s->force_overshoot_percent = 100 * (s->peak_force_N / s->steady_force_N - 1);
+        double settled = settled_since(r, s->steady_force_N);
+        s->settling_time_s = fmax(0, settled - s->first_contact_s);
+        if (isnan(settled)) {
+            s->settling_time_s = NAN;
+        }
+    }
+}
+
+// --- the corrected arm ----------------------------------------------------------------------
+
+static status record_row(recording *r, const arm *a, motion *m, double impulse)
+{
+    double *state = m->state, *q = state_angles(m, state), *w = state_velocities(m, state);
+    double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
+    int first = a->first, last = a->dof - 1;
+    double residual = motion_energy_residual(a, m);
+    summary *s = &r->result->summary;
+    s->energy_residual_J = fmax(s->energy_residual_J, fabs(residual));
+    status failed = remember_force(r, state[SLOT_TIME], state[SLOT_FORCE]);
+    if (!r->keep_trace || failed != STATUS_OK) {
+        return failed;
+    }
+    sample row = {
+        .time = state[SLOT_TIME],
+        .hub_angle = q[0],
+        .first_angle = q[first],
+        .last_angle = q[last],
+        .hub_velocity = w[0],
+        .first_velocity = w[first],
+        .last_velocity = w[last],
+        .hub_acceleration = al[0],
+        .first_acceleration = al[first],
+        .last_acceleration = al[last],
+        .gap = state[SLOT_GAP],
+        .gap_velocity = state[SLOT_GAP_RATE],
+        .force = state[SLOT_FORCE],
+        .impulse = impulse,
+        .contact = state[SLOT_CONTACT],
+        .sticking = state[SLOT_FRICTION] == HUB_STICK,
+        .voltage = motor_limited_voltage(&r->now.motor),
+        .motor_torque = a->motor_torque,
+        .friction_torque = state[SLOT_FRICTION_TORQUE],
+        .kinetic_energy = chain_kinetic_energy(a, q, w),
+        .strain_energy = chain_strain_energy(a, q),
+        .motor_work = state[SLOT_MOTOR_WORK],
+        .external_work = state[SLOT_EXTERNAL_WORK],
+        .viscous_loss = quadrature[QUADRATURE_VISCOUS],
+        .friction_loss = state[SLOT_FRICTION_LOSS],
+        .damping_loss = quadrature[QUADRATURE_DAMPING],
+        .impact_loss = state[SLOT_IMPACT_LOSS],
+        .energy_residual = residual,
+    };
+    return trace_add_row(&r->result->trace, &row, q);
+}
+
+static status record_event(recording *r, double time, event_kind kind, const motion_report *report)
+{
+    event e = {.time = time, .kind = kind, .index = -1};
+    if (kind == EVENT_IMPACT) {
+        e.impulse = report->impulse;
+        e.speed = report->speed;
+        e.loss = report->loss;
+    }
+    return trace_add_event(&r->result->trace, e);
+}
+
+// The first pulse is over: what was the largest force until now?
+static void close_first_pulse(recording *r, const motion *m)
+{
+    summary *s = &r->result->summary;
+    r->pulse_open = false;
+    s->first_pulse_s = m->state[SLOT_TIME] - s->first_contact_s;
+    if (m->pulse_peak >= 0) {
+        s->first_pulse_peak_N = m->pulse_peak;
+        s->first_pulse_time_to_peak_s = m->pulse_peak_time - s->first_contact_s;
+    }
+}
+
+// Books an event that has just been applied.
+static status book_event(recording *r, motion *m, const motion_report *report)
+{
+    static const event_kind kinds[] = {
+        [MOTION_IMPACT] = EVENT_IMPACT, [MOTION_TOUCH] = EVENT_CONTACT,
+        [MOTION_RELEASE] = EVENT_RELEASE, [MOTION_STICK] = EVENT_STICK, [MOTION_SLIP] = EVENT_SLIP};
+    summary *s = &r->result->summary;
+    double now = m->state[SLOT_TIME];
+    bool touches = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
+    status failed = record_event(r, now, kinds[report->event], report);
+    if (report->event == MOTION_IMPACT) {
+        s->impacts++;
+    }
+    if (touches) {
+        s->separations += r->separated;
+        r->separated = false;
+        if (isnan(s->first_contact_s)) {
+            s->first_contact_s = now;
+            s->contact_impulse_Ns = report->impulse;
+            r->pulse_open = true;
+            motion_watch(m);
+        }
+        if (report->holds && failed == STATUS_OK && report->event == MOTION_IMPACT) {
+            failed = record_event(r, now, EVENT_CONTACT, report);
+        }
+    }
+    bool apart = m->state[SLOT_CONTACT] == 0 && (touches || report->event == MOTION_RELEASE);
+    if (apart && r->pulse_open) {
+        close_first_pulse(r, m);
+    }
+    return failed;
+}
+
+// Applies an event that the machine stopped at and records the rows on its both sides.
+static status pass_event(recording *r, const arm *a, motion *m, motion_report *report)
+{
+    status failed = record_row(r, a, m, 0);
+    motion_apply(a, m, report);
+    if (failed == STATUS_OK) {
+        failed = book_event(r, m, report);
+    }
+    return failed == STATUS_OK ? record_row(r, a, m, report->impulse) : failed;
+}
+
+// Carries out the script's actions that are due.
+static status act(recording *r, arm *a, motion *m, fault *f)
+{
+    const scenario *s = r->scenario;
+    double now = m->state[SLOT_TIME];
+    for (; r->next_action < s->action_count && s->actions[r->next_action].time <= now;
+         r->next_action++) {
+        const action *todo = &s->actions[r->next_action];
+        motion_report report = {.event = MOTION_REACHED};
+        event e = {.time = now, .kind = EVENT_CHANGE, .index = r->next_action};
+        status failed = record_row(r, a, m, 0);
+        if (todo->kind == ACTION_SET) {
+            failed = parameter_set_number(&r->now, todo->parameter, todo->value, f);
+            arm before = *a;
+            arm_init(a, &r->now);
+            motion_rebind(&before, a, m);
+        } else {
+            e.kind = EVENT_PUSH;
+            e.impulse = todo->value;
+            motion_push(a, m, todo->value, &report);
+        }
+        if (failed == STATUS_OK) {
+            failed = trace_add_event(&r->result->trace, e);
+        }
+        if (failed == STATUS_OK && report.event == MOTION_IMPACT) {
+            failed = book_event(r, m, &report);
+        } else if (failed == STATUS_OK && m->state[SLOT_CONTACT] == 0 && r->pulse_open) {
+            close_first_pulse(r, m);
+        }
+        if (failed == STATUS_OK) {
+            failed = record_row(r, a, m, report.impulse);
+        }
+        if (failed != STATUS_OK) {
+            return failed;
+        }
+    }
+    return STATUS_OK;
+}
+
+// Whether the flight in progress counts as a separation.
+static void watch_separation(recording *r, const motion *m)
+{
+    if (!isnan(r->result->summary.first_contact_s) && m->state[SLOT_GAP] > SEPARATION_GAP) {
+        r->separated = true;
+    }
+}
+
+// Advances to `until`, passing all events on the way.
+static status travel(recording *r, const arm *a, motion *m, double until, fault *f)
+{
+    double last_event = -1;
+    int at_once = 0;
+    for (;;) {
+        motion_report report;
+        status s = motion_advance(a, m, until, r->now.method.step, &report);
+        watch_separation(r, m);
+        if (s != STATUS_OK) {
+            return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
+                             m->failure_time, m->state[SLOT_TIME], status_text(s), m->stepper->name);
+        }
+        if (report.event == MOTION_REACHED) {
+            return STATUS_OK;
+        }
+        s = pass_event(r, a, m, &report);
+        at_once = m->state[SLOT_TIME] - last_event < 1e-13 ? at_once + 1 : 0;
+        last_event = m->state[SLOT_TIME];
+        if (s == STATUS_OK && at_once > MOST_EVENTS_AT_ONCE) {
+            s = STATUS_NO_PROGRESS;
+        }
+        if (s != STATUS_OK) {
+            return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
+        }
+    }
+}
+
+// The next instant of interest after row k: a grid point, an action, the start of the window over
+// which the steady force is taken.
+static double next_stop(const recording *r, double grid, double window, double now)
+{
+    const scenario *s = r->scenario;
+    double stop = grid;
+    if (r->next_action < s->action_count) {
+        stop = fmin(stop, s->actions[r->next_action].time);
+    }
+    return window > now && window < stop ? window : stop;
+}
+
+static status run_corrected(recording *r, fault *f)
+{
+    const parameters *p = &r->scenario->parameters;
+    arm a;
+    arm_init(&a, p);
+    motion *m = motion_create(&a, &p->method);
+    if (m == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links);
+    }
+    summary *s = &r->result->summary;
+    trace_init(&r->result->trace, a.dof);
+    motion_start(&a, m, p->initial.angle, p->initial.velocity);
+    double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
+    double integral_at_window = 0;
+    status failed = record_row(r, &a, m, 0);
+    for (long k = 1; failed == STATUS_OK && m->state[SLOT_TIME] < duration; k++) {
+        double grid = fmin((double)k * p->method.step, duration);
+        if (duration - grid < 1e-9 * p->method.step) {
+            grid = duration;
+        }
+        while (failed == STATUS_OK && m->state[SLOT_TIME] < grid) {
+            if (m->state[SLOT_TIME] == window) {
+                integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+            }
+            failed = act(r, &a, m, f);
+            if (failed == STATUS_OK) {
+                failed = travel(r, &a, m, next_stop(r, grid, window, m->state[SLOT_TIME]), f);
+            }
+        }
+        if (failed == STATUS_OK) {
+            failed = record_row(r, &a, m, 0);
+        }
+    }
+    s->steps = (double)m->steps;
+    s->max_penetration_m = fmax(0, m->largest_penetration);
+    s->motor_work_J = m->state[SLOT_MOTOR_WORK];
+    s->separations += r->separated;
+    if (!isnan(s->first_contact_s)) {
+        if (r->pulse_open) {
+            close_first_pulse(r, m);
+            s->first_pulse_s = NAN; // it never ended
+        }
+        if (m->pulse_peak >= 0) {
+            s->peak_force_N = m->pulse_peak;
+            s->time_to_peak_s = m->pulse_peak_time - s->first_contact_s;
+        }
+    }
+    if (failed == STATUS_OK) {
+        finish_summary(r, state_quadratures(m, m->state)[QUADRATURE_FORCE] - integral_at_window);
+    }
+    motion_destroy(m);
+    return failed;
+}
+
+// --- the printed arm ------------------------------------------------------------------------
+
+static bool observe_printed(void *context, const printed_row *row)
+{
+    recording *r = context;
+    summary *s = &r->result->summary;
+    bool was_in_contact = r->pulse_open;
+    s->steps += row->time > 0;
+    s->max_penetration_m = fmax(s->max_penetration_m, -row->gap);
+    if (row->contact && isnan(s->first_contact_s)) {
+        s->first_contact_s = row->time;
+        s->peak_force_N = s->first_pulse_peak_N = -1;
+        r->pulse_open = was_in_contact = true;
+        s->first_pulse_s = NAN;
+        trace_add_event(&r->result->trace, (event){.time = row->time, .kind = EVENT_CONTACT, .index = -1});
+    }
+    if (!isnan(s->first_contact_s)) {
+        double since = row->time - s->first_contact_s;
+        if (row->force > s->peak_force_N) {
+            s->peak_force_N = row->force;
+            s->time_to_peak_s = since;
+        }
+        bool first_pulse = isnan(s->first_pulse_s);
+        if (first_pulse && row->force > s->first_pulse_peak_N) {
+            s->first_pulse_peak_N = row->force;
+            s->first_pulse_time_to_peak_s = since;
+        }
+        if (was_in_contact && !row->contact) {
+            r->pulse_open = false;
+            if (first_pulse) {
+                s->first_pulse_s = since;
+            }
+            trace_add_event(&r->result->trace,
+                            (event){.time = row->time, .kind = EVENT_RELEASE, .index = -1});
+        } else if (!was_in_contact && row->contact) {
+            r->pulse_open = true;
+            s->separations += r->separated;
+            r->separated = false;
+            trace_add_event(&r->result->trace,
+                            (event){.time = row->time, .kind = EVENT_CONTACT, .index = -1});
+        }
+        s->impacts += row->contact && (!was_in_contact || since == 0);
+        r->separated |= row->gap > SEPARATION_GAP;
+    }
+    const motor_parameters *motor = &r->now.motor;
+    sample sampled = {
+        .time = row->time,
+        .hub_angle = row->angle[0],
+        .first_angle = row->angle[1],
+        .last_angle = row->angle[2],
+        .hub_velocity = row->velocity[0],
+        .first_velocity = row->velocity[1],
+        .last_velocity = row->velocity[2],
+        .hub_acceleration = row->acceleration[0],
+        .first_acceleration = row->acceleration[1],
+        .last_acceleration = row->acceleration[2],
+        .gap = row->gap,
+        .gap_velocity = NAN,
+        .force = row->force,
+        .contact = row->contact,
+        .voltage = motor_limited_voltage(motor),
+        .motor_torque = motor_torque_per_volt(motor) * motor_limited_voltage(motor),
+        .friction_torque = NAN,
+        .kinetic_energy = NAN,
+        .strain_energy = NAN,
+        .motor_work = NAN,
+        .external_work = NAN,
+        .viscous_loss = NAN,
+        .friction_loss = NAN,
+        .damping_loss = NAN,
+        .impact_loss = NAN,
+        .energy_residual = NAN,
+    };
+    return remember_force(r, row->time, row->force) == STATUS_OK &&
+           (!r->keep_trace ||
+            trace_add_row(&r->result->trace, &sampled, row->angle) == STATUS_OK);
+}
+
+// Scripted changes take effect at the next step; the printed model knows no pushes.
+static void script_printed(void *context, double time, parameters *p)
+{
+    recording *r = context;
+    const scenario *s = r->scenario;
+    for (; r->next_action < s->action_count && s->actions[r->next_action].time <= time;
+         r->next_action++) {
+        const action *todo = &s->actions[r->next_action];
+        if (todo->kind == ACTION_SET) {
+            fault ignored; // the reader has checked the value
+            parameter_set_number(p, todo->parameter, todo->value, &ignored);
+            trace_add_event(&r->result->trace,
+                            (event){.time = time, .kind = EVENT_CHANGE, .index = r->next_action});
+        }
+    }
+    r->now = *p;
+}
+
+static status run_printed(recording *r, fault *f)
+{
+    const parameters *p = &r->scenario->parameters;
+    trace_init(&r->result->trace, 3);
+    for (int i = 0; i < r->scenario->action_count; i++) {
+        if (r->scenario->actions[i].kind == ACTION_PUSH) {
+            return fault_set(f, STATUS_BAD_SCENARIO,
+                             "the script pushes the arm at %g s, but the printed model knows no pushes",
+                             r->scenario->actions[i].time);
+        }
+    }
+    status s = printed_run(p, observe_printed, script_printed, r, f);
+    summary *sum = &r->result->summary;
+    sum->motor_work_J = sum->energy_residual_J = NAN; // (2.16) as printed conserves no energy
+    if (s == STATUS_OK && r->count > 0) {
+        double window = p->run.duration - STEADY_WINDOW, total = 0, weight = 0;
+        for (size_t i = 1; i < r->count; i++) {
+            if (r->times[i] > window) {
+                total += r->forces[i];
+                weight++;
+            }
+        }
+        finish_summary(r, weight > 0 ? total / weight * fmin(STEADY_WINDOW, p->run.duration) : 0);
+    }
+    return s;
+}
+
+// --- either ---------------------------------------------------------------------------------
+
+static double computing_time(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+status run_scenario(const scenario *s, bool keep_trace, run_result *result)
+{
+    recording r = {.scenario = s, .result = result, .keep_trace = keep_trace, .now = s->parameters};
+    fault f = {STATUS_OK, ""};
+    double start = computing_time();
+    memset(result, 0, sizeof *result);
+    summary_clear(&result->summary);
+    status code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
+    if (code != STATUS_OK && f.code == STATUS_OK) {
+        fault_set(&f, code, "%s", status_text(code));
+    }
+    result->summary.status = code;
+    snprintf(result->summary.message, sizeof result->summary.message, "%s",
+             code == STATUS_OK ? "" : f.text);
+    result->summary.wall_time_s = computing_time() - start;
+    free(r.times);
+    free(r.forces);
+    return code;
+}
+
+void run_finish(run_result *result)
+{
+    trace_finish(&result->trace);
+}
+
+int run_check_expectations(const scenario *s, const run_result *result, fault_handler report,
+                           void *context)
+{
+    int missed = 0;
+    for (int i = 0; i < s->expectation_count; i++) {
+        const expectation *e = &s->expectations[i];
+        char sentence[512], found[64] = "nothing (null)";
+        double value = NAN;
+        summary_get(&result->summary, e->quantity, &value);
+        bool met = e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance;
+        if (met) {
+            continue;
+        }
+        if (!isnan(value)) {
+            snprintf(found, sizeof found, "%.9g", value);
+        }
+        if (e->is_null) {
+            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected null", s->file, e->line,
+                     e->column, e->quantity, found);
+        } else {
+            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected %.9g within %g", s->file,
+                     e->line, e->column, e->quantity, found, e->value, e->tolerance);
+        }
+        report(context, sentence);
+        missed++;
+    }
+    return missed;
+}

@@ -1,0 +1,41 @@
+// A YAML file as a small tree whose nodes know their line and column.
+//
+// Only what a scenario needs: one document of maps, lists and scalars. Every scalar is text; what
+// it means is decided by the reader of the tree ("no" is a word, not a truth value). Anchors,
+// aliases, tags, further documents and NUL are refused, and so is what is too large or too deep.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum {
+    TREE_MAX_DEPTH = 64,      // maps and lists inside one another
+    TREE_MAX_NODES = 10000,   // keys included
+    TREE_MAX_BYTES = 1 << 20, // of the text
+};
+
+typedef enum tree_kind { TREE_SCALAR, TREE_LIST, TREE_MAP } tree_kind;
+
+typedef struct tree_node {
+    tree_kind kind;
+    int line, column;        // of its first character, from 1; columns count characters
+    bool plain;              // TREE_SCALAR: written without quotes and not as a block
+    char *text;              // TREE_SCALAR: UTF-8, never NULL; otherwise NULL
+    struct tree_node *key;   // the key this node is the value of, NULL outside a map
+    struct tree_node *first; // TREE_LIST, TREE_MAP: first child
+    struct tree_node *next;  // next child of the same parent
+} tree_node;
+
+// Where and why a text is no tree.
+typedef struct tree_fault {
+    int line, column; // from 1
+    bool no_memory;
+    char text[512]; // what was wrong, what was expected
+} tree_fault;
+
+// Parses `length` bytes of text. Returns the root, to be given to tree_free, or NULL with *f
+// filled in.
+tree_node *tree_parse(const char *text, size_t length, tree_fault *f);
+
+// Frees a node with all below it; NULL is fine.
+void tree_free(tree_node *node);

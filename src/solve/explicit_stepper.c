@@ -1,0 +1,105 @@
+// Dormand and Prince's Runge-Kutta method of order 8 with twelve stages (Hairer, Norsett, Wanner:
+// Solving Ordinary Differential Equations I, section II.5; the method of their DOP853), at a fixed
+// step. The step is kept well inside the method's accuracy by the caller, from the arm's highest
+// frequency, so no error estimate is carried.
+#include <string.h>
+
+#include "src/arm/chain_kernel.h"
+#include "src/solve/motion.h"
+
+enum { STAGES = 12 };
+
+// Row i: weights of stages 0..i-1 for the argument of stage i; row 12: of the result.
+static const double weights[STAGES + 1][STAGES] = {
+    {0},
+    {5.26001519587677318785587544488e-2},
+    {1.97250569845378994544595329183e-2, 5.91751709536136983633785987549e-2},
+    {2.95875854768068491816892993775e-2, 0, 8.87627564304205475450678981324e-2},
+    {2.41365134159266685502369798665e-1, 0, -8.84549479328286085344864962717e-1,
+     9.24834003261792003115737966543e-1},
+    {3.7037037037037037037037037037e-2, 0, 0, 1.70828608729473871279604482173e-1,
+     1.25467687566822425016691814123e-1},
+    {3.7109375e-2, 0, 0, 1.70252211019544039314978060272e-1, 6.02165389804559606850219397283e-2,
+     -1.7578125e-2},
+    {3.70920001185047927108779319836e-2, 0, 0, 1.70383925712239993810214054705e-1,
+     1.07262030446373284651809199168e-1, -1.53194377486244017527936158236e-2,
+     8.27378916381402288758473766002e-3},
+    {6.24110958716075717114429577812e-1, 0, 0, -3.36089262944694129406857109825,
+     -8.68219346841726006818189891453e-1, 2.75920996994467083049415600797e1,
+     2.01540675504778934086186788979e1, -4.34898841810699588477366255144e1},
+    {4.77662536438264365890433908527e-1, 0, 0, -2.48811461997166764192642586468,
+     -5.90290826836842996371446475743e-1, 2.12300514481811942347288949897e1,
+     1.52792336328824235832596922938e1, -3.32882109689848629194453265587e1,
+     -2.03312017085086261358222928593e-2},
+    {-9.3714243008598732571704021658e-1, 0, 0, 5.18637242884406370830023853209,
+     1.09143734899672957818500254654, -8.14978701074692612513997267357,
+     -1.85200656599969598641566180701e1, 2.27394870993505042818970056734e1,
+     2.49360555267965238987089396762, -3.0467644718982195003823669022},
+    {2.27331014751653820792359768449, 0, 0, -1.05344954667372501984066689879e1,
+     -2.00087205822486249909675718444, -1.79589318631187989172765950534e1,
+     2.79488845294199600508499808837e1, -2.85899827713502369474065508674,
+     -8.87285693353062954433549289258, 1.23605671757943030647266201528e1,
+     6.43392746015763530355970484046e-1},
+    {5.42937341165687622380535766363e-2, 0, 0, 0, 0, 4.45031289275240888144113950566,
+     1.89151789931450038304281599044, -5.8012039600105847814672114227,
+     3.1116436695781989440891606237e-1, -1.52160949662516078556178806805e-1,
+     2.01365400804030348374776537501e-1, 4.47106157277725905176885569043e-2},
+};
+
+// One step for n degrees of freedom; n, links and hub_spring are constants in the two-link case.
+KERNEL status explicit_step(const arm *a, motion *m, double h, int n, int links, bool hub_spring)
+{
+    const int length = 2 * n + QUADRATURE_COUNT;
+    const contact_mode mode = state_mode(m->state);
+    const double *y0 = state_angles(m, m->state);
+    double *y = state_angles(m, m->trial);
+    double *rate = m->stages; // rate[i * length]: derivative of the smooth part in stage i
+    chain_reaction reaction;
+
+    // the first stage was evaluated with the state itself
+    const double *a0 = state_accelerations(m, m->state);
+    double *quadrature = rate + 2 * n;
+    for (int i = 0; i < n; i++) {
+        rate[i] = y0[n + i];
+        rate[n + i] = a0[i];
+    }
+    quadrature[QUADRATURE_VISCOUS] = m->state[SLOT_VISCOUS_POWER];
+    quadrature[QUADRATURE_DAMPING] = m->state[SLOT_DAMPING_POWER];
+    quadrature[QUADRATURE_FORCE] = m->state[SLOT_FORCE];
+
+#pragma GCC unroll 12
+    for (int stage = 1; stage <= STAGES; stage++) {
+        for (int i = 0; i < length; i++) {
+            double sum = weights[stage][0] * rate[i];
+#pragma GCC unroll 12
+            for (int j = 1; j < stage; j++) {
+                if (weights[stage][j] != 0) {
+                    sum += weights[stage][j] * rate[j * length + i];
+                }
+            }
+            y[i] = y0[i] + h * sum;
+        }
+        if (stage == STAGES) {
+            break;
+        }
+        double *k = rate + stage * length;
+        chain_sweep(a, links, hub_spring, m->links, y, y + n, mode, k + n, &reaction);
+        for (int i = 0; i < n; i++) {
+            k[i] = y[n + i];
+        }
+        k[2 * n + QUADRATURE_VISCOUS] = reaction.viscous_power;
+        k[2 * n + QUADRATURE_DAMPING] = reaction.damping_power;
+        k[2 * n + QUADRATURE_FORCE] = reaction.force;
+    }
+    return STATUS_OK;
+}
+
+static status step(const arm *a, motion *m, double h)
+{
+    if (a->links == 2 && !a->hub_spring) {
+        return explicit_step(a, m, h, 2, 2, false);
+    }
+    return explicit_step(a, m, h, a->dof, a->links, a->hub_spring);
+}
+
+const stepper explicit_stepper = {"Runge-Kutta 8", step, STAGES};

@@ -1,0 +1,304 @@
+// Newmark's method and generalised-alpha (Chung and Hulbert 1993, in the form of Arnold and Bruls
+// 2007 for constrained systems) on the chain, with a Newton iteration that costs O(N).
+//
+// Unknown are the angles q1 at the end of the step and the contact force f. With algorithmic
+// accelerations A,
+//
+//     q1 = q0 + h w0 + h^2 ((1/2 - beta) A0 + beta A1)                               (3.7)
+//     w1 = w0 + h ((1 - gamma) A0 + gamma A1)                                        (3.6)
+//     (1 - alpha_m) A1 + alpha_m A0 = (1 - alpha_f) a1 + alpha_f a0,
+//
+// where a1 satisfies the equations of motion at q1, w1 exactly and g(q1) = 0 in contact. Newmark is
+// alpha_m = alpha_f = 0. After the step the velocities are projected onto dg/dt = 0 and a1 and f
+// are evaluated again from q1, w1 and d2g/dt2 = 0: the strategy of section 3.1.3, which keeps the
+// index-3 force's oscillation out of the results.
+//
+// Newton's linear system is solved by two sweeps like those of chain.h. With dw = gamma' dq and
+// da = beta' dq, the acceleration of a node changes by da_k = da_{k-1} + l z_k dq_k,
+//     z_k = t_k (beta' - w_k^2) - r_k (alpha_k + 2 gamma' w_k),
+// and the links beyond node k answer with force and joint torque
+//     dF = P da_{k-1} + p_f dq_{k-1} + F0,   dT = p_t' da_{k-1} + y dq_{k-1} + T0.
+// Only the small change of the contact point's lever with the base's displacement is left out
+// (it is of order f l against I / h^2), so Newton converges a little slower than quadratically.
+#include "src/solve/implicit_stepper.h"
+
+#include <math.h>
+#include <string.h>
+
+#define NEWTON_ITERATIONS 30
+#define NEWTON_TOLERANCE  1e-12 // of the last correction [rad]
+
+typedef struct tangent {
+    double beta;  // beta': acceleration per angle [1/s2]
+    double gamma; // gamma': velocity per angle [1/s]
+} tangent;
+
+// Residual quantities of the iterate: forces between the links and node accelerations.
+static void forces_between_links(const arm *a, implicit_sweep *link, const double *w,
+                                 const double *acceleration, double fx, double fy)
+{
+    const double l = a->link_length, m = a->link_mass;
+    double ax = 0, ay = 0;
+    for (int k = 0; k < a->links; k++) {
+        double al = acceleration[a->first + k], w2 = w[a->first + k] * w[a->first + k];
+        double dx = -l * (link[k].s * al + link[k].c * w2);
+        double dy = l * (link[k].c * al - link[k].s * w2);
+        link[k].com_x = ax + dx / 2;
+        link[k].com_y = ay + dy / 2;
+        ax += dx;
+        ay += dy;
+    }
+    for (int k = a->links - 1; k >= 0; k--) {
+        link[k].force_x = fx;
+        link[k].force_y = fy;
+        fx += m * link[k].com_x;
+        fy += m * link[k].com_y;
+    }
+}
+
+// Penetration, and how the wall acts at q: direction, lever.
+typedef struct contact_point {
+    double ex, ey, lever, g, angle_force; // angle_force: e' = -r of a point wall, see below
+} contact_point;
+
+static contact_point contact_at(const arm *a, const implicit_sweep *link)
+{
+    const double l = a->link_length;
+    const implicit_sweep *end = &link[a->links - 1];
+    double x = 0, y = 0;
+    for (int k = 0; k < a->links - 1; k++) {
+        x += l * link[k].c;
+        y += l * link[k].s;
+    }
+    if (a->wall == WALL_POINT) {
+        double dx = a->wall_x - x, dy = a->wall_y - y;
+        return (contact_point){-end->s, end->c, end->c * dx + end->s * dy - l,
+                               end->s * dx - end->c * dy, 1};
+    }
+    return (contact_point){-a->wall_sin, a->wall_cos, 0,
+                           -a->wall_sin * (x + l * end->c) + a->wall_cos * (y + l * end->s), 0};
+}
+
+// J v from the directions in `link`.
+static double rate_along(const arm *a, const implicit_sweep *link, contact_point p, const double *v)
+{
+    double sum = 0, l = a->link_length;
+    for (int k = 0; k < a->links; k++) {
+        sum += l * (link[k].c * p.ey - link[k].s * p.ex) * v[a->first + k];
+    }
+    return sum + p.lever * v[a->dof - 1];
+}
+
+typedef struct iterate {
+    const double *q, *w, *acceleration;
+    double force;
+    bool contact, stuck;
+    double sliding; // Coulomb friction torque while sliding [N m]
+} iterate;
+
+// Solves the tangent system for the corrections of the angles, dq[dof], and of the force.
+static double newton_correction(const arm *a, implicit_sweep *link, const iterate *it, tangent t,
+                                double *dq, double *unit)
+{
+    const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
+    const double *q = it->q, *w = it->w, *al = it->acceleration;
+    const int first = a->first, last = a->links - 1;
+    contact_point point = {0};
+    for (int k = 0; k <= last; k++) {
+        sincos(q[first + k], &link[k].s, &link[k].c);
+    }
+    if (it->contact) {
+        point = contact_at(a, link);
+    }
+    forces_between_links(a, link, w, al, it->force * point.ex, it->force * point.ey);
+
+    // tip to hub
+    double pxx = 0, pxy = 0, pyx = 0, pyy = 0; // P, no longer symmetric
+    double hx = -it->force * point.angle_force * link[last].c; // p_f: the point wall's force turns
+    double hy = -it->force * point.angle_force * link[last].s; // with the last link
+    double gx = 0, gy = 0, yy = 0;             // p_t and y of the joint beyond
+    double fx = 0, fy = 0, torque0 = 0;        // F0, T0 of the residual
+    double ex = point.ex, ey = point.ey, torque1 = 0; // and of a unit force
+    double outer = 0;                          // torque of the joint beyond
+    for (int k = last; k >= 0; k--) {
+        implicit_sweep *L = &link[k];
+        double c = L->c, s = L->s, omega = w[first + k], alpha = al[first + k];
+        double across = t.beta - omega * omega, along = alpha + 2 * t.gamma * omega;
+        L->zx = -s * across - c * along;
+        L->zy = c * across - s * along;
+        double kappa = 0, inner = 0;
+        if (first + k > 0) {
+            double stiffness = k > 0 ? a->joint_stiffness : a->hub_stiffness;
+            double damping = k > 0 ? a->joint_damping : a->hub_joint_damping;
+            kappa = stiffness + damping * t.gamma;
+            inner = stiffness * (q[first + k] - q[first + k - 1]) +
+                    damping * (omega - w[first + k - 1]);
+        }
+        double residual = a->link_inertia * alpha + half * m * (c * L->com_y - s * L->com_x) +
+                          l * (c * L->force_y - s * L->force_x) - outer + inner;
+        double lever_force = 0;
+        if (k == last) {
+            residual += it->force * point.lever;
+            lever_force = point.lever;
+        }
+        double zpx = pxx * L->zx + pxy * L->zy, zpy = pyx * L->zx + pyy * L->zy; // P z
+        double pivot = a->link_inertia * t.beta - half * m * (c * L->com_x + s * L->com_y) -
+                       l * (c * L->force_x + s * L->force_y) +
+                       half * half * m * (c * L->zy - s * L->zx) +
+                       l * (c * (l * zpy + hy) - s * (l * zpx + hx)) -
+                       (l * (gx * L->zx + gy * L->zy) + yy) + kappa;
+        double vx = -half * m * s + l * (c * pyx - s * pxx) - gx;
+        double vy = half * m * c + l * (c * pyy - s * pxy) - gy;
+        double right = -residual - l * (c * fy - s * fx) + torque0;
+        double right1 = -lever_force - l * (c * ey - s * ex) + torque1;
+        if (first + k == 0) {
+            // the first link turns with the hub
+            pivot += a->hub_inertia * t.beta + a->hub_damping * t.gamma;
+            right -= a->hub_inertia * alpha + a->hub_damping * omega - a->motor_torque - it->sliding;
+            if (it->stuck) {
+                right = right1 = 0;
+            }
+        }
+        L->vx = vx / pivot;
+        L->vy = vy / pivot;
+        L->to_parent = kappa / pivot;
+        L->free = right / pivot;
+        L->unit = right1 / pivot;
+        double px = m * half * L->zx + l * zpx + hx, py = m * half * L->zy + l * zpy + hy;
+        pxx += m - px * L->vx;
+        pxy -= px * L->vy;
+        pyx -= py * L->vx;
+        pyy += m - py * L->vy;
+        hx = px * L->to_parent;
+        hy = py * L->to_parent;
+        fx += px * L->free;
+        fy += py * L->free;
+        ex += px * L->unit;
+        ey += py * L->unit;
+        gx = -kappa * L->vx;
+        gy = -kappa * L->vy;
+        yy = kappa * L->to_parent - kappa;
+        torque0 = kappa * L->free;
+        torque1 = kappa * L->unit;
+        outer = inner;
+    }
+    dq[0] = unit[0] = 0;
+    if (a->hub_spring && !it->stuck) {
+        double pivot = a->hub_inertia * t.beta + a->hub_damping * t.gamma - yy;
+        double residual = a->hub_inertia * al[0] + a->hub_damping * w[0] - a->motor_torque -
+                          it->sliding - outer;
+        dq[0] = (torque0 - residual) / pivot;
+        unit[0] = torque1 / pivot;
+    }
+
+    // hub to tip
+    double ax = 0, ay = 0, bx = 0, by = 0;
+    for (int k = 0; k <= last; k++) {
+        implicit_sweep *L = &link[k];
+        double parent = first + k > 0 ? dq[first + k - 1] : 0;
+        double parent1 = first + k > 0 ? unit[first + k - 1] : 0;
+        bool fixed = first + k == 0 && it->stuck;
+        double d = fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
+        double d1 = fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
+        dq[first + k] = d;
+        unit[first + k] = d1;
+        ax += l * L->zx * d;
+        ay += l * L->zy * d;
+        bx += l * L->zx * d1;
+        by += l * L->zy * d1;
+    }
+    if (!it->contact) {
+        return 0;
+    }
+    double df = -(point.g + rate_along(a, link, point, dq)) / rate_along(a, link, point, unit);
+    for (int i = 0; i < a->dof; i++) {
+        dq[i] += df * unit[i];
+    }
+    return df;
+}
+
+// Velocities onto J w = 0 in contact.
+static void project_velocity(const arm *a, motion *m, const double *q, double *w, bool stuck)
+{
+    double compliance, *response = m->scratch;
+    chain_contact_response(a, m->links, q, stuck, response, &compliance);
+    double jump = chain_penetration_rate(a, q, w) / compliance;
+    for (int i = 0; i < a->dof; i++) {
+        w[i] += jump * response[i];
+    }
+}
+
+static status step(const arm *a, motion *m, double h)
+{
+    const int n = a->dof;
+    const contact_mode mode = state_mode(m->state);
+    const bool held = n == 1 && mode.contact;
+    const double *q0 = state_angles(m, m->state), *w0 = state_velocities(m, m->state);
+    const double *a0 = state_accelerations(m, m->state), *A0 = state_algorithmic(m, m->state);
+    double *q1 = state_angles(m, m->trial), *w1 = state_velocities(m, m->trial);
+    double *A1 = state_algorithmic(m, m->trial);
+    double *a1 = m->scratch + n, *dq = m->scratch + 2 * n, *unit = m->scratch + 3 * n;
+    tangent t = {(1 - m->alpha_m) / ((1 - m->alpha_f) * m->beta * h * h),
+                 m->gamma / (m->beta * h)};
+    iterate it = {.q = q1, .w = w1, .acceleration = a1, .force = m->state[SLOT_FORCE],
+                  .contact = mode.contact && !held, .stuck = mode.friction == HUB_STICK && !held,
+                  .sliding = held ? 0 : -mode.friction * a->stiction};
+
+    for (int i = 0; i < n; i++) {
+        q1[i] = q0[i] + h * w0[i] + 0.5 * h * h * A0[i];
+    }
+    if (it.stuck || held) {
+        q1[0] = q0[0];
+    }
+    double size = INFINITY;
+    for (int iteration = 0; iteration < NEWTON_ITERATIONS && size > NEWTON_TOLERANCE; iteration++) {
+        for (int i = 0; i < n; i++) {
+            A1[i] = (q1[i] - q0[i] - h * w0[i] - h * h * (0.5 - m->beta) * A0[i]) /
+                    (h * h * m->beta);
+            w1[i] = w0[i] + h * ((1 - m->gamma) * A0[i] + m->gamma * A1[i]);
+            a1[i] = ((1 - m->alpha_m) * A1[i] + m->alpha_m * A0[i] - m->alpha_f * a0[i]) /
+                    (1 - m->alpha_f);
+        }
+        if (it.stuck || held) {
+            w1[0] = A1[0] = a1[0] = 0;
+        }
+        if (held) {
+            break;
+        }
+        it.force += newton_correction(a, m->sweeps, &it, t, dq, unit);
+        size = 0;
+        for (int i = 0; i < n; i++) {
+            q1[i] += dq[i];
+            size = fmax(size, fabs(dq[i]));
+        }
+        if (!isfinite(size)) {
+            return STATUS_NOT_FINITE;
+        }
+    }
+    if (!held && size > NEWTON_TOLERANCE) {
+        return STATUS_NEWTON_FAILED;
+    }
+    for (int i = 0; i < n && !held; i++) {
+        A1[i] = (q1[i] - q0[i] - h * w0[i] - h * h * (0.5 - m->beta) * A0[i]) / (h * h * m->beta);
+        w1[i] = w0[i] + h * ((1 - m->gamma) * A0[i] + m->gamma * A1[i]);
+    }
+    if (it.stuck || held) {
+        w1[0] = A1[0] = 0;
+    }
+    if (it.contact) {
+        project_velocity(a, m, q1, w1, it.stuck);
+    }
+
+    // quadratures by the trapezoidal rule, with the powers at the new state
+    double *x0 = state_quadratures(m, m->state), *x1 = state_quadratures(m, m->trial);
+    chain_reaction r;
+    chain_accelerations(a, m->links, q1, w1, mode, state_accelerations(m, m->trial), &r);
+    x1[QUADRATURE_VISCOUS] = x0[QUADRATURE_VISCOUS] +
+                             h / 2 * (m->state[SLOT_VISCOUS_POWER] + r.viscous_power);
+    x1[QUADRATURE_DAMPING] = x0[QUADRATURE_DAMPING] +
+                             h / 2 * (m->state[SLOT_DAMPING_POWER] + r.damping_power);
+    x1[QUADRATURE_FORCE] = x0[QUADRATURE_FORCE] + h / 2 * (m->state[SLOT_FORCE] + r.force);
+    return STATUS_OK;
+}
+
+const stepper implicit_stepper = {"generalised-alpha", step, 0};

@@ -1,0 +1,591 @@
+#include "src/solve/motion.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/solve/implicit_stepper.h"
+
+// Substeps keep (highest frequency) x (step) below this; the 8th-order method then errs by less
+// than 1e-10 of the fastest mode's amplitude in a step.
+#define EXPLICIT_LIMIT 0.5
+// The event method steps implicitly where the explicit one would need more substeps than this.
+#define MOST_SUBSTEPS 64
+
+#define TOUCH_TOLERANCE     1e-12 // penetration that counts as crossing the wall [m]
+#define TOUCH_SPEED         1e-11 // approach speed below which a touch carries no impulse [m/s]
+#define FORCE_TOLERANCE     1e-9  // tension that counts as a release [N]
+#define TORQUE_TOLERANCE    1e-12 // excess that counts as breaking away [N m]
+#define PROJECTION_GAP      1e-14 // drift that is projected away in contact [m]
+#define PROJECTION_RATE     1e-13 // [m/s]
+
+static void choose_stepper(const arm *a, motion *m, const method_parameters *method)
+{
+    double rho = method->spectral_radius;
+    bool too_stiff = a->highest_frequency * method->step > EXPLICIT_LIMIT * MOST_SUBSTEPS;
+    m->stepper = &implicit_stepper;
+    if (method->name == METHOD_NEWMARK) {
+        m->beta = method->beta;
+        m->gamma = method->gamma;
+    } else if (method->name == METHOD_GENERALIZED_ALPHA || too_stiff) {
+        // Chung and Hulbert (1993), equations (17), (18), (25)
+        m->alpha_m = (2 * rho - 1) / (rho + 1);
+        m->alpha_f = rho / (rho + 1);
+        m->gamma = 0.5 - m->alpha_m + m->alpha_f;
+        m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
+    } else {
+        m->stepper = &explicit_stepper;
+    }
+}
+
+motion *motion_create(const arm *a, const method_parameters *method)
+{
+    motion *m = calloc(1, sizeof *m);
+    if (m == NULL) {
+        return NULL;
+    }
+    m->dof = a->dof;
+    m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT;
+    choose_stepper(a, m, method);
+    size_t size = (size_t)m->size, n = (size_t)a->dof, links = (size_t)a->links;
+    m->state = calloc(size, sizeof(double));
+    m->trial = calloc(size, sizeof(double));
+    m->stages = calloc((size_t)(m->stepper->scratch_vectors + 1) * (size_t)smooth_length(m),
+                       sizeof(double));
+    m->scratch = calloc(4 * n, sizeof(double));
+    m->links = calloc(links, sizeof(chain_link));
+    m->sweeps = calloc(links, IMPLICIT_SWEEP_SIZE);
+    if (!m->state || !m->trial || !m->stages || !m->scratch || !m->links || !m->sweeps) {
+        motion_destroy(m);
+        return NULL;
+    }
+    return m;
+}
+
+void motion_destroy(motion *m)
+{
+    if (m != NULL) {
+        free(m->state);
+        free(m->trial);
+        free(m->stages);
+        free(m->scratch);
+        free(m->links);
+        free(m->sweeps);
+        free(m);
+    }
+}
+
+void motion_evaluate(const arm *a, motion *m, double *state)
+{
+    chain_reaction r;
+    chain_accelerations(a, m->links, state_angles(m, state), state_velocities(m, state),
+                        state_mode(state), state_accelerations(m, state), &r);
+    state[SLOT_FORCE] = r.force;
+    state[SLOT_FRICTION_TORQUE] = r.friction;
+    state[SLOT_GAP_ACCELERATION] = r.gap_acceleration;
+    state[SLOT_GAP] = r.gap;
+    state[SLOT_GAP_RATE] = r.gap_rate;
+    state[SLOT_VISCOUS_POWER] = r.viscous_power;
+    state[SLOT_DAMPING_POWER] = r.damping_power;
+}
+
+// --- what holds at an instant ---------------------------------------------------------------
+
+// How far the state violates what its mode promises: tension in contact, penetration to come in
+// a released touch, friction beyond its limit, sliding against the chosen direction.
+static double violation(const arm *a, const motion *m, const double *state, bool touching,
+                        bool hub_rests)
+{
+    contact_mode mode = state_mode(state);
+    double worst = 0;
+    if (mode.contact) {
+        worst = fmax(worst, -state[SLOT_FORCE]);
+    } else if (touching) {
+        worst = fmax(worst, -state[SLOT_GAP_ACCELERATION]);
+    }
+    if (mode.friction == HUB_STICK) {
+        worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->stiction);
+    } else if (hub_rests) {
+        worst = fmax(worst, -mode.friction * state[SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT]);
+    }
+    return worst;
+}
+
+// Finds the one combination of contact and hub friction that violates nothing and evaluates the
+// state under it. Gauss's principle makes the problem a strictly convex one, since the friction
+// torque is bounded independently of the contact force: there is exactly one solution. At an event
+// two combinations agree to rounding; `event` says which of them the motion has just left.
+static void resolve(const arm *a, motion *m, bool touching, motion_event event)
+{
+    static const hub_friction sticking_first[] = {HUB_STICK, HUB_FORWARD, HUB_BACKWARD};
+    static const hub_friction sliding_first[] = {HUB_FORWARD, HUB_BACKWARD, HUB_STICK};
+    const hub_friction *at_rest = event == MOTION_SLIP ? sliding_first : sticking_first;
+    double *state = m->state;
+    double hub_velocity = state_velocities(m, state)[0];
+    bool hub_rests = hub_velocity == 0 && a->stiction > 0;
+    hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
+    int choices = hub_rests ? 3 : 1, ways = touching ? 2 : 1;
+    double least = 0;
+    contact_mode best = {false, sliding};
+
+    for (int i = 0; i < ways * choices; i++) {
+        bool second = i >= choices;
+        state[SLOT_CONTACT] = touching && second == (event == MOTION_RELEASE);
+        state[SLOT_FRICTION] = hub_rests ? at_rest[i % choices] : sliding;
+        motion_evaluate(a, m, state);
+        double v = violation(a, m, state, touching, hub_rests);
+        if (i == 0 || v < least) {
+            least = v;
+            best = state_mode(state);
+        }
+        if (v <= FORCE_TOLERANCE / 1000) {
+            best = state_mode(state);
+            break;
+        }
+    }
+    state[SLOT_CONTACT] = best.contact;
+    state[SLOT_FRICTION] = best.friction;
+    motion_evaluate(a, m, state);
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
+}
+
+void motion_start(const arm *a, motion *m, double angle, double velocity)
+{
+    memset(m->state, 0, (size_t)m->size * sizeof(double));
+    for (int i = 0; i < m->dof; i++) {
+        state_angles(m, m->state)[i] = angle;
+        state_velocities(m, m->state)[i] = velocity;
+    }
+    m->start_energy = chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
+                      chain_strain_energy(a, state_angles(m, m->state));
+    m->steps = 0;
+    m->largest_penetration = 0;
+    motion_watch(m);
+    double g, rate;
+    chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
+    resolve(a, m, g >= 0 && rate >= 0, MOTION_REACHED);
+}
+
+void motion_watch(motion *m)
+{
+    m->pulse_peak = -1;
+    m->pulse_peak_time = m->state[SLOT_TIME];
+}
+
+double motion_energy_residual(const arm *a, const motion *m)
+{
+    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    const double *quadrature = state_quadratures(m, m->state);
+    double stored = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q) - m->start_energy;
+    double work = m->state[SLOT_MOTOR_WORK] + m->state[SLOT_EXTERNAL_WORK];
+    double lost = m->state[SLOT_FRICTION_LOSS] + m->state[SLOT_IMPACT_LOSS] +
+                  quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING];
+    return stored + lost - work;
+}
+
+// --- a step of smooth motion ----------------------------------------------------------------
+
+// Puts a state in contact back onto the constraint, position and velocity, along M^-1 J^T: the
+// nearest admissible state in the metric of the kinetic energy.
+static void project(const arm *a, motion *m, double *state)
+{
+    bool locked = state_mode(state).friction == HUB_STICK;
+    if (m->dof == 1 || (fabs(state[SLOT_GAP]) <= PROJECTION_GAP &&
+                        fabs(state[SLOT_GAP_RATE]) <= PROJECTION_RATE)) {
+        return;
+    }
+    double compliance, *response = m->scratch;
+    double *q = state_angles(m, state), *w = state_velocities(m, state);
+    chain_contact_response(a, m->links, q, locked, response, &compliance);
+    double shift = -state[SLOT_GAP] / compliance;
+    for (int i = 0; i < m->dof; i++) {
+        q[i] += shift * response[i];
+    }
+    double jump = chain_penetration_rate(a, q, w) / compliance;
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += jump * response[i];
+    }
+    motion_evaluate(a, m, state);
+}
+
+// Advances m->state by h into m->trial, books the ledger, and checks the result for finiteness.
+static status take_step(const arm *a, motion *m, double h)
+{
+    double *trial = m->trial;
+    memcpy(trial, m->state, SLOT_COUNT * sizeof(double));
+    status s = m->stepper->step(a, m, h);
+    if (s != STATUS_OK) {
+        return s;
+    }
+    trial[SLOT_TIME] = m->state[SLOT_TIME] + h;
+    motion_evaluate(a, m, trial);
+    if (trial[SLOT_CONTACT] != 0) {
+        project(a, m, trial);
+    }
+    double turned = state_angles(m, trial)[0] - state_angles(m, m->state)[0];
+    trial[SLOT_MOTOR_WORK] += a->motor_torque * turned;
+    if (!(m->dof == 1 && trial[SLOT_CONTACT] != 0)) {
+        trial[SLOT_FRICTION_LOSS] += trial[SLOT_FRICTION] * a->stiction * turned;
+    }
+    double sum = trial[SLOT_FORCE];
+    for (int i = 0; i < 2 * m->dof; i++) {
+        sum += state_angles(m, trial)[i];
+    }
+    return isfinite(sum) ? STATUS_OK : STATUS_NOT_FINITE;
+}
+
+static void accept(motion *m)
+{
+    double *previous = m->state;
+    m->state = m->trial;
+    m->trial = previous;
+    m->steps++;
+    m->largest_penetration = fmax(m->largest_penetration, -m->state[SLOT_GAP]);
+}
+
+// --- locating what happens within a step ----------------------------------------------------
+
+typedef enum watch { WATCH_GAP, WATCH_FORCE, WATCH_HUB, WATCH_STICTION } watch;
+
+// Positive on the admissible side.
+static double watch_value(const arm *a, const motion *m, const double *state, watch w)
+{
+    switch (w) {
+    case WATCH_GAP:
+        return state[SLOT_GAP];
+    case WATCH_FORCE:
+        return state[SLOT_FORCE];
+    case WATCH_HUB:
+        return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
+    case WATCH_STICTION:
+        return a->stiction - fabs(state[SLOT_FRICTION_TORQUE]);
+    }
+    return 1;
+}
+
+static double watch_tolerance(watch w)
+{
+    return w == WATCH_GAP ? TOUCH_TOLERANCE
+           : w == WATCH_FORCE ? FORCE_TOLERANCE
+           : w == WATCH_STICTION ? TORQUE_TOLERANCE : 0;
+}
+
+static bool watch_active(const arm *a, const motion *m, watch w)
+{
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
+    bool held = m->dof == 1 && contact;
+    switch (w) {
+    case WATCH_GAP:
+        return !contact && a->wall != WALL_NONE;
+    case WATCH_FORCE:
+        return contact;
+    case WATCH_HUB:
+        return !stuck && !held && a->stiction > 0;
+    case WATCH_STICTION:
+        return stuck && !held;
+    }
+    return false;
+}
+
+// Where in (0, 1) a cubic with the given end values and end slopes (per step) is least, if that
+// lies inside and the cubic falls at the start and rises at the end; else -1.
+static double cubic_dip(double v0, double v1, double d0, double d1)
+{
+    if (!(d0 < 0 && d1 > 0)) {
+        return -1;
+    }
+    // derivative of the Hermite cubic: d0 + 2 b s + 3 c s^2
+    double c = d0 + d1 - 2 * (v1 - v0), b = 3 * (v1 - v0) - 2 * d0 - d1;
+    double root = sqrt(fmax(b * b - 3 * c * d0, 0));
+    return b + root != 0 ? -d0 / (b + root) : -1;
+}
+
+// Fraction of the step at which a function, admissible at both ends, may have been violated in
+// between; -1 if there is no sign of that.
+static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
+{
+    const double *state = m->state, *trial = m->trial;
+    double d0 = 0, d1 = 0;
+    if (w == WATCH_GAP) {
+        d0 = state[SLOT_GAP_RATE] * h;
+        d1 = trial[SLOT_GAP_RATE] * h;
+    } else if (w == WATCH_HUB) {
+        d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
+        d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
+    } else if (w == WATCH_FORCE) {
+        // parabola through both ends with the mean the quadrature gives
+        double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
+                       state_quadratures(m, m->state)[QUADRATURE_FORCE]) / h;
+        double curve = 3 * (v0 + v1) - 6 * mean;
+        d0 = v1 - v0 - curve;
+        d1 = v1 - v0 + curve;
+    } else {
+        // near the limit of friction the middle of the step is worth a look
+        return fmin(v0, v1) < 0.2 * a->stiction ? 0.5 : -1;
+    }
+    double s = cubic_dip(v0, v1, d0, d1);
+    if (s <= 0 || s >= 1) {
+        return -1;
+    }
+    double t = 1 - s;
+    double least = t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 - s * s * t * d1;
+    return least < 1e-3 * fmax(v0, v1) ? s : -1;
+}
+
+// Narrows the bracket [lo, hi] of a sign change by the Illinois variant of false position until it
+// is as narrow as time resolves; m->trial ends as the state at its far side *hi.
+static status narrow(const arm *a, motion *m, watch w, double lo, double v_lo, double *hi,
+                     double v_hi)
+{
+    const double resolution = 4e-16 * fmax(1, m->state[SLOT_TIME]) + 1e-16;
+    double evaluated = *hi;
+    int side = 0;
+    for (int i = 0; i < 200 && *hi - lo > resolution; i++) {
+        double s = v_lo > 0 ? lo + (*hi - lo) * v_lo / (v_lo - v_hi) : 0.5 * (lo + *hi);
+        s = fmin(fmax(s, lo + 0.5 * resolution), *hi - 0.5 * resolution);
+        status failed = take_step(a, m, s);
+        if (failed != STATUS_OK) {
+            return failed;
+        }
+        evaluated = s;
+        double v = watch_value(a, m, m->trial, w);
+        if (v > 0) {
+            lo = s;
+            v_lo = v;
+            v_hi = side == 1 ? v_hi / 2 : v_hi;
+            side = 1;
+        } else {
+            *hi = s;
+            v_hi = v;
+            v_lo = side == -1 ? v_lo / 2 : v_lo;
+            side = -1;
+        }
+    }
+    return evaluated == *hi ? STATUS_OK : take_step(a, m, *hi);
+}
+
+// Looks for the first instant in (0, *h] at which `w` leaves its admissible side; if there is one,
+// *h and m->trial move there.
+static status search(const arm *a, motion *m, watch w, double *h, bool *found)
+{
+    double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
+    double lo = 0, hi = *h, tolerance = watch_tolerance(w);
+    *found = false;
+    if (v1 >= -tolerance) {
+        double dip = v0 > 0 && v1 > 0 ? suspected_dip(a, m, *h, w, v0, v1) : -1;
+        if (dip < 0) {
+            return STATUS_OK;
+        }
+        status s = take_step(a, m, dip * *h);
+        v1 = watch_value(a, m, m->trial, w);
+        if (s != STATUS_OK || v1 >= -tolerance) {
+            return s == STATUS_OK ? take_step(a, m, *h) : s;
+        }
+        hi = dip * *h;
+    }
+    if (v0 <= tolerance) {
+        // it starts on the edge (a release, a breakaway): find where it is well admissible
+        double s = hi;
+        for (int i = 0; i < 20; i++) {
+            s /= 2;
+            status failed = take_step(a, m, s);
+            if (failed != STATUS_OK) {
+                return failed;
+            }
+            double v = watch_value(a, m, m->trial, w);
+            if (v > 0) {
+                lo = s;
+                v0 = v;
+                break;
+            }
+            hi = s;
+            v1 = v;
+        }
+    }
+    *found = true;
+    status s = narrow(a, m, w, lo, v0, &hi, v1);
+    *h = hi;
+    return s;
+}
+
+// --- the largest force ----------------------------------------------------------------------
+
+// Records the largest force within the step from m->state to m->trial, located between its ends by
+// refining a parabola. m->trial is left as it was.
+static status record_peak(const arm *a, motion *m, double h)
+{
+    double f0 = m->state[SLOT_FORCE], f1 = m->trial[SLOT_FORCE], t0 = m->state[SLOT_TIME];
+    if (f0 > m->pulse_peak) {
+        m->pulse_peak = f0;
+        m->pulse_peak_time = t0;
+    }
+    if (f1 > m->pulse_peak) {
+        m->pulse_peak = f1;
+        m->pulse_peak_time = t0 + h;
+    }
+    double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
+                   state_quadratures(m, m->state)[QUADRATURE_FORCE]) / h;
+    double curve = 3 * (f0 + f1) - 6 * mean, slope = f1 - f0 - curve;
+    if (!(slope > 0 && slope + 2 * curve < 0)) {
+        return STATUS_OK;
+    }
+    double s = -slope / (2 * curve) * h, top = f0 + slope * (s / h) / 2;
+    if (top <= m->pulse_peak * (1 + 1e-12)) {
+        return STATUS_OK;
+    }
+    for (double width = h / 8; width > h / 1000; width /= 8) {
+        double f[3];
+        s = fmin(fmax(s, width), h - width);
+        for (int i = 0; i < 3; i++) {
+            status failed = take_step(a, m, s + (i - 1) * width);
+            if (failed != STATUS_OK) {
+                return failed;
+            }
+            f[i] = m->trial[SLOT_FORCE];
+            if (f[i] > m->pulse_peak) {
+                m->pulse_peak = f[i];
+                m->pulse_peak_time = m->trial[SLOT_TIME];
+            }
+        }
+        double second = f[0] - 2 * f[1] + f[2];
+        if (second >= 0) {
+            break;
+        }
+        double move = 0.5 * (f[0] - f[2]) / second;
+        s += fmin(fmax(move, -1), 1) * width;
+    }
+    return take_step(a, m, h);
+}
+
+// --- the machine ----------------------------------------------------------------------------
+
+static double substep(const arm *a, const motion *m, double h)
+{
+    if (m->stepper != &explicit_stepper) {
+        return h;
+    }
+    return h / fmax(1, ceil(h * a->highest_frequency / EXPLICIT_LIMIT));
+}
+
+static motion_event event_of(const motion *m, watch w)
+{
+    switch (w) {
+    case WATCH_GAP:
+        return m->state[SLOT_GAP_RATE] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
+    case WATCH_FORCE:
+        return MOTION_RELEASE;
+    case WATCH_HUB:
+        return MOTION_STICK;
+    case WATCH_STICTION:
+        return MOTION_SLIP;
+    }
+    return MOTION_REACHED;
+}
+
+status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report)
+{
+    *report = (motion_report){.event = MOTION_REACHED};
+    for (;;) {
+        double remaining = until - m->state[SLOT_TIME];
+        if (remaining <= 1e-12 * fmax(1, until)) {
+            m->state[SLOT_TIME] = until;
+            return STATUS_OK;
+        }
+        double wanted = remaining < step * (1 + 1e-9) ? remaining : step;
+        double h = substep(a, m, wanted);
+        status s = take_step(a, m, h);
+        bool any = false, found;
+        watch first = WATCH_GAP;
+        for (watch w = WATCH_GAP; s == STATUS_OK && w <= WATCH_STICTION; w++) {
+            if (watch_active(a, m, w)) {
+                s = search(a, m, w, &h, &found);
+                first = found ? w : first;
+                any |= found;
+            }
+        }
+        if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
+            s = record_peak(a, m, h);
+        }
+        if (s != STATUS_OK) {
+            m->failure_time = m->state[SLOT_TIME] + h;
+            return s;
+        }
+        accept(m);
+        if (any) {
+            report->event = event_of(m, first);
+            return STATUS_OK;
+        }
+    }
+}
+
+// A plastic or elastic impact: M dw = -J^T p, J (w + dw) = -e J w, with the hub free to jump,
+// since friction is bounded and has no part in an impulse.
+static void impact(const arm *a, motion *m, motion_report *report)
+{
+    double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    double compliance, *response = m->scratch;
+    chain_contact_response(a, m->links, q, false, response, &compliance);
+    report->speed = chain_penetration_rate(a, q, w);
+    double e = report->speed < a->rest_speed ? 0 : a->restitution;
+    report->impulse = (1 + e) * report->speed / compliance;
+    report->loss = 0.5 * report->impulse * (1 - e) * report->speed;
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += report->impulse * response[i];
+    }
+    m->state[SLOT_IMPACT_LOSS] += report->loss;
+    resolve(a, m, e == 0, MOTION_IMPACT);
+    report->holds = m->state[SLOT_CONTACT] != 0;
+}
+
+void motion_apply(const arm *a, motion *m, motion_report *report)
+{
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    switch (report->event) {
+    case MOTION_REACHED:
+        break;
+    case MOTION_IMPACT:
+        impact(a, m, report);
+        break;
+    case MOTION_TOUCH:
+    case MOTION_RELEASE:
+        resolve(a, m, true, report->event);
+        report->holds = m->state[SLOT_CONTACT] != 0;
+        break;
+    case MOTION_STICK:
+        state_velocities(m, m->state)[0] = 0;
+        resolve(a, m, contact, report->event);
+        break;
+    case MOTION_SLIP:
+        resolve(a, m, contact, report->event);
+        break;
+    }
+}
+
+void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
+{
+    double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    double *response = m->scratch, before = chain_kinetic_energy(a, q, w);
+    *report = (motion_report){.event = MOTION_REACHED};
+    chain_tip_response(a, m->links, q, response);
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += impulse * response[i];
+    }
+    m->state[SLOT_EXTERNAL_WORK] += chain_kinetic_energy(a, q, w) - before;
+    if (contact && chain_penetration_rate(a, q, w) > 0) {
+        report->event = MOTION_IMPACT;
+        impact(a, m, report);
+    } else {
+        resolve(a, m, contact && chain_penetration_rate(a, q, w) == 0, MOTION_REACHED);
+    }
+}
+
+void motion_rebind(const arm *before, const arm *after, motion *m)
+{
+    const double *q = state_angles(m, m->state);
+    m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
+    resolve(after, m, m->state[SLOT_CONTACT] != 0, MOTION_REACHED);
+}

@@ -1,0 +1,357 @@
+// The table of parameters: what every entry has to keep, and how values are read and resolved.
+#include "src/parameters.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/check.h"
+
+static parameters fresh(arm_model_kind model)
+{
+    parameters p;
+    parameters_defaults(&p, model);
+    return p;
+}
+
+// Sets one parameter that has to be accepted.
+static void give(parameters *p, const char *path, const char *text)
+{
+    fault f = {0};
+    if (parameter_set_text(p, parameter_find(path), text, &f) != STATUS_OK) {
+        fail_msg("%s = %s was refused: %s", path, text, f.text);
+    }
+}
+
+// The text is refused, nothing changes, and the sentence mentions the path and `expected`.
+static void check_refused(const char *path, const char *text, const char *expected)
+{
+    parameters p = fresh(ARM_CORRECTED), before = p;
+    fault f = {0};
+    int index = parameter_find(path);
+    assert_true(index >= 0);
+    if (parameter_set_text(&p, index, text, &f) == STATUS_OK) {
+        fail_msg("%s = '%s' was accepted", path, text);
+    }
+    assert_int_equal(f.code, STATUS_BAD_SCENARIO);
+    assert_memory_equal(&p, &before, sizeof p);
+    if (strstr(f.text, path) == NULL || strstr(f.text, expected) == NULL) {
+        fail_msg("'%s' does not mention %s and '%s'", f.text, path, expected);
+    }
+}
+
+static void every_path_is_unique_and_found(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        const char *path = parameter_table[i].path;
+        assert_int_equal(parameter_find(path), i);
+        const char *dot = strchr(path, '.');
+        assert_non_null(dot);
+        assert_null(strchr(dot + 1, '.'));
+    }
+    assert_int_equal(parameter_find("arm.k3"), -1);
+    assert_int_equal(parameter_find(""), -1);
+}
+
+static void every_field_is_a_place_of_its_own(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        for (int j = 0; j < i; j++) {
+            if (parameter_table[i].offset == parameter_table[j].offset) {
+                fail_msg("%s and %s share a field", parameter_table[i].path,
+                         parameter_table[j].path);
+            }
+        }
+    }
+}
+
+// Number of words in "a|b|c".
+static int choice_count(const char *choices)
+{
+    int count = 1;
+    for (const char *c = choices; *c != '\0'; c++) {
+        count += *c == '|';
+    }
+    return count;
+}
+
+static void every_entry_is_complete(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        assert_non_null(info->unit);
+        assert_true(strlen(info->description) > 0);
+        assert_int_not_equal(info->description[strlen(info->description) - 1], '.');
+        check_below(info->minimum, info->maximum);
+        if (info->type == PARAMETER_CHOICE) {
+            assert_non_null(info->choices);
+            check_close(info->maximum, choice_count(info->choices) - 1, 0);
+        } else {
+            assert_null(info->choices);
+        }
+    }
+}
+
+static void defaults_are_in_range(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        double both[] = {info->default_corrected, info->default_printed};
+        for (int k = 0; k < 2; k++) {
+            bool derived = isnan(both[k]);
+            if (!derived && (both[k] < info->minimum || both[k] > info->maximum)) {
+                fail_msg("%s: default %g is not in %g to %g", info->path, both[k], info->minimum,
+                         info->maximum);
+            }
+            assert_true(!derived || strcmp(info->path, "arm.link_inertia") == 0);
+        }
+    }
+}
+
+// Steps through the range of one parameter; text made of a value reads back as the same value.
+static void check_round_trip(int index)
+{
+    const parameter_info *info = &parameter_table[index];
+    bool whole = info->type != PARAMETER_REAL;
+    for (int k = 0; k <= 40; k++) {
+        double share = k / 40.0;
+        double value = info->minimum + (info->maximum - info->minimum) * share * share * share;
+        parameters p = fresh(ARM_CORRECTED), q = p;
+        fault f = {0};
+        char text[64], again[64];
+        value = whole ? floor(value) : value;
+        assert_int_equal(parameter_set_number(&p, index, value, &f), STATUS_OK);
+        check_close(parameter_get(&p, index), value, 0);
+        parameter_format(&p, index, text, sizeof text);
+        give(&q, info->path, text);
+        check_close(parameter_get(&q, index), value, 0);
+        parameter_format(&q, index, again, sizeof again);
+        assert_string_equal(text, again);
+        assert_int_equal(q.set[index], 1);
+    }
+}
+
+static void text_and_value_go_both_ways(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        check_round_trip(i);
+    }
+}
+
+static void the_own_unit_is_accepted(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        parameters p = fresh(ARM_PRINTED), q = p;
+        char number[64], text[128];
+        if (info->unit[0] == '\0') {
+            continue;
+        }
+        parameter_format(&p, i, number, sizeof number);
+        snprintf(text, sizeof text, "  %s   %s ", number, info->unit);
+        give(&q, info->path, text);
+        check_close(parameter_get(&q, i), parameter_get(&p, i), 0);
+    }
+}
+
+static void notations_of_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        double value;
+    } cases[] = {{"49.2", 49.2}, {"4.92e1", 49.2}, {"+3", 3}, {".5", 0.5}, {"1e-6", 1e-6}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fresh(ARM_CORRECTED);
+        give(&p, "arm.k2", cases[i].text);
+        check_close(p.arm.k2, cases[i].value, 0);
+    }
+    parameters p = fresh(ARM_CORRECTED);
+    give(&p, "motor.voltage", "-2.5 V");
+    check_close(p.motor.voltage, -2.5, 0);
+}
+
+static void words_for_truth(void **state)
+{
+    (void)state;
+    static const char *const truths[] = {"true", "yes", "on", "1"};
+    static const char *const lies[] = {"false", "no", "off", "0"};
+    for (int i = 0; i < 4; i++) {
+        parameters p = fresh(ARM_PRINTED);
+        give(&p, "printed.sign_dead_band", lies[i]);
+        assert_false(p.printed.sign_dead_band);
+        give(&p, "printed.sign_dead_band", truths[i]);
+        assert_true(p.printed.sign_dead_band);
+    }
+}
+
+static void wrong_values_are_refused(void **state)
+{
+    (void)state;
+    check_refused("arm.k2", "stiff", "not a number");
+    check_refused("arm.k2", "", "no value");
+    check_refused("arm.k2", "   ", "no value");
+    check_refused("arm.k2", "-4.92", "out of range");
+    check_refused("arm.k2", "1e10", "out of range");
+    check_refused("arm.k2", "4.92 N/m", "expected N m/rad");
+    check_refused("arm.k2", "4.92 4.92", "expected N m/rad");
+    check_refused("arm.k2", "0x10", "not a number");
+    check_refused("arm.k2", "nan", "not finite");
+    check_refused("arm.k2", ".nan", "is not");
+    check_refused("arm.k2", "-inf", "not finite");
+    check_refused("arm.k2", "1e999", "not a finite number");
+    check_refused("arm.damping_ratio", "0.1 s", "pure number");
+    check_refused("arm.links", "2.5", "whole number");
+    check_refused("arm.links", "two", "whole number");
+    check_refused("arm.links", "99999999999999999999", "out of range");
+    check_refused("arm.links", "0", "1 to 1024");
+    check_refused("arm.hub_joint", "glued", "rigid|spring");
+    check_refused("arm.hub_joint", "1", "rigid|spring");
+    check_refused("arm.model", "Printed", "corrected|printed");
+    check_refused("printed.sign_dead_band", "maybe", "neither true nor false");
+    check_refused("printed.sign_dead_band", "2", "neither true nor false");
+}
+
+static void an_endless_value_is_refused(void **state)
+{
+    (void)state;
+    char text[4096];
+    memset(text, '1', sizeof text - 1);
+    text[sizeof text - 1] = '\0';
+    check_refused("arm.k2", text, "127");
+}
+
+static void numbers_are_checked_too(void **state)
+{
+    (void)state;
+    parameters p = fresh(ARM_CORRECTED);
+    fault f;
+    int links = parameter_find("arm.links"), model = parameter_find("arm.model");
+    assert_int_equal(parameter_set_number(&p, links, 2.5, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_set_number(&p, links, (double)NAN, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_set_number(&p, links, (double)INFINITY, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_set_number(&p, model, 2, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_set_number(&p, links, 1025, NULL), STATUS_BAD_SCENARIO);
+    assert_int_equal(p.set[links], 0);
+    assert_int_equal(p.arm.links, 2);
+}
+
+static void a_misspelt_path_suggests_the_nearest(void **state)
+{
+    (void)state;
+    assert_string_equal(parameter_suggest("arm.k22"), "arm.k2");
+    assert_string_equal(parameter_suggest("motor.voltag"), "motor.voltage");
+    assert_string_equal(parameter_suggest("wall.angel"), "wall.angle");
+    assert_string_equal(parameter_suggest("stiction"), "motor.stiction");
+    assert_string_equal(parameter_suggest("method.stepp"), "method.step");
+    assert_null(parameter_suggest("something.quite.different"));
+    char endless[5000];
+    memset(endless, 'a', sizeof endless - 1);
+    endless[sizeof endless - 1] = '\0';
+    assert_null(parameter_suggest(endless));
+}
+
+static void defaults_follow_the_model(void **state)
+{
+    (void)state;
+    parameters p = fresh(ARM_CORRECTED);
+    fault f;
+    give(&p, "arm.k2", "49.2");
+    give(&p, "arm.model", "printed");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    assert_int_equal(p.arm.hub_joint, HUB_SPRING);
+    assert_int_equal(p.method.name, METHOD_NEWMARK);
+    check_close(p.arm.link_inertia, 1.67e-5, 0);
+    check_close(p.arm.k2, 49.2, 0);
+    // and back again
+    give(&p, "arm.model", "corrected");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    assert_int_equal(p.arm.hub_joint, HUB_RIGID);
+    assert_int_equal(p.method.name, METHOD_EVENT);
+    check_close(p.arm.k2, 49.2, 0);
+}
+
+// A uniform rod of mass m and length l has m l^2/12 about its centre.
+static void a_link_is_a_uniform_rod_unless_told(void **state)
+{
+    (void)state;
+    static const int links[] = {1, 2, 3, 10, 1024};
+    for (size_t i = 0; i < sizeof links / sizeof links[0]; i++) {
+        parameters p = fresh(ARM_CORRECTED);
+        fault f;
+        assert_int_equal(parameter_set_number(&p, parameter_find("arm.links"), links[i], &f),
+                         STATUS_OK);
+        assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+        double n = links[i];
+        check_relative(p.arm.link_inertia * n * n * n, 0.40108 / 12, 1e-14);
+    }
+    parameters p = fresh(ARM_CORRECTED);
+    fault f;
+    give(&p, "arm.link_inertia", "1.67e-5 kg m2");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_close(p.arm.link_inertia, 1.67e-5, 0);
+}
+
+// The pair of settings cannot be resolved and the sentence says `expected`.
+static void check_conflict(const char *first, const char *first_text, const char *second,
+                           const char *second_text, const char *expected)
+{
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    give(&p, first, first_text);
+    give(&p, second, second_text);
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    if (strstr(f.text, expected) == NULL) {
+        fail_msg("'%s' does not say '%s'", f.text, expected);
+    }
+}
+
+static void impossible_combinations_are_refused(void **state)
+{
+    (void)state;
+    check_conflict("arm.link_inertia", "1e-5", "arm.links", "3", "two links only");
+    check_conflict("arm.model", "printed", "arm.links", "3", "two links");
+    check_conflict("arm.model", "printed", "arm.hub_joint", "rigid", "hub spring");
+    check_conflict("arm.model", "printed", "method.name", "event", "newmark");
+    check_conflict("arm.model", "printed", "wall.kind", "plane", "point or none");
+}
+
+static void resolving_twice_changes_nothing(void **state)
+{
+    (void)state;
+    parameters p = fresh(ARM_CORRECTED);
+    fault f;
+    give(&p, "arm.links", "7");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    parameters once = p;
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    assert_memory_equal(&p, &once, sizeof p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_path_is_unique_and_found),
+        cmocka_unit_test(every_field_is_a_place_of_its_own),
+        cmocka_unit_test(every_entry_is_complete),
+        cmocka_unit_test(defaults_are_in_range),
+        cmocka_unit_test(text_and_value_go_both_ways),
+        cmocka_unit_test(the_own_unit_is_accepted),
+        cmocka_unit_test(notations_of_numbers),
+        cmocka_unit_test(words_for_truth),
+        cmocka_unit_test(wrong_values_are_refused),
+        cmocka_unit_test(an_endless_value_is_refused),
+        cmocka_unit_test(numbers_are_checked_too),
+        cmocka_unit_test(a_misspelt_path_suggests_the_nearest),
+        cmocka_unit_test(defaults_follow_the_model),
+        cmocka_unit_test(a_link_is_a_uniform_rod_unless_told),
+        cmocka_unit_test(impossible_combinations_are_refused),
+        cmocka_unit_test(resolving_twice_changes_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

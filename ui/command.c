@@ -1,0 +1,153 @@
+#include "ui/command.h"
+
+#include <langinfo.h>
+#include <stdarg.h>
+#include <string.h>
+
+int complain(const char *format, ...)
+{
+    va_list list;
+    fflush(stdout);
+    fputs("impactlab: ", stderr);
+    va_start(list, format);
+    vfprintf(stderr, format, list);
+    va_end(list);
+    fputc('\n', stderr);
+    return EXIT_BAD_ARGUMENTS;
+}
+
+int complain_fault(const fault *f)
+{
+    complain("%s", f->text[0] ? f->text : status_text(f->code));
+    switch (f->code) {
+    case STATUS_OK:
+        return EXIT_DONE;
+    case STATUS_BAD_ARGUMENT:
+    case STATUS_BAD_SCENARIO:
+    case STATUS_CANNOT_READ:
+        return EXIT_BAD_ARGUMENTS;
+    default:
+        return EXIT_FAILED;
+    }
+}
+
+void report_to_stderr(void *context, const char *sentence)
+{
+    (void)context;
+    fflush(stdout);
+    fprintf(stderr, "%s\n", sentence);
+}
+
+// Applies every --set once. Returns how many failed; complains about them if asked to.
+static int apply_sets_once(scenario *s, const arguments *a, bool aloud)
+{
+    int failures = 0;
+    for (int i = 0; i < a->set_count; i++) {
+        fault f = {0};
+        if (scenario_override(s, a->sets[i], &f) != STATUS_OK) {
+            failures++;
+            if (aloud) {
+                complain_fault(&f);
+            }
+        }
+    }
+    return failures;
+}
+
+// Gives every parameter of --set its value. One that is wrong only until another one is set
+// (arm.links=4 before arm.model=corrected) gets another chance, so that their order is free.
+static int apply_sets(scenario *s, const arguments *a)
+{
+    for (int pass = 0; pass < a->set_count; pass++) {
+        if (apply_sets_once(s, a, false) == 0) {
+            return EXIT_DONE;
+        }
+    }
+    return apply_sets_once(s, a, true) == 0 ? EXIT_DONE : EXIT_BAD_ARGUMENTS;
+}
+
+// Counts the faults it passes on, so that none of them goes unsaid.
+static void report_and_count(void *context, const char *sentence)
+{
+    (*(int *)context)++;
+    report_to_stderr(NULL, sentence);
+}
+
+int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
+{
+    int reported = 0;
+    status code = scenario_open(s, name_or_file, report_and_count, &reported);
+    if (code != STATUS_OK) {
+        if (reported == 0) {
+            complain("'%s': %s", name_or_file, status_text(code));
+        }
+        return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
+    }
+    int result = apply_sets(s, a);
+    if (result != EXIT_DONE) {
+        scenario_finish(s);
+    }
+    return result;
+}
+
+int write_json(const char *path, json_t *value)
+{
+    whole_file file;
+    fault f = {0};
+    if (value == NULL) {
+        fault_set(&f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        return complain_fault(&f);
+    }
+    status code = whole_file_open(&file, path, &f);
+    if (code == STATUS_OK) {
+        json_write(file.stream, value);
+        code = whole_file_commit(&file, &f);
+    }
+    json_decref(value);
+    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+}
+
+int check_output(const char *path)
+{
+    fault f = {0};
+    if (path == NULL || whole_file_check(path, &f) == STATUS_OK) {
+        return EXIT_DONE;
+    }
+    return complain_fault(&f);
+}
+
+void key_label(const char *key, char *label, size_t size, const char **unit)
+{
+    static const struct {
+        const char *suffix, *unit;
+    } units[] = {{"_Ns", "N s"}, {"_percent", "%"}, {"_s", "s"},
+                 {"_N", "N"},    {"_J", "J"},       {"_m", "m"}};
+    size_t length = strlen(key);
+    *unit = "";
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+        size_t tail = strlen(units[i].suffix);
+        if (length > tail && strcmp(key + length - tail, units[i].suffix) == 0) {
+            length -= tail;
+            *unit = units[i].unit;
+            break;
+        }
+    }
+    snprintf(label, size, "%.*s", (int)length, key);
+    for (char *c = label; *c != '\0'; c++) {
+        *c = *c == '_' ? ' ' : *c;
+    }
+}
+
+int text_width(const char *text)
+{
+    int width = 0;
+    for (; *text != '\0'; text++) {
+        width += ((unsigned char)*text & 0xC0) != 0x80;
+    }
+    return width;
+}
+
+bool terminal_has_utf8(void)
+{
+    return strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+}

@@ -1,0 +1,98 @@
+#include "ui/command.h"
+
+#include <string.h>
+
+#include "src/parameters.h"
+
+static void print_range(const parameter_info *info)
+{
+    char text[160];
+    if (info->type == PARAMETER_CHOICE) {
+        snprintf(text, sizeof text, "%s", info->choices);
+    } else if (info->type == PARAMETER_BOOLEAN) {
+        snprintf(text, sizeof text, "true|false");
+    } else {
+        snprintf(text, sizeof text, "%g to %g", info->minimum, info->maximum);
+    }
+    printf("  %-18s", text);
+}
+
+static void print_parameter(const parameters *p, int index)
+{
+    const parameter_info *info = &parameter_table[index];
+    char value[128];
+    parameter_format(p, index, value, sizeof value);
+    printf("%-33s %c %12s %-9s", info->path, p->set[index] ? '=' : ' ', value, info->unit);
+    print_range(info);
+    printf("  %s\n", info->description);
+}
+
+static void print_actions(const scenario *s)
+{
+    for (int i = 0; i < s->action_count; i++) {
+        const action *a = &s->actions[i];
+        if (a->kind == ACTION_PUSH) {
+            printf("  at %g s: push the tip with %g N s\n", a->time, a->value);
+        } else {
+            char value[128];
+            parameters p = s->parameters;
+            // a value that was validated before formats as a scenario file gives it
+            parameter_set_number(&p, a->parameter, a->value, NULL);
+            parameter_format(&p, a->parameter, value, sizeof value);
+            printf("  at %g s: %s = %s\n", a->time, parameter_table[a->parameter].path, value);
+        }
+    }
+}
+
+static void print_expectations(const scenario *s)
+{
+    for (int i = 0; i < s->expectation_count; i++) {
+        const expectation *e = &s->expectations[i];
+        if (e->is_null) {
+            printf("  %s does not occur\n", e->quantity);
+        } else {
+            printf("  %s = %g within %g\n", e->quantity, e->value, e->tolerance);
+        }
+    }
+}
+
+static int show(const arguments *a)
+{
+    scenario s;
+    int result = open_scenario(&s, a->operands[0], a);
+    if (result != EXIT_DONE) {
+        return result;
+    }
+    printf("%s: %s\n", s.name, s.title);
+    if (s.description[0] != '\0') {
+        printf("%s%s", s.description, s.description[strlen(s.description) - 1] == '\n' ? "" : "\n");
+    }
+    printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",
+           "value", "unit", "range");
+    for (int i = 0; i < parameter_count; i++) {
+        print_parameter(&s.parameters, i);
+    }
+    if (s.action_count > 0) {
+        printf("\nScript:\n");
+        print_actions(&s);
+    }
+    if (s.expectation_count > 0) {
+        printf("\nExpected:\n");
+        print_expectations(&s);
+    }
+    scenario_finish(&s);
+    return EXIT_DONE;
+}
+
+const command show_command = {
+    .name = "show",
+    .operands = "SCENARIO",
+    .options = "s",
+    .summary = "The resolved parameters of a scenario, with units and ranges",
+    .help =
+        "A parameter marked with = was given by the scenario or by --set, the others have their "
+        "defaults.\n",
+    .least = 1,
+    .most = 1,
+    .run = show,
+};
