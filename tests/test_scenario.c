@@ -241,6 +241,14 @@ static void impossible_combinations_point_at_the_key(void **state)
         (const char *const[]){"f.yaml:1:30: ", "f.yaml:1:44: ", "f.yaml:2:14: ", "f.yaml:3:16: "});
 }
 
+static void a_title_has_a_limit(void **state)
+{
+    (void)state;
+    char text[400] = "title: ";
+    memset(text + 7, 'x', 300);
+    check_fault(text, 1, 8, "at most 200");
+}
+
 // ---- faults of script and expect ----------------------------------------------------------------
 
 static void faults_of_actions(void **state)
@@ -251,6 +259,9 @@ static void faults_of_actions(void **state)
     check_fault("script:\n  - push: 1\n", 2, 5, "without a time");
     check_fault("script:\n  - at: 0.5 s\n", 2, 5, "does nothing");
     check_fault("script:\n  - at: soon\n    push: 1\n", 2, 9, "at = 'soon'");
+    check_fault("script:\n  - at: [1]\n    push: 1\n", 2, 9,
+                "at is a list, expected a number in s");
+    check_fault("script:\n  - at:\n    push: 1\n", 2, 8, "at is empty");
     check_fault("script:\n  - at: 1.5 s\n    push: 1\n", 2, 9, "expected 0 to 1 s");
     check_fault("script:\n  - at: -1 s\n    push: 1\n", 2, 9, "outside the run");
     check_fault("script:\n  - at: 500 ms\n    push: 1\n", 2, 9, "expected s");
@@ -289,6 +300,7 @@ static void faults_of_expectations(void **state)
     check_fault("expect:\n  impacts: 3\n", 2, 12, "expected {value: ..., tolerance: ...} or null");
     check_fault("expect:\n  impacts: \"null\"\n", 2, 12, "expected {value");
     check_fault("expect:\n  impacts: {value: 3}\n", 2, 12, "no tolerance");
+    check_fault("expect:\n  impacts: {value: 3, tolerance: 1, value: 2}\n", 2, 37, "twice");
     check_fault("expect:\n  impacts: {tolerance: 3}\n", 2, 12, "no value");
     check_fault("expect:\n  impacts: {value: 3, tolerance: -1}\n", 2, 34, "negative");
     check_fault("expect:\n  impacts: {value: nan, tolerance: 1}\n", 2, 20, "finite");
@@ -365,7 +377,7 @@ static void columns_count_characters(void **state)
     (void)state;
     check_faults("wall: {\"\xc3\xa4\xc3\xb6\xc3\xbc\": 1, angle: x}\n", 2,
                  (const char *const[]){"f.yaml:1:8: unknown key", "f.yaml:1:25: wall.angle"});
-    check_fault("{title: \"\xce\xb8\xcc\x87\", arm: 3}\n", 1, 19, "arm is a single value");
+    check_fault("{title: \"\xce\xb8\xcc\x87\", arm: 3}\n", 1, 20, "arm is a single value");
 }
 
 // No sentence may carry what a terminal would obey.
@@ -521,6 +533,8 @@ static void an_unknown_name_suggests_the_nearest(void **state)
     assert_non_null(strstr(all.text, "did you mean 'deep/alpha-9'?"));
     assert_int_equal(open_here(&s, "alpha-10", &all), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(all.text, "did you mean 'deep/alpha-10'?"));
+    assert_int_equal(open_here(&s, "alpha-9.yaml", &all), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(all.text, "did you mean 'deep/alpha-9'?"));
     assert_int_equal(open_here(&s, "zzzzzzzzzz", &all), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(all.text, "impactlab list"));
     assert_int_equal(open_here(&s, "../etc/passwd", &all), STATUS_BAD_ARGUMENT);
@@ -724,6 +738,7 @@ int main(void)
         cmocka_unit_test(wrong_values_are_named_with_their_place),
         cmocka_unit_test(wrong_shapes_are_named_with_their_place),
         cmocka_unit_test(a_key_may_be_there_once),
+        cmocka_unit_test(a_title_has_a_limit),
         cmocka_unit_test(impossible_combinations_point_at_the_key),
         cmocka_unit_test(faults_of_actions),
         cmocka_unit_test(faults_of_set),

@@ -184,7 +184,8 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
     option_lists(self, longs, shorts);
     opterr = 0;
     *exit_status = EXIT_DONE;
-    while (*exit_status == EXIT_DONE && (letter = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
+    while (*exit_status == EXIT_DONE &&
+           (letter = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
         if (letter == 'h') {
             print_help(self);
             arguments_finish(a);

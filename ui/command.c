@@ -116,6 +116,16 @@ int check_output(const char *path)
     return complain_fault(&f);
 }
 
+static bool is_standard_output(const char *path)
+{
+    return path != NULL && strcmp(path, "-") == 0;
+}
+
+bool summary_wanted(const arguments *a)
+{
+    return !a->quiet && !is_standard_output(a->json) && !is_standard_output(a->csv);
+}
+
 void key_label(const char *key, char *label, size_t size, const char **unit)
 {
     static const struct {

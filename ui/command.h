@@ -46,8 +46,7 @@ void report_to_stderr(void *context, const char *sentence);
 // before or after the operands. True with `a` filled, to be freed by arguments_finish; false if the
 // command is over (help was asked for, or an argument is wrong and was complained about), with the
 // exit status in *exit_status.
-bool arguments_read(arguments *a, const command *self, int argc, char **argv,
-                    int *exit_status);
+bool arguments_read(arguments *a, const command *self, int argc, char **argv, int *exit_status);
 void arguments_finish(arguments *a);
 
 // Prints how to call the command.
@@ -63,6 +62,10 @@ int write_json(const char *path, json_t *value);
 
 // Complains and returns the exit status if path (may be NULL) could not be written; EXIT_DONE else.
 int check_output(const char *path);
+
+// True unless --quiet was given or the JSON or CSV goes to the standard output, where it stays
+// alone.
+bool summary_wanted(const arguments *a);
 
 // Label and unit of a summary's key: "first_contact_s" gives "first contact" and "s".
 void key_label(const char *key, char *label, size_t size, const char **unit);

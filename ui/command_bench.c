@@ -1,7 +1,6 @@
 #include "ui/command.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 enum { REPETITIONS = 15 };
@@ -80,7 +79,7 @@ static int bench(const arguments *a)
     if (a->json != NULL) {
         result = write_json(a->json, bench_object("arm_n2_us_per_ms", "us/ms", &m));
     }
-    if (!a->quiet && (a->json == NULL || strcmp(a->json, "-") != 0)) {
+    if (summary_wanted(a)) {
         printf("%-20s  %10s %10s %10s\n", "computing time", "median", "min", "max");
         printf("%-20s  %10.3g %10.3g %10.3g  us per simulated ms\n", "arm_n2_us_per_ms", m.median,
                m.min, m.max);

@@ -15,12 +15,6 @@ static int sweep(const arguments *a)
                     "runs one point)");
 }
 
-static int modes(const arguments *a)
-{
-    (void)a;
-    return complain("modes is not there yet: natural frequencies come with a later version");
-}
-
 const command animate_command = {
     .name = "animate",
     .operands = "[SCENARIO]",
@@ -39,14 +33,4 @@ const command sweep_command = {
     .help = "",
     .most = 1,
     .run = sweep,
-};
-
-const command modes_command = {
-    .name = "modes",
-    .operands = "[SCENARIO]",
-    .options = "sj",
-    .summary = "Natural frequencies and shapes (not there yet)",
-    .help = "",
-    .most = 1,
-    .run = modes,
 };

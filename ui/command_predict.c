@@ -42,12 +42,22 @@ static three_body_state state_of(const sample *row)
     };
 }
 
-static void predict_all(const parameters *p, const sample *row, outcome *outcomes)
+// The parameters as the script has changed them until `time`.
+static parameters parameters_at(const scenario *s, double time)
+{
+    parameters p = s->parameters;
+    for (int i = 0; i < s->action_count && s->actions[i].time <= time; i++) {
+        if (s->actions[i].kind == ACTION_SET) {
+            parameter_set_number(&p, s->actions[i].parameter, s->actions[i].value, NULL);
+        }
+    }
+    return p;
+}
+
+static void predict_all(const scenario *s, const sample *row, outcome *outcomes)
 {
     three_body_state state = state_of(row);
-    // scripted changes may have altered the command since the start
-    parameters now = *p;
-    now.motor.voltage = row->voltage;
+    parameters now = parameters_at(s, row->time);
     for (int i = 0; i < PREDICTORS; i++) {
         outcomes[i] = (outcome){.fault = {.code = STATUS_OK}};
         outcomes[i].fault.code =
@@ -143,12 +153,12 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
                  s->name);
         return EXIT_FAILED;
     }
-    predict_all(&s->parameters, row, outcomes);
+    predict_all(s, row, outcomes);
     int code = EXIT_DONE;
     if (a->json != NULL) {
         code = write_json(a->json, predict_object(s, row, outcomes, &result->summary));
     }
-    if (!a->quiet && (a->json == NULL || a->json[0] != '-' || a->json[1] != '\0')) {
+    if (summary_wanted(a)) {
         print_predictions(s, row, outcomes, &result->summary);
     }
     return code;

@@ -1,7 +1,6 @@
 #include "ui/command.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "src/parameters.h"
 
@@ -143,18 +142,12 @@ static int check_request(const arguments *a)
     return worse(check_output(a->json), worse(check_output(a->csv), check_output(a->plot)));
 }
 
-static bool is_standard_output(const char *path)
-{
-    return path != NULL && strcmp(path, "-") == 0;
-}
-
 static int run_and_report(const arguments *a, scenario *s)
 {
     run_result result;
     status code = run_scenario(s, a->csv != NULL || a->plot != NULL, &result);
     int exit_status = write_results(a, s, &result);
-    // a result on the standard output stays alone there
-    if (!a->quiet && !is_standard_output(a->json) && !is_standard_output(a->csv)) {
+    if (summary_wanted(a)) {
         print_heading(s);
         print_quantities(&result.summary);
         print_events(s, &result.trace);

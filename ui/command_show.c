@@ -14,7 +14,7 @@ static void print_range(const parameter_info *info)
     } else {
         snprintf(text, sizeof text, "%g to %g", info->minimum, info->maximum);
     }
-    printf("  %-18s", text);
+    printf("  %-29s", text);
 }
 
 static void print_parameter(const parameters *p, int index)
@@ -22,9 +22,26 @@ static void print_parameter(const parameters *p, int index)
     const parameter_info *info = &parameter_table[index];
     char value[128];
     parameter_format(p, index, value, sizeof value);
-    printf("%-33s %c %12s %-9s", info->path, p->set[index] ? '=' : ' ', value, info->unit);
+    printf("%-33s %c %18s %-9s", info->path, p->set[index] ? '=' : ' ', value, info->unit);
     print_range(info);
     printf("  %s\n", info->description);
+}
+
+// Prints words in lines of at most 96 characters.
+static void print_wrapped(const char *text)
+{
+    int column = 0;
+    while (*(text += strspn(text, " \n")) != '\0') {
+        int length = (int)strcspn(text, " \n");
+        char word[256];
+        snprintf(word, sizeof word, "%.*s", length, text);
+        int width = text_width(word);
+        const char *gap = column == 0 ? "" : column + 1 + width > 96 ? "\n" : " ";
+        column = gap[0] == ' ' ? column + 1 + width : width;
+        printf("%s%.*s", gap, length, text);
+        text += length;
+    }
+    printf("%s", column > 0 ? "\n" : "");
 }
 
 static void print_actions(const scenario *s)
@@ -64,9 +81,7 @@ static int show(const arguments *a)
         return result;
     }
     printf("%s: %s\n", s.name, s.title);
-    if (s.description[0] != '\0') {
-        printf("%s%s", s.description, s.description[strlen(s.description) - 1] == '\n' ? "" : "\n");
-    }
+    print_wrapped(s.description);
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",
            "value", "unit", "range");
     for (int i = 0; i < parameter_count; i++) {

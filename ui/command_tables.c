@@ -115,7 +115,7 @@ static int tables(const arguments *a)
     if (a->json != NULL) {
         result = write_json(a->json, tables_object(&t));
     }
-    if (!a->quiet && (a->json == NULL || strcmp(a->json, "-") != 0)) {
+    if (summary_wanted(a)) {
         print_tables(&t);
     }
     return result;

@@ -106,12 +106,11 @@ static int dispatch(int argc, char **argv)
 // What was printed must have arrived, unless its reader went away first (impactlab list | head).
 static int close_output(int result)
 {
-    errno = 0;
-    bool failed = fflush(stdout) != 0 || ferror(stdout);
-    if (!failed || errno == EPIPE || result != EXIT_DONE) {
+    int reason = stream_failure(stdout);
+    if (reason == 0 || reason == EPIPE || result != EXIT_DONE) {
         return result;
     }
-    complain("the standard output cannot be written: %s", strerror(errno ? errno : EIO));
+    complain("the standard output cannot be written: %s", strerror(reason));
     return EXIT_FAILED;
 }
 

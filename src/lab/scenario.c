@@ -9,6 +9,8 @@
 #include "src/lab/yaml_tree.h"
 #include "src/words.h"
 
+enum { LONGEST_TITLE = 200 }; // bytes
+
 typedef struct place {
     int line, column; // 0 where the file does not mention it
 } place;
@@ -391,21 +393,17 @@ static bool read_time(reader *r, const tree_node *node, double *time)
     return true;
 }
 
-static void read_action(reader *r, const tree_node *map)
+// Finds the time of an action and what it does; NULL for what is missing.
+static void find_action_parts(reader *r, const tree_node *map, const tree_node **at,
+                              const tree_node **deed)
 {
-    const tree_node *at = NULL, *kind = NULL;
-    double time = 0;
-    if (!expect_map(r, map, "an action", "at: 0.4 s")) {
-        return;
-    }
-    int faults = r->faults;
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = key_of(r, map, child);
         if (key == NULL) {
             continue;
         }
         if (strcmp(key, "at") == 0) {
-            at = child;
+            *at = child;
         } else if (strcmp(key, "set") != 0 && strcmp(key, "push") != 0) {
             nearest_word near = nearest_begin(key);
             nearest_try(&near, "at");
@@ -414,25 +412,37 @@ static void read_action(reader *r, const tree_node *map)
             report_node(r, child->key, "unknown key '%.60s' in an action, %s%s%s", key,
                         near.best ? "did you mean '" : "expected at, set or push",
                         near.best ? near.best : "", near.best ? "'?" : "");
-        } else if (kind != NULL) {
+        } else if (*deed != NULL) {
             report_node(r, child->key,
                         "'%s' after '%s' in one action, expected one of them (begin a new '- at:')",
-                        key, kind->key->text);
+                        key, (*deed)->key->text);
         } else {
-            kind = child;
+            *deed = child;
         }
     }
+}
+
+static void read_action(reader *r, const tree_node *map)
+{
+    const tree_node *at = NULL, *deed = NULL;
+    double time = 0;
+    if (!expect_map(r, map, "an action", "at: 0.4 s")) {
+        return;
+    }
+    // a misspelt key already explains what is missing
+    int faults = r->faults;
+    find_action_parts(r, map, &at, &deed);
     if (at == NULL && r->faults == faults) {
         report_node(r, map, "an action without a time, expected 'at: 0.4 s'");
     }
-    if (kind == NULL && r->faults == faults) {
+    if (deed == NULL && r->faults == faults) {
         report_node(r, map, "an action that does nothing, expected 'set:' or 'push:'");
     }
     bool timed = at != NULL && read_time(r, at, &time);
-    if (kind != NULL && kind->key->text[0] == 's') {
-        read_set(r, kind, timed, time);
-    } else if (kind != NULL) {
-        read_push(r, kind, timed, time);
+    if (deed != NULL && strcmp(deed->key->text, "set") == 0) {
+        read_set(r, deed, timed, time);
+    } else if (deed != NULL) {
+        read_push(r, deed, timed, time);
     }
 }
 
@@ -570,6 +580,10 @@ static char *read_prose(reader *r, const tree_node *node, const char *what, bool
                         many_lines ? "text" : "one line of text");
             return NULL;
         }
+    }
+    if (!many_lines && length > LONGEST_TITLE) {
+        report_node(r, node, "%s has %zu bytes, expected at most %d", what, length, LONGEST_TITLE);
+        return NULL;
     }
     char *copy = strndup(node->text, length);
     have_memory(r, copy);

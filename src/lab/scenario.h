@@ -7,11 +7,11 @@ typedef enum action_kind { ACTION_SET, ACTION_PUSH } action_kind;
 
 // Something the file asks for at an instant of the run.
 typedef struct action {
-    double time;    // [s]
+    double time; // [s]
     action_kind kind;
-    int parameter;  // ACTION_SET: index in parameter_table
-    double value;   // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the last link,
-                    // positive towards growing angle [N s]
+    int parameter; // ACTION_SET: index in parameter_table
+    double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the last link,
+                   // positive towards growing angle [N s]
 } action;
 
 // A quantity of the run's summary that the file expects.
@@ -24,12 +24,12 @@ typedef struct expectation {
 } expectation;
 
 typedef struct scenario {
-    char *name;        // "thesis/fig-3-4", or the path it was read from
-    char *file;        // path of the file
-    char *title;       // one line
-    char *description; // several sentences, "" if none
+    char *name;            // "thesis/fig-3-4", or the path it was read from
+    char *file;            // path of the file
+    char *title;           // one line
+    char *description;     // several sentences, "" if none
     parameters parameters; // resolved
-    action *actions;   // sorted by time
+    action *actions;       // sorted by time
     int action_count;
     expectation *expectations;
     int expectation_count;
@@ -38,9 +38,9 @@ typedef struct scenario {
 // Called once for each fault in a file, with a whole sentence "file:line:column: what, expected".
 typedef void (*fault_handler)(void *context, const char *sentence);
 
-// Reads and validates the file. Every fault is reported through `report`; STATUS_BAD_SCENARIO if
-// there was any (STATUS_CANNOT_READ if the file cannot be opened), and then nothing is to be
-// freed. `name` is the scenario's name, NULL to use the path.
+// Reads and validates the file (layout: docs/scenarios.md). Every fault is reported through
+// `report`; STATUS_BAD_SCENARIO if there was any (STATUS_CANNOT_READ if the file cannot be opened),
+// and then nothing is to be freed. `name` is the scenario's name, NULL to use the path.
 status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
                      void *context);
 
@@ -50,13 +50,17 @@ status scenario_parse(scenario *s, const char *text, size_t length, const char *
 
 void scenario_finish(scenario *s);
 
-// Applies "PATH=VALUE" (--set) and resolves the parameters anew.
+// Applies "PATH=VALUE" (--set) and resolves the parameters anew. If that fails nothing changes and
+// f says why, beginning with "--set PATH=VALUE: ". A run.duration that ends before an action of the
+// script is allowed; the action then does not happen.
 status scenario_override(scenario *s, const char *assignment, fault *f);
 
 // Finds a scenario by the name `list` shows ("thesis/fig-3-4") or by file, as SCENARIO on the
-// command line is meant, and reads it.
+// command line is meant, and reads it. A file may be given without its ".yaml". STATUS_BAD_ARGUMENT
+// if there is neither; the sentence then names the nearest scenario.
 status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context);
 
-// The names of all scenarios in the scenario folder, sorted; free each and the array.
+// The names of all scenarios in and below the scenario folder, sorted with numbers as numbers
+// (fig-3-2 before fig-3-10); free each and the array. STATUS_CANNOT_READ if there is no folder.
 // The folder is $IMPACTLAB_SCENARIOS, or the source tree's when built there, or the installed one.
 status scenario_list(char ***names, int *count, fault *f);

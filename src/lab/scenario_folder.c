@@ -199,7 +199,10 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
 {
     char **names;
     int count;
-    nearest_word near = nearest_begin(wanted);
+    size_t length = strlen(wanted), tail = sizeof suffix - 1;
+    bool has_suffix = length > tail && strcmp(wanted + length - tail, suffix) == 0;
+    char *stem = strndup(wanted, has_suffix ? length - tail : length);
+    nearest_word near = nearest_begin(stem != NULL ? stem : wanted);
     scenario_list(&names, &count, NULL);
     for (int i = 0; i < count; i++) {
         nearest_try(&near, names[i]);
@@ -211,6 +214,7 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
                                    "'impactlab list' shows or the path of a file",
                                    wanted);
     free_names(names, count);
+    free(stem);
     if (sentence == NULL) {
         return STATUS_NO_MEMORY;
     }

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -149,12 +150,26 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
     return STATUS_OK;
 }
 
+int stream_failure(FILE *stream)
+{
+    errno = 0;
+    if (fflush(stream) == 0 && !ferror(stream)) {
+        return 0;
+    }
+    // the write that failed may lie far back, with its errno lost: a pipe still tells
+    struct pollfd end = {.fd = fileno(stream), .events = POLLOUT};
+    if (errno == 0 && poll(&end, 1, 0) == 1 && (end.revents & POLLERR) != 0) {
+        return EPIPE;
+    }
+    return errno != 0 ? errno : EIO;
+}
+
 // Flushes the stream down to the disk; 0 or the reason why not.
 static int flush_to_disk(whole_file *w)
 {
-    errno = 0;
-    if (fflush(w->stream) != 0 || ferror(w->stream)) {
-        return errno != 0 ? errno : EIO;
+    int reason = stream_failure(w->stream);
+    if (reason != 0) {
+        return reason;
     }
     // a pipe or a device has no disk to reach
     if (w->temporary != NULL && fsync(fileno(w->stream)) != 0) {

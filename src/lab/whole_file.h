@@ -30,3 +30,7 @@ status whole_file_commit(whole_file *w, fault *f);
 
 // Gives up: the target stays as it was. Closes w.
 void whole_file_abandon(whole_file *w);
+
+// Flushes a stream and tells whether all that was ever written to it arrived: 0, or an errno (EPIPE
+// if the reader of a pipe went away).
+int stream_failure(FILE *stream);

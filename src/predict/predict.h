@@ -17,9 +17,30 @@ typedef struct prediction {
     double impulse;  // of the impact [N s]; NaN where the method gives none
 } prediction;
 
+// A touch holds if the contact point approaches (or rests) and force and delay come out positive.
+// Where the touch does not hold, `force` and `delay` may be NaN. All predictors fail with
+// STATUS_NOT_FINITE on a state that is not finite and with STATUS_SINGULAR where the equations have
+// no single solution; f then says which. They work on the two-link arm: with another number of
+// links, on the two-link arm of the same length, mass and k2.
+//
+// The wall. The printed forms take the contact point (a, b) where it is. The corrected forms take
+// it where the arm is, as if the wall stood there, so that they mean something far from it; at the
+// wall itself the two agree.
+
+// Energy quasi-principle (4.24): of the energy [J] that n springs in series hold at largest
+// deformation, spring i holds the part (1/k_i) / sum_j (1/k_j). Writes the deflection of each
+// spring, sqrt(2 PE_i / k_i) [rad], for stiffnesses k[n] [N m/rad].
+void quasi_principle_deflections(int n, const double *k, double energy, double *deflection);
+
 // Energy principle, (4.23)-(4.34), with the quasi-principle (4.24). p->arm.model chooses the
-// printed form with the listing's habits, or the corrected one.
+// printed form with the listing's habits, or the corrected one. The method gives no delay and no
+// impulse: both are NaN.
 status predict_energy(const parameters *p, const three_body_state *s, prediction *out, fault *f);
+
+// Velocity increments of a plastic impact, (4.10)-(4.17): after[3] is the velocities just after
+// [rad/s], *impulse that of the wall [N s] (negative if the contact point was moving away).
+status predict_velocity_jump(const parameters *p, const three_body_state *s, double after[3],
+                             double *impulse, fault *f);
 
 // Impact dynamics, (4.20)-(4.22), solved by Newton's method for delay, peak force and the hub's
 // velocity. Printed or corrected form by p->arm.model.

@@ -26,7 +26,7 @@
 #include <string.h>
 
 #define NEWTON_ITERATIONS 30
-#define NEWTON_TOLERANCE  1e-12 // of the last correction [rad]
+#define NEWTON_TOLERANCE  1e-12 // of the last correction, relative to the largest angle or 1 rad
 
 typedef struct tangent {
     double beta;  // beta': acceleration per angle [1/s2]
@@ -267,10 +267,13 @@ static status step(const arm *a, motion *m, double h)
         }
         it.force += newton_correction(a, m->sweeps, &it, t, dq, unit);
         size = 0;
+        double largest = 1;
         for (int i = 0; i < n; i++) {
             q1[i] += dq[i];
             size = fmax(size, fabs(dq[i]));
+            largest = fmax(largest, fabs(q1[i]));
         }
+        size /= largest;
         if (!isfinite(size)) {
             return STATUS_NOT_FINITE;
         }

@@ -1,0 +1,22 @@
+// What an impact does to the velocities.
+#pragma once
+
+#include "src/arm/chain.h"
+
+typedef struct impact_result {
+    double speed;   // approach speed of the contact point, J w [m/s]
+    double impulse; // p of the wall [N s]
+    double loss;    // kinetic energy lost [J]
+} impact_result;
+
+// Instantaneous velocity increments, (4.10)-(4.17) for N links. While the impulse acts, angles and
+// the finite torques of springs, motor and friction change nothing, so
+//
+//     M dw = -J^T p,      J (w + dw) = -e J w,
+//
+// which gives p = (1 + e) J w / (J M^-1 J^T). A hub behind a spring keeps its velocity, (4.10); a
+// rigid one jumps with the first link, sticking or not (errata B6). The energy lost is
+// p (1 - e) J w / 2, never negative.
+// q[dof], w[dof]: the state before; work: links elements of scratch; increment[dof]: dw [rad/s].
+impact_result impact_velocity_increments(const arm *a, chain_link *work, const double *q,
+                                         const double *w, double restitution, double *increment);

@@ -1,0 +1,113 @@
+#include "src/arm/modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// LAPACK: generalised symmetric eigenproblem A x = lambda B x.
+extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const int *n, double *a,
+                   const int *lda, double *b, const int *ldb, double *w, double *work,
+                   const int *lwork, int *info);
+
+// M and K of the straight chain in absolute angles: M_ij = A_ij of chain.h, K tridiagonal.
+static void fill_matrices(const arm *a, double *mass, double *stiffness)
+{
+    const int n = a->dof, N = a->links;
+    const double l = a->link_length, m = a->link_mass;
+    for (int i = 0; i < N; i++) {
+        for (int j = 0; j < N; j++) {
+            int outer = i > j ? i : j; // links beyond: N - 1 - outer, plus half of this one
+            double coupling = m * l * l * (N - 1 - outer + 0.5);
+            double own = m * l * l * (N - 1 - i + 0.25) + a->link_inertia;
+            mass[(a->first + i) * n + a->first + j] = i == j ? own : coupling;
+        }
+    }
+    mass[0] += a->hub_inertia;
+    for (int k = 1; k < n; k++) {
+        double s = k == a->first ? a->hub_stiffness : a->joint_stiffness;
+        stiffness[(k - 1) * n + k - 1] += s;
+        stiffness[k * n + k] += s;
+        stiffness[(k - 1) * n + k] -= s;
+        stiffness[k * n + k - 1] -= s;
+    }
+}
+
+// Basis of the angles that hub and tip allow, one column after another; returns how many.
+static int allowed_basis(const arm *a, hub_end hub, tip_end tip, double *basis)
+{
+    const int n = a->dof, start = hub == HUB_LOCKED ? 1 : 0;
+    int columns = 0;
+    for (int k = start; k < n; k++) {
+        bool link = k >= a->first;
+        if (tip == TIP_PINNED && link && k == n - 1) {
+            break; // the last angle follows from the others
+        }
+        basis[columns * n + k] = 1;
+        if (tip == TIP_PINNED && link) {
+            basis[columns * n + n - 1] = -1;
+        }
+        columns++;
+    }
+    return columns;
+}
+
+// reduced = basis^T matrix basis
+static void reduce(const double *matrix, const double *basis, int n, int columns, double *product,
+                   double *reduced)
+{
+    for (int c = 0; c < columns; c++) {
+        for (int i = 0; i < n; i++) {
+            double sum = 0;
+            for (int j = 0; j < n; j++) {
+                sum += matrix[i * n + j] * basis[c * n + j];
+            }
+            product[i] = sum;
+        }
+        for (int r = 0; r < columns; r++) {
+            double sum = 0;
+            for (int i = 0; i < n; i++) {
+                sum += basis[r * n + i] * product[i];
+            }
+            reduced[c * columns + r] = sum;
+        }
+    }
+}
+
+status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double *frequencies,
+                     double *shapes)
+{
+    const int n = a->dof, itype = 1, work_size = 8 * n + 64;
+    size_t square = (size_t)n * (size_t)n;
+    double *block = calloc(5 * square + (size_t)(2 * n + work_size), sizeof *block);
+    if (block == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    double *mass = block, *stiffness = mass + square, *basis = stiffness + square;
+    double *k = basis + square, *m = k + square, *product = m + square;
+    double *values = product + n, *work = values + n;
+    fill_matrices(a, mass, stiffness);
+    int columns = allowed_basis(a, hub, tip, basis), info = 0;
+    reduce(stiffness, basis, n, columns, product, k);
+    reduce(mass, basis, n, columns, product, m);
+    *count = columns;
+    if (columns > 0) {
+        dsygv_(&itype, "V", "U", &columns, k, &columns, m, &columns, values, work, &work_size, &info);
+    }
+    for (int i = 0; i < columns && info == 0; i++) {
+        frequencies[i] = sqrt(fmax(values[i], 0));
+        double largest = 0;
+        for (int j = 0; j < n; j++) {
+            double angle = 0;
+            for (int c = 0; c < columns; c++) {
+                angle += basis[c * n + j] * k[i * columns + c];
+            }
+            shapes[i * n + j] = angle;
+            largest = fabs(angle) > fabs(largest) ? angle : largest;
+        }
+        for (int j = 0; j < n; j++) {
+            shapes[i * n + j] /= largest;
+        }
+    }
+    free(block);
+    return info == 0 ? STATUS_OK : STATUS_SINGULAR;
+}

@@ -1,0 +1,102 @@
+#include "src/predict/predict.h"
+
+#include <math.h>
+
+#include "src/predict/two_link.h"
+
+void quasi_principle_deflections(int n, const double *k, double energy, double *deflection)
+{
+    double compliance = 0;
+    for (int i = 0; i < n; i++) {
+        compliance += 1 / k[i];
+    }
+    for (int i = 0; i < n; i++) {
+        double share = energy / k[i] / compliance;
+        deflection[i] = sqrt(2 * share / k[i]);
+    }
+}
+
+// Energy before contact as the listing sums it up: I2 and I3 left out, the hub spring's strain left
+// out, and with `energy_cross_term` e w2 w3 cos d for 2 l e w2 w3 cos d (equal in number at l = 0.5).
+static double listed_energy(const parameters *p, const three_body_state *s)
+{
+    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2;
+    const double *q = s->angle, *w = s->velocity;
+    double bend = q[2] - q[1];
+    double cross = p->printed.energy_cross_term ? e : 2 * l * e;
+    double hub = p->arm.hub_inertia * w[0] * w[0];
+    double first = m * e * e * w[1] * w[1];
+    double last = m * (l * l * w[1] * w[1] + e * e * w[2] * w[2] + cross * w[1] * w[2] * cos(bend));
+    return (hub + first + last + p->arm.k2 * bend * bend) / 2;
+}
+
+// Kinetic and strain energy before contact, (4.23), whole.
+static double whole_energy(const parameters *p, const three_body_state *s)
+{
+    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, inertia = two_link_inertia(p);
+    bool rigid = p->arm.hub_joint == HUB_RIGID;
+    const double *q = s->angle, *w = s->velocity;
+    double bend = q[2] - q[1], hub_bend = rigid ? 0 : q[1] - q[0], hub_speed = w[rigid ? 1 : 0];
+    double kinetic = p->arm.hub_inertia * hub_speed * hub_speed +
+                     (inertia + m * e * e + m * l * l) * w[1] * w[1] +
+                     (inertia + m * e * e) * w[2] * w[2] +
+                     2 * m * l * e * cos(bend) * w[1] * w[2];
+    double strain = p->arm.k2 * bend * bend + (rigid ? 0 : p->arm.k1 * hub_bend * hub_bend);
+    return (kinetic + strain) / 2;
+}
+
+// Printed form. All energy goes to k2 (4.26 with k1 far stiffer), which it bends by D against the
+// drive: theta3 - theta2 = -D. With all velocities zero (4.28), (4.29), (4.34) give accelerations
+// and force, where k1 (theta2 - theta1) is replaced by the motor torque, (4.27) without its
+// acceleration term.
+static bool printed_force(const parameters *p, const three_body_state *s, double *force)
+{
+    two_link t;
+    double bend = sqrt(2 * listed_energy(p, s) / p->arm.k2);
+    two_link_at(&t, p, FORM_LISTED_ENERGY, s->angle[1], s->angle[1] - bend);
+    double r[3] = {-p->arm.k2 * bend + t.motor_torque, p->arm.k2 * bend, 0};
+    bool solved = two_link_solve(&t, r);
+    *force = r[2];
+    return solved;
+}
+
+// Corrected form: whole energy (4.23), shared by (4.24), and (4.28) without the k2 term that does
+// not belong there. With a hub spring its torque k1 D1 drives both links. With a rigid hub hub and
+// first link are one body, driven by the motor less the Coulomb friction that slowed it.
+static bool corrected_force(const parameters *p, const three_body_state *s, double *force)
+{
+    two_link t;
+    double stiffness[2] = {p->arm.k2, p->arm.k1}, bend[2];
+    bool rigid = p->arm.hub_joint == HUB_RIGID;
+    quasi_principle_deflections(rigid ? 1 : 2, stiffness, whole_energy(p, s), bend);
+    two_link_at(&t, p, FORM_CORRECTED, s->angle[1], s->angle[1] - bend[0]);
+    double hub_speed = s->velocity[rigid ? 1 : 0];
+    double friction = p->motor.stiction * ((hub_speed > 0) - (hub_speed < 0));
+    double r[3] = {rigid ? t.motor_torque - friction : p->arm.k1 * bend[1], p->arm.k2 * bend[0], 0};
+    bool solved = two_link_solve(&t, r);
+    *force = r[2];
+    return solved;
+}
+
+status predict_energy(const parameters *p, const three_body_state *s, prediction *out, fault *f)
+{
+    bool printed = p->arm.model == ARM_PRINTED;
+    two_link touch;
+    *out = (prediction){.holds = false, .force = (double)NAN, .delay = (double)NAN,
+                        .impulse = (double)NAN};
+    status result = three_body_state_check(s, f);
+    if (result != STATUS_OK) {
+        return result;
+    }
+    double force;
+    if (!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
+        !isfinite(force)) {
+        return fault_set(f, STATUS_SINGULAR,
+                         "the energy principle has no single force for this state: its system "
+                         "(4.28), (4.29), (4.34) is singular");
+    }
+    two_link_at(&touch, p, printed ? FORM_LISTED_IMPACT : FORM_CORRECTED, s->angle[1], s->angle[2]);
+    out->force = force;
+    out->holds = force > 0 && two_link_approach_speed(&touch, s) >= 0;
+    return STATUS_OK;
+}

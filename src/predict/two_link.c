@@ -1,0 +1,86 @@
+#include "src/predict/two_link.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/arm/arm.h"
+#include "src/solve/dense.h"
+
+double two_link_inertia(const parameters *p)
+{
+    double l = p->arm.length / 2, m = p->arm.mass / 2;
+    return p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
+}
+
+// Contact constraint of the corrected model with the wall standing where the arm is.
+// A point at the beam's length 2l from the hub lies at A along the second link's line, with
+// |l r2 + A r3| = 2l, so A = l (sqrt(c^2 + 3) - c). A flat wall through the hub's axis touches the
+// tip; seen from there each link makes half the bend with it.
+static void contact_on_the_arm(two_link *t, int wall, double bend)
+{
+    double l = t->length, c = cos(bend);
+    if (wall == WALL_PLANE) {
+        t->j2 = t->j3 = l * cos(bend / 2);
+    } else {
+        t->j2 = l * c;
+        t->j3 = l * (sqrt(c * c + 3) - c);
+    }
+}
+
+void two_link_at(two_link *t, const parameters *p, two_link_form form, double angle2,
+                 double angle3)
+{
+    memset(t, 0, sizeof *t);
+    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, inertia = two_link_inertia(p);
+    double bend = angle3 - angle2, c = cos(bend);
+    t->length = l;
+    t->centre = e;
+    t->motor_torque = motor_torque_per_volt(&p->motor) * motor_limited_voltage(&p->motor);
+    t->hub_damping = motor_damping(&p->motor);
+    t->m32 = m * l * e * c;
+    t->m33 = m * e * e + inertia;
+    t->m22 = m * e * e + m * l * l + inertia + m * l * e * c;
+    t->m23 = t->m33 + t->m32;
+    if (form == FORM_LISTED_IMPACT) {
+        t->m22 = m * e * e + m * l * l + m * l * e;
+        t->m23 = m * e * e + m * l * e;
+    }
+    if (form == FORM_CORRECTED) {
+        contact_on_the_arm(t, p->wall.kind, bend);
+        t->both = t->j2 + t->j3;
+        t->last = t->j3;
+        t->rigid_hub = p->arm.hub_joint == HUB_RIGID;
+        t->m22 += t->rigid_hub ? p->arm.hub_inertia : 0;
+        return;
+    }
+    double a = p->arm.length * cos(p->wall.angle), b = p->arm.length * sin(p->wall.angle);
+    t->both = l * (1 + c);
+    t->last = l;
+    t->j2 = l * c;
+    t->j3 = form == FORM_LISTED_ENERGY ? l : a * cos(angle3) + b * sin(angle3) - l * c;
+}
+
+double two_link_approach_speed(const two_link *t, const three_body_state *s)
+{
+    return t->j2 * s->velocity[1] + t->j3 * s->velocity[2];
+}
+
+bool two_link_solve(const two_link *t, double r[3])
+{
+    double matrix[9] = {t->m22, t->m23, t->both, t->m32, t->m33, t->last, t->j2, t->j3, 0};
+    return dense_solve(3, matrix, r);
+}
+
+status three_body_state_check(const three_body_state *s, fault *f)
+{
+    static const char *const names[3] = {"hub", "first link", "second link"};
+    for (int i = 0; i < 3; i++) {
+        if (!isfinite(s->angle[i]) || !isfinite(s->velocity[i])) {
+            return fault_set(f, STATUS_NOT_FINITE,
+                             "a prediction needs a finite state, but the %s's %s is %g", names[i],
+                             isfinite(s->angle[i]) ? "velocity" : "angle",
+                             isfinite(s->angle[i]) ? s->velocity[i] : s->angle[i]);
+        }
+    }
+    return STATUS_OK;
+}

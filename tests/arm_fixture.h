@@ -1,0 +1,30 @@
+// Arms for tests: parameters given as "path=value" strings.
+#pragma once
+
+#include <string.h>
+
+#include "src/arm/arm.h"
+#include "src/lab/scenario.h"
+#include "tests/check.h"
+
+// Resolved parameters of the corrected arm with the given settings; the list ends with NULL.
+static inline parameters fixture_parameters(const char *const *settings)
+{
+    parameters p;
+    fault f;
+    parameters_defaults(&p, ARM_CORRECTED);
+    for (int i = 0; settings != NULL && settings[i] != NULL; i++) {
+        char path[64];
+        const char *equals = strchr(settings[i], '=');
+        snprintf(path, sizeof path, "%.*s", (int)(equals - settings[i]), settings[i]);
+        if (parameter_set_text(&p, parameter_find(path), equals + 1, &f) != STATUS_OK) {
+            fail_msg("%s", f.text);
+        }
+    }
+    if (parameters_resolve(&p, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return p;
+}
+
+#define SETTINGS(...) ((const char *const[]){__VA_ARGS__, NULL})

@@ -1,0 +1,235 @@
+// The O(N) chain against dense matrices written from the Lagrangian.
+#include <math.h>
+
+#include "src/arm/chain.h"
+#include "tests/arm_fixture.h"
+
+enum { LARGEST = 12 };
+
+static arm make_arm(int links, const char *hub, const char *wall)
+{
+    char n[32], joint[64], kind[64];
+    snprintf(n, sizeof n, "arm.links=%d", links);
+    snprintf(joint, sizeof joint, "arm.hub_joint=%s", hub);
+    snprintf(kind, sizeof kind, "wall.kind=%s", wall);
+    parameters p = fixture_parameters(SETTINGS(n, joint, kind, "arm.k1=90", "arm.damping_ratio=0.02"));
+    arm a;
+    arm_init(&a, &p);
+    return a;
+}
+
+// A bent, moving arm; different for each seed.
+static void some_state(const arm *a, int seed, double *q, double *w)
+{
+    for (int i = 0; i < a->dof; i++) {
+        q[i] = 0.1 + 0.2 * sin(3.1 * i + seed);
+        w[i] = 2 * cos(2.3 * i + 0.7 * seed);
+    }
+}
+
+// J by central differences of the penetration.
+static void numeric_jacobian(const arm *a, double *q, const double *w, double *jacobian)
+{
+    for (int i = 0; i < a->dof; i++) {
+        double e = 1e-6, angle = q[i], plus, minus;
+        q[i] = angle + e;
+        chain_penetration(a, q, w, &plus, NULL);
+        q[i] = angle - e;
+        chain_penetration(a, q, w, &minus, NULL);
+        q[i] = angle;
+        jacobian[i] = (plus - minus) / (2 * e);
+    }
+}
+
+// M_ij = A_ij cos(q_i - q_j) of the Lagrangian, by direct summation over the links' centres.
+static double mass(const arm *a, const double *q, int i, int j)
+{
+    double sum = i == j && i >= a->first ? a->link_inertia : 0;
+    if (i == 0 && j == 0) {
+        sum += a->hub_inertia;
+    }
+    for (int body = a->first; body < a->dof && i >= a->first && j >= a->first; body++) {
+        double ri = body > i ? a->link_length : body == i ? a->link_length / 2 : 0;
+        double rj = body > j ? a->link_length : body == j ? a->link_length / 2 : 0;
+        sum += a->link_mass * ri * rj * cos(q[i] - q[j]);
+    }
+    return sum;
+}
+
+// dM_ij/dq_i type terms: sum_j A_ij sin(q_i - q_j) w_j^2.
+static double coriolis(const arm *a, const double *q, const double *w, int i)
+{
+    double sum = 0;
+    for (int j = a->first; j < a->dof; j++) {
+        for (int body = a->first; body < a->dof && i >= a->first; body++) {
+            double ri = body > i ? a->link_length : body == i ? a->link_length / 2 : 0;
+            double rj = body > j ? a->link_length : body == j ? a->link_length / 2 : 0;
+            sum += a->link_mass * ri * rj * sin(q[i] - q[j]) * w[j] * w[j];
+        }
+    }
+    return sum;
+}
+
+static double spring_torque(const arm *a, const double *q, const double *w, int i)
+{
+    double sum = 0;
+    for (int k = 1; k < a->dof; k++) {
+        double s = k == a->first ? a->hub_stiffness : a->joint_stiffness;
+        double c = k == a->first ? a->hub_joint_damping : a->joint_damping;
+        double torque = s * (q[k] - q[k - 1]) + c * (w[k] - w[k - 1]);
+        sum += i == k - 1 ? torque : i == k ? -torque : 0;
+    }
+    return sum;
+}
+
+// Residual of the Lagrangian's equations with what the chain returned.
+static double largest_residual(const arm *a, double *q, const double *w, const double *alpha,
+                               const chain_reaction *r)
+{
+    double jacobian[LARGEST] = {0}, largest = 0;
+    if (a->wall != WALL_NONE) {
+        numeric_jacobian(a, q, w, jacobian);
+    }
+    for (int i = 0; i < a->dof; i++) {
+        double sum = coriolis(a, q, w, i) - spring_torque(a, q, w, i) + jacobian[i] * r->force;
+        for (int j = 0; j < a->dof; j++) {
+            sum += mass(a, q, i, j) * alpha[j];
+        }
+        if (i == 0) {
+            sum += a->hub_damping * w[0] - a->motor_torque - r->friction;
+        }
+        largest = fmax(largest, fabs(sum));
+    }
+    return largest;
+}
+
+// Second derivative of the penetration along the motion, by differences of its rate.
+static double numeric_second_rate(const arm *a, const double *q, const double *w,
+                                  const double *alpha)
+{
+    double rate[2], h = 1e-6;
+    for (int side = 0; side < 2; side++) {
+        double qs[LARGEST], ws[LARGEST], t = side ? h : -h;
+        for (int i = 0; i < a->dof; i++) {
+            qs[i] = q[i] + t * w[i] + t * t / 2 * alpha[i];
+            ws[i] = w[i] + t * alpha[i];
+        }
+        chain_penetration(a, qs, ws, NULL, &rate[side]);
+    }
+    return (rate[1] - rate[0]) / (2 * h);
+}
+
+static void satisfies_the_lagrangian(void **state)
+{
+    (void)state;
+    static const char *const hubs[] = {"rigid", "spring"}, *const walls[] = {"point", "plane", "none"};
+    static const hub_friction frictions[] = {HUB_FORWARD, HUB_BACKWARD, HUB_STICK};
+    int cases = 0;
+    for (int links = 1; links <= 10; links++) {
+        for (int choice = 0; choice < 2 * 3 * 3 * 2; choice++) {
+            arm a = make_arm(links, hubs[choice % 2], walls[choice / 2 % 3]);
+            contact_mode mode = {choice / 18 == 1 && a.wall != WALL_NONE, frictions[choice / 6 % 3]};
+            if (a.dof == 1 && mode.contact) {
+                continue; // tested below
+            }
+            double q[LARGEST], w[LARGEST], alpha[LARGEST];
+            chain_link work[LARGEST];
+            chain_reaction r;
+            some_state(&a, choice, q, w);
+            w[0] = mode.friction == HUB_STICK ? 0 : w[0];
+            chain_accelerations(&a, work, q, w, mode, alpha, &r);
+            check_below(largest_residual(&a, q, w, alpha, &r), 1e-7);
+            if (mode.friction == HUB_STICK) {
+                check_close(alpha[0], 0, 0);
+            } else {
+                check_close(r.friction, -mode.friction * a.stiction, 0);
+            }
+            if (a.wall != WALL_NONE) {
+                double second = numeric_second_rate(&a, q, w, alpha);
+                // differences of rates of order 10 over 2e-6 s carry rounding of order 1e-9 / 1e-6
+                check_close(-r.gap_acceleration, second, 1e-3 + 1e-5 * fabs(second));
+            }
+            assert_true(mode.contact || r.force == 0);
+            cases++;
+        }
+    }
+    assert_int_equal(cases, 10 * 36 - 6);
+}
+
+static void rates_follow_from_the_penetration(void **state)
+{
+    (void)state;
+    for (int links = 1; links <= 5; links++) {
+        for (int wall = 0; wall < 2; wall++) {
+            arm a = make_arm(links, "rigid", wall ? "plane" : "point");
+            double q[LARGEST], w[LARGEST], jacobian[LARGEST], rate, sum = 0;
+            some_state(&a, links, q, w);
+            numeric_jacobian(&a, q, w, jacobian);
+            for (int i = 0; i < a.dof; i++) {
+                sum += jacobian[i] * w[i];
+            }
+            chain_penetration(&a, q, w, NULL, &rate);
+            check_close(rate, sum, 1e-8);
+        }
+    }
+}
+
+static void penetration_of_two_links_is_equation_3_9(void **state)
+{
+    (void)state;
+    arm a = make_arm(2, "spring", "point");
+    double q[3], w[3], g, l = 0.5, x = cos(0.1), y = sin(0.1);
+    some_state(&a, 4, q, w);
+    chain_penetration(&a, q, w, &g, NULL);
+    check_close(g, x * sin(q[2]) - y * cos(q[2]) - l * sin(q[2] - q[1]), 1e-15);
+    // straight arm pointing at the contact point
+    q[0] = q[1] = q[2] = 0.1;
+    chain_penetration(&a, q, w, &g, NULL);
+    check_close(g, 0, 1e-16);
+}
+
+static void one_link_on_a_rigid_hub_is_held_by_the_wall(void **state)
+{
+    (void)state;
+    arm a = make_arm(1, "rigid", "plane");
+    double q[1] = {0.1}, w[1] = {0}, alpha[1];
+    chain_link work[1];
+    chain_reaction r;
+    chain_accelerations(&a, work, q, w, (contact_mode){true, HUB_STICK}, alpha, &r);
+    check_close(alpha[0], 0, 1e-12);
+    check_close(r.force, a.motor_torque / 1.0, 1e-12); // moment balance about the hub
+    check_close(r.friction, 0, 0);
+}
+
+static void energies_match_the_dense_form(void **state)
+{
+    (void)state;
+    for (int links = 1; links <= 6; links++) {
+        arm a = make_arm(links, "spring", "none");
+        double q[LARGEST], w[LARGEST], kinetic = 0, strain = 0;
+        some_state(&a, links, q, w);
+        for (int i = 0; i < a.dof; i++) {
+            for (int j = 0; j < a.dof; j++) {
+                kinetic += 0.5 * mass(&a, q, i, j) * w[i] * w[j];
+            }
+        }
+        for (int k = 1; k < a.dof; k++) {
+            double stiffness = k == 1 ? 90 : 4.92 * links / 2.0;
+            strain += 0.5 * stiffness * (q[k] - q[k - 1]) * (q[k] - q[k - 1]);
+        }
+        check_relative(chain_kinetic_energy(&a, q, w), kinetic, 1e-13);
+        check_relative(chain_strain_energy(&a, q), strain, 1e-13);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(satisfies_the_lagrangian),
+        cmocka_unit_test(rates_follow_from_the_penetration),
+        cmocka_unit_test(penetration_of_two_links_is_equation_3_9),
+        cmocka_unit_test(one_link_on_a_rigid_hub_is_held_by_the_wall),
+        cmocka_unit_test(energies_match_the_dense_form),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

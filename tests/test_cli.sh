@@ -1,0 +1,177 @@
+#!/bin/bash
+# The command line as a person or a script meets it.
+# $1: the program
+set -u
+lab=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+export LC_ALL=C.UTF-8
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    echo "  stdout: $(head -c 400 out)"
+    echo "  stderr: $(head -c 400 err)"
+    failures=$((failures + 1))
+}
+
+# expect STATUS ARGUMENT...: runs the program, its output lands in the files out and err
+expect() {
+    local wanted=$1 status=0
+    shift
+    "$lab" "$@" >out 2>err </dev/null || status=$?
+    [ $status = "$wanted" ] || fail "impactlab $*: exit status $status, expected $wanted"
+}
+
+# says FILE TEXT: the text occurs in out or err
+says() {
+    grep -qF -e "$2" "$1" || fail "'$2' is not in $1"
+}
+
+silent() {
+    [ ! -s "$1" ] || fail "$1 is not empty"
+}
+
+cat >hit.yaml <<'END'
+title: Hit
+motor: {voltage: 1 V}
+run: {duration: 0.5 s}
+END
+cat >faults.yaml <<'END'
+title: Two faults
+motor: {voltge: 1 V}
+wall: {angle: 99 rad}
+END
+cat >unmet.yaml <<'END'
+title: Wrong expectation
+run: {duration: 0.5 s}
+expect:
+  first_contact_s: {value: 0.1, tolerance: 0.001}
+END
+
+# --- help and misspellings
+expect 0
+says out "impactlab run SCENARIO"
+says out corrected/first-impact
+expect 0 --version
+says out "impactlab "
+expect 0 --help
+for command in list show check run tables figures animate predict modes sweep bench; do
+    grep -q "^  $command " out || fail "--help does not name $command"
+    "$lab" $command --help >help 2>err || fail "$command --help fails"
+    grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
+done
+expect 2 lsit
+says err "did you mean 'list'?"
+expect 2 nothing-like-it
+says err "there is no command 'nothing-like-it'"
+expect 2 run hit.yaml --jsn x.json
+says err "did you mean --json?"
+expect 2 run hit.yaml --csv
+says err "needs a value"
+expect 2 run
+says err "run needs SCENARIO"
+expect 2 run hit.yaml one-more
+says err "one-more"
+expect 2 run first-impct
+expect 2 run no-such-file.yaml
+expect 2 animate hit.yaml -o x.mp4
+says err "not there yet"
+expect 2 sweep hit.yaml --vary motor.voltage=1:2:3
+says err "not there yet"
+
+# --- list, show, check
+expect 0 list
+says out "thesis/fig-3-4"
+[ "$(wc -l <out)" = "$(find "$IMPACTLAB_SCENARIOS" -name '*.yaml' | wc -l)" ] ||
+    fail "list does not have a line for every scenario"
+expect 0 show hit.yaml --set arm.k2=6
+grep -q '^arm.k2 *= *6 N m/rad' out || fail "show does not mark what was set"
+grep -q '^arm.mass  *0.40108 kg' out || fail "show does not give a default without a mark"
+expect 0 check hit.yaml unmet.yaml
+expect 2 check hit.yaml faults.yaml
+says err "faults.yaml:2:"
+says err "faults.yaml:3:"
+says err "did you mean 'voltage'?"
+# every scenario that ships is sound
+mapfile -t shipped < <(find "$IMPACTLAB_SCENARIOS" -name '*.yaml')
+expect 0 check "${shipped[@]}"
+
+# --- run
+expect 0 run hit.yaml
+says out "first contact"
+says out "impact "
+silent err
+expect 0 run hit.yaml --quiet
+silent out
+expect 0 run --quiet --json one.json hit.yaml
+expect 0 run hit.yaml --json two.json --quiet
+grep -v wall_time_s one.json >one
+grep -v wall_time_s two.json >two
+cmp -s one two || fail "the same scenario gave two results"
+grep -q '"status": "ok"' one.json || fail "the status of a run is not ok"
+grep -q '"motor.voltage": 1,' one.json || fail "a parameter is missing in the JSON"
+expect 0 run hit.yaml --json - --csv trace.csv
+grep -q '^{' out || fail "the JSON on the standard output is not alone there"
+[ "$(grep -c '^time\[s\],hub_angle\[rad\],' trace.csv)" = 1 ] || fail "no CSV header"
+[ "$(wc -l <trace.csv)" -gt 500 ] || fail "the CSV has too few rows"
+expect 0 run hit.yaml --csv again.csv --quiet
+cmp -s trace.csv again.csv || fail "the same scenario gave two traces"
+
+# --set: order is free, the last one counts, faults are named
+expect 0 run hit.yaml --set motor.voltage=2 --set 'motor.voltage=0.5 V' --json - --quiet
+says out '"motor.voltage": 0.5'
+expect 0 show thesis/fig-3-4 --set arm.links=4 --set arm.model=corrected
+expect 2 run hit.yaml --set motor.voltag=2 --set arm.k2=stiff
+says err "did you mean 'motor.voltage'?"
+says err "arm.k2"
+expect 2 run hit.yaml --set motor.voltage
+expect 2 run hit.yaml --set wall.angle=99
+
+# expectations
+expect 1 run unmet.yaml
+says err "unmet.yaml:4:"
+says err "first_contact_s"
+expect 0 run unmet.yaml --set motor.voltage=2 --quiet
+
+# a result that cannot be written
+expect 1 run hit.yaml --json /dev/full --quiet
+says err "/dev/full"
+says err "No space left"
+expect 1 run hit.yaml --csv no/such/folder/x.csv
+says err "no/such/folder/x.csv"
+expect 1 run hit.yaml --csv /proc/x.csv
+status=0
+"$lab" run hit.yaml --csv - >/dev/full 2>err || status=$?
+[ $status = 1 ] || fail "a full standard output gave exit status $status"
+says err "standard output"
+status=0
+"$lab" list >/dev/full 2>err || status=$?
+[ $status = 1 ] || fail "list to a full standard output gave exit status $status"
+expect 2 run hit.yaml --json - --csv -
+expect 2 run hit.yaml --json same --csv same
+[ ! -e same ] || fail "a refused command wrote a file"
+expect 2 run hit.yaml --json a --json b
+
+# a reader that goes away early is no fault
+("$lab" run hit.yaml --csv - 2>err; echo $? >status) | head -n 1 >out
+[ "$(cat status)" = 0 ] || fail "a closed pipe gave exit status $(cat status)"
+silent err
+
+# nothing half-written stays behind
+[ -z "$(find . -name '*.part')" ] || fail "a temporary file stayed behind"
+
+# --- the other commands
+expect 0 predict hit.yaml
+says out "simulation"
+expect 1 predict hit.yaml --set wall.kind=none
+says err "nothing to predict"
+expect 0 modes hit.yaml --json - --quiet
+says out '"hub": "locked"'
+expect 2 modes thesis/fig-3-4
+expect 0 bench --json bench.json --quiet
+grep -q '"name": "arm_n2_us_per_ms"' bench.json || fail "bench names no figure"
+
+[ $failures = 0 ] && echo "all well"
+[ $failures = 0 ]

@@ -1,0 +1,213 @@
+#include "src/lab/export.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/check.h"
+
+static void print_fault(void *context, const char *sentence)
+{
+    (void)context;
+    print_error("%s\n", sentence);
+}
+
+static scenario parse(const char *text)
+{
+    scenario s;
+    assert_int_equal(scenario_parse(&s, text, strlen(text), "t.yaml", NULL, print_fault, NULL),
+                     STATUS_OK);
+    return s;
+}
+
+static void numbers_are_short_and_read_back(void **state)
+{
+    (void)state;
+    const struct {
+        double value;
+        const char *text;
+    } cases[] = {
+        {0.1, "0.1"},  {12, "12"}, {-0.0, "0"}, {1e-5, "1e-05"}, {0.1 + 0.2, "0.30000000000000004"},
+        {-2.5, "-2.5"}};
+    char text[NUMBER_TEXT];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        number_format(text, cases[i].value);
+        assert_string_equal(text, cases[i].text);
+    }
+    // numbers of every size survive being written and read
+    unsigned long long bits = 0x9E3779B97F4A7C15ULL;
+    for (int i = 0; i < 10000; i++) {
+        double value;
+        bits = bits * 6364136223846793005ULL + 1442695040888963407ULL;
+        memcpy(&value, &bits, sizeof value);
+        if (isfinite(value)) {
+            number_format(text, value);
+            assert_true(strtod(text, NULL) == value);
+        }
+    }
+}
+
+// What json_write writes of a value, on the heap; takes over the value.
+static char *written(json_t *value)
+{
+    char *text = NULL;
+    size_t length = 0;
+    FILE *stream = open_memstream(&text, &length);
+    json_write(stream, value);
+    fclose(stream);
+    json_decref(value);
+    return text;
+}
+
+static void json_is_what_jansson_reads(void **state)
+{
+    (void)state;
+    const char *source = "{\"b\": [1, 0.1, null, true], \"a\": {\"quote\\\" \\u00e9\\n\": \"\"}, "
+                         "\"empty\": {}, \"none\": [], \"list\": [{\"x\": -1e-300}, []]}";
+    json_t *value = json_loads(source, 0, NULL);
+    char *text = written(json_deep_copy(value));
+    json_t *again = json_loads(text, 0, NULL);
+    assert_non_null(again);
+    assert_true(json_equal(value, again));
+    // keys stay in the order in which they were given
+    assert_true(strstr(text, "\"b\"") < strstr(text, "\"a\""));
+    json_decref(value);
+    json_decref(again);
+    free(text);
+}
+
+static void text_without_utf8_is_made_readable(void **state)
+{
+    (void)state;
+    char *text = written(json_text("a\xff"
+                                   "b"));
+    assert_string_equal(text, "\"a?b\"\n");
+    free(text);
+    text = written(json_text("\u00e9"));
+    assert_string_equal(text, "\"\u00e9\"\n");
+    free(text);
+}
+
+// A result as a run that was stopped would leave it.
+static run_result stopped_result(void)
+{
+    run_result result = {.summary = {.status = STATUS_NEWTON_FAILED, .message = "stopped"}};
+    for (int i = 0; i < summary_count; i++) {
+        double none = (double)NAN;
+        memcpy((char *)&result.summary + summary_table[i].offset, &none, sizeof none);
+    }
+    result.summary.first_contact_s = 0.25;
+    result.summary.impacts = 1;
+    trace_init(&result.trace, 3);
+    trace_add_event(&result.trace, (event){0.1, EVENT_CHANGE, 0, 0, 0, 0});
+    trace_add_event(&result.trace, (event){0.25, EVENT_IMPACT, 0.5, 0.75, 0.125, -1});
+    trace_add_event(&result.trace, (event){0.25, EVENT_CONTACT, 0, 0, 0, -1});
+    return result;
+}
+
+static void object_holds_every_key(void **state)
+{
+    (void)state;
+    scenario s = parse("title: T\narm: {links: 3}\nwall: {kind: plane}\n"
+                       "expect:\n  impacts: {value: 1, tolerance: 0}\n  peak_force_N: null\n"
+                       "  first_contact_s: {value: 0.3, tolerance: 0.01}\n"
+                       "script:\n  - {at: 0.1 s, set: {motor.voltage: 2 V}}\n");
+    run_result result = stopped_result();
+    json_t *object = export_run(&s, &result);
+    assert_string_equal(json_string_value(json_object_get(object, "scenario")), "t.yaml");
+    assert_string_equal(json_string_value(json_object_get(object, "status")), "failed");
+    assert_string_equal(json_string_value(json_object_get(object, "message")), "stopped");
+    assert_non_null(json_object_get(object, "version"));
+    for (int i = 0; i < summary_count; i++) {
+        assert_non_null(json_object_get(object, summary_table[i].key));
+    }
+    // what did not occur is null, what did is a number
+    assert_true(json_is_null(json_object_get(object, "peak_force_N")));
+    check_close(json_number_value(json_object_get(object, "first_contact_s")), 0.25, 0);
+
+    // every parameter, each in its own type
+    json_t *p = json_object_get(object, "parameters");
+    assert_int_equal(json_object_size(p), parameter_count);
+    check_close(json_number_value(json_object_get(p, "arm.links")), 3, 0);
+    assert_string_equal(json_string_value(json_object_get(p, "wall.kind")), "plane");
+    assert_true(json_is_boolean(json_object_get(p, "printed.force_at_link_end")));
+
+    json_t *events = json_object_get(object, "events");
+    assert_int_equal(json_array_size(events), 3);
+    json_t *change = json_array_get(events, 0), *impact = json_array_get(events, 1);
+    assert_string_equal(json_string_value(json_object_get(change, "parameter")), "motor.voltage");
+    check_close(json_number_value(json_object_get(change, "value")), 2, 0);
+    check_close(json_number_value(json_object_get(impact, "speed_m_s")), 0.75, 0);
+    check_close(json_number_value(json_object_get(impact, "loss_J")), 0.125, 0);
+    assert_null(json_object_get(json_array_get(events, 2), "impulse_Ns"));
+
+    // expectations: met, met by not occurring, not met
+    json_t *expected = json_object_get(object, "expectations");
+    assert_int_equal(json_array_size(expected), 3);
+    for (size_t i = 0; i < 3; i++) {
+        json_t *e = json_array_get(expected, i);
+        const char *quantity = json_string_value(json_object_get(e, "quantity"));
+        assert_int_equal(json_is_true(json_object_get(e, "met")),
+                         strcmp(quantity, "first_contact_s") != 0);
+    }
+    json_decref(object);
+    run_finish(&result);
+    scenario_finish(&s);
+}
+
+// CSV of a trace of two rows with three angles each, on the heap.
+static char *csv_of(int links)
+{
+    char *text = NULL;
+    size_t length = 0;
+    trace t;
+    trace_init(&t, 3);
+    for (int i = 0; i < 2; i++) {
+        sample row = {.time = 0.1 * i, .force = 2.5};
+        double angles[] = {0.1, 0.2, 0.3};
+        assert_int_equal(trace_add_row(&t, &row, angles), STATUS_OK);
+    }
+    FILE *stream = open_memstream(&text, &length);
+    export_csv(stream, &t, links);
+    fclose(stream);
+    trace_finish(&t);
+    return text;
+}
+
+static int count_of(const char *text, char wanted)
+{
+    int count = 0;
+    for (; *text != '\0' && *text != '\n'; text++) {
+        count += *text == wanted;
+    }
+    return count;
+}
+
+static void csv_has_one_header_and_a_column_for_each_value(void **state)
+{
+    (void)state;
+    for (int links = 2; links <= 3; links++) {
+        char *text = csv_of(links);
+        int columns = signal_count + (links > 2 ? 3 : 0);
+        assert_int_equal(strncmp(text, "time[s],hub_angle[rad],", 23), 0);
+        assert_int_equal(strstr(text, ",angle_3[rad]\n") != NULL, links > 2);
+        char *line = text;
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(count_of(line, ',') + 1, columns);
+            line = strchr(line, '\n') + 1;
+        }
+        assert_int_equal(*line, '\0');
+        free(text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_are_short_and_read_back),
+        cmocka_unit_test(json_is_what_jansson_reads),
+        cmocka_unit_test(text_without_utf8_is_made_readable),
+        cmocka_unit_test(object_holds_every_key),
+        cmocka_unit_test(csv_has_one_header_and_a_column_for_each_value),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

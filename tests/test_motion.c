@@ -1,0 +1,254 @@
+// The machine of free flight, impact, contact, release, stick and slip, on motions with closed
+// forms and by what must hold at every row.
+#include <math.h>
+
+#include "src/lab/run.h"
+#include "tests/arm_fixture.h"
+
+static run_result run(const char *const *settings)
+{
+    scenario s = {.parameters = fixture_parameters(settings)};
+    run_result r;
+    if (run_scenario(&s, true, &r) != STATUS_OK) {
+        fail_msg("%s", r.summary.message);
+    }
+    return r;
+}
+
+static const event *find_event(const run_result *r, event_kind kind, int number)
+{
+    for (size_t i = 0; i < r->trace.event_count; i++) {
+        if (r->trace.events[i].kind == kind && number-- == 0) {
+            return &r->trace.events[i];
+        }
+    }
+    fail_msg("event %s did not occur", event_name(kind));
+    return NULL;
+}
+
+// One link on a rigid hub: I w' = T - D w, first order.
+typedef struct rod {
+    double inertia, torque, damping, rate; // rate = damping / inertia
+} rod;
+
+static rod one_rod(void)
+{
+    rod r;
+    double kt = 0.249092 * 9.80665;
+    r.inertia = 0.40108 / 3 + 5.2e-3;
+    r.torque = 6.02 * kt / 33.6 - 0.045;
+    r.damping = 5.4192e-3 + kt * 2.443 / 33.6;
+    r.rate = r.damping / r.inertia;
+    return r;
+}
+
+static double rod_angle(const rod *r, double t)
+{
+    return r->torque / r->damping * (t + (exp(-r->rate * t) - 1) / r->rate);
+}
+
+static void a_single_rod_follows_its_closed_form(void **state)
+{
+    (void)state;
+    rod r = one_rod();
+    run_result result = run(SETTINGS("arm.links=1", "run.duration=0.6"));
+    double t = 0.2823; // contact: rod_angle(t) = 0.1, by Newton's method
+    for (int i = 0; i < 20; i++) {
+        t -= (rod_angle(&r, t) - 0.1) / (r.torque / r.damping * (1 - exp(-r.rate * t)));
+    }
+    double w = r.torque / r.damping * (1 - exp(-r.rate * t));
+    check_close(result.summary.first_contact_s, t, 1e-12);
+    check_relative(result.summary.contact_impulse_Ns, r.inertia * w / 1.0, 1e-11);
+    check_close(result.summary.impacts, 1, 0);
+    check_relative(result.summary.steady_force_N, r.torque + 0.045, 1e-12);
+    check_close(result.trace.rows[200].last_angle, rod_angle(&r, 0.2), 1e-13);
+    check_close(find_event(&result, EVENT_IMPACT, 0)->loss, 0.5 * r.inertia * w * w, 1e-12);
+    run_finish(&result);
+}
+
+static void a_coasting_rod_sticks_when_friction_says(void **state)
+{
+    (void)state;
+    rod r = one_rod();
+    run_result result = run(SETTINGS("arm.links=1", "wall.kind=none", "motor.voltage=0",
+                                     "initial.velocity=0.5", "run.duration=1.2"));
+    // I w' = -D w - c: w = 0 at t = ln(1 + D w0 / c) I / D
+    double t = log(1 + r.damping * 0.5 / 0.045) / r.rate;
+    check_close(find_event(&result, EVENT_STICK, 0)->time, t, 1e-11);
+    const sample *last = &result.trace.rows[result.trace.row_count - 1];
+    check_close(last->sticking, 1, 0);
+    check_close(last->hub_velocity, 0, 0);
+    run_finish(&result);
+}
+
+static void a_bouncing_rod_rebounds_by_e_and_comes_to_rest(void **state)
+{
+    (void)state;
+    rod r = one_rod();
+    run_result result = run(SETTINGS("arm.links=1", "wall.restitution=0.5", "run.duration=1.5"));
+    const event *first = find_event(&result, EVENT_IMPACT, 0);
+    check_relative(first->impulse, 1.5 * r.inertia * first->speed, 1e-12);
+    check_relative(first->loss, 0.5 * r.inertia * first->speed * first->speed * 0.75, 1e-12);
+    // the speeds fall at least by e from bounce to bounce: back EMF takes its share too
+    int impacts = (int)result.summary.impacts;
+    assert_in_range(impacts, 8, 20);
+    for (int i = 1; i < impacts; i++) {
+        assert_true(find_event(&result, EVENT_IMPACT, i)->speed <
+                    0.5 * find_event(&result, EVENT_IMPACT, i - 1)->speed);
+    }
+    // the rest rule: the last impact is slower than the rest speed, and the wall then holds the rod
+    check_below(find_event(&result, EVENT_IMPACT, impacts - 1)->speed, 1e-4);
+    assert_true(find_event(&result, EVENT_IMPACT, impacts - 2)->speed >= 1e-4);
+    check_relative(result.summary.steady_force_N, r.torque + 0.045, 1e-12);
+    run_finish(&result);
+}
+
+static void check_complementarity(const run_result *r)
+{
+    for (size_t i = 0; i < r->trace.row_count; i++) {
+        const sample *row = &r->trace.rows[i];
+        assert_true(row->gap >= -1e-11);
+        assert_true(row->force >= -1e-8);
+        assert_true(fabs(row->gap * row->force) < 1e-10);
+        assert_true(row->contact == 0 ? row->force == 0 : fabs(row->gap_velocity) < 1e-10);
+        assert_true(fabs(row->friction_torque) <= 0.045 + 1e-10);
+        assert_true(row->sticking == 0 || row->hub_velocity == 0);
+    }
+    assert_true(r->summary.max_penetration_m < 1e-11);
+}
+
+static void check_ledger(const run_result *r)
+{
+    check_below(r->summary.energy_residual_J, 1e-6 * fabs(r->summary.motor_work_J));
+    for (size_t i = 0; i < r->trace.event_count; i++) {
+        assert_true(r->trace.events[i].loss >= 0);
+    }
+    for (size_t i = 1; i < r->trace.row_count; i++) {
+        assert_true(r->trace.rows[i].time >= r->trace.rows[i - 1].time);
+        assert_true(r->trace.rows[i].friction_loss >= r->trace.rows[i - 1].friction_loss - 1e-15);
+        assert_true(r->trace.rows[i].impact_loss >= r->trace.rows[i - 1].impact_loss);
+    }
+}
+
+static void gap_and_force_stay_complementary_and_energy_is_accounted_for(void **state)
+{
+    (void)state;
+    const char *const links[] = {"arm.links=1", "arm.links=2", "arm.links=3", "arm.links=5"};
+    for (int i = 0; i < 4 * 8; i++) {
+        run_result r = run(SETTINGS(links[i % 4], i & 4 ? "wall.kind=plane" : "wall.kind=point",
+                                    i & 8 ? "motor.voltage=5" : "motor.voltage=1",
+                                    i & 16 ? "wall.restitution=0.4" : "wall.restitution=0"));
+        check_complementarity(&r);
+        check_ledger(&r);
+        run_finish(&r);
+    }
+    run_result r = run(SETTINGS("arm.hub_joint=spring", "run.duration=0.6"));
+    check_complementarity(&r);
+    check_ledger(&r);
+    run_finish(&r);
+}
+
+// With the arm at rest on the wall and the hub held by friction, the middle spring alone presses.
+static void the_steady_force_is_the_springs(void **state)
+{
+    (void)state;
+    run_result r = run(SETTINGS("run.duration=2"));
+    const sample *last = &r.trace.rows[r.trace.row_count - 1];
+    double d = last->last_angle - last->first_angle;
+    double lever = cos(0.1) * cos(last->last_angle) + sin(0.1) * sin(last->last_angle) - 0.5 * cos(d);
+    check_close(last->sticking, 1, 0);
+    check_relative(last->force, -4.92 * d / lever, 1e-9);
+    check_relative(r.summary.steady_force_N, last->force, 1e-9);
+    run_finish(&r);
+}
+
+static void the_located_peak_does_not_depend_on_the_step(void **state)
+{
+    (void)state;
+    run_result coarse = run(SETTINGS("method.step=4e-3")), fine = run(SETTINGS("method.step=1e-4"));
+    check_relative(coarse.summary.first_pulse_peak_N, fine.summary.first_pulse_peak_N, 1e-9);
+    check_close(coarse.summary.first_pulse_time_to_peak_s, fine.summary.first_pulse_time_to_peak_s,
+                1e-5);
+    check_close(coarse.summary.first_contact_s, fine.summary.first_contact_s, 1e-11);
+    check_relative(coarse.summary.contact_impulse_Ns, fine.summary.contact_impulse_Ns, 1e-9);
+    run_finish(&coarse);
+    run_finish(&fine);
+}
+
+static void without_a_trace_the_summary_is_the_same(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(NULL)};
+    run_result with, without;
+    run_scenario(&s, true, &with);
+    run_scenario(&s, false, &without);
+    assert_int_equal(without.trace.row_count, 0);
+    for (int i = 0; i < summary_count; i++) {
+        double x = 0, y = 0;
+        summary_get(&with.summary, summary_table[i].key, &x);
+        summary_get(&without.summary, summary_table[i].key, &y);
+        assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
+    }
+    run_finish(&with);
+    run_finish(&without);
+}
+
+static void script_acts_at_its_time_and_is_booked(void **state)
+{
+    (void)state;
+    action todo[] = {
+        {.time = 0.70005, .kind = ACTION_PUSH, .value = 0.02},
+        {.time = 1.0, .kind = ACTION_SET, .parameter = parameter_find("motor.voltage"), .value = 2},
+        {.time = 1.2, .kind = ACTION_SET, .parameter = parameter_find("arm.k2"), .value = 10},
+        {.time = 1.4, .kind = ACTION_PUSH, .value = -0.2}, // away from the wall
+    };
+    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=2")),
+                  .actions = todo, .action_count = 4};
+    run_result r;
+    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    check_close(find_event(&r, EVENT_PUSH, 0)->time, 0.70005, 1e-12);
+    check_close(find_event(&r, EVENT_CHANGE, 0)->time, 1.0, 1e-12);
+    const sample *last = &r.trace.rows[r.trace.row_count - 1];
+    check_close(last->voltage, 2, 0);
+    assert_true(last->external_work != 0);
+    check_below(r.summary.energy_residual_J, 1e-9);
+    // pressed into the wall the push is answered by the wall, at once
+    check_close(find_event(&r, EVENT_IMPACT, 2)->time, 0.70005, 1e-12);
+    // pulled off, the arm leaves and comes back
+    bool apart = false;
+    for (size_t i = 0; i < r.trace.row_count; i++) {
+        apart |= r.trace.rows[i].time > 1.4 && r.trace.rows[i].gap > 1e-3;
+    }
+    assert_true(apart);
+    check_complementarity(&r);
+    run_finish(&r);
+}
+
+static void a_step_that_cannot_be_taken_stops_with_time_and_reason(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(SETTINGS("method.name=newmark", "method.step=0.5",
+                                                            "motor.voltage=10", "arm.k2=1e5"))};
+    s.parameters.motor.stiction = NAN; // a bad number that slipped in
+    run_result r;
+    assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
+    assert_non_null(strstr(r.summary.message, "t = "));
+    assert_true(r.trace.row_count >= 1);
+    run_finish(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_single_rod_follows_its_closed_form),
+        cmocka_unit_test(a_coasting_rod_sticks_when_friction_says),
+        cmocka_unit_test(a_bouncing_rod_rebounds_by_e_and_comes_to_rest),
+        cmocka_unit_test(gap_and_force_stay_complementary_and_energy_is_accounted_for),
+        cmocka_unit_test(the_steady_force_is_the_springs),
+        cmocka_unit_test(the_located_peak_does_not_depend_on_the_step),
+        cmocka_unit_test(without_a_trace_the_summary_is_the_same),
+        cmocka_unit_test(script_acts_at_its_time_and_is_booked),
+        cmocka_unit_test(a_step_that_cannot_be_taken_stops_with_time_and_reason),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,198 @@
+#include "src/lab/whole_file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+
+static char folder[] = "/tmp/whole-file-XXXXXX";
+
+static int enter_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) == NULL || chdir(folder) != 0;
+}
+
+// Number of files in the test's folder.
+static int files(void)
+{
+    int count = 0;
+    DIR *d = opendir(".");
+    for (struct dirent *e = readdir(d); e != NULL; e = readdir(d)) {
+        count += e->d_name[0] != '.' || strlen(e->d_name) > 2;
+    }
+    closedir(d);
+    return count;
+}
+
+static int leave_folder(void **state)
+{
+    (void)state;
+    DIR *d = opendir(".");
+    for (struct dirent *e = readdir(d); e != NULL; e = readdir(d)) {
+        unlink(e->d_name);
+    }
+    closedir(d);
+    return chdir("/") != 0 || rmdir(folder) != 0;
+}
+
+static void put(const char *path, const char *text)
+{
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+}
+
+static void assert_holds(const char *path, const char *expected)
+{
+    char text[64] = "";
+    FILE *stream = fopen(path, "r");
+    assert_non_null(stream);
+    size_t length = fread(text, 1, sizeof text - 1, stream);
+    text[length] = '\0';
+    fclose(stream);
+    assert_string_equal(text, expected);
+}
+
+static void appears_only_when_committed(void **state)
+{
+    (void)state;
+    whole_file w;
+    fault f;
+    put("old", "old");
+    assert_int_equal(whole_file_open(&w, "old", &f), STATUS_OK);
+    fputs("new", w.stream);
+    fflush(w.stream);
+    assert_holds("old", "old");
+    assert_int_equal(whole_file_commit(&w, &f), STATUS_OK);
+    assert_holds("old", "new");
+    assert_int_equal(files(), 1);
+    unlink("old");
+}
+
+static void abandoning_leaves_the_target_and_nothing_else(void **state)
+{
+    (void)state;
+    whole_file w;
+    fault f;
+    put("old", "old");
+    assert_int_equal(whole_file_open(&w, "old", &f), STATUS_OK);
+    fputs("new", w.stream);
+    whole_file_abandon(&w);
+    assert_holds("old", "old");
+    assert_int_equal(files(), 1);
+    unlink("old");
+}
+
+static mode_t mode_of(const char *path)
+{
+    struct stat about;
+    assert_int_equal(stat(path, &about), 0);
+    return about.st_mode & 07777;
+}
+
+static void write_new(const char *path)
+{
+    whole_file w;
+    fault f = {0};
+    assert_int_equal(whole_file_open(&w, path, &f), STATUS_OK);
+    fputs("new", w.stream);
+    assert_int_equal(whole_file_commit(&w, &f), STATUS_OK);
+}
+
+static void mode_follows_the_umask_or_the_old_file(void **state)
+{
+    (void)state;
+    mode_t before = umask(027);
+    write_new("fresh");
+    assert_int_equal(mode_of("fresh"), 0640);
+    chmod("fresh", 0604);
+    write_new("fresh");
+    assert_int_equal(mode_of("fresh"), 0604);
+    umask(before);
+    unlink("fresh");
+}
+
+static void a_link_stays_a_link(void **state)
+{
+    (void)state;
+    struct stat about;
+    put("target", "old");
+    assert_int_equal(symlink("target", "link"), 0);
+    write_new("link");
+    assert_int_equal(lstat("link", &about), 0);
+    assert_true(S_ISLNK(about.st_mode));
+    assert_holds("target", "new");
+    unlink("link");
+    unlink("target");
+}
+
+static void a_full_device_is_reported_and_stays_a_device(void **state)
+{
+    (void)state;
+    struct stat about;
+    whole_file w;
+    fault f = {0};
+    assert_int_equal(whole_file_open(&w, "/dev/full", &f), STATUS_OK);
+    fputs("new", w.stream);
+    assert_int_equal(whole_file_commit(&w, &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "/dev/full"));
+    assert_non_null(strstr(f.text, "No space left"));
+    assert_int_equal(stat("/dev/full", &about), 0);
+    assert_true(S_ISCHR(about.st_mode));
+}
+
+static void what_cannot_be_written_is_said_beforehand(void **state)
+{
+    (void)state;
+    const char *const bad[] = {"nowhere/file", ".", "", "nothing/"};
+    put("file", "");
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        whole_file w;
+        fault f = {0};
+        assert_int_equal(whole_file_check(bad[i], &f), STATUS_CANNOT_WRITE);
+        assert_non_null(strstr(f.text, bad[i]));
+        assert_int_equal(whole_file_open(&w, bad[i], &f), STATUS_CANNOT_WRITE);
+    }
+    assert_int_equal(whole_file_check("file/below", NULL), STATUS_CANNOT_WRITE);
+    assert_int_equal(whole_file_check("new", NULL), STATUS_OK);
+    assert_int_equal(whole_file_check("-", NULL), STATUS_OK);
+    assert_int_equal(files(), 1);
+    unlink("file");
+}
+
+static void a_reader_that_left_is_told_from_a_full_disk(void **state)
+{
+    (void)state;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    close(ends[0]);
+    FILE *stream = fdopen(ends[1], "w");
+    signal(SIGPIPE, SIG_IGN);
+    // the failing write lies far behind the last one
+    for (int i = 0; i < 100000; i++) {
+        fputc('x', stream);
+    }
+    assert_int_equal(stream_failure(stream), EPIPE);
+    fclose(stream);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(appears_only_when_committed),
+        cmocka_unit_test(abandoning_leaves_the_target_and_nothing_else),
+        cmocka_unit_test(mode_follows_the_umask_or_the_old_file),
+        cmocka_unit_test(a_link_stays_a_link),
+        cmocka_unit_test(a_full_device_is_reported_and_stays_a_device),
+        cmocka_unit_test(what_cannot_be_written_is_said_beforehand),
+        cmocka_unit_test(a_reader_that_left_is_told_from_a_full_disk),
+    };
+    return cmocka_run_group_tests(tests, enter_folder, leave_folder) != 0;
+}
