@@ -2,7 +2,7 @@
 # The command line as a person or a script meets it.
 # $1: the program
 set -u
-lab=$1
+lab=$(readlink -f "$1")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1

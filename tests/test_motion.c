@@ -237,6 +237,27 @@ static void a_step_that_cannot_be_taken_stops_with_time_and_reason(void **state)
     run_finish(&r);
 }
 
+// Newmark with gamma below 1/2 feeds energy into the motion: the ledger notices and the run stops.
+static void a_run_that_makes_energy_from_nothing_is_stopped(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(SETTINGS("method.name=newmark", "method.gamma=0.3",
+                                                            "arm.links=8", "run.duration=3"))};
+    run_result r;
+    assert_int_equal(run_scenario(&s, true, &r), STATUS_UNSTABLE);
+    assert_non_null(strstr(r.summary.message, "method.step"));
+    run_finish(&r);
+}
+
+static void structural_damping_does_not_upset_the_explicit_method(void **state)
+{
+    (void)state;
+    run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.01", "run.duration=0.4"));
+    check_ledger(&r);
+    assert_true(r.trace.rows[r.trace.row_count - 1].damping_loss > 0);
+    run_finish(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -248,6 +269,8 @@ int main(void)
         cmocka_unit_test(the_located_peak_does_not_depend_on_the_step),
         cmocka_unit_test(without_a_trace_the_summary_is_the_same),
         cmocka_unit_test(script_acts_at_its_time_and_is_booked),
+        cmocka_unit_test(a_run_that_makes_energy_from_nothing_is_stopped),
+        cmocka_unit_test(structural_damping_does_not_upset_the_explicit_method),
         cmocka_unit_test(a_step_that_cannot_be_taken_stops_with_time_and_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -23,6 +23,7 @@ static int files(void)
 {
     int count = 0;
     DIR *d = opendir(".");
+    assert_non_null(d);
     for (struct dirent *e = readdir(d); e != NULL; e = readdir(d)) {
         count += e->d_name[0] != '.' || strlen(e->d_name) > 2;
     }
@@ -174,6 +175,7 @@ static void a_reader_that_left_is_told_from_a_full_disk(void **state)
     assert_int_equal(pipe(ends), 0);
     close(ends[0]);
     FILE *stream = fdopen(ends[1], "w");
+    assert_non_null(stream);
     signal(SIGPIPE, SIG_IGN);
     // the failing write lies far behind the last one
     for (int i = 0; i < 100000; i++) {

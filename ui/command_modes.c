@@ -1,5 +1,6 @@
 #include "ui/command.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "src/arm/modes.h"
@@ -60,13 +61,16 @@ static void print_set(const arm *a, const mode_set *set, const char *hub, const 
 {
     int shown = set->count < MODES_SHOWN ? set->count : MODES_SHOWN;
     int angles = a->dof < ANGLES_SHOWN ? a->dof : ANGLES_SHOWN;
-    printf("\nHub %s, tip %s\n  mode  frequency [Hz]   [rad/s]   angles, the largest is 1\n", hub,
-           tip);
+    printf("\nHub %s, tip %s\n", hub, tip);
+    printf("%s\n", shown > 0 ? "  mode  frequency [Hz]   [rad/s]   angles, the largest is 1"
+                             : "  nothing can move");
     for (int mode = 0; mode < shown; mode++) {
         printf("  %4d  %14.5g  %8.5g  ", mode + 1, set->frequencies[mode] / TWO_PI,
                set->frequencies[mode]);
         for (int k = 0; k < angles; k++) {
-            printf(" %7.4f", set->shapes[mode * a->dof + k]);
+            double angle = set->shapes[mode * a->dof + k];
+            // no minus before a zero
+            printf(" %7.4f", fabs(angle) < 5e-5 ? 0 : angle);
         }
         printf("%s\n", angles < a->dof ? " ..." : "");
     }

@@ -71,7 +71,7 @@ static json_t *prediction_object(const char *method, const outcome *o)
     json_object_set_new(object, "method", json_string(method));
     json_object_set_new(object, "message", json_text(o->fault.text));
     bool known = o->fault.code == STATUS_OK;
-    const prediction none = {.force = NAN, .delay = NAN, .impulse = NAN};
+    const prediction none = {.force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
     const prediction *p = known ? &o->prediction : &none;
     json_object_set_new(object, "holds", known ? json_boolean(p->holds) : json_null());
     json_object_set_new(object, "peak_N", json_number(p->force));

@@ -30,7 +30,7 @@ static void print_quantities(const summary *m)
     for (int i = 0; i < summary_count; i++) {
         char label[64];
         const char *unit;
-        double value = NAN;
+        double value = (double)NAN;
         summary_get(m, summary_table[i].key, &value);
         key_label(summary_table[i].key, label, sizeof label, &unit);
         if (isnan(value)) {
@@ -87,7 +87,7 @@ static void print_expectations(const scenario *s, const summary *m)
         const expectation *e = &s->expectations[i];
         char label[64], found[64], wanted[64];
         const char *unit, *space;
-        double value = NAN;
+        double value = (double)NAN;
         summary_get(m, e->quantity, &value);
         key_label(e->quantity, label, sizeof label, &unit);
         space = unit[0] ? " " : "";
@@ -138,6 +138,9 @@ static int check_request(const arguments *a)
     if (a->scene != NULL) {
         return complain("run --scene is not there yet: pictures of the arm come with a later "
                         "version");
+    }
+    if (a->plot != NULL) {
+        return complain("run --plot is not there yet");
     }
     return worse(check_output(a->json), worse(check_output(a->csv), check_output(a->plot)));
 }

@@ -33,6 +33,7 @@ typedef struct arm {
     double restitution;      // e [-]
     double rest_speed;       // impacts slower than this are plastic [m/s]
     double highest_frequency; // upper estimate over the arm's free modes [rad/s]
+    double fastest_rate;     // the same or, if faster, weighted decays: sets the steps [1/s]
 } arm;
 
 // Derives the constants from resolved parameters (corrected model). Cost grows linearly with N.

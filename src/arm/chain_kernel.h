@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "src/arm/chain.h"
+#include "src/arm/sincos.h"
 
 #define KERNEL static inline __attribute__((always_inline))
 
@@ -59,7 +60,7 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, chain_link *link, 
     // directions of the links, and place and velocity of the last one's base
     double x = 0, y = 0, vx = 0, vy = 0;
     for (int k = 0; k < N; k++) {
-        sincos(theta[k], &link[k].s, &link[k].c);
+        inline_sincos(theta[k], &link[k].s, &link[k].c);
         if (k < N - 1) {
             x += l * link[k].c;
             y += l * link[k].s;

@@ -170,7 +170,7 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
     json_t *array = json_array();
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
-        double value = NAN;
+        double value = (double)NAN;
         bool known = summary_get(&result->summary, e->quantity, &value);
         bool met = known && (e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance);
         json_t *object = json_object();
@@ -227,7 +227,7 @@ json_t *export_run(const scenario *s, const run_result *result)
     json_object_set_new(object, "message", json_text(m->message));
     json_object_set_new(object, "parameters", parameters_object(&s->parameters));
     for (int i = 0; i < summary_count; i++) {
-        double value = NAN;
+        double value = (double)NAN;
         summary_get(m, summary_table[i].key, &value);
         json_object_set_new(object, summary_table[i].key, json_number(value));
     }

@@ -44,6 +44,8 @@ bool summary_get(const summary *s, const char *key, double *value)
 #define SEPARATION_GAP  1e-6 // a smaller gap is no separation [m]
 #define STEADY_WINDOW   0.1  // steady force: mean over the last of the run [s]
 #define SETTLED_BAND    0.05 // of the steady force
+#define TINY_ENERGY     1e-9 // below it nothing is called unstable [J]
+#define LOST_ENERGY     0.1  // share of the energy turned over that an integration may not lose
 #define MOST_EVENTS_AT_ONCE 100 // events without time passing before the run is given up
 
 // What a run in progress remembers besides the rows.
@@ -136,6 +138,11 @@ static status record_row(recording *r, const arm *a, motion *m, double impulse)
     double residual = motion_energy_residual(a, m);
     summary *s = &r->result->summary;
     s->energy_residual_J = fmax(s->energy_residual_J, fabs(residual));
+    double turned_over = fabs(state[SLOT_MOTOR_WORK]) + fabs(state[SLOT_EXTERNAL_WORK]) +
+                         m->start_energy + TINY_ENERGY;
+    if (fabs(residual) > LOST_ENERGY * turned_over) {
+        return STATUS_UNSTABLE;
+    }
     status failed = remember_force(r, state[SLOT_TIME], state[SLOT_FORCE]);
     if (!r->keep_trace || failed != STATUS_OK) {
         return failed;
@@ -376,6 +383,10 @@ static status run_corrected(recording *r, fault *f)
     }
     if (failed == STATUS_OK) {
         finish_summary(r, state_quadratures(m, m->state)[QUADRATURE_FORCE] - integral_at_window);
+    } else if (failed == STATUS_UNSTABLE) {
+        fault_set(f, failed, "at t = %.9g s: %s (residual %.3g J); the method was %s, a shorter "
+                  "method.step may help", m->state[SLOT_TIME], status_text(failed),
+                  motion_energy_residual(&a, m), m->stepper->name);
     }
     motion_destroy(m);
     return failed;

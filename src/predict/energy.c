@@ -88,7 +88,7 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     if (result != STATUS_OK) {
         return result;
     }
-    double force;
+    double force, after[3], impulse;
     if (!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
         !isfinite(force)) {
         return fault_set(f, STATUS_SINGULAR,
@@ -98,5 +98,9 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     two_link_at(&touch, p, printed ? FORM_LISTED_IMPACT : FORM_CORRECTED, s->angle[1], s->angle[2]);
     out->force = force;
     out->holds = force > 0 && two_link_approach_speed(&touch, s) >= 0;
-    return STATUS_OK;
+    if (!printed) {
+        result = two_link_velocity_jump(&touch, s, after, &impulse, f);
+        out->holds = out->holds && two_link_first_force(&touch, p, s, after) > 0;
+    }
+    return result;
 }

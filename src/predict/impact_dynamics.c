@@ -15,25 +15,6 @@ static two_link_form form_of(const parameters *p)
     return p->arm.model == ARM_PRINTED ? FORM_LISTED_IMPACT : FORM_CORRECTED;
 }
 
-// Velocity increments, (4.11), (4.12), (4.14): M (Dw2, Dw3) = -(both, last) p and
-// J (w + Dw) = 0. The hub's own increment is zero by (4.10) because its spring gives only a finite
-// torque; without a spring it is one body with the first link.
-static status velocity_jump(const two_link *t, const three_body_state *s, double after[3],
-                            double *impulse, fault *f)
-{
-    double r[3] = {0, 0, -two_link_approach_speed(t, s)};
-    if (!two_link_solve(t, r) || !isfinite(r[2])) {
-        return fault_set(f, STATUS_SINGULAR,
-                         "the impact at this state has no single impulse: the system (4.11), "
-                         "(4.12), (4.14) is singular");
-    }
-    after[1] = s->velocity[1] + r[0];
-    after[2] = s->velocity[2] + r[1];
-    after[0] = t->rigid_hub ? after[1] : s->velocity[0];
-    *impulse = r[2];
-    return STATUS_OK;
-}
-
 status predict_velocity_jump(const parameters *p, const three_body_state *s, double after[3],
                              double *impulse, fault *f)
 {
@@ -43,7 +24,7 @@ status predict_velocity_jump(const parameters *p, const three_body_state *s, dou
         return result;
     }
     two_link_at(&t, p, form_of(p), s->angle[1], s->angle[2]);
-    return velocity_jump(&t, s, after, impulse, f);
+    return two_link_velocity_jump(&t, s, after, impulse, f);
 }
 
 // The coefficients of (4.20)-(4.22). All velocities are taken to fall linearly to zero during the
@@ -200,7 +181,10 @@ static void force_free_terms(const integrated_motion *g, double c[3])
 static bool newton(const integrated_motion *g, double x[3])
 {
     enum { ITERATIONS = 50 };
-    double scale = fabs(g->momentum2) + fabs(g->momentum3) + fabs(g->hub_inertia * x[2]) + 1e-12;
+    // size of the terms that have to cancel
+    double scale = fabs(g->momentum2) + fabs(g->momentum3) + fabs(g->hub_inertia * x[2]) +
+                   fabs(g->k1 * x[0] * g->hub_bend) +
+                   g->k1 * x[0] * x[0] * (fabs(g->w2) + fabs(x[2])) / 4;
     double e[3], jacobian[9], error;
     equations(g, x, e, jacobian);
     error = hypot(hypot(e[0], e[1]), e[2]);
@@ -238,13 +222,12 @@ static status solve_with_hub_spring(const integrated_motion *g, double hub_veloc
 {
     double c[3], roots[4], best = (double)INFINITY, x[3];
     force_free_terms(g, c);
-    c[1] += g->k1 * g->hub_bend;
-    c[2] += g->k1 * g->w2 / 4;
-    // (c0 + c1 T + c2 T^2) D(T) - k1 T^2/4 N(T), w1 = N / D
+    // w1 = N / D; the sum of c, T k1 D1 and k1 T^2 (w2 - w1) / 4 times D, without the terms of k1
+    // squared that cancel
     double d0 = -g->hub_inertia, d1 = g->hub_damping / 2, d2 = g->k1 / 4;
-    double n1 = g->k1 * g->hub_bend + g->drive, n2 = g->k1 * g->w2 / 4;
-    double quartic[5] = {c[0] * d0, c[0] * d1 + c[1] * d0, c[0] * d2 + c[1] * d1 + c[2] * d0,
-                         c[1] * d2 + c[2] * d1 - d2 * n1, c[2] * d2 - d2 * n2};
+    double hub1 = c[1] + g->k1 * g->hub_bend, hub2 = c[2] + g->k1 * g->w2 / 4;
+    double quartic[5] = {c[0] * d0, c[0] * d1 + hub1 * d0, c[0] * d2 + hub1 * d1 + hub2 * d0,
+                         c[1] * d2 + hub2 * d1 - g->drive * d2, c[2] * d2};
     int count = positive_roots(quartic, 4, roots);
     *delay = *force = (double)NAN;
     for (int i = 0; i < count; i++) {
@@ -296,16 +279,20 @@ static status start(const parameters *p, const three_body_state *s, two_link *t,
         return result;
     }
     two_link_at(t, p, form_of(p), s->angle[1], s->angle[2]);
-    result = velocity_jump(t, s, after, &out->impulse, f);
+    result = two_link_velocity_jump(t, s, after, &out->impulse, f);
     if (result == STATUS_OK) {
         integrate_motion(g, p, t, s, after);
     }
     return result;
 }
 
-static void finish(prediction *out)
+static void finish(const parameters *p, const two_link *t, const three_body_state *s,
+                   const double after[3], prediction *out)
 {
     out->holds = out->impulse >= 0 && out->force > 0 && out->delay > 0;
+    if (p->arm.model != ARM_PRINTED) {
+        out->holds = out->holds && two_link_first_force(t, p, s, after) > 0;
+    }
 }
 
 // Without a hub spring E1 and E2 are one equation, the balance of the whole arm with w1 = w2:
@@ -331,7 +318,9 @@ status predict_impact_dynamics(const parameters *p, const three_body_state *s, p
     } else if (result == STATUS_OK) {
         result = solve_with_hub_spring(&g, s->velocity[0], &out->delay, &out->force, f);
     }
-    finish(out);
+    if (result == STATUS_OK) {
+        finish(p, &t, s, after, out);
+    }
     return result;
 }
 
@@ -359,6 +348,8 @@ status predict_impact_quadratic(const parameters *p, const three_body_state *s, 
         out->delay = earliest_delay(c);
         out->force = force_of_delay(&g, out->delay);
     }
-    finish(out);
+    if (result == STATUS_OK) {
+        finish(&rigid, &t, s, after, out);
+    }
     return result;
 }

@@ -71,6 +71,42 @@ bool two_link_solve(const two_link *t, double r[3])
     return dense_solve(3, matrix, r);
 }
 
+status two_link_velocity_jump(const two_link *t, const three_body_state *s, double after[3],
+                              double *impulse, fault *f)
+{
+    double r[3] = {0, 0, -two_link_approach_speed(t, s)};
+    if (!two_link_solve(t, r) || !isfinite(r[2])) {
+        return fault_set(f, STATUS_SINGULAR,
+                         "the impact at this state has no single impulse: the system (4.11), "
+                         "(4.12), (4.14) is singular");
+    }
+    after[1] = s->velocity[1] + r[0];
+    after[2] = s->velocity[2] + r[1];
+    after[0] = t->rigid_hub ? after[1] : s->velocity[0];
+    *impulse = r[2];
+    return STATUS_OK;
+}
+
+// With the contact point (a, b) on the second link's line the factor of w3^2 in (3.13) vanishes; a
+// flat wall through tip and hub axis stands at half the bend to either link.
+double two_link_first_force(const two_link *t, const parameters *p, const three_body_state *s,
+                            const double after[3])
+{
+    double l = t->length, bend = s->angle[2] - s->angle[1], w2 = after[1], w3 = after[2];
+    double coupling = p->arm.mass / 2 * l * t->centre * sin(bend);
+    double hub_torque = p->arm.k1 * (s->angle[0] - s->angle[1]);
+    if (t->rigid_hub) {
+        double friction = p->motor.stiction * ((w2 > 0) - (w2 < 0));
+        hub_torque = t->motor_torque - t->hub_damping * w2 - friction;
+    }
+    double curve = p->wall.kind == WALL_PLANE
+                       ? l * sin(bend / 2) * (w3 * w3 - w2 * w2)
+                       : l * sin(bend) * (2 * w2 * w3 - w2 * w2);
+    double r[3] = {hub_torque + coupling * (w3 * w3 - w2 * w2),
+                   -p->arm.k2 * bend - coupling * w2 * w2, curve};
+    return two_link_solve(t, r) ? r[2] : (double)NAN;
+}
+
 status three_body_state_check(const three_body_state *s, fault *f)
 {
     static const char *const names[3] = {"hub", "first link", "second link"};

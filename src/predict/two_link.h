@@ -42,5 +42,18 @@ double two_link_approach_speed(const two_link *t, const three_body_state *s);
 // in place: accelerations and force, or velocity increments and impulse. False if singular.
 bool two_link_solve(const two_link *t, double r[3]);
 
+// Velocity increments of a plastic impact, (4.11), (4.12), (4.14): M (Dw2, Dw3) = -(both, last) p
+// and J (w + Dw) = 0. The hub's own increment is zero by (4.10) because its spring gives only a
+// finite torque; without a spring it is one body with the first link. after[3]: velocities just
+// after [rad/s], *impulse p [N s]. STATUS_SINGULAR with a sentence if there is no single solution.
+status two_link_velocity_jump(const two_link *t, const three_body_state *s, double after[3],
+                              double *impulse, fault *f);
+
+// Contact force just after the impact [N], from (2.16) without the doubled spring, (2.17) and the
+// constraint's second derivative at the velocities after[3]. Corrected form only. Where it is not
+// positive the arm leaves the wall at once. NaN if singular.
+double two_link_first_force(const two_link *t, const parameters *p, const three_body_state *s,
+                            const double after[3]);
+
 // STATUS_NOT_FINITE with a sentence that names the first number of the state that is not finite.
 status three_body_state_check(const three_body_state *s, fault *f);

@@ -8,7 +8,7 @@
 #include "src/arm/impact.h"
 #include "src/solve/implicit_stepper.h"
 
-// Substeps keep (highest frequency) x (step) below this; the 8th-order method then loses less than
+// Substeps keep (fastest rate) x (step) below this; the 8th-order method then loses less than
 // 1e-13 of the fastest mode's energy in a step.
 #define EXPLICIT_LIMIT 0.36
 // The event method steps implicitly where the explicit one would need more substeps than this.
@@ -24,7 +24,7 @@
 static void choose_stepper(const arm *a, motion *m, const method_parameters *method)
 {
     double rho = method->spectral_radius;
-    bool too_stiff = a->highest_frequency * method->step > EXPLICIT_LIMIT * MOST_SUBSTEPS;
+    bool too_stiff = a->fastest_rate * method->step > EXPLICIT_LIMIT * MOST_SUBSTEPS;
     m->stepper = &implicit_stepper;
     if (method->name == METHOD_NEWMARK) {
         m->beta = method->beta;
@@ -468,7 +468,7 @@ static double substep(const arm *a, const motion *m, double h)
     if (m->stepper != &explicit_stepper) {
         return h;
     }
-    return h / fmax(1, ceil(h * a->highest_frequency / EXPLICIT_LIMIT));
+    return h / fmax(1, ceil(h * a->fastest_rate / EXPLICIT_LIMIT));
 }
 
 static motion_event event_of(const motion *m, watch w)

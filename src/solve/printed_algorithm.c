@@ -46,9 +46,10 @@ static void newmark_rates(const method_parameters *m, const algorithm_state *s, 
 }
 
 // Solves the discretised equations by a fixed number of Newton steps (3.8) from the state at the
-// start of the time step: three unknowns in free flight, four with the constraint (3.9). A Newton
-// step is saved when the residual is already nil, and the last one is whichever changes nothing
-// any more.
+// start of the time step: three unknowns in free flight, four with the constraint (3.9). It ends
+// early once residual or change are nil. The first guess, unchanged angles, implies velocities of
+// about (1 - gamma/beta) times the old ones, of the wrong sign: with a single Newton step the
+// friction of (2.15) would push the hub on, so that at least two are needed.
 static status solve_step(const printed_arm *a, const parameters *p, const algorithm_state *s,
                          step_result *r)
 {
@@ -67,6 +68,9 @@ static status solve_step(const printed_arm *a, const parameters *p, const algori
             memcpy(matrix + i * n, full[i], (size_t)n * sizeof(double));
             residual[i] = -residual[i];
             error += fabs(residual[i]);
+        }
+        if (!isfinite(error)) {
+            return STATUS_NOT_FINITE;
         }
         if (error <= tolerance) {
             break;
@@ -213,9 +217,10 @@ status printed_run(const parameters *given, printed_observer observe, printed_sc
         }
         status result = take_step(&a, &p, &s, &r);
         if (result != STATUS_OK) {
-            return fault_set(f, result,
-                             "the system of the step from t = %.9g s %s contact is singular",
-                             s.time, r.constrained ? "in" : "without");
+            return fault_set(f, result, "the equations of the step from t = %.9g s %s contact %s",
+                             s.time, r.constrained ? "in" : "without",
+                             result == STATUS_SINGULAR ? "are singular"
+                                                       : "have a residual that is not finite");
         }
         const char *name = not_finite(&r, s.force);
         if (name != NULL) {

@@ -1,0 +1,407 @@
+// Two links on a rigid hub.
+//
+// In contact the arm has one degree of freedom, the hub angle x: the constraint gives the second
+// link's angle and, with v = (1, -J_1/J_2), its velocity. With the sweeps of chain.h as the exact
+// acceleration a(x, x'), the motion is approximated piecewise by
+//
+//     y'' = a_s - c (y' - w_s) - k y,        y = x - x_s, w_s = x'_s
+//
+// whose solution is a damped oscillation in closed form. c = (v'Cv)/(v'Mv) is the damping of hub
+// and joint; k starts as the tangent (v'Kv)/(v'Mv) = 4 k2 / (v'Mv) and is replaced, piece by piece,
+// by the secant that makes the acceleration exact at the far end of the piece too. Three pieces
+// carry the stiffening by large bending. The force is then evaluated exactly on the predicted path
+// at four instants before the arm stops, and a cubic through them gives peak and delay.
+//
+// Any other arm.
+//
+// The constrained equations of motion are linearised at the touch by differences,
+// z' = A z + b with z = (q, w, 1), and the path is sampled with the propagator exp(A h). The force
+// is linear in z. Sampling ends where the force falls to zero or the hub turns back.
+#include "src/predict/linearised.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/arm/chain_kernel.h"
+#include "src/arm/impact.h"
+
+enum { PIECES = 3 };
+
+// The arm with the wall moved to where the arm touches it now.
+static arm touching_now(const arm *a, const double *q)
+{
+    arm touched = *a;
+    double x, y;
+    if (a->wall == WALL_POINT) {
+        double t_x = -sin(q[a->dof - 1]), t_y = cos(q[a->dof - 1]);
+        chain_node(a, q, a->links - 1, &x, &y);
+        double across = t_x * (a->wall_x - x) + t_y * (a->wall_y - y);
+        touched.wall_x -= across * t_x;
+        touched.wall_y -= across * t_y;
+    } else {
+        chain_node(a, q, a->links, &x, &y);
+        double distance = sqrt(x * x + y * y);
+        touched.wall_cos = x / distance;
+        touched.wall_sin = y / distance;
+    }
+    return touched;
+}
+
+// --- two links on a rigid hub ---------------------------------------------------------------
+
+// A damped oscillation y(t) with y(0) = 0.
+typedef struct oscillation {
+    double rest;      // where it would settle [rad]
+    double decay;     // c / 2 [1/s]
+    double square;    // k - c^2/4, negative if overdamped [1/s2]
+    double frequency; // root of |square| [rad/s]
+    double sine;      // coefficient of the sine [rad]
+} oscillation;
+
+static oscillation oscillation_from(double acceleration, double velocity, double c, double k)
+{
+    oscillation o;
+    o.decay = c / 2;
+    o.square = k - c * c / 4;
+    o.frequency = sqrt(fmax(fabs(o.square), 1e-12));
+    o.rest = (acceleration + c * velocity) / k;
+    o.sine = (velocity - o.decay * o.rest) / o.frequency;
+    return o;
+}
+
+static void oscillation_at(const oscillation *o, double t, double *y, double *velocity)
+{
+    double c, s, decay = exp(-o->decay * t), turn = o->square >= 0 ? -o->frequency : o->frequency;
+    if (o->square >= 0) {
+        sincos(o->frequency * t, &s, &c);
+    } else {
+        c = cosh(o->frequency * t);
+        s = sinh(o->frequency * t);
+    }
+    *y = o->rest + decay * (o->sine * s - o->rest * c);
+    *velocity = decay * (o->sine * (o->frequency * c - o->decay * s) -
+                         o->rest * (turn * s - o->decay * c));
+}
+
+// First instant at which the oscillation comes to rest, its velocity being positive at 0.
+static double oscillation_stop(const oscillation *o)
+{
+    // velocity = decay(t) ((sine f + rest d) c + (-turn rest - sine d) s)
+    double p = o->sine * o->frequency + o->rest * o->decay;
+    double turn = o->square >= 0 ? -o->frequency : o->frequency;
+    double q = -turn * o->rest - o->sine * o->decay;
+    if (o->square >= 0) {
+        double angle = atan2(p, -q); // tan(f t) = -p/q
+        return (angle > 0 ? angle : angle + M_PI) / o->frequency;
+    }
+    return -p / q > 0 && -p / q < 1 ? atanh(-p / q) / o->frequency : 3 / o->decay;
+}
+
+// One degree of freedom of the arm on the wall.
+typedef struct pressed_arm {
+    const arm *a;
+    chain_link links[2];
+    contact_mode mode;
+    double force, acceleration; // at the state last evaluated
+} pressed_arm;
+
+// Exact acceleration and force with the hub at x moving at v.
+static void pressed_evaluate(pressed_arm *p, double x, double v)
+{
+    const arm *a = p->a;
+    double l = a->link_length, q[2] = {x, 0}, w[2], alpha[2], cx, sx, lever, along;
+    chain_reaction r;
+    inline_sincos(x, &sx, &cx);
+    if (a->wall == WALL_POINT) {
+        // the second link points from the joint to the contact point, (3.9)
+        double dx = a->wall_x - l * cx, dy = a->wall_y - l * sx, d = sqrt(dx * dx + dy * dy);
+        q[1] = atan2(dy, dx);
+        lever = d;
+        along = l * (cx * dx + sx * dy) / d;
+    } else {
+        // both links lean away from the wall alike
+        q[1] = 2 * atan2(a->wall_sin, a->wall_cos) - x;
+        lever = along = l * (cx * a->wall_cos + sx * a->wall_sin);
+    }
+    w[0] = v;
+    w[1] = -along / lever * v; // (3.12)
+    chain_sweep(a, 2, false, p->links, q, w, p->mode, alpha, &r);
+    p->force = r.force;
+    p->acceleration = alpha[0];
+}
+
+// Tangents at the touch: c and k of y'' = a - c y' - k y.
+static void pressed_tangents(const arm *a, const double *q, double *c, double *k)
+{
+    double l = a->link_length, m = a->link_mass, unit[2][2] = {{1, 0}, {0, 1}};
+    double ratio = -chain_penetration_rate(a, q, unit[0]) / chain_penetration_rate(a, q, unit[1]);
+    double own = a->link_inertia + m * l * l / 4, bend = ratio - 1;
+    double mass = a->hub_inertia + own + m * l * l + own * ratio * ratio +
+                  m * l * l * cos(q[1] - q[0]) * ratio;
+    *c = (a->hub_damping + a->joint_damping * bend * bend) / mass;
+    *k = a->joint_stiffness * bend * bend / mass;
+}
+
+// Vertex of the parabola through three points with spacing h; *t is the middle one's time.
+static double parabola_top(const double f[3], double h, double *t)
+{
+    double second = f[0] - 2 * f[1] + f[2], slope = (f[2] - f[0]) / 2;
+    if (second >= 0) {
+        return fmax(f[0], f[2]);
+    }
+    double s = fmin(fmax(-slope / second, -1), 1);
+    *t += s * h;
+    return f[1] + slope * s + second * s * s / 2;
+}
+
+// The predicted path in contact: oscillations one after another.
+typedef struct pressed_path {
+    oscillation piece[PIECES];
+    double start[PIECES]; // when each begins [s]
+    double angle[PIECES]; // hub angle there [rad]
+    double stop;          // when the arm comes to rest [s]
+} pressed_path;
+
+// Force at an instant of the path, evaluated exactly for the predicted state.
+static double path_force(pressed_arm *p, const pressed_path *path, double t)
+{
+    int i = PIECES - 1;
+    double y, velocity;
+    while (i > 0 && t < path->start[i]) {
+        i--;
+    }
+    oscillation_at(&path->piece[i], t - path->start[i], &y, &velocity);
+    pressed_evaluate(p, path->angle[i] + y, velocity);
+    return p->force;
+}
+
+// Follows the arm from the hub at x moving at v, towards the wall, until it comes to rest.
+static void predict_path(pressed_arm *p, double x, double v, double c, double k, pressed_path *path)
+{
+    double t = 0, acceleration = p->acceleration;
+    for (int i = 0; i < PIECES; i++) {
+        double y, velocity, length;
+        oscillation *o = &path->piece[i];
+        if (i > 0) {
+            pressed_evaluate(p, x, v);
+            acceleration = p->acceleration;
+        }
+        *o = oscillation_from(acceleration, v, c, k);
+        length = oscillation_stop(o) / (PIECES - i);
+        oscillation_at(o, length, &y, &velocity);
+        pressed_evaluate(p, x + y, velocity);
+        double secant = (acceleration - c * (velocity - v) - p->acceleration) / y;
+        if (y > 0 && secant > 0) {
+            k = secant;
+            *o = oscillation_from(acceleration, v, c, k);
+        }
+        path->start[i] = t;
+        path->angle[i] = x;
+        path->stop = t + oscillation_stop(o);
+        length = i == PIECES - 1 ? path->stop - t : fmin(length, path->stop - t);
+        oscillation_at(o, length, &y, &velocity);
+        x += y;
+        v = velocity;
+        t += length;
+    }
+}
+
+// The force peaks a little before the arm stops: a parabola through three instants there finds
+// where, and a cubic through these and a fourth look says how large and when.
+static void path_peak(pressed_arm *p, const pressed_path *path, double first, prediction *out)
+{
+    double h = 0.08 * path->stop, t = path->stop - h, f[4], top;
+    for (int i = 0; i < 3; i++) {
+        f[i] = path_force(p, path, path->stop - (2 - i) * h);
+    }
+    double middle = t;
+    parabola_top(f, h, &t);
+    f[3] = path_force(p, path, t);
+    // Newton's form on s = (time - middle) / h with nodes -1, 0, 1 and s3
+    double s3 = (t - middle) / h, d1 = f[1] - f[0], d2 = (f[2] - 2 * f[1] + f[0]) / 2;
+    double spread = (s3 + 1) * s3 * (s3 - 1), d3 = 0, s = s3;
+    if (fabs(spread) > 1e-6) {
+        d3 = (f[3] - f[0] - d1 * (s3 + 1) - d2 * (s3 + 1) * s3) / spread;
+    }
+    for (int i = 0; i < 3; i++) {
+        double slope = d1 + d2 * (2 * s + 1) + d3 * (3 * s * s - 1), bend = 2 * d2 + 6 * d3 * s;
+        s = bend < 0 ? fmin(fmax(s - slope / bend, -1), 1) : s;
+    }
+    top = f[0] + (s + 1) * (d1 + s * (d2 + (s - 1) * d3));
+    out->force = fmax(top, first);
+    out->delay = top > first ? middle + s * h : 0;
+}
+
+// --- any other arm --------------------------------------------------------------------------
+
+// d(alpha, force)/d(q, w) at the touch by central differences, in contact with the given mode.
+// matrix: (2n+1)^2 of z' = A z, z = (q - q0, w, 1); output[2n+1]: force = output z.
+static void linearise(const arm *a, chain_link *links, contact_mode mode, const double *q,
+                      const double *w, double *matrix, double *output, double *scratch)
+{
+    const int n = a->dof, size = 2 * n + 1;
+    double *z = scratch, *alpha = scratch + 2 * n;
+    chain_reaction r;
+    memset(matrix, 0, (size_t)(size * size) * sizeof *matrix);
+    for (int i = 0; i < n; i++) {
+        matrix[i * size + n + i] = 1;
+        z[i] = q[i];
+        z[n + i] = w[i];
+    }
+    chain_accelerations(a, links, z, z + n, mode, alpha, &r);
+    output[2 * n] = r.force;
+    for (int i = 0; i < n; i++) {
+        matrix[(n + i) * size + 2 * n] = alpha[i];
+    }
+    for (int j = 0; j < 2 * n; j++) {
+        double e = 1e-6 * (1 + fabs(z[j])), value = z[j], slope = 0;
+        for (int side = 1; side >= -1; side -= 2) {
+            z[j] = value + side * e;
+            chain_accelerations(a, links, z, z + n, mode, alpha, &r);
+            slope += side * r.force / (2 * e);
+            for (int i = 0; i < n; i++) {
+                matrix[(n + i) * size + j] += side * alpha[i] / (2 * e);
+            }
+        }
+        z[j] = value;
+        output[j] = slope;
+    }
+    // velocities enter as they are: take the linear terms at w out of the constant ones
+    for (int j = 0; j < n; j++) {
+        output[2 * n] -= output[n + j] * w[j];
+        for (int i = 0; i < n; i++) {
+            matrix[(n + i) * size + 2 * n] -= matrix[(n + i) * size + n + j] * w[j];
+        }
+    }
+}
+
+// result = exp(matrix h): Taylor's series of the scaled matrix, squared back.
+static void exponential(const double *matrix, int size, double h, double *result, double *power,
+                        double *product)
+{
+    const size_t bytes = (size_t)(size * size) * sizeof(double);
+    double norm = 0;
+    for (int i = 0; i < size; i++) {
+        double row = 0;
+        for (int j = 0; j < size; j++) {
+            row += fabs(matrix[i * size + j]) * h;
+        }
+        norm = fmax(norm, row);
+    }
+    int squarings = norm > 0.5 ? (int)ceil(log2(norm / 0.5)) : 0;
+    double scale = h / ldexp(1, squarings);
+    memset(result, 0, bytes);
+    memset(power, 0, bytes);
+    for (int i = 0; i < size; i++) {
+        result[i * size + i] = power[i * size + i] = 1;
+    }
+    enum { TERMS = 14 };
+    for (int term = 1; term <= TERMS + squarings; term++) {
+        const double *left = term <= TERMS ? matrix : result;
+        const double *right = term <= TERMS ? power : result;
+        double factor = term <= TERMS ? scale / term : 1;
+        for (int i = 0; i < size; i++) {
+            for (int j = 0; j < size; j++) {
+                double sum = 0;
+                for (int k = 0; k < size; k++) {
+                    sum += left[i * size + k] * right[k * size + j];
+                }
+                product[i * size + j] = sum * factor;
+            }
+        }
+        if (term > TERMS) {
+            memcpy(result, product, bytes);
+            continue;
+        }
+        memcpy(power, product, bytes);
+        for (int i = 0; i < size * size; i++) {
+            result[i] += product[i];
+        }
+    }
+}
+
+// Follows force(t) with the propagator from the touch to its first peak that ends the pulse's rise.
+static status many_link_peak(const arm *a, chain_link *links, contact_mode mode, const double *q,
+                             const double *w, double first_force, prediction *out)
+{
+    enum { MOST_SAMPLES = 20000 };
+    const int n = a->dof, size = 2 * n + 1;
+    const size_t square = (size_t)(size * size);
+    double *block = calloc(4 * square + 3 * (size_t)size + 4 * (size_t)n, sizeof *block);
+    if (block == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    double *matrix = block, *step = matrix + square, *power = step + square;
+    double *product = power + square, *output = product + square, *z = output + size;
+    double *next = z + size, *scratch = next + size;
+    linearise(a, links, mode, q, w, matrix, output, scratch);
+    double h = 0.1 / fmax(a->highest_frequency, 1);
+    exponential(matrix, size, h, step, power, product);
+    for (int i = 0; i < n; i++) {
+        z[n + i] = w[i];
+    }
+    z[2 * n] = 1;
+    double f[3] = {first_force, first_force, first_force};
+    out->force = first_force;
+    out->delay = 0;
+    for (int sample = 1; sample < MOST_SAMPLES && f[2] > 0; sample++) {
+        double force = 0;
+        for (int i = 0; i < size; i++) {
+            double sum = 0;
+            for (int j = 0; j < size; j++) {
+                sum += step[i * size + j] * z[j];
+            }
+            next[i] = sum;
+            force += output[i] * sum;
+        }
+        memcpy(z, next, (size_t)size * sizeof *z);
+        f[0] = f[1], f[1] = f[2], f[2] = force;
+        if (sample > 1 && f[1] > f[0] && f[1] >= f[2]) {
+            double t = (sample - 1) * h, top = parabola_top(f, h, &t);
+            if (top > out->force) {
+                out->force = top;
+                out->delay = t;
+            }
+        }
+        if (mode.friction * z[n] < 0) {
+            break; // the hub turns back: friction changes its direction
+        }
+    }
+    free(block);
+    return STATUS_OK;
+}
+
+status predict_linearised(const arm *a, motion *work, const double *q, const double *w,
+                          prediction *out)
+{
+    const int n = a->dof;
+    arm touched = touching_now(a, q);
+    double *after = work->scratch, *alpha = work->scratch + n;
+    chain_reaction r;
+    *out = (prediction){.holds = false, .force = NAN, .delay = NAN, .impulse = NAN};
+    if (a->wall == WALL_NONE) {
+        return STATUS_OK;
+    }
+    impact_result jump = impact_velocity_increments(&touched, work->links, q, w, 0, after);
+    out->impulse = fmax(jump.impulse, 0);
+    for (int i = 0; i < n; i++) {
+        after[i] = w[i] + (jump.impulse > 0 ? after[i] : 0);
+    }
+    contact_mode mode = {true, after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD};
+    chain_accelerations(&touched, work->links, q, after, mode, alpha, &r);
+    out->holds = jump.impulse >= 0 && r.force > 0;
+    if (!out->holds) {
+        return STATUS_OK;
+    }
+    if (n == 2 && !a->hub_spring && after[0] > 0) {
+        pressed_arm p = {.a = &touched, .mode = mode, .acceleration = alpha[0]};
+        pressed_path path;
+        double c, k;
+        pressed_tangents(&touched, q, &c, &k);
+        predict_path(&p, q[0], after[0], c, k, &path);
+        path_peak(&p, &path, r.force, out);
+        return STATUS_OK;
+    }
+    return many_link_peak(&touched, work->links, mode, q, after, r.force, out);
+}

@@ -1,0 +1,59 @@
+// A second, independent simulation of the corrected arm, to judge the library by.
+//
+// It shares no code with src/: dense mass matrix, dense KKT systems, GSL's adaptive
+// Runge-Kutta 8(9) and bisection on re-integration. Slow and plain on purpose.
+#pragma once
+
+#include <stdbool.h>
+
+// What is simulated. The arm starts at rest with all angles zero.
+typedef struct reference_case {
+    const char *name;
+    int links;           // N, 1 to 8
+    bool spring_hub;     // hub on the spring k1 instead of rigidly on the first link
+    bool plane_wall;     // flat wall for the tip instead of the fixed point
+    double voltage;      // command [V]
+    double restitution;  // e [-]; impacts below 1e-4 m/s are plastic
+    double duration;     // [s]
+    double tolerance;    // absolute and relative, of the integrator
+    double longest_step; // between two looks at the event functions [s]
+} reference_case;
+
+// What comes out. What did not occur is NaN.
+typedef struct reference_answer {
+    double first_contact;       // [s]
+    double first_impulse;       // [N s]
+    double first_approach;      // speed of the gap's closing just before the first impact [m/s]
+    double first_pulse_peak;    // largest force from first contact to first release [N]
+    double first_pulse_delay;   // of that force, after first contact [s]
+    double first_pulse;         // first contact to first release [s]
+    double peak;                // largest force of the whole run [N]
+    double peak_delay;          // of that force, after first contact [s]
+    double steady_force;        // mean over the last 0.1 s [N]
+    int impacts;                // closings with an approach velocity
+    int touches;                // free phases after first contact, however short
+    int separations;            // those of them with a gap above 1 um
+    double smallest_separation; // largest gap of the narrowest counted separation [m]
+    double largest_touch;       // largest gap of the widest one not counted [m]
+    double slowest_approach;    // of all impacts [m/s]
+    double last_impact;         // instant of the last impact [s]
+    double weakest_hold;        // smallest |f| that decided hold or release after an impact [N]
+    double final_hub_angle;     // [rad]
+    double motor_work;          // of the torque the command makes, back EMF not taken off [J]
+    double viscous_loss;        // back EMF and viscous friction [J]
+    double friction_loss;       // Coulomb friction [J]
+    double impact_loss;         // [J]
+    double energy_residual;     // largest |energy - work + losses| over the run [J]
+    double largest_gap_error;   // largest |gap| of a step in contact before its projection [m]
+} reference_answer;
+
+// Simulates the case. On failure returns false with a sentence in message (size bytes).
+bool reference_simulate(const reference_case *c, reference_answer *answer, char *message, int size);
+
+// Largest defect of the equations of motion at a random state (seed): Lagrange's equations, the
+// contact's direction and its acceleration, all from finite differences of energy and gap,
+// relative to the largest torque or acceleration in them.
+double reference_lagrangian_defect(const reference_case *c, unsigned seed);
+
+// Prints the answer with all digits, one quantity a line.
+void reference_print(const reference_case *c, const reference_answer *answer);

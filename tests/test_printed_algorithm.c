@@ -1,0 +1,353 @@
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/solve/printed_algorithm.h"
+
+enum { MOST_ROWS = 20000 };
+
+// A recorded run of the printed algorithm.
+typedef struct recording {
+    printed_row rows[MOST_ROWS];
+    int count;
+    int stop_after; // rows, 0: never
+} recording;
+
+static bool record(void *context, const printed_row *row)
+{
+    recording *r = context;
+    assert_true(r->count < MOST_ROWS);
+    r->rows[r->count++] = *row;
+    return r->stop_after == 0 || r->count < r->stop_after;
+}
+
+static parameters printed_parameters_of(double voltage, double duration)
+{
+    parameters p;
+    parameters_defaults(&p, ARM_PRINTED);
+    assert_int_equal(parameters_resolve(&p, NULL), STATUS_OK);
+    p.motor.voltage = voltage;
+    p.run.duration = duration;
+    return p;
+}
+
+static recording *run(const parameters *p, printed_script script)
+{
+    recording *r = calloc(1, sizeof *r);
+    fault f = {.text = ""};
+    assert_non_null(r);
+    if (printed_run(p, record, script, r, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return r;
+}
+
+static void rows_stand_on_the_time_grid_from_the_initial_state(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(5, 0.6);
+    p.initial.angle = -0.2;
+    recording *r = run(&p, NULL);
+    assert_int_equal(r->count, 601);
+    check_close(r->rows[0].angle[2], -0.2, 0);
+    check_close(r->rows[0].force, 0, 0);
+    for (int i = 0; i < r->count; i++) {
+        check_close(r->rows[i].time, i * 1e-3, 1e-12);
+    }
+    free(r);
+}
+
+static double first_contact(const parameters *p)
+{
+    recording *r = run(p, NULL);
+    double time = NAN;
+    for (int i = r->count - 1; i >= 0; i--) {
+        if (r->rows[i].contact) {
+            time = r->rows[i].time;
+        }
+    }
+    free(r);
+    return time;
+}
+
+static void first_contact_comes_when_the_thesis_says(void **state)
+{
+    (void)state;
+    const double voltage[4] = {1, 2, 5, 10}, expected[4] = {0.312, 0.215, 0.145, 0.101};
+    for (int i = 0; i < 4; i++) {
+        parameters p = printed_parameters_of(voltage[i], 0.5);
+        check_close(first_contact(&p), expected[i], 0.002);
+    }
+}
+
+static void contact_keeps_the_constraint_and_never_pulls(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(1, 1);
+    p.printed.newton_iterations = 5;
+    recording *r = run(&p, NULL);
+    int in_contact = 0, pulses = 0;
+    for (int i = 1; i < r->count; i++) {
+        const printed_row *row = &r->rows[i];
+        assert_true(row->force >= 0);
+        if (row->contact) {
+            check_close(row->gap, 0, 1e-6);
+            in_contact++;
+            pulses += !r->rows[i - 1].contact;
+        } else {
+            check_close(row->force, 0, 0);
+        }
+    }
+    assert_true(in_contact > 50);
+    // "a number of pulses precede the steady force"
+    assert_true(pulses >= 2);
+    free(r);
+}
+
+// The listing's way of letting go: the constraint is left in the step after the one whose force
+// came out as nothing, and no sooner.
+static void contact_ends_after_the_step_without_force(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(2, 1);
+    recording *r = run(&p, NULL);
+    int releases = 0;
+    for (int i = 1; i + 1 < r->count; i++) {
+        if (r->rows[i].contact) {
+            assert_true(r->rows[i + 1].contact == (r->rows[i].force > 1e-6));
+            releases += !r->rows[i + 1].contact;
+        }
+    }
+    assert_true(releases >= 1);
+    free(r);
+}
+
+static void steady_force_is_the_balance_of_the_printed_equations(void **state)
+{
+    (void)state;
+    // at rest k1 (theta1 - theta2) = torque less what friction holds back, and (2.16), (2.17) as
+    // printed give f l (1 + cos d) + f l = k1 (theta1 - theta2): three levers instead of two
+    parameters p = printed_parameters_of(1, 6);
+    p.arm.damping_ratio = 0;
+    recording *r = run(&p, NULL);
+    const printed_row *end = &r->rows[r->count - 1];
+    double mean = 0, hub_torque = 0;
+    for (int i = 0; i < 1000; i++) {
+        const printed_row *row = &r->rows[r->count - 1 - i];
+        mean += row->force / 1000;
+        hub_torque += p.arm.k1 * (row->angle[0] - row->angle[1]) / 1000;
+    }
+    check_relative(mean * 3 * 0.5, hub_torque, 0.03);
+    assert_true(end->contact);
+    check_close(hub_torque, 0.4377, 0.045 + 0.01);
+    free(r);
+}
+
+static void no_wall_no_contact(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(5, 1);
+    p.wall.kind = WALL_NONE;
+    recording *r = run(&p, NULL);
+    assert_true(r->rows[r->count - 1].angle[2] > 0.5);
+    for (int i = 0; i < r->count; i++) {
+        assert_false(r->rows[i].contact);
+        check_close(r->rows[i].force, 0, 0);
+    }
+    free(r);
+}
+
+static void the_wall_stands_where_its_angle_says(void **state)
+{
+    (void)state;
+    parameters near = printed_parameters_of(1, 1), far = near;
+    far.wall.angle = 0.4;
+    far.initial.angle = 0.3;
+    check_close(first_contact(&far), first_contact(&near), 1e-9);
+}
+
+static void command_saturates_at_its_limit(void **state)
+{
+    (void)state;
+    parameters ten = printed_parameters_of(10, 0.3), twenty = printed_parameters_of(20, 0.3);
+    recording *a = run(&ten, NULL), *b = run(&twenty, NULL);
+    assert_memory_equal(a->rows, b->rows, (size_t)a->count * sizeof a->rows[0]);
+    free(a);
+    free(b);
+}
+
+static void same_input_gives_the_same_bytes(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(5, 1);
+    recording *a = run(&p, NULL), *b = run(&p, NULL);
+    assert_int_equal(a->count, b->count);
+    assert_memory_equal(a->rows, b->rows, sizeof a->rows);
+    free(a);
+    free(b);
+}
+
+static void observer_can_stop_the_run(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(1, 1);
+    recording *r = calloc(1, sizeof *r);
+    r->stop_after = 7;
+    assert_int_equal(printed_run(&p, record, NULL, r, NULL), STATUS_OK);
+    assert_int_equal(r->count, 7);
+    free(r);
+}
+
+static void switch_off_at_100_ms(void *context, double time, parameters *p)
+{
+    (void)context;
+    p->motor.voltage = time < 0.1 - 1e-9 ? 2 : 0;
+}
+
+static void script_changes_parameters_between_steps(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(2, 1);
+    recording *driven = run(&p, NULL), *coasting = run(&p, switch_off_at_100_ms);
+    assert_memory_equal(driven->rows, coasting->rows, 101 * sizeof driven->rows[0]);
+    check_below(coasting->rows[101].velocity[0], driven->rows[101].velocity[0]);
+    // back EMF and friction stop it before the wall
+    assert_false(coasting->rows[coasting->count - 1].contact);
+    free(driven);
+    free(coasting);
+}
+
+static void overflow_stops_the_run_with_a_sentence(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(1, 1);
+    p.initial.velocity = 1e200;
+    recording *r = calloc(1, sizeof *r);
+    fault f = {.text = ""};
+    assert_int_equal(printed_run(&p, record, NULL, r, &f), STATUS_NOT_FINITE);
+    assert_non_null(strstr(f.text, "t = 0 s"));
+    assert_int_equal(r->count, 1);
+    for (int i = 0; i < 3; i++) {
+        assert_true(isfinite(r->rows[0].velocity[i]));
+    }
+    free(r);
+}
+
+// A smooth torque from nothing, sampled at the end of each step as Newmark's method does.
+static double ramp(double time)
+{
+    return 3 * sin(12 * time) * sin(12 * time);
+}
+static double ramp_step; // [s]
+static void follow_ramp(void *context, double time, parameters *p)
+{
+    (void)context;
+    p->motor.voltage = ramp(time + ramp_step);
+}
+
+// (2.15)-(2.17) without contact and stiction, solved for the accelerations by hand.
+static void printed_equations(const parameters *p, double time, const double y[6], double rate[6])
+{
+    double l = 0.5, e = 0.25, m = p->arm.mass / 2, in = p->arm.link_inertia;
+    double d = y[2] - y[1], c = cos(d), s = sin(d), w1 = y[3], w2 = y[4], w3 = y[5];
+    double kt = p->motor.torque_constant, ra = p->motor.resistance;
+    double torque = p->motor.amplifier_gain * kt / ra * ramp(time);
+    double a = m * e * e + m * l * l + in + m * l * e * c, b = m * e * e + in + m * l * e * c;
+    double g = m * l * e * c, h = m * e * e + in;
+    double right2 = p->arm.k2 * d - p->arm.k1 * (y[1] - y[0]) + m * l * e * s * (w3 * w3 - w2 * w2);
+    double right3 = -p->arm.k2 * d - m * l * e * s * w2 * w2;
+    double determinant = a * h - b * g;
+    memcpy(rate, y + 3, 3 * sizeof(double));
+    rate[3] = (torque + p->arm.k1 * (y[1] - y[0]) -
+               (p->motor.viscous_friction + kt * p->motor.back_emf / ra) * w1) /
+              p->arm.hub_inertia;
+    rate[4] = (h * right2 - b * right3) / determinant;
+    rate[5] = (a * right3 - g * right2) / determinant;
+}
+
+static void runge_kutta(const parameters *p, double duration, int steps, double y[6])
+{
+    double h = duration / steps;
+    for (int i = 0; i < steps; i++) {
+        double k[4][6], at[6], t = i * h;
+        const double ahead[4] = {0, 0.5, 0.5, 1};
+        for (int stage = 0; stage < 4; stage++) {
+            for (int j = 0; j < 6; j++) {
+                at[j] = y[j] + (stage > 0 ? ahead[stage] * h * k[stage - 1][j] : 0);
+            }
+            printed_equations(p, t + ahead[stage] * h, at, k[stage]);
+        }
+        for (int j = 0; j < 6; j++) {
+            y[j] += h / 6 * (k[0][j] + 2 * k[1][j] + 2 * k[2][j] + k[3][j]);
+        }
+    }
+}
+
+// Largest error of the angles at the end of a free flight in steps of h.
+static double newmark_error(parameters p, const double exact[6], double h)
+{
+    p.method.step = ramp_step = h;
+    recording *r = run(&p, follow_ramp);
+    const printed_row *end = &r->rows[r->count - 1];
+    double error = 0;
+    for (int i = 0; i < 3; i++) {
+        error = fmax(error, fabs(end->angle[i] - exact[i]));
+        error = fmax(error, 0.05 * fabs(end->velocity[i] - exact[3 + i]));
+    }
+    free(r);
+    return error;
+}
+
+static void free_flight_converges_to_the_equations_with_second_order(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(1, 0.25);
+    p.wall.kind = WALL_NONE;
+    p.motor.stiction = 0;
+    p.printed.newton_iterations = 10;
+    double exact[6] = {0, 0, 0, 0, 0, 0};
+    runge_kutta(&p, 0.25, 50000, exact);
+    assert_true(fabs(exact[2]) > 0.05);
+    double coarse = newmark_error(p, exact, 5e-4), fine = newmark_error(p, exact, 2.5e-4);
+    double finest = newmark_error(p, exact, 1.25e-4);
+    check_below(finest, 1e-4);
+    check_close(log2(coarse / fine), 2, 0.15);
+    check_close(log2(fine / finest), 2, 0.15);
+    // with gamma off one half the order drops to one
+    p.method.gamma = 0.6;
+    check_close(log2(newmark_error(p, exact, 2.5e-4) / newmark_error(p, exact, 1.25e-4)), 1, 0.15);
+}
+
+static void beta_matters_little_in_free_flight(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(1, 0.3), q = p;
+    p.wall.kind = q.wall.kind = WALL_NONE;
+    p.method.beta = 0.25;
+    recording *a = run(&p, NULL), *b = run(&q, NULL);
+    check_close(a->rows[a->count - 1].angle[2], b->rows[b->count - 1].angle[2], 2e-3);
+    free(a);
+    free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_stand_on_the_time_grid_from_the_initial_state),
+        cmocka_unit_test(first_contact_comes_when_the_thesis_says),
+        cmocka_unit_test(contact_keeps_the_constraint_and_never_pulls),
+        cmocka_unit_test(contact_ends_after_the_step_without_force),
+        cmocka_unit_test(steady_force_is_the_balance_of_the_printed_equations),
+        cmocka_unit_test(no_wall_no_contact),
+        cmocka_unit_test(the_wall_stands_where_its_angle_says),
+        cmocka_unit_test(command_saturates_at_its_limit),
+        cmocka_unit_test(same_input_gives_the_same_bytes),
+        cmocka_unit_test(observer_can_stop_the_run),
+        cmocka_unit_test(script_changes_parameters_between_steps),
+        cmocka_unit_test(overflow_stops_the_run_with_a_sentence),
+        cmocka_unit_test(free_flight_converges_to_the_equations_with_second_order),
+        cmocka_unit_test(beta_matters_little_in_free_flight),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
