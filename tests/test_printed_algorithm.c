@@ -61,7 +61,7 @@ static void rows_stand_on_the_time_grid_from_the_initial_state(void **state)
 static double first_contact(const parameters *p)
 {
     recording *r = run(p, NULL);
-    double time = NAN;
+    double time = (double)NAN;
     for (int i = r->count - 1; i >= 0; i--) {
         if (r->rows[i].contact) {
             time = r->rows[i].time;
@@ -76,8 +76,9 @@ static void first_contact_comes_when_the_thesis_says(void **state)
     (void)state;
     const double voltage[4] = {1, 2, 5, 10}, expected[4] = {0.312, 0.215, 0.145, 0.101};
     for (int i = 0; i < 4; i++) {
+        // the listing labels a row with the time at which its step starts
         parameters p = printed_parameters_of(voltage[i], 0.5);
-        check_close(first_contact(&p), expected[i], 0.002);
+        check_close(first_contact(&p) - p.method.step, expected[i], 0.00101);
     }
 }
 

@@ -276,7 +276,7 @@ static void dense_solve_pivots_and_refuses_the_singular(void **state)
     check_close(right[1], 2, 1e-15);
     double twin[4] = {1, 2, 2, 4}, any[2] = {1, 1};
     assert_false(dense_solve(2, twin, any));
-    double bad[4] = {NAN, 1, 1, 1}, more[2] = {1, 1};
+    double bad[4] = {(double)NAN, 1, 1, 1}, more[2] = {1, 1};
     assert_false(dense_solve(2, bad, more));
 }
 

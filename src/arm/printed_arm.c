@@ -64,7 +64,8 @@ static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
 static void force_levers(const printed_arm *a, const double q[3], double *both, double *last)
 {
     double l = a->link_length, c = cos(q[2] - q[1]);
-    double reach = a->wall_x * cos(q[2]) + a->wall_y * sin(q[2]); // of the contact point, along link 3
+    double reach =
+        a->wall_x * cos(q[2]) + a->wall_y * sin(q[2]); // of the contact point, along link 3
     *last = a->switches.force_at_link_end ? l : reach - l * c;
     *both = a->switches.force_at_link_end ? l + l * c : reach;
 }
@@ -145,8 +146,8 @@ void printed_constraint_gradient(const printed_arm *a, const double q[3], double
     gradient[2] = a->wall_x * cos(q[2]) + a->wall_y * sin(q[2]) - projected;
 }
 
-bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[3],
-                        double alpha[3], double *force)
+bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[3], double alpha[3],
+                        double *force)
 {
     static const double rest[3] = {0, 0, 0};
     mass_terms t = mass_terms_at(a, q);
@@ -159,8 +160,8 @@ bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[
     double curvature = -a->wall_x * sin(q[2]) + a->wall_y * cos(q[2]) + l * t.s;
     double cross = 2 * l * t.s * w[1] * w[2];
     bool listed = a->switches.reevaluation == REEVALUATE_LISTING;
-    double matrix[9] = {t.m22,       t.m23,       both,                 //
-                        t.m32,       t.m33,       last,                 //
+    double matrix[9] = {t.m22,       t.m23,       both, //
+                        t.m32,       t.m33,       last, //
                         gradient[1], gradient[2], listed ? cross : 0.0};
     double vector[3] = {-residual[1], -residual[2],
                         -l * t.s * w[1] * w[1] - curvature * w[2] * w[2] + (listed ? 0.0 : cross)};

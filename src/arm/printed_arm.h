@@ -25,16 +25,16 @@
 enum { PRINTED_BODIES = 3, PRINTED_EQUATIONS = 4 };
 
 typedef struct printed_arm {
-    double link_length;   // l [m]
-    double centre;        // e, from a link's joint to its centre of mass [m]
-    double link_mass;     // m2 = m3 [kg]
-    double link_inertia;  // I2 = I3 about the centre of mass [kg m2]
-    double hub_inertia;   // I1 [kg m2]
-    double k1, k2;        // [N m/rad]
-    double hub_damping;   // kfr + kT kB/Ra [N m s/rad]
-    double stiction;      // kst [N m]
-    double motor_torque;  // kT/Ra times the amplified, limited command [N m]
-    bool has_wall;        // false: never in contact
+    double link_length;    // l [m]
+    double centre;         // e, from a link's joint to its centre of mass [m]
+    double link_mass;      // m2 = m3 [kg]
+    double link_inertia;   // I2 = I3 about the centre of mass [kg m2]
+    double hub_inertia;    // I1 [kg m2]
+    double k1, k2;         // [N m/rad]
+    double hub_damping;    // kfr + kT kB/Ra [N m s/rad]
+    double stiction;       // kst [N m]
+    double motor_torque;   // kT/Ra times the amplified, limited command [N m]
+    bool has_wall;         // false: never in contact
     double wall_x, wall_y; // contact point (a, b) [m]
     printed_parameters switches;
 } printed_arm;
@@ -74,5 +74,5 @@ void printed_constraint_gradient(const printed_arm *a, const double q[3], double
 // Accelerations alpha[3] and contact force from the linear system of (2.15)-(2.17) and (3.13) at
 // given angles and velocities. Where `reevaluation` is `listing` the term 2 l sin d w2 w3 of (3.13)
 // multiplies the force. Returns false if the system is singular.
-bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[3],
-                        double alpha[3], double *force);
+bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[3], double alpha[3],
+                        double *force);

@@ -48,6 +48,12 @@ bool summary_get(const summary *s, const char *key, double *value)
 #define LOST_ENERGY     0.1  // share of the energy turned over that an integration may not lose
 #define MOST_EVENTS_AT_ONCE 100 // events without time passing before the run is given up
 
+// The force over a stride: at its ends, and its mean.
+typedef struct force_stride {
+    double start, end;        // [s]
+    double first, last, mean; // [N]
+} force_stride;
+
 // What a run in progress remembers besides the rows.
 typedef struct recording {
     const scenario *scenario;
@@ -55,8 +61,9 @@ typedef struct recording {
     bool keep_trace;
     parameters now;          // parameters as changed by the script so far
     int next_action;
-    double *times, *forces;  // force at every row, for the settling time
+    force_stride *strides;   // the force all along
     size_t count, capacity;
+    long grid_row;           // number of the next row of the grid
     bool separated;          // gap above SEPARATION_GAP in the present flight
     bool pulse_open;         // the first pulse has not ended
 } recording;
@@ -72,42 +79,57 @@ static void summary_clear(summary *s)
     s->motor_work_J = s->energy_residual_J = 0;
 }
 
-static status remember_force(recording *r, double time, double force)
+static status remember_stride(recording *r, force_stride stride)
 {
     if (r->count == r->capacity) {
-        size_t capacity = r->capacity ? 2 * r->capacity : 1024;
-        double *times = realloc(r->times, capacity * sizeof *times);
-        r->times = times ? times : r->times;
-        double *forces = realloc(r->forces, capacity * sizeof *forces);
-        r->forces = forces ? forces : r->forces;
-        if (times == NULL || forces == NULL) {
+        size_t capacity = r->capacity ? 2 * r->capacity : 256;
+        force_stride *strides = realloc(r->strides, capacity * sizeof *strides);
+        if (strides == NULL) {
             return STATUS_NO_MEMORY;
         }
+        r->strides = strides;
         r->capacity = capacity;
     }
-    r->times[r->count] = time;
-    r->forces[r->count++] = force;
+    r->strides[r->count++] = stride;
     return STATUS_OK;
 }
 
-// Time after which the remembered force stays within the band round `final` for good, with a
-// straight line between rows; NaN if the last row is outside.
+// The last instant within a stride at which the force is `edge`, as a share of it; -1 if none.
+static double last_crossing(const force_stride *stride, double edge)
+{
+    double curve = 3 * (stride->first + stride->last) - 6 * stride->mean;
+    double slope = stride->last - stride->first - curve, offset = stride->first - edge;
+    double latest = -1;
+    if (fabs(curve) < 1e-12 * (fabs(slope) + fabs(offset))) {
+        double s = slope != 0 ? -offset / slope : -1;
+        return s >= 0 && s <= 1 ? s : -1;
+    }
+    double square = slope * slope - 4 * curve * offset;
+    for (int sign = -1; sign <= 1 && square >= 0; sign += 2) {
+        double s = (-slope + sign * sqrt(square)) / (2 * curve);
+        latest = s >= 0 && s <= 1 && s > latest ? s : latest;
+    }
+    return latest;
+}
+
+// Time after which the force stays within the band round `final` for good, each stride taken as the
+// parabola through its ends with its mean; NaN if the run ends outside.
 static double settled_since(const recording *r, double final)
 {
     double band = SETTLED_BAND * fabs(final);
-    size_t i = r->count;
-    while (i > 0 && fabs(r->forces[i - 1] - final) <= band) {
-        i--;
+    for (size_t i = r->count; i-- > 0;) {
+        const force_stride *stride = &r->strides[i];
+        double upper = last_crossing(stride, final + band), lower = last_crossing(stride, final - band);
+        double left = fmax(upper, lower);
+        if (fabs(stride->last - final) > band) {
+            // outside at its end: inside only from the next stride's start on
+            return i + 1 == r->count ? (double)NAN : stride->end;
+        }
+        if (left >= 0) {
+            return stride->start + left * (stride->end - stride->start);
+        }
     }
-    if (i == r->count) {
-        return NAN;
-    }
-    if (i == 0) {
-        return r->times[0];
-    }
-    double outside = fabs(r->forces[i - 1] - final), inside = fabs(r->forces[i] - final);
-    double share = outside > inside ? (outside - band) / (outside - inside) : 1;
-    return r->times[i - 1] + share * (r->times[i] - r->times[i - 1]);
+    return r->count > 0 ? r->strides[0].start : (double)NAN;
 }
 
 static void finish_summary(recording *r, double force_integral)
@@ -130,23 +152,26 @@ static void finish_summary(recording *r, double force_integral)
 
 // --- the corrected arm ----------------------------------------------------------------------
 
-static status record_row(recording *r, const arm *a, motion *m, double impulse)
+// Takes note of the ledger; a run that loses or makes energy is stopped.
+static status audit(recording *r, const arm *a, motion *m)
 {
-    double *state = m->state, *q = state_angles(m, state), *w = state_velocities(m, state);
-    double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
-    int first = a->first, last = a->dof - 1;
-    double residual = motion_energy_residual(a, m);
-    summary *s = &r->result->summary;
-    s->energy_residual_J = fmax(s->energy_residual_J, fabs(residual));
+    const double *state = m->state;
+    double residual = motion_energy_residual(a, m, m->state);
     double turned_over = fabs(state[SLOT_MOTOR_WORK]) + fabs(state[SLOT_EXTERNAL_WORK]) +
                          m->start_energy + TINY_ENERGY;
-    if (fabs(residual) > LOST_ENERGY * turned_over) {
-        return STATUS_UNSTABLE;
+    summary *s = &r->result->summary;
+    s->energy_residual_J = fmax(s->energy_residual_J, fabs(residual));
+    return fabs(residual) > LOST_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
+}
+
+static status record_row(recording *r, const arm *a, motion *m, double *state, double impulse)
+{
+    if (!r->keep_trace) {
+        return STATUS_OK;
     }
-    status failed = remember_force(r, state[SLOT_TIME], state[SLOT_FORCE]);
-    if (!r->keep_trace || failed != STATUS_OK) {
-        return failed;
-    }
+    double *q = state_angles(m, state), *w = state_velocities(m, state);
+    double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
+    int first = a->first, last = a->dof - 1;
     sample row = {
         .time = state[SLOT_TIME],
         .hub_angle = q[0],
@@ -175,7 +200,7 @@ static status record_row(recording *r, const arm *a, motion *m, double impulse)
         .friction_loss = state[SLOT_FRICTION_LOSS],
         .damping_loss = quadrature[QUADRATURE_DAMPING],
         .impact_loss = state[SLOT_IMPACT_LOSS],
-        .energy_residual = residual,
+        .energy_residual = motion_energy_residual(a, m, state),
     };
     return trace_add_row(&r->result->trace, &row, q);
 }
@@ -239,12 +264,15 @@ static status book_event(recording *r, motion *m, const motion_report *report)
 // Applies an event that the machine stopped at and records the rows on its both sides.
 static status pass_event(recording *r, const arm *a, motion *m, motion_report *report)
 {
-    status failed = record_row(r, a, m, 0);
+    status failed = record_row(r, a, m, m->state, 0);
     motion_apply(a, m, report);
     if (failed == STATUS_OK) {
         failed = book_event(r, m, report);
     }
-    return failed == STATUS_OK ? record_row(r, a, m, report->impulse) : failed;
+    if (failed == STATUS_OK) {
+        failed = audit(r, a, m);
+    }
+    return failed == STATUS_OK ? record_row(r, a, m, m->state, report->impulse) : failed;
 }
 
 // Carries out the script's actions that are due.
@@ -257,7 +285,7 @@ static status act(recording *r, arm *a, motion *m, fault *f)
         const action *todo = &s->actions[r->next_action];
         motion_report report = {.event = MOTION_REACHED};
         event e = {.time = now, .kind = EVENT_CHANGE, .index = r->next_action};
-        status failed = record_row(r, a, m, 0);
+        status failed = record_row(r, a, m, m->state, 0);
         if (todo->kind == ACTION_SET) {
             failed = parameter_set_number(&r->now, todo->parameter, todo->value, f);
             arm before = *a;
@@ -277,7 +305,7 @@ static status act(recording *r, arm *a, motion *m, fault *f)
             close_first_pulse(r, m);
         }
         if (failed == STATUS_OK) {
-            failed = record_row(r, a, m, report.impulse);
+            failed = record_row(r, a, m, m->state, report.impulse);
         }
         if (failed != STATUS_OK) {
             return failed;
@@ -286,52 +314,90 @@ static status act(recording *r, arm *a, motion *m, fault *f)
     return STATUS_OK;
 }
 
-// Whether the flight in progress counts as a separation.
-static void watch_separation(recording *r, const motion *m)
+// Records the rows of the grid that lie within the stride just made, and steps over one at its end.
+static status record_grid(recording *r, const arm *a, motion *m, bool at_event)
 {
-    if (!isnan(r->result->summary.first_contact_s) && m->state[SLOT_GAP] > SEPARATION_GAP) {
-        r->separated = true;
+    const double step = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
+    for (;; r->grid_row++) {
+        double time = (double)r->grid_row * step;
+        bool at_end = fabs(time - now) <= 1e-9 * step;
+        if (time > now && !at_end) {
+            return STATUS_OK;
+        }
+        if (!r->keep_trace || (at_end && at_event)) {
+            continue; // an event records its own rows
+        }
+        double *state = at_end ? m->state : motion_between(a, m, time);
+        status failed = state ? record_row(r, a, m, state, 0) : STATUS_NOT_FINITE;
+        if (failed != STATUS_OK) {
+            return failed;
+        }
     }
 }
 
-// Advances to `until`, passing all events on the way.
+// Books the stride just made: force, separation, ledger, rows.
+static status book_stride(recording *r, const arm *a, motion *m, bool at_event)
+{
+    const double *start = m->trial; // where the stride left its beginning
+    double length = m->state[SLOT_TIME] - start[SLOT_TIME];
+    double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
+                      state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    if (!isnan(r->result->summary.first_contact_s) && m->state[SLOT_GAP] > SEPARATION_GAP) {
+        r->separated = true;
+    }
+    status s = audit(r, a, m);
+    if (s == STATUS_OK && length > 0) {
+        s = remember_stride(r, (force_stride){start[SLOT_TIME], m->state[SLOT_TIME],
+                                              start[SLOT_FORCE], m->state[SLOT_FORCE],
+                                              integral / length});
+    }
+    return s == STATUS_OK ? record_grid(r, a, m, at_event) : s;
+}
+
+// Advances to `until`, passing all events on the way and recording rows on the grid.
 static status travel(recording *r, const arm *a, motion *m, double until, fault *f)
 {
     double last_event = -1;
     int at_once = 0;
-    for (;;) {
+    while (m->state[SLOT_TIME] < until) {
         motion_report report;
-        status s = motion_advance(a, m, until, r->now.method.step, &report);
-        watch_separation(r, m);
+        status s = motion_stride(a, m, until, r->now.method.step, &report);
         if (s != STATUS_OK) {
             return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
                              m->failure_time, m->state[SLOT_TIME], status_text(s), m->stepper->name);
         }
-        if (report.event == MOTION_REACHED) {
-            return STATUS_OK;
+        bool at_event = report.event != MOTION_REACHED;
+        s = book_stride(r, a, m, at_event);
+        if (s == STATUS_OK && at_event) {
+            s = pass_event(r, a, m, &report);
+            at_once = m->state[SLOT_TIME] - last_event < 1e-13 ? at_once + 1 : 0;
+            last_event = m->state[SLOT_TIME];
         }
-        s = pass_event(r, a, m, &report);
-        at_once = m->state[SLOT_TIME] - last_event < 1e-13 ? at_once + 1 : 0;
-        last_event = m->state[SLOT_TIME];
         if (s == STATUS_OK && at_once > MOST_EVENTS_AT_ONCE) {
             s = STATUS_NO_PROGRESS;
+        }
+        if (s == STATUS_UNSTABLE) {
+            return fault_set(f, s, "at t = %.9g s: %s (residual %.3g J); the method was %s, a "
+                             "shorter method.step may help", m->state[SLOT_TIME], status_text(s),
+                             motion_energy_residual(a, m, m->state), m->stepper->name);
         }
         if (s != STATUS_OK) {
             return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
         }
     }
+    return STATUS_OK;
 }
 
-// The next instant of interest after row k: a grid point, an action, the start of the window over
-// which the steady force is taken.
-static double next_stop(const recording *r, double grid, double window, double now)
+// The next instant at which the run has something to do: an action, the start of the window over
+// which the steady force is taken, the end.
+static double next_stop(const recording *r, double window, double now)
 {
     const scenario *s = r->scenario;
-    double stop = grid;
+    double stop = s->parameters.run.duration;
     if (r->next_action < s->action_count) {
         stop = fmin(stop, s->actions[r->next_action].time);
     }
-    return window > now && window < stop ? window : stop;
+    return window > now ? fmin(window, stop) : stop;
 }
 
 static status run_corrected(recording *r, fault *f)
@@ -348,24 +414,19 @@ static status run_corrected(recording *r, fault *f)
     motion_start(&a, m, p->initial.angle, p->initial.velocity);
     double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
     double integral_at_window = 0;
-    status failed = record_row(r, &a, m, 0);
-    for (long k = 1; failed == STATUS_OK && m->state[SLOT_TIME] < duration; k++) {
-        double grid = fmin((double)k * p->method.step, duration);
-        if (duration - grid < 1e-9 * p->method.step) {
-            grid = duration;
+    status failed = record_row(r, &a, m, m->state, 0);
+    r->grid_row = 1;
+    while (failed == STATUS_OK && m->state[SLOT_TIME] < duration) {
+        if (m->state[SLOT_TIME] == window) {
+            integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         }
-        while (failed == STATUS_OK && m->state[SLOT_TIME] < grid) {
-            if (m->state[SLOT_TIME] == window) {
-                integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
-            }
-            failed = act(r, &a, m, f);
-            if (failed == STATUS_OK) {
-                failed = travel(r, &a, m, next_stop(r, grid, window, m->state[SLOT_TIME]), f);
-            }
-        }
+        failed = act(r, &a, m, f);
         if (failed == STATUS_OK) {
-            failed = record_row(r, &a, m, 0);
+            failed = travel(r, &a, m, next_stop(r, window, m->state[SLOT_TIME]), f);
         }
+    }
+    if (failed == STATUS_OK && (double)(r->grid_row - 1) * p->method.step < duration - 1e-9 * p->method.step) {
+        failed = record_row(r, &a, m, m->state, 0); // the end lies between rows of the grid
     }
     s->steps = (double)m->steps;
     s->max_penetration_m = fmax(0, m->largest_penetration);
@@ -383,10 +444,6 @@ static status run_corrected(recording *r, fault *f)
     }
     if (failed == STATUS_OK) {
         finish_summary(r, state_quadratures(m, m->state)[QUADRATURE_FORCE] - integral_at_window);
-    } else if (failed == STATUS_UNSTABLE) {
-        fault_set(f, failed, "at t = %.9g s: %s (residual %.3g J); the method was %s, a shorter "
-                  "method.step may help", m->state[SLOT_TIME], status_text(failed),
-                  motion_energy_residual(&a, m), m->stepper->name);
     }
     motion_destroy(m);
     return failed;
@@ -465,7 +522,10 @@ static bool observe_printed(void *context, const printed_row *row)
         .impact_loss = NAN,
         .energy_residual = NAN,
     };
-    return remember_force(r, row->time, row->force) == STATUS_OK &&
+    double before = r->count > 0 ? r->strides[r->count - 1].last : 0;
+    double start = r->count > 0 ? r->strides[r->count - 1].end : row->time;
+    force_stride stride = {start, row->time, before, row->force, (before + row->force) / 2};
+    return remember_stride(r, stride) == STATUS_OK &&
            (!r->keep_trace ||
             trace_add_row(&r->result->trace, &sampled, row->angle) == STATUS_OK);
 }
@@ -505,8 +565,8 @@ static status run_printed(recording *r, fault *f)
     if (s == STATUS_OK && r->count > 0) {
         double window = p->run.duration - STEADY_WINDOW, total = 0, weight = 0;
         for (size_t i = 1; i < r->count; i++) {
-            if (r->times[i] > window) {
-                total += r->forces[i];
+            if (r->strides[i].end > window) {
+                total += r->strides[i].last;
                 weight++;
             }
         }
@@ -539,8 +599,7 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
     snprintf(result->summary.message, sizeof result->summary.message, "%s",
              code == STATUS_OK ? "" : f.text);
     result->summary.wall_time_s = computing_time() - start;
-    free(r.times);
-    free(r.forces);
+    free(r.strides);
     return code;
 }
 

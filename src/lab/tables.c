@@ -17,9 +17,9 @@ enum { STIFFNESSES = 3, MODELS = 2, QUANTITIES = 5 };
 
 enum quantity { FORCE_ENERGY, FORCE_DYNAMICS, FORCE_SIMULATION, DELAY_DYNAMICS, DELAY_SIMULATION };
 
-static const char *const quantity_names[QUANTITIES] = {
-    "max_force_energy", "max_force_dynamics", "max_force_simulation", "delay_dynamics",
-    "delay_simulation"};
+static const char *const quantity_names[QUANTITIES] = {"max_force_energy", "max_force_dynamics",
+                                                       "max_force_simulation", "delay_dynamics",
+                                                       "delay_simulation"};
 
 static const double voltages[TABLE_VOLTAGES] = {1, 2, 5, 10};
 
@@ -151,8 +151,8 @@ static status compute_cell(const parameters *p, double value[QUANTITIES], fault 
     for (int i = 0; i < QUANTITIES; i++) {
         value[i] = (double)NAN;
     }
-    status result = p->arm.model == ARM_PRINTED ? simulate_printed(p, &c, f)
-                                                : simulate_corrected(p, &c, f);
+    status result =
+        p->arm.model == ARM_PRINTED ? simulate_printed(p, &c, f) : simulate_corrected(p, &c, f);
     if (result != STATUS_OK || !c.touched) {
         return result;
     }

@@ -17,7 +17,8 @@ void quasi_principle_deflections(int n, const double *k, double energy, double *
 }
 
 // Energy before contact as the listing sums it up: I2 and I3 left out, the hub spring's strain left
-// out, and with `energy_cross_term` e w2 w3 cos d for 2 l e w2 w3 cos d (equal in number at l = 0.5).
+// out, and with `energy_cross_term` e w2 w3 cos d for 2 l e w2 w3 cos d (equal in number at l =
+// 0.5).
 static double listed_energy(const parameters *p, const three_body_state *s)
 {
     double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2;
@@ -39,8 +40,7 @@ static double whole_energy(const parameters *p, const three_body_state *s)
     double bend = q[2] - q[1], hub_bend = rigid ? 0 : q[1] - q[0], hub_speed = w[rigid ? 1 : 0];
     double kinetic = p->arm.hub_inertia * hub_speed * hub_speed +
                      (inertia + m * e * e + m * l * l) * w[1] * w[1] +
-                     (inertia + m * e * e) * w[2] * w[2] +
-                     2 * m * l * e * cos(bend) * w[1] * w[2];
+                     (inertia + m * e * e) * w[2] * w[2] + 2 * m * l * e * cos(bend) * w[1] * w[2];
     double strain = p->arm.k2 * bend * bend + (rigid ? 0 : p->arm.k1 * hub_bend * hub_bend);
     return (kinetic + strain) / 2;
 }
@@ -82,8 +82,8 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
 {
     bool printed = p->arm.model == ARM_PRINTED;
     two_link touch;
-    *out = (prediction){.holds = false, .force = (double)NAN, .delay = (double)NAN,
-                        .impulse = (double)NAN};
+    *out = (prediction){
+        .holds = false, .force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
     status result = three_body_state_check(s, f);
     if (result != STATUS_OK) {
         return result;
@@ -100,7 +100,7 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     out->holds = force > 0 && two_link_approach_speed(&touch, s) >= 0;
     if (!printed) {
         result = two_link_velocity_jump(&touch, s, after, &impulse, f);
-        out->holds = out->holds && two_link_first_force(&touch, p, s, after) > 0;
+        out->holds = out->holds && two_link_first_force(&touch, p, s, after) >= 0;
     }
     return result;
 }

@@ -129,8 +129,9 @@ static double bisect(const double *c, int degree, double low, double high)
     return low + (high - low) / 2;
 }
 
-// Simple roots of c[0] + c[1] x + ... + c[degree] x^degree, degree <= 4, within the range of delays,
-// in rising order: between two roots of its derivative a polynomial is monotonic. Returns how many.
+// Simple roots of c[0] + c[1] x + ... + c[degree] x^degree, degree <= 4, within the range of
+// delays, in rising order: between two roots of its derivative a polynomial is monotonic. Returns
+// how many.
 static int positive_roots(const double *c, int degree, double *roots)
 {
     double slope[4], turns[6];
@@ -272,8 +273,8 @@ static double earliest_delay(const double c[3])
 static status start(const parameters *p, const three_body_state *s, two_link *t,
                     integrated_motion *g, prediction *out, double after[3], fault *f)
 {
-    *out = (prediction){.holds = false, .force = (double)NAN, .delay = (double)NAN,
-                        .impulse = (double)NAN};
+    *out = (prediction){
+        .holds = false, .force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
     status result = three_body_state_check(s, f);
     if (result != STATUS_OK) {
         return result;
@@ -291,7 +292,7 @@ static void finish(const parameters *p, const two_link *t, const three_body_stat
 {
     out->holds = out->impulse >= 0 && out->force > 0 && out->delay > 0;
     if (p->arm.model != ARM_PRINTED) {
-        out->holds = out->holds && two_link_first_force(t, p, s, after) > 0;
+        out->holds = out->holds && two_link_first_force(t, p, s, after) >= 0;
     }
 }
 

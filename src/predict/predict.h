@@ -11,14 +11,14 @@ typedef struct three_body_state {
 } three_body_state;
 
 typedef struct prediction {
-    bool holds;      // false: the touch would not hold, contact is lost at once
-    double force;    // peak of the first pulse [N]
-    double delay;    // from contact to the peak [s]; NaN where the method gives none
-    double impulse;  // of the impact [N s]; NaN where the method gives none
+    bool holds;     // false: the touch would not hold, contact is lost at once
+    double force;   // peak of the first pulse [N]
+    double delay;   // from contact to the peak [s]; NaN where the method gives none
+    double impulse; // of the impact [N s]; NaN where the method gives none
 } prediction;
 
 // A touch holds if the contact point approaches (or rests) and force and delay come out positive;
-// in the corrected forms also only if the wall's force just after the impact is positive.
+// in the corrected forms also only if the wall's force just after the impact is not negative.
 // Where the touch does not hold, `force` and `delay` may be NaN. All predictors fail with
 // STATUS_NOT_FINITE on a state that is not finite and with STATUS_SINGULAR where the equations have
 // no single solution; f then says which. They work on the two-link arm: with another number of

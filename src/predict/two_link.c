@@ -27,8 +27,7 @@ static void contact_on_the_arm(two_link *t, int wall, double bend)
     }
 }
 
-void two_link_at(two_link *t, const parameters *p, two_link_form form, double angle2,
-                 double angle3)
+void two_link_at(two_link *t, const parameters *p, two_link_form form, double angle2, double angle3)
 {
     memset(t, 0, sizeof *t);
     double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, inertia = two_link_inertia(p);
@@ -99,9 +98,8 @@ double two_link_first_force(const two_link *t, const parameters *p, const three_
         double friction = p->motor.stiction * ((w2 > 0) - (w2 < 0));
         hub_torque = t->motor_torque - t->hub_damping * w2 - friction;
     }
-    double curve = p->wall.kind == WALL_PLANE
-                       ? l * sin(bend / 2) * (w3 * w3 - w2 * w2)
-                       : l * sin(bend) * (2 * w2 * w3 - w2 * w2);
+    double curve = p->wall.kind == WALL_PLANE ? l * sin(bend / 2) * (w3 * w3 - w2 * w2)
+                                              : l * sin(bend) * (2 * w2 * w3 - w2 * w2);
     double r[3] = {hub_torque + coupling * (w3 * w3 - w2 * w2),
                    -p->arm.k2 * bend - coupling * w2 * w2, curve};
     return two_link_solve(t, r) ? r[2] : (double)NAN;

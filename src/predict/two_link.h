@@ -10,8 +10,8 @@
 
 // Which of the thesis's simplifications the terms carry.
 typedef enum two_link_form {
-    FORM_LISTED_IMPACT, // the listing's impact predictor: I2, I3 left out but in one place, cos d = 1
-                        // in two terms, (a, b) where the wall is
+    FORM_LISTED_IMPACT, // the listing's impact predictor: I2, I3 left out but in one place, cos d =
+                        // 1 in two terms, (a, b) where the wall is
     FORM_LISTED_ENERGY, // the listing's energy predictor: whole masses, both levers as in (4.34)
     FORM_CORRECTED,     // derived anew, contact point on the arm
 } two_link_form;
@@ -50,8 +50,8 @@ status two_link_velocity_jump(const two_link *t, const three_body_state *s, doub
                               double *impulse, fault *f);
 
 // Contact force just after the impact [N], from (2.16) without the doubled spring, (2.17) and the
-// constraint's second derivative at the velocities after[3]. Corrected form only. Where it is not
-// positive the arm leaves the wall at once. NaN if singular.
+// constraint's second derivative at the velocities after[3]. Corrected form only. Where it is
+// negative the arm leaves the wall at once. NaN if singular.
 double two_link_first_force(const two_link *t, const parameters *p, const three_body_state *s,
                             const double after[3]);
 

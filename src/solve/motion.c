@@ -13,11 +13,14 @@
 #define EXPLICIT_LIMIT 0.36
 // The event method steps implicitly where the explicit one would need more substeps than this.
 #define MOST_SUBSTEPS 90
+// The explicit method takes at most this many time steps in one stride.
+#define LONGEST_STRIDE 10
 
 #define TOUCH_TOLERANCE     1e-12 // penetration that counts as crossing the wall [m]
 #define TOUCH_SPEED         1e-11 // approach speed below which a touch carries no impulse [m/s]
 #define FORCE_TOLERANCE     1e-9  // tension that counts as a release [N]
 #define TORQUE_TOLERANCE    1e-12 // excess that counts as breaking away [N m]
+#define LOCATION_TIME       1e-15 // width to which the bracket of an event is narrowed [s]
 #define PROJECTION_GAP      1e-14 // drift that is projected away in contact [m]
 #define PROJECTION_RATE     1e-13 // [m/s]
 
@@ -52,12 +55,13 @@ motion *motion_create(const arm *a, const method_parameters *method)
     size_t size = (size_t)m->size, n = (size_t)a->dof, links = (size_t)a->links;
     m->state = calloc(size, sizeof(double));
     m->trial = calloc(size, sizeof(double));
+    m->between = calloc(size, sizeof(double));
     m->stages = calloc((size_t)(m->stepper->scratch_vectors + 1) * (size_t)smooth_length(m),
                        sizeof(double));
     m->scratch = calloc(4 * n, sizeof(double));
     m->links = calloc(links, sizeof(chain_link));
     m->sweeps = calloc(links, IMPLICIT_SWEEP_SIZE);
-    if (!m->state || !m->trial || !m->stages || !m->scratch || !m->links || !m->sweeps) {
+    if (!m->state || !m->trial || !m->between || !m->stages || !m->scratch || !m->links || !m->sweeps) {
         motion_destroy(m);
         return NULL;
     }
@@ -69,6 +73,7 @@ void motion_destroy(motion *m)
     if (m != NULL) {
         free(m->state);
         free(m->trial);
+        free(m->between);
         free(m->stages);
         free(m->scratch);
         free(m->links);
@@ -92,6 +97,14 @@ void motion_evaluate(const arm *a, motion *m, double *state)
 }
 
 // --- what holds at an instant ---------------------------------------------------------------
+
+// Whether contact and friction together leave the arm no way to move.
+static bool held_still(const motion *m)
+{
+    contact_mode mode = state_mode(m->state);
+    int holds = mode.contact + (mode.friction == HUB_STICK);
+    return m->dof == 1 ? holds > 0 : holds >= m->dof;
+}
 
 // How far the state violates what its mode promises: tension in contact, penetration to come in
 // a released touch, friction beyond its limit, sliding against the chosen direction.
@@ -147,7 +160,13 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     }
     state[SLOT_CONTACT] = best.contact;
     state[SLOT_FRICTION] = best.friction;
+    if (held_still(m)) {
+        memset(state_velocities(m, state), 0, (size_t)m->dof * sizeof(double));
+    }
     motion_evaluate(a, m, state);
+    if (held_still(m)) {
+        memset(state_accelerations(m, state), 0, (size_t)m->dof * sizeof(double));
+    }
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
 }
@@ -175,13 +194,13 @@ void motion_watch(motion *m)
     m->pulse_peak_time = m->state[SLOT_TIME];
 }
 
-double motion_energy_residual(const arm *a, const motion *m)
+double motion_energy_residual(const arm *a, const motion *m, double *state)
 {
-    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
-    const double *quadrature = state_quadratures(m, m->state);
+    const double *q = state_angles(m, state), *w = state_velocities(m, state);
+    const double *quadrature = state_quadratures(m, state);
     double stored = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q) - m->start_energy;
-    double work = m->state[SLOT_MOTOR_WORK] + m->state[SLOT_EXTERNAL_WORK];
-    double lost = m->state[SLOT_FRICTION_LOSS] + m->state[SLOT_IMPACT_LOSS] +
+    double work = state[SLOT_MOTOR_WORK] + state[SLOT_EXTERNAL_WORK];
+    double lost = state[SLOT_FRICTION_LOSS] + state[SLOT_IMPACT_LOSS] +
                   quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING];
     return stored + lost - work;
 }
@@ -211,10 +230,22 @@ static void project(const arm *a, motion *m, double *state)
     motion_evaluate(a, m, state);
 }
 
+// Time passes over an arm that is held still.
+static void wait(motion *m, double h)
+{
+    memcpy(m->trial, m->state, (size_t)m->size * sizeof(double));
+    m->trial[SLOT_TIME] += h;
+    state_quadratures(m, m->trial)[QUADRATURE_FORCE] += h * m->state[SLOT_FORCE];
+}
+
 // Advances m->state by h into m->trial, books the ledger, and checks the result for finiteness.
 static status take_step(const arm *a, motion *m, double h)
 {
     double *trial = m->trial;
+    if (held_still(m)) {
+        wait(m, h);
+        return STATUS_OK;
+    }
     memcpy(trial, m->state, SLOT_COUNT * sizeof(double));
     status s = m->stepper->step(a, m, h);
     if (s != STATUS_OK) {
@@ -227,9 +258,7 @@ static status take_step(const arm *a, motion *m, double h)
     }
     double turned = state_angles(m, trial)[0] - state_angles(m, m->state)[0];
     trial[SLOT_MOTOR_WORK] += a->motor_torque * turned;
-    if (!(m->dof == 1 && trial[SLOT_CONTACT] != 0)) {
-        trial[SLOT_FRICTION_LOSS] += trial[SLOT_FRICTION] * a->stiction * turned;
-    }
+    trial[SLOT_FRICTION_LOSS] += trial[SLOT_FRICTION] * a->stiction * turned;
     double sum = trial[SLOT_FORCE];
     for (int i = 0; i < 2 * m->dof; i++) {
         sum += state_angles(m, trial)[i];
@@ -237,12 +266,13 @@ static status take_step(const arm *a, motion *m, double h)
     return isfinite(sum) ? STATUS_OK : STATUS_NOT_FINITE;
 }
 
-static void accept(motion *m)
+static void accept(motion *m, double step)
 {
     double *previous = m->state;
     m->state = m->trial;
     m->trial = previous;
-    m->steps++;
+    double strode = m->state[SLOT_TIME] - previous[SLOT_TIME];
+    m->steps += (long)fmax(1, ceil(strode / step - 1e-6));
     m->largest_penetration = fmax(m->largest_penetration, -m->state[SLOT_GAP]);
 }
 
@@ -304,26 +334,42 @@ static double cubic_dip(double v0, double v1, double d0, double d1)
     return b + root != 0 ? -d0 / (b + root) : -1;
 }
 
-// Fraction of the step at which a function, admissible at both ends, may have been violated in
-// between; -1 if there is no sign of that.
-static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
+// Slopes of a watched function at both ends of the step from m->state to m->trial, per step. False
+// where they are not known.
+static bool watch_slopes(const motion *m, double h, watch w, double *d0, double *d1)
 {
     const double *state = m->state, *trial = m->trial;
-    double d0 = 0, d1 = 0;
     if (w == WATCH_GAP) {
-        d0 = state[SLOT_GAP_RATE] * h;
-        d1 = trial[SLOT_GAP_RATE] * h;
+        *d0 = state[SLOT_GAP_RATE] * h;
+        *d1 = trial[SLOT_GAP_RATE] * h;
     } else if (w == WATCH_HUB) {
-        d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
-        d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
+        *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
+        *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
     } else if (w == WATCH_FORCE) {
         // parabola through both ends with the mean the quadrature gives
         double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
                        state_quadratures(m, m->state)[QUADRATURE_FORCE]) / h;
-        double curve = 3 * (v0 + v1) - 6 * mean;
-        d0 = v1 - v0 - curve;
-        d1 = v1 - v0 + curve;
-    } else {
+        double rise = trial[SLOT_FORCE] - state[SLOT_FORCE];
+        double curve = 3 * (state[SLOT_FORCE] + trial[SLOT_FORCE]) - 6 * mean;
+        *d0 = rise - curve;
+        *d1 = rise + curve;
+    }
+    return w != WATCH_STICTION;
+}
+
+// Hermite's cubic at s in (0, 1).
+static double cubic(double s, double v0, double v1, double d0, double d1)
+{
+    double t = 1 - s;
+    return t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 - s * s * t * d1;
+}
+
+// Fraction of the step at which a function, admissible at both ends, may have been violated in
+// between; -1 if there is no sign of that.
+static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
+{
+    double d0, d1;
+    if (!watch_slopes(m, h, w, &d0, &d1)) {
         // near the limit of friction the middle of the step is worth a look
         return fmin(v0, v1) < 0.2 * a->stiction ? 0.5 : -1;
     }
@@ -331,39 +377,61 @@ static double suspected_dip(const arm *a, const motion *m, double h, watch w, do
     if (s <= 0 || s >= 1) {
         return -1;
     }
-    double t = 1 - s;
-    double least = t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 - s * s * t * d1;
-    return least < 1e-3 * fmax(v0, v1) ? s : -1;
+    return cubic(s, v0, v1, d0, d1) < 1e-3 * fmax(v0, v1) ? s : -1;
 }
 
-// Narrows the bracket [lo, hi] of a sign change by the Illinois variant of false position until it
-// is as narrow as time resolves; m->trial ends as the state at its far side *hi.
-static status narrow(const arm *a, motion *m, watch w, double lo, double v_lo, double *hi,
+// A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of Hermite's
+// cubic by a few steps of false position, or of the straight line.
+static double guess_crossing(const motion *m, double h, watch w, double v0, double v1)
+{
+    double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
+    if (!watch_slopes(m, h, w, &d0, &d1)) {
+        return s;
+    }
+    for (int i = 0; i < 12; i++) {
+        double v = cubic(s, v0, v1, d0, d1);
+        if (v > 0) {
+            lo = s, v_lo = v, v_hi /= 2;
+        } else {
+            hi = s, v_hi = v, v_lo /= 2;
+        }
+        s = lo + (hi - lo) * v_lo / (v_lo - v_hi);
+    }
+    return s;
+}
+
+// Narrows the bracket [lo, hi] of a sign change until it is as narrow as LOCATION_TIME; m->trial
+// ends as the state at its far side *hi. Starts at `s` and goes on by Chandrupatla's method:
+// inverse quadratic interpolation where the last three values allow it, else bisection.
+static status narrow(const arm *a, motion *m, watch w, double s, double lo, double v_lo, double *hi,
                      double v_hi)
 {
-    const double resolution = 4e-16 * fmax(1, m->state[SLOT_TIME]) + 1e-16;
-    double evaluated = *hi;
-    int side = 0;
+    const double resolution = LOCATION_TIME * fmax(1, m->state[SLOT_TIME]);
+    double evaluated = -1;
     for (int i = 0; i < 200 && *hi - lo > resolution; i++) {
-        double s = v_lo > 0 ? lo + (*hi - lo) * v_lo / (v_lo - v_hi) : 0.5 * (lo + *hi);
         s = fmin(fmax(s, lo + 0.5 * resolution), *hi - 0.5 * resolution);
         status failed = take_step(a, m, s);
         if (failed != STATUS_OK) {
             return failed;
         }
         evaluated = s;
-        double v = watch_value(a, m, m->trial, w);
+        double v = watch_value(a, m, m->trial, w), other, v_other, old, v_old;
         if (v > 0) {
-            lo = s;
-            v_lo = v;
-            v_hi = side == 1 ? v_hi / 2 : v_hi;
-            side = 1;
+            old = lo, v_old = v_lo, other = *hi, v_other = v_hi;
+            lo = s, v_lo = v;
         } else {
-            *hi = s;
-            v_hi = v;
-            v_lo = side == -1 ? v_lo / 2 : v_lo;
-            side = -1;
+            old = *hi, v_old = v_hi, other = lo, v_other = v_lo;
+            *hi = s, v_hi = v;
         }
+        double xi = (s - other) / (old - other), phi = (v - v_other) / (v_old - v_other);
+        double t = 0.5;
+        if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
+            t = v / (v_other - v) * v_old / (v_other - v_old) +
+                (old - s) / (other - s) * v / (v_old - v) * v_other / (v_old - v_other);
+        }
+        // an estimate that has settled is stepped past, so that the bracket closes on it
+        double next = s + t * (other - s);
+        s = fabs(next - s) < 0.5 * resolution ? s + copysign(resolution, other - s) : next;
     }
     return evaluated == *hi ? STATUS_OK : take_step(a, m, *hi);
 }
@@ -373,6 +441,7 @@ static status narrow(const arm *a, motion *m, watch w, double lo, double v_lo, d
 static status search(const arm *a, motion *m, watch w, double *h, bool *found)
 {
     double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
+    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(m, *h, w, v0, v1) : 0.5 * *h;
     double lo = 0, hi = *h, tolerance = watch_tolerance(w);
     *found = false;
     if (v1 >= -tolerance) {
@@ -386,6 +455,7 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
             return s == STATUS_OK ? take_step(a, m, *h) : s;
         }
         hi = dip * *h;
+        guess = 0.5 * hi;
     }
     if (v0 <= tolerance) {
         // it starts on the edge (a release, a breakaway): find where it is well admissible
@@ -405,9 +475,10 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
             hi = s;
             v1 = v;
         }
+        guess = 0.5 * (lo + hi);
     }
     *found = true;
-    status s = narrow(a, m, w, lo, v0, &hi, v1);
+    status s = narrow(a, m, w, guess, lo, v0, &hi, v1);
     *h = hi;
     return s;
 }
@@ -463,12 +534,19 @@ static status record_peak(const arm *a, motion *m, double h)
 
 // --- the machine ----------------------------------------------------------------------------
 
-static double substep(const arm *a, const motion *m, double h)
+// How long the next stride may be.
+static double stride_length(const arm *a, const motion *m, double remaining, double step)
 {
-    if (m->stepper != &explicit_stepper) {
-        return h;
+    if (held_still(m)) {
+        return remaining;
     }
-    return h / fmax(1, ceil(h * a->fastest_rate / EXPLICIT_LIMIT));
+    double longest = step;
+    if (m->stepper == &explicit_stepper) {
+        double steps = floor(EXPLICIT_LIMIT / (step * fmax(a->fastest_rate, 1e-3)));
+        longest = steps >= 1 ? fmin(steps, LONGEST_STRIDE) * step
+                             : step / ceil(step * a->fastest_rate / EXPLICIT_LIMIT);
+    }
+    return remaining < longest * (1 + 1e-9) ? remaining : longest;
 }
 
 static motion_event event_of(const motion *m, watch w)
@@ -486,40 +564,58 @@ static motion_event event_of(const motion *m, watch w)
     return MOTION_REACHED;
 }
 
-status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report)
+status motion_stride(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     *report = (motion_report){.event = MOTION_REACHED};
-    for (;;) {
-        double remaining = until - m->state[SLOT_TIME];
-        if (remaining <= 1e-12 * fmax(1, until)) {
-            m->state[SLOT_TIME] = until;
-            return STATUS_OK;
-        }
-        double wanted = remaining < step * (1 + 1e-9) ? remaining : step;
-        double h = substep(a, m, wanted);
-        status s = take_step(a, m, h);
-        bool any = false, found;
-        watch first = WATCH_GAP;
-        for (watch w = WATCH_GAP; s == STATUS_OK && w <= WATCH_STICTION; w++) {
-            if (watch_active(a, m, w)) {
-                s = search(a, m, w, &h, &found);
-                first = found ? w : first;
-                any |= found;
-            }
-        }
-        if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
-            s = record_peak(a, m, h);
-        }
-        if (s != STATUS_OK) {
-            m->failure_time = m->state[SLOT_TIME] + h;
-            return s;
-        }
-        accept(m);
-        if (any) {
-            report->event = event_of(m, first);
-            return STATUS_OK;
+    double h = stride_length(a, m, until - m->state[SLOT_TIME], step);
+    status s = take_step(a, m, h);
+    bool any = false, found;
+    watch first = WATCH_GAP;
+    for (watch w = WATCH_GAP; s == STATUS_OK && w <= WATCH_STICTION && !held_still(m); w++) {
+        if (watch_active(a, m, w)) {
+            s = search(a, m, w, &h, &found);
+            first = found ? w : first;
+            any |= found;
         }
     }
+    if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
+        s = record_peak(a, m, h);
+    }
+    if (s != STATUS_OK) {
+        m->failure_time = m->state[SLOT_TIME] + h;
+        return s;
+    }
+    accept(m, step);
+    if (any) {
+        report->event = event_of(m, first);
+    }
+    if (until - m->state[SLOT_TIME] <= 1e-12 * fmax(1, until)) {
+        m->state[SLOT_TIME] = until;
+    }
+    return STATUS_OK;
+}
+
+status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report)
+{
+    status s = STATUS_OK;
+    *report = (motion_report){.event = MOTION_REACHED};
+    while (s == STATUS_OK && report->event == MOTION_REACHED && m->state[SLOT_TIME] < until) {
+        s = motion_stride(a, m, until, step, report);
+    }
+    return s;
+}
+
+double *motion_between(const arm *a, motion *m, double time)
+{
+    // step from the stride's start, which is where m->trial was left, into m->between
+    double *now = m->state, *start = m->trial;
+    m->state = start;
+    m->trial = m->between;
+    status s = take_step(a, m, time - start[SLOT_TIME]);
+    m->state = now;
+    m->trial = start;
+    m->between[SLOT_TIME] = time;
+    return s == STATUS_OK ? m->between : NULL;
 }
 
 // The jump of an impact, and what holds after it. Slower than the rest speed it is plastic: a

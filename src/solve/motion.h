@@ -53,14 +53,15 @@ typedef struct motion {
     double alpha_m, alpha_f, beta, gamma; // implicit steppers' coefficients [-]
 
     // scratch, nothing of it outlives a step
-    double *trial;         // state at the end of the step tried
+    double *trial;         // state at the end of the step tried; after it, at the step's start
+    double *between;       // state within the last step, for motion_between
     double *stages;        // explicit stages
     double *scratch;       // vectors of length dof
     chain_link *links;
     void *sweeps;          // the implicit solver's scratch, one element a link
 
     // records since motion_watch
-    long steps;            // steps taken
+    long steps;            // time steps taken: `step` long, or cut short by an event or a stop
     double pulse_peak;     // largest f since the last impact or touch, -1 if none [N]
     double pulse_peak_time; // [s]
     double largest_penetration; // [m]
@@ -137,11 +138,21 @@ typedef struct motion_report {
     bool holds;     // after an impact: contact goes on
 } motion_report;
 
-// Advances to `until` or to the first event, whichever is first, in steps of at most `step`. At an
-// event the state is on the event's far side, before its jump: let the caller look at it, then
-// call motion_apply. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
-// state is then the last good one.
+// Makes one stride towards `until`, or to the first event if that comes first. The implicit methods
+// stride by `step`, the event method by as many steps as its accuracy allows (a fraction of one, if
+// need be); an arm that contact and friction hold still strides to `until` at once. At an event the
+// state is on the event's far side, before its jump: let the caller look at it, then call
+// motion_apply. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the state is
+// then the last good one.
+status motion_stride(const arm *a, motion *m, double until, double step, motion_report *report);
+
+// Strides until `until` or the first event.
 status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report);
+
+// The state at `time` within the last stride, by stepping again from its start; a pointer that is
+// good until the next call of any function here. To be called before motion_apply. NULL if the step
+// fails.
+double *motion_between(const arm *a, motion *m, double time);
 
 // Applies the jump and change of mode of the event motion_advance reported; completes *report.
 void motion_apply(const arm *a, motion *m, motion_report *report);
@@ -160,5 +171,5 @@ void motion_watch(motion *m);
 // Evaluates accelerations, reactions and gap of a state under its own mode.
 void motion_evaluate(const arm *a, motion *m, double *state);
 
-// Total energy that the ledger does not account for [J].
-double motion_energy_residual(const arm *a, const motion *m);
+// Energy that the ledger does not account for at a state of this motion [J].
+double motion_energy_residual(const arm *a, const motion *m, double *state);

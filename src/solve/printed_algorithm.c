@@ -37,11 +37,10 @@ static void newmark_rates(const method_parameters *m, const algorithm_state *s, 
 {
     double h = m->step;
     for (int i = 0; i < 3; i++) {
-        double free = s->angle[i] + h * s->velocity[i] +
-                      h * h * (0.5 - m->beta) * s->fed_acceleration[i];
+        double free =
+            s->angle[i] + h * s->velocity[i] + h * h * (0.5 - m->beta) * s->fed_acceleration[i];
         alpha[i] = (q[i] - free) / (h * h * m->beta);
-        w[i] = s->velocity[i] +
-               h * ((1 - m->gamma) * s->fed_acceleration[i] + m->gamma * alpha[i]);
+        w[i] = s->velocity[i] + h * ((1 - m->gamma) * s->fed_acceleration[i] + m->gamma * alpha[i]);
     }
 }
 
@@ -174,8 +173,8 @@ static const char *not_finite(const step_result *r, double force)
 
 static void accept_step(const parameters *p, const step_result *r, algorithm_state *s)
 {
-    const double *fed = p->printed.feed_newmark_acceleration ? r->newmark_acceleration
-                                                             : r->acceleration;
+    const double *fed =
+        p->printed.feed_newmark_acceleration ? r->newmark_acceleration : r->acceleration;
     memcpy(s->angle, r->angle, sizeof s->angle);
     memcpy(s->velocity, r->velocity, sizeof s->velocity);
     memcpy(s->fed_acceleration, fed, sizeof s->fed_acceleration);

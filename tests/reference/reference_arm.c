@@ -21,6 +21,10 @@ enum {
 #define EVENT_RESOLUTION 1e-14
 #define GAP_ROUNDING     1e-15 // of a gap [m]
 
+// math.h's are floats, which clang minds
+#define NOTHING ((double)NAN)
+#define NEVER   ((double)INFINITY)
+
 typedef struct body_chain {
     int bodies, links, first_link;
     bool plane;
@@ -301,7 +305,7 @@ static double inadmissible(const body_chain *arm, contact_mode mode, bool may_to
 static bool mode_resolve(const body_chain *arm, const double *y, bool may_touch, contact_mode *mode)
 {
     const double hub_speed = y[arm->bodies];
-    double best = INFINITY;
+    double best = NEVER;
     for (int touching = may_touch ? 1 : 0; touching >= 0; touching--) {
         for (int k = 0; k < 3; k++) {
             const int directions[3] = {0, 1, -1};
@@ -473,7 +477,7 @@ static double event_value(const simulation *s, event_function e, const double *y
 static double event_value_at(simulation *s, event_function e, double tau)
 {
     double y[STATE_MAX];
-    return advance(s, s->y, tau, y) ? event_value(s, e, y) : (double)NAN;
+    return advance(s, s->y, tau, y) ? event_value(s, e, y) : NOTHING;
 }
 
 // Golden-section search over [lo, hi] for the least value of sign * (event function).
@@ -505,16 +509,16 @@ static double extreme_at(simulation *s, event_function e, double sign, double lo
 static double parabola_vertex(double v0, double vm, double v1)
 {
     double bend = v0 - 2.0 * vm + v1;
-    return bend != 0.0 ? 0.5 + 0.25 * (v0 - v1) / bend : (double)NAN;
+    return bend != 0.0 ? 0.5 + 0.25 * (v0 - v1) / bend : NOTHING;
 }
 
 // Looks for the first zero of one event function in the present step; returns its offset, just
-// past the zero, or INFINITY.
+// past the zero, or NEVER.
 static double event_offset(simulation *s, event_function e)
 {
     double v0 = event_value(s, e, s->y), vm = event_value(s, e, s->middle),
            v1 = event_value(s, e, s->end);
-    double lo = 0.0, hi = INFINITY;
+    double lo = 0.0, hi = NEVER;
     if (vm < 0.0) {
         hi = 0.5 * s->span;
     } else if (v1 < 0.0) {
@@ -535,7 +539,7 @@ static double event_offset(simulation *s, event_function e)
         }
     }
     if (isinf(hi)) {
-        return INFINITY;
+        return NEVER;
     }
     // just after a change of mode the function starts at zero, up to rounding: find where it rose
     if (lo == 0.0 && v0 <= 0.0) {
@@ -605,8 +609,8 @@ static void note_step(simulation *s)
 static void note_energy(simulation *s)
 {
     const int n = s->arm.bodies;
-    double residual =
-        energy(&s->arm, s->y, s->y + n) - s->y[2 * n] + s->y[2 * n + 1] + s->y[2 * n + 2] + s->impact_loss;
+    double residual = energy(&s->arm, s->y, s->y + n) - s->y[2 * n] + s->y[2 * n + 1] +
+                      s->y[2 * n + 2] + s->impact_loss;
     s->answer->energy_residual = fmax(s->answer->energy_residual, fabs(residual));
 }
 
@@ -701,10 +705,10 @@ static bool step(simulation *s, double span)
     if (!advance(s, s->y, 0.5 * span, s->middle) || !advance(s, s->middle, 0.5 * span, s->end)) {
         return false;
     }
-    double earliest = INFINITY;
+    double earliest = NEVER;
     event_function which = EVENT_FUNCTIONS;
     for (event_function e = 0; e < EVENT_FUNCTIONS; e++) {
-        double offset = event_active(s->flow.mode, e) ? event_offset(s, e) : (double)INFINITY;
+        double offset = event_active(s->flow.mode, e) ? event_offset(s, e) : NEVER;
         if (offset < earliest) {
             earliest = offset;
             which = e;
@@ -785,18 +789,18 @@ static bool run(simulation *s)
 bool reference_simulate(const reference_case *c, reference_answer *answer, char *message, int size)
 {
     simulation s = {.c = c, .answer = answer, .message = message, .message_size = size};
-    *answer = (reference_answer){.first_contact = NAN,
-                                 .first_impulse = NAN,
-                                 .first_approach = NAN,
-                                 .first_pulse_peak = NAN,
-                                 .first_pulse_delay = NAN,
-                                 .first_pulse = NAN,
-                                 .peak = NAN,
-                                 .peak_delay = NAN,
-                                 .last_impact = NAN,
-                                 .smallest_separation = INFINITY,
-                                 .slowest_approach = INFINITY,
-                                 .weakest_hold = INFINITY};
+    *answer = (reference_answer){.first_contact = NOTHING,
+                                 .first_impulse = NOTHING,
+                                 .first_approach = NOTHING,
+                                 .first_pulse_peak = NOTHING,
+                                 .first_pulse_delay = NOTHING,
+                                 .first_pulse = NOTHING,
+                                 .peak = NOTHING,
+                                 .peak_delay = NOTHING,
+                                 .last_impact = NOTHING,
+                                 .smallest_separation = NEVER,
+                                 .slowest_approach = NEVER,
+                                 .weakest_hold = NEVER};
     gsl_set_error_handler_off();
     arm_build(&s.arm, c);
     s.flow.arm = &s.arm;
@@ -907,7 +911,7 @@ double reference_lagrangian_defect(const reference_case *c, unsigned seed)
     balance b;
     contact_mode mode = {true, y[n] > 0.0 ? 1 : -1};
     if (!balance_find(&arm, y, mode, &b)) {
-        return INFINITY;
+        return NEVER;
     }
     double fastest = 1.0, largest = 1.0, gradient[BODIES_MAX], bias;
     for (int i = 0; i < n; i++) {

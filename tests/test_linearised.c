@@ -1,0 +1,152 @@
+// The project's own predictor against the corrected simulation, on the cases of Tables 4.1-4.3.
+#include <stdlib.h>
+
+#include "src/lab/run.h"
+#include "src/predict/linearised.h"
+#include "tests/arm_fixture.h"
+
+static const double stiffness[] = {492, 49.2, 4.92};
+static const double voltage[] = {1, 2, 5, 10};
+
+typedef struct comparison {
+    prediction predicted;
+    summary simulated;
+} comparison;
+
+// Prediction at the instant before the first contact, and what the simulation then did.
+static comparison compare(double k2, double volts, const char *wall, const char *more)
+{
+    char k2_text[48], volts_text[48];
+    snprintf(k2_text, sizeof k2_text, "arm.k2=%.17g", k2);
+    snprintf(volts_text, sizeof volts_text, "motor.voltage=%.17g", volts);
+    scenario s = {.parameters = fixture_parameters(
+                      SETTINGS(k2_text, volts_text, wall, more, "run.duration=0.6"))};
+    run_result r;
+    comparison c;
+    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    c.simulated = r.summary;
+    run_finish(&r);
+
+    arm a;
+    arm_init(&a, &s.parameters);
+    motion *m = motion_create(&a, &s.parameters.method);
+    motion_report report;
+    motion_start(&a, m, 0, 0);
+    do {
+        assert_int_equal(motion_advance(&a, m, 1, 1e-3, &report), STATUS_OK);
+        if (report.event != MOTION_IMPACT) {
+            motion_apply(&a, m, &report);
+        }
+    } while (report.event != MOTION_IMPACT);
+    assert_int_equal(predict_linearised(&a, m, state_angles(m, m->state),
+                                        state_velocities(m, m->state), &c.predicted), STATUS_OK);
+    motion_destroy(m);
+    return c;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void it_is_right_on_the_twelve_cases(const char *wall)
+{
+    double peak_error[12], delay_error[12];
+    int held = 0;
+    for (int i = 0; i < 12; i++) {
+        comparison c = compare(stiffness[i / 4], voltage[i % 4], wall, "arm.links=2");
+        bool held_in_fact = !isnan(c.simulated.first_pulse_peak_N);
+        assert_int_equal(c.predicted.holds, held_in_fact);
+        check_relative(c.predicted.impulse, c.simulated.contact_impulse_Ns, 1e-9);
+        if (held_in_fact) {
+            peak_error[held] = fabs(c.predicted.force / c.simulated.first_pulse_peak_N - 1);
+            delay_error[held] =
+                fabs(c.predicted.delay / c.simulated.first_pulse_time_to_peak_s - 1);
+            check_below(peak_error[held], 0.01);
+            check_below(delay_error[held], 0.02);
+            held++;
+        }
+    }
+    assert_in_range(held, 8, 11); // some of the twelve release at once
+    qsort(peak_error, (size_t)held, sizeof *peak_error, by_size);
+    qsort(delay_error, (size_t)held, sizeof *delay_error, by_size);
+    print_message("%s: %d touches hold; peak error median %.3f %%, worst %.3f %%; delay error "
+                  "median %.3f %%, worst %.3f %%\n",
+                  wall, held, 100 * peak_error[held / 2], 100 * peak_error[held - 1],
+                  100 * delay_error[held / 2], 100 * delay_error[held - 1]);
+}
+
+static void it_is_right_at_a_point(void **state)
+{
+    (void)state;
+    it_is_right_on_the_twelve_cases("wall.kind=point");
+}
+
+static void it_is_right_at_a_flat_wall(void **state)
+{
+    (void)state;
+    it_is_right_on_the_twelve_cases("wall.kind=plane");
+}
+
+static void other_arms_are_predicted_too(void **state)
+{
+    (void)state;
+    comparison spring = compare(4.92, 1, "wall.kind=point", "arm.hub_joint=spring");
+    check_relative(spring.predicted.force, spring.simulated.first_pulse_peak_N, 0.01);
+    check_relative(spring.predicted.delay, spring.simulated.first_pulse_time_to_peak_s, 0.02);
+    comparison five = compare(4.92, 1, "wall.kind=plane", "arm.links=5");
+    check_relative(five.predicted.force, five.simulated.first_pulse_peak_N, 0.01);
+    check_relative(five.predicted.delay, five.simulated.first_pulse_time_to_peak_s, 0.02);
+    comparison damped = compare(492, 1, "wall.kind=plane", "arm.damping_ratio=0.05");
+    check_relative(damped.predicted.force, damped.simulated.first_pulse_peak_N, 0.01);
+}
+
+// In free flight the wall is imagined where the arm is; the nearer the wall, the truer.
+static void in_flight_it_approaches_the_prediction_at_the_wall(void **state)
+{
+    (void)state;
+    comparison at_wall = compare(4.92, 1, "wall.kind=point", "arm.links=2");
+    parameters p = fixture_parameters(NULL);
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    motion_report report;
+    prediction early, late;
+    motion_start(&a, m, 0, 0);
+    assert_int_equal(motion_advance(&a, m, 0.2, 1e-3, &report), STATUS_OK);
+    predict_linearised(&a, m, state_angles(m, m->state), state_velocities(m, m->state), &early);
+    assert_int_equal(motion_advance(&a, m, 0.293, 1e-3, &report), STATUS_OK);
+    predict_linearised(&a, m, state_angles(m, m->state), state_velocities(m, m->state), &late);
+    check_relative(late.impulse, at_wall.predicted.impulse, 0.01);
+    check_relative(late.force, at_wall.predicted.force, 0.01);
+    assert_true(early.impulse > 0 && early.impulse < late.impulse);
+    motion_destroy(m);
+}
+
+static void a_receding_arm_does_not_touch(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(NULL);
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    double q[2] = {0.05, 0.05}, w[2] = {-1, -1};
+    prediction out;
+    predict_linearised(&a, m, q, w, &out);
+    assert_false(out.holds);
+    check_close(out.impulse, 0, 0);
+    motion_destroy(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_is_right_at_a_point),
+        cmocka_unit_test(it_is_right_at_a_flat_wall),
+        cmocka_unit_test(other_arms_are_predicted_too),
+        cmocka_unit_test(in_flight_it_approaches_the_prediction_at_the_wall),
+        cmocka_unit_test(a_receding_arm_does_not_touch),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
