@@ -22,6 +22,8 @@ static arm oscillator(double frequency, const char *method, const char *more, me
 // One step without events.
 static void step_once(const arm *a, motion *m, double h)
 {
+    memcpy(m->trial, m->state, SLOT_COUNT * sizeof(double));
+    m->trial[SLOT_JUMPED] = 0;
     assert_int_equal(m->stepper->step(a, m, h), STATUS_OK);
     motion_evaluate(a, m, m->trial);
     double *next = m->trial;

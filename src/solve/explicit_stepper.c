@@ -47,7 +47,7 @@ static const double weights[STAGES + 1][STAGES] = {
 };
 
 // One step for n degrees of freedom; n, links and hub_spring are constants in the two-link case.
-KERNEL status explicit_step(const arm *a, motion *m, double h, int n, int links, bool hub_spring)
+KERNEL void explicit_step(const arm *a, motion *m, double h, int n, int links, bool hub_spring)
 {
     const int length = 2 * n + QUADRATURE_COUNT;
     const contact_mode mode = state_mode(m->state);
@@ -91,15 +91,20 @@ KERNEL status explicit_step(const arm *a, motion *m, double h, int n, int links,
         k[2 * n + QUADRATURE_DAMPING] = reaction.damping_power;
         k[2 * n + QUADRATURE_FORCE] = reaction.force;
     }
-    return STATUS_OK;
 }
 
 static status step(const arm *a, motion *m, double h)
 {
     if (a->links == 2 && !a->hub_spring) {
-        return explicit_step(a, m, h, 2, 2, false);
+        explicit_step(a, m, h, 2, 2, false);
+    } else {
+        explicit_step(a, m, h, a->dof, a->links, a->hub_spring);
     }
-    return explicit_step(a, m, h, a->dof, a->links, a->hub_spring);
+    motion_evaluate(a, m, m->trial);
+    if (m->trial[SLOT_CONTACT] != 0) {
+        motion_project(a, m, m->trial);
+    }
+    return STATUS_OK;
 }
 
 const stepper explicit_stepper = {"Runge-Kutta 8", step, STAGES};

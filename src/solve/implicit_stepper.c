@@ -9,9 +9,17 @@
 //     (1 - alpha_m) A1 + alpha_m A0 = (1 - alpha_f) a1 + alpha_f a0,
 //
 // where a1 satisfies the equations of motion at q1, w1 exactly and g(q1) = 0 in contact. Newmark is
-// alpha_m = alpha_f = 0. After the step the velocities are projected onto dg/dt = 0 and a1 and f
-// are evaluated again from q1, w1 and d2g/dt2 = 0: the strategy of section 3.1.3, which keeps the
-// index-3 force's oscillation out of the results.
+// alpha_m = alpha_f = 0. After the step the velocities are projected onto dg/dt = 0.
+//
+// Where the step resolves the fastest mode, a1 and f are then evaluated again from q1, w1 and
+// d2g/dt2 = 0: the strategy of section 3.1.3, which keeps the oscillation of the constraint's force
+// out of the results. Where it does not (many links), accelerations of modes faster than the step
+// are no information: a1 and f stay those of the step's own balance, and in contact and just after
+// a jump the step is backward Euler's, beta = gamma = 1, which asks nothing of the accelerations
+// before it, with dg/dt = 0 for a constraint, on which the force does no work; what g drifts is bent
+// away along a smooth shape that costs next to no strain. It is of first order, but loses energy
+// whatever the step; generalised-alpha, started from the jumps of a thousand links, was seen to
+// make some.
 //
 // Newton's linear system is solved by two sweeps like those of chain.h. With dw = gamma' dq and
 // da = beta' dq, the acceleration of a node changes by da_k = da_{k-1} + l z_k dq_k,
@@ -25,6 +33,7 @@
 #include <math.h>
 #include <string.h>
 
+#define RESOLVED          1.0 // (fastest rate) x (step) up to which a step resolves every mode
 #define NEWTON_ITERATIONS 30
 #define NEWTON_TOLERANCE  1e-12 // of the last correction, relative to the largest angle or 1 rad
 
@@ -89,15 +98,41 @@ static double rate_along(const arm *a, const implicit_sweep *link, contact_point
     return sum + p.lever * v[a->dof - 1];
 }
 
+// d(dg/dt)/dq . dq from the directions in `link`, dw = gamma' dq, at velocities w.
+static double rate_change(const arm *a, const implicit_sweep *link, contact_point p,
+                          const double *w, double gamma, const double *dq)
+{
+    const double l = a->link_length, *v = w + a->first, *x = dq + a->first;
+    const implicit_sweep *end = &link[a->links - 1];
+    const int last = a->links - 1;
+    double sum = gamma * rate_along(a, link, p, dq);
+    if (a->wall == WALL_PLANE) {
+        for (int k = 0; k <= last; k++) {
+            sum -= l * (link[k].c * p.ex + link[k].s * p.ey) * v[k] * x[k];
+        }
+        return sum;
+    }
+    // dg/dt = s w + t'v_base with s = r'd, see chain_kernel.h
+    double along = 0; // r'v_base
+    for (int k = 0; k < last; k++) {
+        double sine = end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l sin(q_N - q_k)
+        along += l * sine * v[k];
+        sum += l * (-sine * v[last] + sine * v[k]) * x[k];
+    }
+    return sum + (-p.g * v[last] - along) * x[last];
+}
+
 typedef struct iterate {
     const double *q, *w, *acceleration;
     double force;
     bool contact, stuck;
+    bool velocity_level;  // the constraint is dg/dt = 0 instead of g = 0
     double sliding; // Coulomb friction torque while sliding [N m]
+    double excess;  // out: what the balance of a stuck hub lacks, minus friction [N m]
 } iterate;
 
 // Solves the tangent system for the corrections of the angles, dq[dof], and of the force.
-static double newton_correction(const arm *a, implicit_sweep *link, const iterate *it, tangent t,
+static double newton_correction(const arm *a, implicit_sweep *link, iterate *it, tangent t,
                                 double *dq, double *unit)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
@@ -156,6 +191,8 @@ static double newton_correction(const arm *a, implicit_sweep *link, const iterat
             pivot += a->hub_inertia * t.beta + a->hub_damping * t.gamma;
             right -= a->hub_inertia * alpha + a->hub_damping * omega - a->motor_torque - it->sliding;
             if (it->stuck) {
+                it->excess = -residual - a->hub_inertia * alpha - a->hub_damping * omega +
+                             a->motor_torque;
                 right = right1 = 0;
             }
         }
@@ -183,7 +220,9 @@ static double newton_correction(const arm *a, implicit_sweep *link, const iterat
         outer = inner;
     }
     dq[0] = unit[0] = 0;
-    if (a->hub_spring && !it->stuck) {
+    if (a->hub_spring && it->stuck) {
+        it->excess = a->motor_torque + outer;
+    } else if (a->hub_spring) {
         double pivot = a->hub_inertia * t.beta + a->hub_damping * t.gamma - yy;
         double residual = a->hub_inertia * al[0] + a->hub_damping * w[0] - a->motor_torque -
                           it->sliding - outer;
@@ -210,7 +249,14 @@ static double newton_correction(const arm *a, implicit_sweep *link, const iterat
     if (!it->contact) {
         return 0;
     }
-    double df = -(point.g + rate_along(a, link, point, dq)) / rate_along(a, link, point, unit);
+    double df;
+    if (it->velocity_level) {
+        double rate = rate_along(a, link, point, w);
+        df = -(rate + rate_change(a, link, point, w, t.gamma, dq)) /
+             rate_change(a, link, point, w, t.gamma, unit);
+    } else {
+        df = -(point.g + rate_along(a, link, point, dq)) / rate_along(a, link, point, unit);
+    }
     for (int i = 0; i < a->dof; i++) {
         dq[i] += df * unit[i];
     }
@@ -228,79 +274,163 @@ static void project_velocity(const arm *a, motion *m, const double *q, double *w
     }
 }
 
-static status step(const arm *a, motion *m, double h)
+// Coefficients of the step at hand.
+typedef struct coefficients {
+    double alpha_m, alpha_f, beta, gamma;
+} coefficients;
+
+// Accelerations and velocities that belong to angles q1.
+static void update_rates(const motion *m, const coefficients *k, double h, const double *q1,
+                         double *w1, double *A1, double *a1)
 {
-    const int n = a->dof;
-    const contact_mode mode = state_mode(m->state);
-    const bool held = n == 1 && mode.contact;
     const double *q0 = state_angles(m, m->state), *w0 = state_velocities(m, m->state);
     const double *a0 = state_accelerations(m, m->state), *A0 = state_algorithmic(m, m->state);
-    double *q1 = state_angles(m, m->trial), *w1 = state_velocities(m, m->trial);
-    double *A1 = state_algorithmic(m, m->trial);
-    double *a1 = m->scratch + n, *dq = m->scratch + 2 * n, *unit = m->scratch + 3 * n;
-    tangent t = {(1 - m->alpha_m) / ((1 - m->alpha_f) * m->beta * h * h),
-                 m->gamma / (m->beta * h)};
-    iterate it = {.q = q1, .w = w1, .acceleration = a1, .force = m->state[SLOT_FORCE],
-                  .contact = mode.contact && !held, .stuck = mode.friction == HUB_STICK && !held,
-                  .sliding = held ? 0 : -mode.friction * a->stiction};
+    const double per_square = 1 / (h * h * k->beta), own = 1 / (1 - k->alpha_f);
+    for (int i = 0; i < m->dof; i++) {
+        A1[i] = (q1[i] - q0[i] - h * w0[i] - h * h * (0.5 - k->beta) * A0[i]) * per_square;
+        w1[i] = w0[i] + h * ((1 - k->gamma) * A0[i] + k->gamma * A1[i]);
+        a1[i] = ((1 - k->alpha_m) * A1[i] + k->alpha_m * A0[i] - k->alpha_f * a0[i]) * own;
+    }
+}
 
+// Newton's iteration for the angles and the force at the end of the step; it->q etc. point into the
+// trial state.
+static status solve_step(const arm *a, motion *m, double h, const coefficients *k, iterate *it)
+{
+    const int n = a->dof;
+    const double *q0 = state_angles(m, m->state), *w0 = state_velocities(m, m->state);
+    double *q1 = state_angles(m, m->trial), *w1 = state_velocities(m, m->trial);
+    double *A1 = state_algorithmic(m, m->trial), *a1 = state_accelerations(m, m->trial);
+    double *dq = m->scratch + 2 * n, *unit = m->scratch + 3 * n;
+    // backward Euler starts from rest: a predictor from the velocities just after a jump would put
+    // the shortest links' angles far off
+    const double first = k->beta < 1 ? h : 0, second = 0.5 * h * first;
+    tangent t = {(1 - k->alpha_m) / ((1 - k->alpha_f) * k->beta * h * h), k->gamma / (k->beta * h)};
     for (int i = 0; i < n; i++) {
-        q1[i] = q0[i] + h * w0[i] + 0.5 * h * h * A0[i];
+        q1[i] = q0[i] + first * w0[i] + second * state_algorithmic(m, m->state)[i];
     }
-    if (it.stuck || held) {
-        q1[0] = q0[0];
-    }
-    double size = INFINITY;
-    for (int iteration = 0; iteration < NEWTON_ITERATIONS && size > NEWTON_TOLERANCE; iteration++) {
-        for (int i = 0; i < n; i++) {
-            A1[i] = (q1[i] - q0[i] - h * w0[i] - h * h * (0.5 - m->beta) * A0[i]) /
-                    (h * h * m->beta);
-            w1[i] = w0[i] + h * ((1 - m->gamma) * A0[i] + m->gamma * A1[i]);
-            a1[i] = ((1 - m->alpha_m) * A1[i] + m->alpha_m * A0[i] - m->alpha_f * a0[i]) /
-                    (1 - m->alpha_f);
+    for (int iteration = 0; iteration < NEWTON_ITERATIONS; iteration++) {
+        if (it->stuck) {
+            q1[0] = q0[0];
         }
-        if (it.stuck || held) {
+        update_rates(m, k, h, q1, w1, A1, a1);
+        if (it->stuck) {
             w1[0] = A1[0] = a1[0] = 0;
         }
-        if (held) {
-            break;
-        }
-        it.force += newton_correction(a, m->sweeps, &it, t, dq, unit);
-        size = 0;
-        double largest = 1;
+        it->force += newton_correction(a, m->sweeps, it, t, dq, unit);
+        double size = 0, largest = 1;
         for (int i = 0; i < n; i++) {
             q1[i] += dq[i];
             size = fmax(size, fabs(dq[i]));
             largest = fmax(largest, fabs(q1[i]));
         }
-        size /= largest;
         if (!isfinite(size)) {
             return STATUS_NOT_FINITE;
         }
+        if (size <= NEWTON_TOLERANCE * largest) {
+            update_rates(m, k, h, q1, w1, A1, a1);
+            if (it->stuck) {
+                w1[0] = A1[0] = a1[0] = 0;
+            }
+            return STATUS_OK;
+        }
     }
-    if (!held && size > NEWTON_TOLERANCE) {
-        return STATUS_NEWTON_FAILED;
-    }
-    for (int i = 0; i < n && !held; i++) {
-        A1[i] = (q1[i] - q0[i] - h * w0[i] - h * h * (0.5 - m->beta) * A0[i]) / (h * h * m->beta);
-        w1[i] = w0[i] + h * ((1 - m->gamma) * A0[i] + m->gamma * A1[i]);
-    }
-    if (it.stuck || held) {
-        w1[0] = A1[0] = 0;
-    }
-    if (it.contact) {
-        project_velocity(a, m, q1, w1, it.stuck);
-    }
+    return STATUS_NEWTON_FAILED;
+}
 
-    // quadratures by the trapezoidal rule, with the powers at the new state
-    double *x0 = state_quadratures(m, m->state), *x1 = state_quadratures(m, m->trial);
-    chain_reaction r;
-    chain_accelerations(a, m->links, q1, w1, mode, state_accelerations(m, m->trial), &r);
-    x1[QUADRATURE_VISCOUS] = x0[QUADRATURE_VISCOUS] +
-                             h / 2 * (m->state[SLOT_VISCOUS_POWER] + r.viscous_power);
-    x1[QUADRATURE_DAMPING] = x0[QUADRATURE_DAMPING] +
-                             h / 2 * (m->state[SLOT_DAMPING_POWER] + r.damping_power);
-    x1[QUADRATURE_FORCE] = x0[QUADRATURE_FORCE] + h / 2 * (m->state[SLOT_FORCE] + r.force);
+// The state at the end of a step that does not resolve the fastest mode: what the step's own
+// balance gave.
+static void keep_balance(const arm *a, motion *m, const iterate *it)
+{
+    double *trial = m->trial, *q = state_angles(m, trial), *w = state_velocities(m, trial);
+    double g, rate, power = 0;
+    chain_penetration(a, q, w, &g, &rate);
+    trial[SLOT_FORCE] = it->contact ? it->force : 0;
+    trial[SLOT_FRICTION_TORQUE] = it->stuck ? -it->excess : it->sliding;
+    trial[SLOT_GAP] = -g;
+    trial[SLOT_GAP_RATE] = -rate;
+    trial[SLOT_GAP_ACCELERATION] = 0; // asked for only at events, which evaluate it
+    trial[SLOT_VISCOUS_POWER] = a->hub_damping * w[0] * w[0];
+    for (int k = 1; k < a->dof; k++) {
+        double bend = w[k] - w[k - 1];
+        power += (k == a->first ? a->hub_joint_damping : a->joint_damping) * bend * bend;
+    }
+    trial[SLOT_DAMPING_POWER] = power;
+}
+
+// Bends a drift of the constraint away: angles c x (2 - x) with x from 0 at the hub to 1 at the tip,
+// like a beam under a load at its tip.
+static void bend_to_wall(const arm *a, motion *m)
+{
+    double *q = state_angles(m, m->trial), *shape = m->scratch;
+    double g, along;
+    for (int k = 0; k < a->dof; k++) {
+        double x = a->links > 1 ? (double)(k - a->first) / (a->links - 1) : 1;
+        shape[k] = k < a->first ? 0 : x * (2 - x);
+    }
+    for (int i = 0; i < 2; i++) {
+        chain_penetration(a, q, q, &g, NULL);
+        along = chain_penetration_rate(a, q, shape);
+        for (int k = 0; k < a->dof; k++) {
+            q[k] -= g / along * shape[k];
+        }
+    }
+}
+
+// Whether the trial state holds more energy than the step's start and the motor account for. A jump
+// can leave the shortest links turning by a good part of a radian in a step; the equations of the
+// step then have more than one solution.
+static bool makes_energy(const arm *a, const motion *m)
+{
+    double energy[2];
+    for (int i = 0; i < 2; i++) {
+        double *state = i == 0 ? m->state : m->trial;
+        const double *q = state_angles(m, state);
+        energy[i] = chain_kinetic_energy(a, q, state_velocities(m, state)) +
+                    chain_strain_energy(a, q);
+    }
+    double turned = state_angles(m, m->trial)[0] - state_angles(m, m->state)[0];
+    return energy[1] - energy[0] > fmax(a->motor_torque * turned, 0) + 1e-3 * energy[0] + 1e-9;
+}
+
+static status step(const arm *a, motion *m, double h)
+{
+    const contact_mode mode = state_mode(m->state);
+    const bool resolved = m->nominal_step * a->fastest_rate < RESOLVED;
+    coefficients k = {m->alpha_m, m->alpha_f, m->beta, m->gamma};
+    if (!resolved && (mode.contact || m->state[SLOT_JUMPED] != 0)) {
+        k = (coefficients){0, 0, 1, 1};
+    }
+    iterate it = {.q = state_angles(m, m->trial), .w = state_velocities(m, m->trial),
+                  .acceleration = state_accelerations(m, m->trial), .force = m->state[SLOT_FORCE],
+                  .contact = mode.contact, .stuck = mode.friction == HUB_STICK,
+                  .velocity_level = !resolved,
+                  .sliding = -mode.friction * a->stiction};
+    status s = solve_step(a, m, h, &k, &it);
+    if (s != STATUS_OK) {
+        return s;
+    }
+    if (it.contact && resolved) {
+        project_velocity(a, m, state_angles(m, m->trial), state_velocities(m, m->trial), it.stuck);
+    }
+    if (resolved) {
+        motion_evaluate(a, m, m->trial);
+    } else {
+        if (it.contact) {
+            bend_to_wall(a, m);
+        }
+        keep_balance(a, m, &it);
+        if (k.beta == 1 && makes_energy(a, m)) {
+            return STATUS_UNSTABLE;
+        }
+    }
+    // quadratures by the trapezoidal rule, with the powers at both ends
+    const double *x0 = state_quadratures(m, m->state);
+    double *x1 = state_quadratures(m, m->trial);
+    static const int powers[] = {SLOT_VISCOUS_POWER, SLOT_DAMPING_POWER, SLOT_FORCE};
+    for (int i = 0; i < QUADRATURE_COUNT; i++) {
+        x1[i] = x0[i] + h / 2 * (m->state[powers[i]] + m->trial[powers[i]]);
+    }
     return STATUS_OK;
 }
 

@@ -20,6 +20,7 @@
 #define TOUCH_SPEED         1e-11 // approach speed below which a touch carries no impulse [m/s]
 #define FORCE_TOLERANCE     1e-9  // tension that counts as a release [N]
 #define TORQUE_TOLERANCE    1e-12 // excess that counts as breaking away [N m]
+#define MOST_HALVINGS       8     // of a step that does not converge or makes energy
 #define LOCATION_TIME       1e-15 // width to which the bracket of an event is narrowed [s]
 #define PROJECTION_GAP      1e-14 // drift that is projected away in contact [m]
 #define PROJECTION_RATE     1e-13 // [m/s]
@@ -50,6 +51,7 @@ motion *motion_create(const arm *a, const method_parameters *method)
         return NULL;
     }
     m->dof = a->dof;
+    m->nominal_step = method->step;
     m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT;
     choose_stepper(a, m, method);
     size_t size = (size_t)m->size, n = (size_t)a->dof, links = (size_t)a->links;
@@ -169,6 +171,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     }
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
+    state[SLOT_JUMPED] = 1;
 }
 
 void motion_start(const arm *a, motion *m, double angle, double velocity)
@@ -207,9 +210,7 @@ double motion_energy_residual(const arm *a, const motion *m, double *state)
 
 // --- a step of smooth motion ----------------------------------------------------------------
 
-// Puts a state in contact back onto the constraint, position and velocity, along M^-1 J^T: the
-// nearest admissible state in the metric of the kinetic energy.
-static void project(const arm *a, motion *m, double *state)
+void motion_project(const arm *a, motion *m, double *state)
 {
     bool locked = state_mode(state).friction == HUB_STICK;
     if (m->dof == 1 || (fabs(state[SLOT_GAP]) <= PROJECTION_GAP &&
@@ -219,7 +220,7 @@ static void project(const arm *a, motion *m, double *state)
     double compliance, *response = m->scratch;
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     chain_contact_response(a, m->links, q, locked, response, &compliance);
-    double shift = -state[SLOT_GAP] / compliance;
+    double shift = -state[SLOT_GAP] / compliance; // g = -gap falls along the response
     for (int i = 0; i < m->dof; i++) {
         q[i] += shift * response[i];
     }
@@ -247,14 +248,11 @@ static status take_step(const arm *a, motion *m, double h)
         return STATUS_OK;
     }
     memcpy(trial, m->state, SLOT_COUNT * sizeof(double));
+    trial[SLOT_TIME] += h;
+    trial[SLOT_JUMPED] = 0;
     status s = m->stepper->step(a, m, h);
     if (s != STATUS_OK) {
         return s;
-    }
-    trial[SLOT_TIME] = m->state[SLOT_TIME] + h;
-    motion_evaluate(a, m, trial);
-    if (trial[SLOT_CONTACT] != 0) {
-        project(a, m, trial);
     }
     double turned = state_angles(m, trial)[0] - state_angles(m, m->state)[0];
     trial[SLOT_MOTOR_WORK] += a->motor_torque * turned;
@@ -569,6 +567,10 @@ status motion_stride(const arm *a, motion *m, double until, double step, motion_
     *report = (motion_report){.event = MOTION_REACHED};
     double h = stride_length(a, m, until - m->state[SLOT_TIME], step);
     status s = take_step(a, m, h);
+    for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
+        h /= 2;
+        s = take_step(a, m, h);
+    }
     bool any = false, found;
     watch first = WATCH_GAP;
     for (watch w = WATCH_GAP; s == STATUS_OK && w <= WATCH_STICTION && !held_still(m); w++) {

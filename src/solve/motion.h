@@ -29,6 +29,7 @@ enum motion_slot {
     SLOT_GAP_RATE,      // [m/s]
     SLOT_VISCOUS_POWER, // at this state [W]
     SLOT_DAMPING_POWER, // at this state [W]
+    SLOT_JUMPED,        // 1 just after an event, before the first step
     SLOT_COUNT
 };
 
@@ -50,6 +51,7 @@ typedef struct motion {
 
     // how the smooth motion is advanced
     const struct stepper *stepper;
+    double nominal_step;   // method.step [s]
     double alpha_m, alpha_f, beta, gamma; // implicit steppers' coefficients [-]
 
     // scratch, nothing of it outlives a step
@@ -68,8 +70,8 @@ typedef struct motion {
     double failure_time;   // where a step could not be taken [s]
 } motion;
 
-// Advances `m->state` by h into `m->trial` under the mode the state is in, accelerations and
-// reactions of the new state included.
+// Advances `m->state` by h into `m->trial` under the mode the state is in: angles, velocities,
+// quadratures, algorithmic accelerations.
 typedef struct stepper {
     const char *name;
     status (*step)(const arm *a, motion *m, double h);
@@ -170,6 +172,11 @@ void motion_watch(motion *m);
 
 // Evaluates accelerations, reactions and gap of a state under its own mode.
 void motion_evaluate(const arm *a, motion *m, double *state);
+
+// Puts an evaluated state in contact back onto the constraint, position and velocity, along
+// M^-1 J^T: the nearest admissible state in the metric of the kinetic energy. Evaluates it again if
+// that moved it.
+void motion_project(const arm *a, motion *m, double *state);
 
 // Energy that the ledger does not account for at a state of this motion [J].
 double motion_energy_residual(const arm *a, const motion *m, double *state);

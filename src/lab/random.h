@@ -1,0 +1,30 @@
+// Random numbers that are the same on every machine: the generator xoshiro256** of Blackman and
+// Vigna (Scrambled linear pseudorandom number generators, ACM Trans. Math. Softw. 47, 2021), its
+// state filled by splitmix64 (Steele, Lea and Flood, OOPSLA 2014) from a seed.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct random_generator {
+    uint64_t state[4]; // never all zero
+} random_generator;
+
+// The next number of the splitmix64 sequence that starts at *state; advances *state.
+uint64_t splitmix64_next(uint64_t *state);
+
+// Starts a generator. Equal seeds give equal sequences; every seed is good.
+void random_seed(random_generator *g, uint64_t seed);
+
+// 64 random bits.
+uint64_t random_bits(random_generator *g);
+
+// A number evenly distributed over [0, 1), a multiple of 2^-53.
+double random_uniform(random_generator *g);
+
+// A whole number evenly distributed over 0 ... bound - 1; bound > 0.
+uint64_t random_below(random_generator *g, uint64_t bound);
+
+// Fills order[0 ... count - 1] with the numbers 0 ... count - 1 in random order, every order
+// equally likely (Fisher and Yates).
+void random_permutation(random_generator *g, size_t *order, size_t count);

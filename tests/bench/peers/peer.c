@@ -1,0 +1,45 @@
+// What fixed-step peers share: finding contact times and peaks in their samples.
+#include "tests/bench/peers/peer.h"
+
+#include <math.h>
+
+void peer_answer_clear(peer_answer *answer)
+{
+    *answer = (peer_answer){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+}
+
+void contact_watch_begin(contact_watch *watch, peer_answer *answer)
+{
+    *watch = (contact_watch){.answer = answer};
+}
+
+void contact_watch_sample(contact_watch *watch, double time, double angles, double force)
+{
+    peer_answer *a = watch->answer;
+    // sin(q1 - wall) + sin(q2 - wall) is zero just where the angles' sum is twice the wall's
+    double into = angles - 2 * EXPERIMENT_WALL, before = watch->into;
+    if (into >= 0 && before < 0) {
+        double closed = time - EXPERIMENT_STEP * into / (into - before);
+        if (isnan(a->first_contact)) {
+            a->first_contact = closed;
+        } else if (watch->released && isnan(a->second_contact)) {
+            a->second_contact = closed;
+        }
+    }
+    watch->into = into;
+    a->final_force = force;
+    if (isnan(a->first_contact)) {
+        return;
+    }
+    double since = time - a->first_contact;
+    a->spike = force <= a->spike ? a->spike : force;
+    if (!watch->released && since > EXPERIMENT_SETTLING) {
+        if (force <= 0) {
+            watch->released = true;
+            a->release = time;
+        } else if (!(force <= a->peak)) {
+            a->peak = force;
+            a->peak_delay = since;
+        }
+    }
+}
