@@ -58,7 +58,8 @@ void series_y_range(const figure_series *s, double x_low, double x_high, double 
     }
 }
 
-// ---- clipping -------------------------------------------------------------------------------------
+// ---- clipping
+// -------------------------------------------------------------------------------------
 
 typedef struct point {
     double x, y;
@@ -131,7 +132,8 @@ static void pen_to(pen *p, point q)
     p->at = q;
 }
 
-// ---- decimation -----------------------------------------------------------------------------------
+// ---- decimation
+// -----------------------------------------------------------------------------------
 
 // The points of one column that matter, with their numbers to keep their order.
 typedef struct column {
@@ -199,7 +201,7 @@ static bool x_ascends(const figure_series *s)
 
 void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void *context)
 {
-    pen pen = {.left = p->box.x - CLIP_SPACE,
+    pen tip = {.left = p->box.x - CLIP_SPACE,
                .top = p->box.y - CLIP_SPACE,
                .right = p->box.x + p->box.width + CLIP_SPACE,
                .bottom = p->box.y + p->box.height + CLIP_SPACE,
@@ -210,8 +212,8 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
     for (size_t i = 0; i < s->count; i++) {
         double x = series_x(s, i), y = series_y(s, i);
         if (!isfinite(x) || !isfinite(y)) {
-            column_flush(&c, &pen);
-            pen_lift(&pen);
+            column_flush(&c, &tip);
+            pen_lift(&tip);
             continue;
         }
         point q = {plane_x(p, x), plane_y(p, y)};
@@ -220,13 +222,13 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
             column_add(&c, q, i);
             continue;
         }
-        column_flush(&c, &pen);
+        column_flush(&c, &tip);
         if (columns) {
             column_begin(&c, index, q, i);
         } else {
-            pen_to(&pen, q);
+            pen_to(&tip, q);
         }
     }
-    column_flush(&c, &pen);
-    pen_lift(&pen);
+    column_flush(&c, &tip);
+    pen_lift(&tip);
 }

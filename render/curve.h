@@ -5,9 +5,9 @@
 
 // A rectangle on the page and what its edges stand for.
 typedef struct plane {
-    figure_rect box;       // [pt]
-    double x_low, x_high;  // left and right edge
-    double y_low, y_high;  // bottom and top edge
+    figure_rect box;      // [pt]
+    double x_low, x_high; // left and right edge
+    double y_low, y_high; // bottom and top edge
 } plane;
 
 double plane_x(const plane *p, double x);

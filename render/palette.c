@@ -21,7 +21,7 @@ static const colour on_white[SLOTS] = {
     RGB(110, 110, 110), // grey
 };
 static const colour on_black[SLOTS] = {
-    RGB(60, 160, 225), RGB(230, 159, 0), RGB(0, 178, 130),   RGB(86, 200, 250),
+    RGB(60, 160, 225),  RGB(230, 159, 0),  RGB(0, 178, 130),   RGB(86, 200, 250),
     RGB(220, 140, 185), RGB(235, 115, 20), RGB(225, 225, 225), RGB(240, 228, 66),
 };
 static const colour greys[] = {RGB(0, 0, 0), RGB(90, 90, 90), RGB(140, 140, 140)};
@@ -92,7 +92,9 @@ void set_line_style(cairo_t *cr, line_style style, double width)
 {
     static const double dashed[] = {5, 2.2}, dotted[] = {1.2, 1.8}, dash_dot[] = {7, 2, 1.4, 2};
     double scaled[4];
-    const double *pattern = style == LINE_DASHED ? dashed : style == LINE_DOTTED ? dotted : dash_dot;
+    const double *pattern = style == LINE_DASHED   ? dashed
+                            : style == LINE_DOTTED ? dotted
+                                                   : dash_dot;
     int count = style == LINE_SOLID ? 0 : style == LINE_DASH_DOT ? 4 : 2;
     for (int i = 0; i < count; i++) {
         scaled[i] = pattern[i] * width;

@@ -21,7 +21,7 @@ void placement_line(placement *g, double x0, double y0, double x1, double y1, in
 void placement_block(placement *g, figure_rect r, int weight);
 
 // The place of a width x height rectangle, `margin` from the box's edges, with the least ink under
-// it; among equal ones the nearest to a corner, at the right rather than the left, above rather than
-// below. Returns the ink under it (INFINITY if the box is too small).
+// it; among equal ones the nearest to a corner, at the right rather than the left, above rather
+// than below. Returns the ink under it (INFINITY if the box is too small).
 double placement_find(const placement *g, double width, double height, double margin,
                       figure_rect *found);

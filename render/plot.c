@@ -32,7 +32,8 @@ void figure_size(const figure *fig, double *width, double *height)
     *height = fig->height > 0 ? fig->height * POINTS_PER_MM : points;
 }
 
-// ---- text -----------------------------------------------------------------------------------------
+// ---- text
+// -----------------------------------------------------------------------------------------
 
 static void report_text(drawing *d, const char *markup, figure_rect place)
 {
@@ -56,7 +57,7 @@ typedef struct anchor {
     double x, y;
 } anchor;
 
-static void draw_text(drawing *d, text t, double x, double y, anchor at, colour c)
+static void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c)
 {
     double width, height;
     text_measure(d->context, &t, &width, &height);
@@ -69,7 +70,7 @@ static void draw_text(drawing *d, text t, double x, double y, anchor at, colour 
 }
 
 // Draws t upwards; (x, y) is the middle of its upper edge, which is on the left.
-static void draw_rotated(drawing *d, text t, double x, double y, colour c)
+static void draw_rotated(drawing *d, text_block t, double x, double y, colour c)
 {
     double width, height;
     text_measure(d->context, &t, &width, &height);
@@ -83,7 +84,8 @@ static void draw_rotated(drawing *d, text t, double x, double y, colour c)
     report_text(d, t.markup, (figure_rect){x, y - width / 2, height, width});
 }
 
-// ---- lines ----------------------------------------------------------------------------------------
+// ---- lines
+// ----------------------------------------------------------------------------------------
 
 static void draw_line(cairo_t *cr, double x0, double y0, double x1, double y1)
 {
@@ -136,15 +138,14 @@ static void draw_marker(cairo_t *cr, marker_kind kind, double x, double y)
     cairo_fill(cr);
 }
 
-// ---- curves ---------------------------------------------------------------------------------------
+// ---- curves
+// ---------------------------------------------------------------------------------------
 
 typedef struct stroke_context {
     cairo_t *cr;
     double radius; // of a lone point
-    int pieces;    // since the last stroke
 } stroke_context;
 
-// Strokes in parts: the time a stroke takes grows faster than its length.
 static void stroke(void *context, stroke_kind kind, double x, double y)
 {
     stroke_context *s = context;
@@ -157,7 +158,6 @@ static void stroke(void *context, stroke_kind kind, double x, double y)
     } else {
         cairo_line_to(s->cr, x, y);
     }
-    s->pieces++;
 }
 
 static void draw_markers(cairo_t *cr, const plane *p, const figure_series *s)
@@ -197,7 +197,8 @@ static void draw_curves(const drawing *d, const figure_panel *panel, const plane
     cairo_restore(d->cr);
 }
 
-// ---- behind the curves ----------------------------------------------------------------------------
+// ---- behind the curves
+// ----------------------------------------------------------------------------
 
 static void draw_intervals(const drawing *d, const plane *p)
 {
@@ -237,7 +238,6 @@ static void set_mark_line(const drawing *d)
 static void draw_marks(drawing *d)
 {
     const plane *first = &d->panels[0].plane, *last = &d->panels[d->fig->panel_count - 1].plane;
-    static const text none;
     for (int i = 0; i < d->fig->mark_count; i++) {
         const figure_mark *m = &d->fig->marks[i];
         if (!(m->x >= d->x_low && m->x <= d->x_high)) {
@@ -245,9 +245,7 @@ static void draw_marks(drawing *d)
         }
         double x = plane_x(first, m->x), top = first->box.y;
         if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
-            text t = none;
-            t.markup = m->label;
-            t.size = SMALL_SIZE;
+            text_block t = figure_text_of(m->label, SMALL_SIZE);
             top = d->marks_bottom - MARK_ROW * (d->mark_row[i] + 1);
             draw_text(d, t, d->mark_text_x[i], top, (anchor){0, 0}, d->colours->text);
         }
@@ -268,15 +266,14 @@ static void draw_levels(drawing *d, const panel_layout *l)
         set_mark_line(d);
         draw_line(d->cr, box->x, y, box->x + box->width, y);
         if (level->label != NULL) {
-            // below the line where there is no room above it
-            bool above = y - box->y > 10;
             draw_text(d, figure_text_of(level->label, SMALL_SIZE), box->x + box->width - 2, y,
-                      (anchor){1, above ? 1 : 0}, d->colours->text);
+                      (anchor){1, level_label_above(l, i) ? 1 : 0}, d->colours->text);
         }
     }
 }
 
-// ---- axes -----------------------------------------------------------------------------------------
+// ---- axes
+// -----------------------------------------------------------------------------------------
 
 // Minor ticks beside and between major ones; draw is called with their values.
 static void draw_minor(const drawing *d, const plane *p, const ticks *t, bool horizontal)
@@ -338,18 +335,19 @@ static void draw_axes(drawing *d, const plane *p, const ticks *x_ticks, const ti
 static void draw_y_label(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
-    char *label = axis_label(l->panel->label, l->panel->unit, &l->y_ticks);
-    text t = {.markup = label,
-              .size = LABEL_SIZE,
-              .align = TEXT_CENTRE,
-              .width = box->height + PANEL_SPACE};
+    char *label = axis_label(l->panel->label, l->panel->unit, l->y_ticks.exponent);
+    text_block t = {.markup = label,
+                    .size = LABEL_SIZE,
+                    .align = TEXT_CENTRE,
+                    .width = box->height + PANEL_SPACE};
     if (label[0] != '\0') {
         draw_rotated(d, t, PAGE_MARGIN, box->y + box->height / 2, d->colours->text);
     }
     g_free(label);
 }
 
-// ---- legends --------------------------------------------------------------------------------------
+// ---- legends
+// --------------------------------------------------------------------------------------
 
 static void draw_swatch(drawing *d, const figure_panel *panel, int index, double x, double y)
 {
@@ -371,7 +369,7 @@ static void draw_legend(drawing *d, const panel_layout *l)
         if (label == NULL) {
             continue;
         }
-        text t = figure_text_of(label, TICK_SIZE);
+        text_block t = figure_text_of(label, TICK_SIZE);
         text_measure(d->context, &t, &width, &height);
         draw_swatch(d, l->panel, i, x, y + 0.55 * height);
         draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->colours->text);
@@ -391,7 +389,7 @@ static void draw_end_labels(drawing *d, const panel_layout *l)
         if (isnan(l->end_label_y[i]) || !series_end(d, &l->panel->series[i], &y)) {
             continue;
         }
-        text t = figure_text_of(l->panel->series[i].label, TICK_SIZE);
+        text_block t = figure_text_of(l->panel->series[i].label, TICK_SIZE);
         text_measure(d->context, &t, &width, &height);
         double end = box->x + box->width, middle = l->end_label_y[i] + 0.55 * height;
         set_series(d, l->panel, i);
@@ -403,7 +401,8 @@ static void draw_end_labels(drawing *d, const panel_layout *l)
     }
 }
 
-// ---- impulses -------------------------------------------------------------------------------------
+// ---- impulses
+// -------------------------------------------------------------------------------------
 
 // Three digits, with a power of ten where a reader would count zeros.
 static void number_markup(double value, char *out, size_t size)
@@ -439,6 +438,24 @@ static bool overlaps(const figure_rect *a, const figure_rect *b)
            b->y < a->y + a->height;
 }
 
+static double largest_impulse(const figure_panel *panel)
+{
+    double largest = 0;
+    for (int i = 0; i < panel->impulse_count; i++) {
+        if (isfinite(panel->impulses[i].size)) {
+            largest = fmax(largest, fabs(panel->impulses[i].size));
+        }
+    }
+    return largest;
+}
+
+// Small impulses are given in units of a power of ten.
+static int impulse_exponent(const figure_panel *panel)
+{
+    double largest = largest_impulse(panel);
+    return largest > 0 && largest < 1e-2 ? 3 * (int)floor(log10(largest) / 3) : 0;
+}
+
 enum { IMPULSES_LABELLED = 24 };
 
 // Writes the size of an impulse beside its arrow unless it would cover another label or arrow.
@@ -448,8 +465,8 @@ static void label_impulse(drawing *d, const panel_layout *l, int index, double b
     char markup[64];
     double width, height;
     const figure_impulse *all = l->panel->impulses, *p = &all[index];
-    number_markup(p->size, markup, sizeof markup);
-    text t = figure_text_of(markup, SMALL_SIZE);
+    number_markup(p->size / pow(10, impulse_exponent(l->panel)), markup, sizeof markup);
+    text_block t = figure_text_of(markup, SMALL_SIZE);
     text_measure(d->context, &t, &width, &height);
     double x = plane_x(&l->plane, p->x);
     for (int side = 0; side < 2 && *count < IMPULSES_LABELLED; side++) {
@@ -463,6 +480,10 @@ static void label_impulse(drawing *d, const panel_layout *l, int index, double b
             double other = plane_x(&l->plane, all[i].x);
             free_place = i == index || other < place.x - 1 || other > place.x + width + 1;
         }
+        for (int i = 0; i < d->fig->mark_count && free_place; i++) {
+            double line = plane_x(&l->plane, d->fig->marks[i].x);
+            free_place = line < place.x - 1 || line > place.x + width + 1;
+        }
         if (free_place) {
             taken[(*count)++] = place;
             draw_text(d, t, place.x, place.y, (anchor){0, 0}, d->colours->text);
@@ -471,42 +492,39 @@ static void label_impulse(drawing *d, const panel_layout *l, int index, double b
     }
 }
 
-static double largest_impulse(const figure_panel *panel)
-{
-    double largest = 0;
-    for (int i = 0; i < panel->impulse_count; i++) {
-        if (isfinite(panel->impulses[i].size)) {
-            largest = fmax(largest, fabs(panel->impulses[i].size));
-        }
-    }
-    return largest;
-}
-
 static bool impulse_shows(const drawing *d, const figure_impulse *p)
 {
     return isfinite(p->size) && p->size != 0 && p->x >= d->x_low && p->x <= d->x_high;
+}
+
+// The largest impulse that shows and is not among the first `count` of `done`; -1 if none is left.
+static int next_impulse(const drawing *d, const figure_panel *panel, const int *done, int count)
+{
+    int next = -1;
+    for (int i = 0; i < panel->impulse_count; i++) {
+        const figure_impulse *p = &panel->impulses[i];
+        bool is_done = !impulse_shows(d, p);
+        for (int k = 0; k < count && !is_done; k++) {
+            is_done = done[k] == i;
+        }
+        if (!is_done && (next < 0 || fabs(p->size) > fabs(panel->impulses[next].size))) {
+            next = i;
+        }
+    }
+    return next;
 }
 
 // Labels go to the largest impulses first.
 static void label_impulses(drawing *d, const panel_layout *l, double base)
 {
     figure_rect taken[IMPULSES_LABELLED];
-    int count = 0;
-    double below = INFINITY;
+    int done[IMPULSES_LABELLED], count = 0;
     for (int rank = 0; rank < IMPULSES_LABELLED; rank++) {
-        int next = -1;
-        for (int i = 0; i < l->panel->impulse_count; i++) {
-            const figure_impulse *p = &l->panel->impulses[i];
-            if (impulse_shows(d, p) && fabs(p->size) < below &&
-                (next < 0 || fabs(p->size) > fabs(l->panel->impulses[next].size))) {
-                next = i;
-            }
-        }
-        if (next < 0) {
+        done[rank] = next_impulse(d, l->panel, done, rank);
+        if (done[rank] < 0) {
             return;
         }
-        below = fabs(l->panel->impulses[next].size);
-        label_impulse(d, l, next, base, taken, &count);
+        label_impulse(d, l, done[rank], base, taken, &count);
     }
 }
 
@@ -529,17 +547,18 @@ static void draw_impulses(drawing *d, const panel_layout *l)
     }
     label_impulses(d, l, base);
     if (panel->impulse_label != NULL) {
-        char unit[64];
-        text_unit(panel->impulse_unit ? panel->impulse_unit : "", unit, sizeof unit);
-        char *label = g_strdup_printf("%s\n(%s)", panel->impulse_label, unit);
-        text t = {.markup = label, .size = SMALL_SIZE, .align = TEXT_RIGHT};
+        char *name = g_strconcat(panel->impulse_label, "\n", NULL);
+        char *label = axis_label(name, panel->impulse_unit, impulse_exponent(panel));
+        text_block t = {.markup = label, .size = SMALL_SIZE, .align = TEXT_RIGHT};
         draw_text(d, t, d->left - TICK_LENGTH - TICK_SPACE, base + 1.5, (anchor){1, 1},
                   d->colours->text);
         g_free(label);
+        g_free(name);
     }
 }
 
-// ---- the inset ------------------------------------------------------------------------------------
+// ---- the inset
+// ------------------------------------------------------------------------------------
 
 static void draw_inset(drawing *d, const panel_layout *l)
 {
@@ -562,7 +581,8 @@ static void draw_inset(drawing *d, const panel_layout *l)
     cairo_stroke(d->cr);
 }
 
-// ---- the whole ------------------------------------------------------------------------------------
+// ---- the whole
+// ------------------------------------------------------------------------------------
 
 static void draw_panel(drawing *d, int index)
 {
@@ -591,16 +611,16 @@ static void draw_frame_texts(drawing *d)
     double width = d->right - d->left;
     if (fig->title != NULL) {
         char *title = text_escape(fig->title);
-        text t = {.markup = title, .size = TITLE_SIZE, .bold = true, .width = width};
+        text_block t = {.markup = title, .size = TITLE_SIZE, .bold = true, .width = width};
         draw_text(d, t, d->left, d->title_y, (anchor){0, 0}, d->colours->text);
         g_free(title);
     }
     if (fig->caption != NULL) {
-        text t = {.markup = fig->caption, .size = SMALL_SIZE, .width = width};
+        text_block t = {.markup = fig->caption, .size = SMALL_SIZE, .width = width};
         draw_text(d, t, d->left, d->caption_y, (anchor){0, 0}, d->colours->faint_text);
     }
     if (fig->x_label != NULL) {
-        char *label = axis_label(fig->x_label, fig->x_unit, &d->x_ticks);
+        char *label = axis_label(fig->x_label, fig->x_unit, d->x_ticks.exponent);
         draw_text(d, figure_text_of(label, LABEL_SIZE), (d->left + d->right) / 2, d->x_label_y,
                   (anchor){0.5, 0}, d->colours->text);
         g_free(label);
@@ -661,9 +681,11 @@ status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault
     }
     g_object_unref(d.context);
     cairo_restore(cr);
-    if (code == STATUS_OK && cairo_status(cr) != CAIRO_STATUS_SUCCESS) {
+    cairo_status_t state = cairo_status(cr);
+    // a stream that cannot be written is reported by whoever closes it
+    if (code == STATUS_OK && state != CAIRO_STATUS_SUCCESS && state != CAIRO_STATUS_WRITE_ERROR) {
         code = fault_set(f, STATUS_NO_MEMORY, "a figure could not be drawn: %s",
-                         cairo_status_to_string(cairo_status(cr)));
+                         cairo_status_to_string(state));
     }
     return code;
 }

@@ -81,9 +81,9 @@ typedef struct figure_panel {
     int impulse_count;
     const char *impulse_label; // of the strip, without its unit
     const char *impulse_unit;
-    double weight;           // share of the height, 0 counts as 1
-    double y_low, y_high;    // ends of the vertical axis; y_low >= y_high: from the data
-    bool with_zero;          // an axis from the data includes 0
+    double weight;             // share of the height, 0 counts as 1
+    double y_low, y_high;      // ends of the vertical axis; y_low >= y_high: from the data
+    bool with_zero;            // an axis from the data includes 0
     double zoom_from, zoom_to; // range of x shown once more in an inset; from >= to: no inset
     legend_kind legend;
 } figure_panel;

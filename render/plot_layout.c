@@ -11,26 +11,40 @@
 #define RANGE_SPACE    0.06 // of the data's range, kept free above and below them
 #define END_LABEL_LEAD 12.0 // from the axis' end to the labels at the curves' ends
 
-text figure_text_of(const char *markup, double size)
+text_block figure_text_of(const char *markup, double size)
 {
-    return (text){.markup = markup, .size = size};
+    return (text_block){.markup = markup, .size = size};
 }
 
-char *axis_label(const char *label, const char *unit, const ticks *t)
+// A unit with its factor, as markup that is never broken into lines.
+static char *unit_markup(const char *unit, int exponent)
 {
     char shown[64], factor[64] = "";
     bool has_unit = unit != NULL && unit[0] != '\0';
+    const ticks scale = {.exponent = exponent};
     text_unit(has_unit ? unit : "", shown, sizeof shown);
-    if (t != NULL) {
-        tick_factor(t, factor, sizeof factor);
-    }
-    // the factor of a unit goes without its multiplication sign
+    tick_factor(&scale, factor, sizeof factor);
+    // before a unit the factor goes without its multiplication sign
     const char *power = has_unit && factor[0] ? factor + strlen("\u00d7") : factor;
-    if (!has_unit && factor[0] == '\0') {
+    // Pango would break the line after a slash
+    char **parts = g_strsplit(shown, "/", -1), *unbroken = g_strjoinv("\u2060/\u2060", parts);
+    char *whole =
+        g_strdup_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "", unbroken);
+    g_strfreev(parts);
+    g_free(unbroken);
+    return whole;
+}
+
+char *axis_label(const char *label, const char *unit, int exponent)
+{
+    bool bare = (unit == NULL || unit[0] == '\0') && exponent == 0;
+    if (bare) {
         return g_strdup(label ? label : "");
     }
-    return g_strdup_printf("%s (%s%s%s)", label ? label : "", power,
-                           has_unit && factor[0] ? "\u2009" : "", shown);
+    char *whole = unit_markup(unit, exponent);
+    char *both = g_strdup_printf("%s %s", label ? label : "", whole);
+    g_free(whole);
+    return both;
 }
 
 int labelled_series(const figure_panel *panel)
@@ -59,7 +73,8 @@ bool series_end(const drawing *d, const figure_series *s, double *y)
     return false;
 }
 
-// ---- ranges ---------------------------------------------------------------------------------------
+// ---- ranges
+// ---------------------------------------------------------------------------------------
 
 // Sets the edges, apart from one another and from the data.
 static void widen(double *low, double *high, double space)
@@ -133,12 +148,13 @@ static int clamp(double value, int least, int most)
     return value < least ? least : value > most ? most : (int)value;
 }
 
-// ---- horizontally ---------------------------------------------------------------------------------
+// ---- horizontally
+// ---------------------------------------------------------------------------------
 
 static double width_of(const drawing *d, const char *markup, double size)
 {
     double width, height;
-    text t = figure_text_of(markup, size);
+    text_block t = figure_text_of(markup, size);
     text_measure(d->context, &t, &width, &height);
     return width;
 }
@@ -157,8 +173,9 @@ static double widest_tick(const drawing *d, const ticks *t, double size)
 static double y_label_height(const drawing *d, const panel_layout *l)
 {
     double width, height;
-    char *label = axis_label(l->panel->label, l->panel->unit, &l->y_ticks);
-    text t = {.markup = label, .size = LABEL_SIZE, .width = l->plane.box.height + PANEL_SPACE};
+    char *label = axis_label(l->panel->label, l->panel->unit, l->y_ticks.exponent);
+    text_block t = {
+        .markup = label, .size = LABEL_SIZE, .width = l->plane.box.height + PANEL_SPACE};
     text_measure(d->context, &t, &width, &height);
     bool none = label[0] == '\0';
     g_free(label);
@@ -243,12 +260,13 @@ static int place_marks(drawing *d)
     return rows;
 }
 
-// ---- vertically -----------------------------------------------------------------------------------
+// ---- vertically
+// -----------------------------------------------------------------------------------
 
 static double height_of(const drawing *d, const char *markup, double size, bool bold, double width)
 {
     double w, h;
-    text t = {.markup = markup, .size = size, .bold = bold, .width = width};
+    text_block t = {.markup = markup, .size = size, .bold = bold, .width = width};
     text_measure(d->context, &t, &w, &h);
     return h;
 }
@@ -297,7 +315,8 @@ static double place_rows(drawing *d, int mark_rows)
     return free_height / weights;
 }
 
-// ---- inside the panels ----------------------------------------------------------------------------
+// ---- inside the panels
+// ----------------------------------------------------------------------------
 
 typedef struct ink_sink {
     placement *grid;
@@ -316,6 +335,11 @@ static void mark_ink(void *context, stroke_kind kind, double x, double y)
     s->y = y;
 }
 
+bool level_label_above(const panel_layout *l, int index)
+{
+    return plane_y(&l->plane, l->panel->levels[index].y) - l->plane.box.y > 10;
+}
+
 static void collect_ink(const drawing *d, const panel_layout *l, placement *grid)
 {
     ink_sink sink = {.grid = grid};
@@ -327,6 +351,12 @@ static void collect_ink(const drawing *d, const panel_layout *l, placement *grid
     for (int i = 0; i < l->panel->level_count; i++) {
         double y = plane_y(&l->plane, l->panel->levels[i].y);
         placement_line(grid, box->x, y, box->x + box->width, y, INK_CURVE);
+        if (l->panel->levels[i].label != NULL) {
+            double width = width_of(d, l->panel->levels[i].label, SMALL_SIZE) + 4;
+            double above = level_label_above(l, i) ? 10 : 0;
+            placement_block(grid, (figure_rect){box->x + box->width - width, y - above, width, 10},
+                            INK_CURVE);
+        }
     }
     for (int i = 0; i < d->fig->mark_count; i++) {
         double x = plane_x(&l->plane, d->fig->marks[i].x);
@@ -347,7 +377,7 @@ static void divide_inset(const drawing *d, panel_layout *l)
     data_range(panel, p->x_low, p->x_high, &p->y_low, &p->y_high);
     widen(&p->y_low, &p->y_high, 0.1);
     ticks_between(&l->inset_x_ticks, p->x_low, p->x_high, clamp(l->inset.width / 35, 2, 5));
-    ticks_between(&l->inset_y_ticks, p->y_low, p->y_high, clamp(l->inset.height / 20, 2, 4));
+    ticks_between(&l->inset_y_ticks, p->y_low, p->y_high, clamp(l->inset.height / 15, 2, 4));
     double left = widest_tick(d, &l->inset_y_ticks, SMALL_SIZE) + TICK_SPACE + 4;
     double right = widest_tick(d, &l->inset_x_ticks, SMALL_SIZE) / 2;
     p->box = (figure_rect){l->inset.x + left, l->inset.y + 3, l->inset.width - left - right,
@@ -387,7 +417,7 @@ static void legend_size(const drawing *d, const figure_panel *panel, bool row, d
             continue;
         }
         double w, h;
-        text t = figure_text_of(panel->series[i].label, TICK_SIZE);
+        text_block t = figure_text_of(panel->series[i].label, TICK_SIZE);
         text_measure(d->context, &t, &w, &h);
         w += SWATCH + SWATCH_SPACE;
         if (row) {
@@ -422,11 +452,36 @@ static bool place_legend(const drawing *d, panel_layout *l, const placement *gri
     return placement_find(grid, width, height, LEGEND_MARGIN, &l->legend) < INK_CURVE;
 }
 
+// Moves `count` ascending tops of labels apart by `height` each, as little as possible in the mean
+// square: what is left of each after its rank's share must not descend, so descending neighbours
+// are pooled at their mean.
+static void spread(double *top, int count, double height, double highest, double lowest)
+{
+    double mean[PANEL_SERIES];
+    int size[PANEL_SERIES], blocks = 0;
+    for (int k = 0; k < count; k++) {
+        mean[blocks] = top[k] - k * height;
+        size[blocks++] = 1;
+        for (; blocks > 1 && mean[blocks - 1] < mean[blocks - 2]; blocks--) {
+            int both = size[blocks - 2] + size[blocks - 1];
+            mean[blocks - 2] =
+                (mean[blocks - 2] * size[blocks - 2] + mean[blocks - 1] * size[blocks - 1]) / both;
+            size[blocks - 2] = both;
+        }
+    }
+    for (int b = 0, k = 0; b < blocks; b++) {
+        for (int i = 0; i < size[b]; i++, k++) {
+            double limited = fmin(mean[b], lowest - (count - 1) * height);
+            top[k] = fmax(limited, highest) + k * height;
+        }
+    }
+}
+
 // Spreads labels at the curves' ends so that none covers another.
 static void place_end_labels(const drawing *d, panel_layout *l)
 {
     int order[PANEL_SERIES], count = 0;
-    double height = height_of(d, "X<sub>1</sub>", TICK_SIZE, false, 0), y;
+    double height = height_of(d, "X<sub>1</sub>", TICK_SIZE, false, 0), y, top[PANEL_SERIES];
     const figure_rect *box = &l->plane.box;
     for (int i = 0; i < l->panel->series_count; i++) {
         l->end_label_y[i] = (double)NAN;
@@ -441,15 +496,12 @@ static void place_end_labels(const drawing *d, panel_layout *l)
         }
         order[k] = i;
     }
-    double lowest = box->y + box->height - height + 3;
-    for (int k = count - 1; k >= 0; k--) {
-        l->end_label_y[order[k]] = fmin(l->end_label_y[order[k]], lowest);
-        lowest = l->end_label_y[order[k]] - height;
-    }
-    double highest = box->y - 3;
     for (int k = 0; k < count; k++) {
-        l->end_label_y[order[k]] = fmax(l->end_label_y[order[k]], highest);
-        highest = l->end_label_y[order[k]] + height;
+        top[k] = l->end_label_y[order[k]];
+    }
+    spread(top, count, height, box->y - 3, box->y + box->height - height + 3);
+    for (int k = 0; k < count; k++) {
+        l->end_label_y[order[k]] = top[k];
     }
 }
 
@@ -479,7 +531,7 @@ static void place_all(drawing *d, int *mark_rows)
         for (int i = 0; i < d->fig->panel_count; i++) {
             panel_layout *l = &d->panels[i];
             ticks_between(&l->y_ticks, l->plane.y_low, l->plane.y_high,
-                          clamp(l->plane.box.height / 22, 2, 7));
+                          clamp(l->plane.box.height / 20, 2, 8));
         }
         place_sides(d);
         ticks_between(&d->x_ticks, d->x_low, d->x_high, clamp((d->right - d->left) / 42, 2, 12));

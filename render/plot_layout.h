@@ -33,11 +33,11 @@ typedef struct panel_layout {
     const figure_panel *panel;
     plane plane;
     ticks y_ticks;
-    double strip_top;      // of the strip for impulses, if there are any
-    bool legend_row;       // the legend stands above the panel
-    bool legend_inside;    // it stands within the panel
-    figure_rect legend;    // width 0: none
-    figure_rect inset;     // with its labels; width 0: none
+    double strip_top;   // of the strip for impulses, if there are any
+    bool legend_row;    // the legend stands above the panel
+    bool legend_inside; // it stands within the panel
+    figure_rect legend; // width 0: none
+    figure_rect inset;  // with its labels; width 0: none
     plane inset_plane;
     ticks inset_x_ticks, inset_y_ticks;
     double end_label_y[PANEL_SERIES]; // top of the labels at the curves' ends
@@ -64,11 +64,11 @@ typedef struct drawing {
 // too small.
 status layout_figure(drawing *d, fault *f);
 
-// An axis' label with its unit and the ticks' factor, as markup. Give it to g_free.
-char *axis_label(const char *label, const char *unit, const ticks *t);
+// A label with its unit and a factor of 10^exponent, as markup. Give it to g_free.
+char *axis_label(const char *label, const char *unit, int exponent);
 
 // The text of a level, a legend entry, a mark ... in the figure's sizes.
-text figure_text_of(const char *markup, double size);
+text_block figure_text_of(const char *markup, double size);
 
 // Number of series of the panel that have a label.
 int labelled_series(const figure_panel *panel);
@@ -76,5 +76,8 @@ int labelled_series(const figure_panel *panel);
 // True if the panel's legend stands at the ends of its curves.
 bool has_end_labels(const figure_panel *panel);
 
-// Index of a series' last finite point inside the horizontal axis; false if there is none.
+// Whether a level's label stands above its line, or below because there is no room.
+bool level_label_above(const panel_layout *l, int index);
+
+// y of a series' last finite point inside the horizontal axis; false if there is none.
 bool series_end(const drawing *d, const figure_series *s, double *y);

@@ -1,25 +1,23 @@
 #include "render/sweep_plot.h"
 
-#include <cairo-pdf.h>
-#include <cairo-svg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/curve.h"
 #include "render/palette.h"
+#include "render/picture_file.h"
 #include "render/text.h"
 #include "render/ticks.h"
-#include "src/lab/whole_file.h"
+#include "src/lab/export.h"
 
 #define MM           (72 / 25.4) // [pt]
 #define PAGE_WIDTH   (150 * MM)
 #define PAGE_HEIGHT  (100 * MM)
-#define PNG_SCALE    (200.0 / 72) // pixels a point
-#define MARGIN       9.0          // [pt]
+#define MARGIN       9.0 // [pt]
 #define TITLE_SIZE   9.0
-#define LABEL_SIZE   8.5
-#define TICK_SIZE    7.5
+#define LABEL_SIZE   8.0
+#define TICK_SIZE    7.0
 #define TICK_LENGTH  3.0
 #define BAR_WIDTH    11.0
 #define BAR_DISTANCE 12.0
@@ -69,12 +67,22 @@ static void add_tick(scale *s, double at, const char *text)
     }
 }
 
-// A true minus sign, and powers of ten written out.
+// A number with few digits as markup: a true minus sign, "2·10<sup>−5</sup>" for "2e-05".
 static void number_label(double value, char text[TICK_TEXT])
 {
     char digits[TICK_TEXT - 4];
+    const char *sign = value < 0 ? "\u2212" : "";
     snprintf(digits, sizeof digits, "%.6g", fabs(value));
-    snprintf(text, TICK_TEXT, "%s%s", value < 0 ? "\u2212" : "", digits);
+    char *exponent = strchr(digits, 'e');
+    if (exponent == NULL) {
+        snprintf(text, TICK_TEXT, "%s%s", sign, digits);
+        return;
+    }
+    int power = atoi(exponent + 1);
+    *exponent = '\0';
+    bool one = strcmp(digits, "1") == 0;
+    snprintf(text, TICK_TEXT, "%s%.7s%s10<sup>%s%d</sup>", sign, one ? "" : digits,
+             one ? "" : "\u00b7", power < 0 ? "\u2212" : "", abs(power));
 }
 
 // Ticks at even steps. Returns the common factor of the labels as markup.
@@ -107,7 +115,7 @@ static void logarithmic_ticks(scale *s)
     }
 }
 
-// Ticks at the points themselves, for words and short logarithmic axes.
+// Ticks at the points themselves, for words and where a few values are spaced unevenly.
 static void ticks_at_points(scale *s, const sweep_axis *axis)
 {
     for (size_t i = 0; i < s->count; i++) {
@@ -150,8 +158,8 @@ static bool take_points(scale *s, const sweep_axis *axis)
     bool falling = axis->is_range && axis->high < axis->low;
     for (size_t i = 0; i < s->count; i++) {
         s->order[i] = falling ? s->count - 1 - i : i;
-        s->points[i] = s->kind == SCALE_WORDS ? (double)i
-                                              : coordinate(s, axis->values[s->order[i]]);
+        s->points[i] =
+            s->kind == SCALE_WORDS ? (double)i : coordinate(s, axis->values[s->order[i]]);
     }
     sort_points(s);
     return true;
@@ -172,6 +180,19 @@ static void make_label(char *label, size_t size, const char *name, const char *u
     }
     g_free(escaped_unit);
     g_free(escaped);
+}
+
+// True for a few values that are spaced unevenly and have no long digits.
+static bool points_are_good_ticks(const scale *s, const sweep_axis *axis)
+{
+    bool good =
+        (axis->logarithmic || !axis->is_range) && s->count > 0 && s->count <= LABELLED_VALUES;
+    for (size_t i = 0; i < s->count && good; i++) {
+        char digits[32];
+        snprintf(digits, sizeof digits, "%.3g", axis->values[i]);
+        good = fabs(strtod(digits, NULL) - axis->values[i]) <= 1e-9 * fabs(axis->values[i]);
+    }
+    return good;
 }
 
 static bool scale_of_axis(scale *s, const sweep_axis *axis, int wanted)
@@ -195,7 +216,7 @@ static bool scale_of_axis(scale *s, const sweep_axis *axis, int wanted)
         s->low -= 0.5;
         s->high += 0.5;
     }
-    if (words || (axis->logarithmic && s->count > 0 && s->count <= LABELLED_VALUES)) {
+    if (words || points_are_good_ticks(s, axis)) {
         ticks_at_points(s, axis);
     } else if (axis->logarithmic) {
         logarithmic_ticks(s);
@@ -251,7 +272,7 @@ static double page_y(const canvas *c, double at)
 static void draw_text(canvas *c, double x, double y, const char *markup, double size,
                       double align_x, double align_y)
 {
-    text t = {.markup = markup, .size = size};
+    text_block t = {.markup = markup, .size = size};
     double width, height;
     text_measure(c->context, &t, &width, &height);
     cairo_move_to(c->cr, x - align_x * width, y - align_y * height);
@@ -273,7 +294,7 @@ static double widest_tick(canvas *c, const scale *s)
 {
     double widest = 0;
     for (int i = 0; i < s->tick_count; i++) {
-        text t = {.markup = s->ticks[i].text, .size = TICK_SIZE};
+        text_block t = {.markup = s->ticks[i].text, .size = TICK_SIZE};
         double width, height;
         text_measure(c->context, &t, &width, &height);
         widest = fmax(widest, width);
@@ -306,14 +327,14 @@ static void draw_grid(canvas *c)
 // before it is left out.
 static void draw_axes(canvas *c)
 {
-    double bottom = c->box.y + c->box.height, taken = -INFINITY;
+    double bottom = c->box.y + c->box.height, taken = -INFINITY, taken_y = INFINITY;
     set_colour(c->cr, c->colours->axis);
     cairo_set_line_width(c->cr, 0.7);
     cairo_rectangle(c->cr, c->box.x, c->box.y, c->box.width, c->box.height);
     cairo_stroke(c->cr);
     for (int i = 0; i < c->x.tick_count; i++) {
         double x = page_x(c, c->x.ticks[i].at), width, height;
-        text t = {.markup = c->x.ticks[i].text, .size = TICK_SIZE};
+        text_block t = {.markup = c->x.ticks[i].text, .size = TICK_SIZE};
         set_colour(c->cr, c->colours->axis);
         line(c, x, bottom, x, bottom + TICK_LENGTH);
         text_measure(c->context, &t, &width, &height);
@@ -327,8 +348,11 @@ static void draw_axes(canvas *c)
         double y = page_y(c, c->y.ticks[i].at);
         set_colour(c->cr, c->colours->axis);
         line(c, c->box.x - TICK_LENGTH, y, c->box.x, y);
-        set_colour(c->cr, c->colours->text);
-        draw_text(c, c->box.x - TICK_LENGTH - 2, y, c->y.ticks[i].text, TICK_SIZE, 1, 0.5);
+        if (y < taken_y - TICK_SIZE) {
+            set_colour(c->cr, c->colours->text);
+            draw_text(c, c->box.x - TICK_LENGTH - 2, y, c->y.ticks[i].text, TICK_SIZE, 1, 0.5);
+            taken_y = y;
+        }
     }
     set_colour(c->cr, c->colours->text);
     draw_text(c, c->box.x + c->box.width / 2, bottom + TICK_LENGTH + TICK_SIZE * 1.2 + 5,
@@ -352,25 +376,29 @@ static void draw_title(canvas *c, const sweep_picture *p, const char *note)
                                            : " of a Latin hypercube");
     char *escaped = text_escape(title);
     set_colour(c->cr, c->colours->text);
-    text t = {.markup = escaped, .size = TITLE_SIZE, .bold = true};
+    text_block t = {.markup = escaped, .size = TITLE_SIZE, .bold = true};
+    double width, height, room = PAGE_WIDTH - MARGIN - c->box.x;
+    text_measure(c->context, &t, &width, &height);
+    t.size *= fmin(1, room / width);
     cairo_move_to(c->cr, c->box.x, MARGIN);
     text_draw(c->cr, c->context, &t);
     g_free(escaped);
     if (note[0] != '\0') {
         set_colour(c->cr, c->colours->faint_text);
-        draw_text(c, c->box.x + c->box.width, c->box.y + c->box.height + 17.5, note, TICK_SIZE, 1,
-                  0);
+        draw_text(c, PAGE_WIDTH - MARGIN, PAGE_HEIGHT - MARGIN, note, TICK_SIZE, 1, 0.7);
     }
 }
 
-// Sets the box between the margins; `right` is what stands at its right side.
-static void place_box(canvas *c, double right)
+// Sets the box between the margins; `right` is what stands at its right side, `note` tells if there
+// is one below.
+static void place_box(canvas *c, double right, bool note)
 {
     double left = MARGIN + LABEL_SIZE * 1.5 + widest_tick(c, &c->y) + TICK_LENGTH + 3;
     double top = MARGIN + TITLE_SIZE * 1.3 + 6;
-    double bottom = MARGIN + LABEL_SIZE * 1.3 + 5 + TICK_SIZE * 1.2 + TICK_LENGTH;
-    c->box = (figure_rect){left, top, PAGE_WIDTH - left - right - MARGIN,
-                           PAGE_HEIGHT - top - bottom};
+    double bottom = MARGIN + LABEL_SIZE * 1.3 + 5 + TICK_SIZE * 1.2 + TICK_LENGTH +
+                    (note ? TICK_SIZE * 1.5 : 0);
+    c->box =
+        (figure_rect){left, top, PAGE_WIDTH - left - right - MARGIN, PAGE_HEIGHT - top - bottom};
 }
 
 // --- one parameter --------------------------------------------------------------------------
@@ -442,7 +470,7 @@ static void draw_curve(canvas *c, const double *x, const double *y, size_t count
     if (with_line && count > MOST_MARKERS) {
         return;
     }
-    double radius = count > 500 ? 1.1 : 1.9;
+    double radius = count > 500 ? 1.1 : count > 12 ? 1.9 : 2.4;
     for (size_t i = 0; i < count; i++) {
         if (isfinite(y[i])) {
             dot(c, page_x(c, x[i]), page_y(c, y[i]), radius);
@@ -484,8 +512,14 @@ static status paint_line(canvas *c, const sweep_picture *p, fault *f)
     high = any ? high : 1;
     double room = high > low ? 0.05 * (high - low) : fmax(0.1 * fabs(high), 1e-12);
     scale_of_quantity(&c->y, p->key, low - room, high + room, 6);
-    widen(&c->x, c->x.kind == SCALE_WORDS ? 0.1 : 0.02);
-    place_box(c, 0);
+    if (c->x.kind == SCALE_WORDS) {
+        c->x.low = -0.5;
+        c->x.high = (double)c->x.count - 0.5;
+    } else {
+        widen(&c->x, 0.02);
+    }
+    missing_note(p, note, sizeof note, "");
+    place_box(c, 0, note[0] != '\0');
     draw_grid(c);
     gather(p, &c->x, x, x + s->run_count);
     cairo_save(c->cr);
@@ -495,7 +529,6 @@ static status paint_line(canvas *c, const sweep_picture *p, fault *f)
     draw_curve(c, x, x + s->run_count, s->run_count, with_line, p->theme);
     cairo_restore(c->cr);
     draw_axes(c);
-    missing_note(p, note, sizeof note, "");
     draw_title(c, p, note);
     if (!any) {
         no_value_text(c);
@@ -509,9 +542,9 @@ static status paint_line(canvas *c, const sweep_picture *p, fault *f)
 void sweep_plot_colour(double share, double rgb[3])
 {
     static const unsigned char points[][3] = {
-        {0x44, 0x01, 0x54}, {0x47, 0x2d, 0x7b}, {0x3b, 0x52, 0x8b}, {0x2c, 0x72, 0x8e},
-        {0x21, 0x91, 0x8c}, {0x28, 0xae, 0x80}, {0x5e, 0xc9, 0x62}, {0xad, 0xdc, 0x30},
-        {0xfd, 0xe7, 0x25},
+        {0x44, 0x01, 0x54}, {0x47, 0x2d, 0x7b}, {0x3b, 0x52, 0x8b},
+        {0x2c, 0x72, 0x8e}, {0x21, 0x91, 0x8c}, {0x28, 0xae, 0x80},
+        {0x5e, 0xc9, 0x62}, {0xad, 0xdc, 0x30}, {0xfd, 0xe7, 0x25},
     };
     enum { LAST = sizeof points / sizeof points[0] - 1 };
     double at = fmin(fmax(share, 0), 1) * LAST;
@@ -545,7 +578,7 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
     }
     // four crossings: the pieces cut off the corners that differ from the middle
     bool middle = (z[0] + z[1] + z[2] + z[3]) / 4 >= level;
-    int first = count == 4 && (z[0] >= level) == middle ? 0 : count == 4 ? 3 : 0;
+    int first = count == 4 && (z[0] >= level) != middle ? 3 : 0;
     for (int i = 0; i < count / 2; i++) {
         int from = side[(first + 2 * i) % count], to = side[(first + 2 * i + 1) % count];
         pieces[i] = (contour_piece){cross_x[from], cross_y[from], cross_x[to], cross_y[to]};
@@ -590,6 +623,7 @@ static void fill_missing(canvas *c, const figure_rect *r)
     cairo_clip_preserve(c->cr);
     set_colour(c->cr, c->colours->grid);
     cairo_fill(c->cr);
+    cairo_set_antialias(c->cr, CAIRO_ANTIALIAS_DEFAULT);
     set_colour(c->cr, c->colours->mark);
     cairo_set_line_width(c->cr, 0.4);
     // lines at fixed places of the page, so that they run on from cell to cell
@@ -602,13 +636,16 @@ static void fill_missing(canvas *c, const figure_rect *r)
 
 static void draw_cells(canvas *c, const sweep_picture *p, const scale *bar)
 {
-    // neighbours would show a hairline between them if edges were smoothed
+    // neighbours would show a hairline between them if edges were smoothed, or if a viewer smooths
+    // them: every cell reaches a little under its later neighbours
+    const double overlap = 0.4;
     cairo_set_antialias(c->cr, CAIRO_ANTIALIAS_NONE);
     for (size_t i = 0; i < c->x.count; i++) {
         double left = page_x(c, cell_edge(&c->x, i)), right = page_x(c, cell_edge(&c->x, i + 1));
         for (size_t j = 0; j < c->y.count; j++) {
-            double top = page_y(c, cell_edge(&c->y, j + 1));
-            figure_rect r = {left, top, right - left, page_y(c, cell_edge(&c->y, j)) - top};
+            double top = page_y(c, cell_edge(&c->y, j + 1)) - overlap;
+            double bottom = page_y(c, cell_edge(&c->y, j));
+            figure_rect r = {left, top, right - left + overlap, bottom - top};
             double value = value_at(c, p, i, j);
             if (isfinite(value)) {
                 use_value_colour(c, bar, value);
@@ -711,6 +748,7 @@ static void draw_map(canvas *c, const sweep_picture *p, const scale *bar, bool g
     if (grid) {
         draw_cells(c, p, bar);
     } else {
+        draw_grid(c);
         draw_dots(c, p, bar);
     }
     for (int i = 0; contours && i < bar->tick_count; i++) {
@@ -749,12 +787,13 @@ static status paint_map(canvas *c, const sweep_picture *p, fault *f)
         widen(&c->x, 0.03);
         widen(&c->y, 0.03);
     }
-    place_box(c, BAR_DISTANCE + BAR_WIDTH + TICK_LENGTH + 4 + widest_tick(c, &bar) +
-                     LABEL_SIZE * 1.5);
+    missing_note(p, note, sizeof note, grid ? " (hatched)" : " (empty)");
+    place_box(c,
+              BAR_DISTANCE + BAR_WIDTH + TICK_LENGTH + 4 + widest_tick(c, &bar) + LABEL_SIZE * 1.5,
+              note[0] != '\0');
     draw_map(c, p, &bar, grid, contours);
     draw_axes(c);
     draw_bar(c, &bar, contours);
-    missing_note(p, note, sizeof note, grid ? " (hatched)" : " (empty)");
     draw_title(c, p, note);
     if (!any) {
         no_value_text(c);
@@ -764,32 +803,15 @@ static status paint_map(canvas *c, const sweep_picture *p, fault *f)
 
 // --- files ----------------------------------------------------------------------------------
 
-static const char *ending_of(const char *path)
-{
-    const char *dot_at = strrchr(path, '.');
-    return dot_at != NULL ? dot_at + 1 : "";
-}
-
 status sweep_plot_check(const sweep *s, const char *path, fault *f)
 {
-    const char *ending = ending_of(path);
-    if (strcmp(ending, "png") != 0 && strcmp(ending, "pdf") != 0 && strcmp(ending, "svg") != 0) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "--plot %.200s: expected a name that ends in .png, .pdf or .svg", path);
-    }
     if (s->axis_count > 2) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "--plot shows one or two varied parameters, but %d are varied",
                          s->axis_count);
     }
-    return text_check_font(f);
-}
-
-void sweep_plot_size(const sweep_picture *p, double *width, double *height)
-{
-    (void)p;
-    *width = PAGE_WIDTH;
-    *height = PAGE_HEIGHT;
+    status code = picture_check_path(path, f);
+    return code == STATUS_OK ? text_check_font(f) : code;
 }
 
 status sweep_plot_paint(cairo_t *cr, const sweep_picture *p, fault *f)
@@ -808,58 +830,28 @@ status sweep_plot_paint(cairo_t *cr, const sweep_picture *p, fault *f)
     return code;
 }
 
-static cairo_status_t write_bytes(void *context, const unsigned char *bytes, unsigned int length)
+static status paint(cairo_t *cr, const void *what, fault *f)
 {
-    return fwrite(bytes, 1, length, (FILE *)context) == length ? CAIRO_STATUS_SUCCESS
-                                                               : CAIRO_STATUS_WRITE_ERROR;
-}
-
-static cairo_surface_t *surface_for(const char *ending, FILE *stream)
-{
-    if (strcmp(ending, "pdf") == 0) {
-        cairo_surface_t *pdf =
-            cairo_pdf_surface_create_for_stream(write_bytes, stream, PAGE_WIDTH, PAGE_HEIGHT);
-        // the same sweep gives the same bytes: no date of today
-        cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
-        return pdf;
-    }
-    if (strcmp(ending, "svg") == 0) {
-        return cairo_svg_surface_create_for_stream(write_bytes, stream, PAGE_WIDTH, PAGE_HEIGHT);
-    }
-    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24,
-                                                        (int)lround(PAGE_WIDTH * PNG_SCALE),
-                                                        (int)lround(PAGE_HEIGHT * PNG_SCALE));
-    cairo_surface_set_device_scale(image, PNG_SCALE, PNG_SCALE);
-    return image;
+    return sweep_plot_paint(cr, what, f);
 }
 
 status sweep_plot_write(const sweep_picture *p, const char *path, fault *f)
 {
-    whole_file file;
-    const char *ending = ending_of(path);
-    status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
+    const sweep *s = p->sweep;
+    char vary[512] = "", software[64];
+    size_t length = 0;
+    for (int i = 0; i < s->axis_count && length < sizeof vary; i++) {
+        length += (size_t)snprintf(vary + length, sizeof vary - length, "%s--vary %s=%s",
+                                   i > 0 ? " " : "", parameter_table[s->axes[i].parameter].path,
+                                   s->axes[i].text);
     }
-    cairo_surface_t *surface = surface_for(ending, file.stream);
-    cairo_t *cr = cairo_create(surface);
-    code = sweep_plot_paint(cr, p, f);
-    cairo_status_t drawn = cairo_status(cr);
-    cairo_destroy(cr);
-    if (code == STATUS_OK && drawn == CAIRO_STATUS_SUCCESS && strcmp(ending, "png") == 0) {
-        drawn = cairo_surface_write_to_png_stream(surface, write_bytes, file.stream);
-    }
-    cairo_surface_finish(surface);
-    drawn = drawn == CAIRO_STATUS_SUCCESS ? cairo_surface_status(surface) : drawn;
-    cairo_surface_destroy(surface);
-    // a write that failed is told, with its reason, by whole_file_commit
-    if (code == STATUS_OK && drawn != CAIRO_STATUS_SUCCESS && drawn != CAIRO_STATUS_WRITE_ERROR) {
-        code = fault_set(f, STATUS_CANNOT_WRITE, "'%.200s' cannot be drawn: %s", path,
-                         cairo_status_to_string(drawn));
-    }
-    if (code != STATUS_OK) {
-        whole_file_abandon(&file);
-        return code;
-    }
-    return whole_file_commit(&file, f);
+    snprintf(software, sizeof software, "impactlab %s", lab_version());
+    picture page = {.width = PAGE_WIDTH,
+                    .height = PAGE_HEIGHT,
+                    .title = s->base->name,
+                    .software = software,
+                    .parameters = vary,
+                    .paint = paint,
+                    .what = p};
+    return picture_write(&page, path, f);
 }

@@ -17,15 +17,13 @@ typedef struct sweep_picture {
     figure_theme theme;
 } sweep_picture;
 
-// Tells before long work whether a picture of the sweep can be drawn into path: one or two
-// parameters, a name that ends in .png, .pdf or .svg. STATUS_BAD_ARGUMENT if not.
+// Tells before long work whether a picture of the sweep can be drawn into path: STATUS_BAD_ARGUMENT
+// if more than two parameters are varied or for an unknown extension, STATUS_CANNOT_WRITE if the
+// path cannot be written, STATUS_CANNOT_READ if the font is missing.
 status sweep_plot_check(const sweep *s, const char *path, fault *f);
 
-// Page size [pt].
-void sweep_plot_size(const sweep_picture *p, double *width, double *height);
-
-// Draws the picture with the page's top left corner at the origin of cr, in points.
-// STATUS_CANNOT_READ if the font is missing.
+// Draws the picture with the page's top left corner at the origin of cr, in points; the
+// page has 150 by 100 mm. STATUS_CANNOT_READ if the font is missing.
 status sweep_plot_paint(cairo_t *cr, const sweep_picture *p, fault *f);
 
 // Draws the picture into a file, whole or not at all; the ending of its name says which kind.
@@ -33,7 +31,8 @@ status sweep_plot_write(const sweep_picture *p, const char *path, fault *f);
 
 // The colour at share 0 ... 1 of the colour scale, each component 0 ... 1: viridis of van der Walt
 // and Smith (2015, public domain), straight lines between nine of its colours. Perceptually even,
-// from dark blue to yellow, and its lightness grows all the way, so that it survives a grey printer.
+// from dark blue to yellow, and its lightness grows all the way, so that it survives a grey
+// printer.
 void sweep_plot_colour(double share, double rgb[3]);
 
 // A piece of a contour line. Coordinates count grid points: x from 0 to columns - 1.

@@ -15,7 +15,8 @@ static bool family_matches(void)
     FcResult result;
     FcPattern *found = FcFontMatch(NULL, wanted, &result);
     FcChar8 *family = NULL;
-    bool matches = found != NULL && FcPatternGetString(found, FC_FAMILY, 0, &family) == FcResultMatch &&
+    bool matches = found != NULL &&
+                   FcPatternGetString(found, FC_FAMILY, 0, &family) == FcResultMatch &&
                    strcmp((const char *)family, TEXT_FAMILY) == 0;
     if (found != NULL) {
         FcPatternDestroy(found);
@@ -74,7 +75,7 @@ char *text_translate(const char *markup, double size)
     return g_string_free(out, FALSE);
 }
 
-PangoLayout *text_layout_create(PangoContext *context, const text *t)
+PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 {
     static const PangoAlignment alignments[] = {PANGO_ALIGN_LEFT, PANGO_ALIGN_CENTER,
                                                 PANGO_ALIGN_RIGHT};
@@ -102,7 +103,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text *t)
     return layout;
 }
 
-void text_measure(PangoContext *context, const text *t, double *width, double *height)
+void text_measure(PangoContext *context, const text_block *t, double *width, double *height)
 {
     PangoRectangle logical;
     PangoLayout *layout = text_layout_create(context, t);
@@ -112,7 +113,7 @@ void text_measure(PangoContext *context, const text *t, double *width, double *h
     g_object_unref(layout);
 }
 
-double text_draw(cairo_t *cr, PangoContext *context, const text *t)
+double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
 {
     PangoRectangle logical;
     // the context has to know whether cr is rotated
@@ -130,21 +131,21 @@ void text_unit(const char *unit, char *out, size_t size)
 {
     static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
-    GString *text = g_string_new(NULL);
+    GString *shown = g_string_new(NULL);
     for (const char *c = unit; *c != '\0'; c++) {
         bool after_letter = c > unit && (g_ascii_isalpha(c[-1]) || g_ascii_isdigit(c[-1]));
         if (*c == ' ') {
-            g_string_append(text, "\u00b7");
+            g_string_append(shown, "\u00b7");
         } else if (g_ascii_isdigit(*c)) {
-            g_string_append(text, powers[*c - '0']);
+            g_string_append(shown, powers[*c - '0']);
         } else if (*c == '-' && after_letter && g_ascii_isdigit(c[1])) {
-            g_string_append(text, "\u207b");
+            g_string_append(shown, "\u207b");
         } else {
-            g_string_append_c(text, *c);
+            g_string_append_c(shown, *c);
         }
     }
-    g_strlcpy(out, text->str, size);
-    g_string_free(text, TRUE);
+    g_strlcpy(out, shown->str, size);
+    g_string_free(shown, TRUE);
 }
 
 char *text_plain(const char *markup)

@@ -16,13 +16,13 @@
 typedef enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT } text_align;
 
 // A text to draw or measure.
-typedef struct text {
+typedef struct text_block {
     const char *markup;
     double size; // of the letters
     bool bold;
     text_align align; // of its lines
     double width;     // at which it is wrapped into lines; 0: never
-} text;
+} text_block;
 
 // Fails with STATUS_CANNOT_READ if TEXT_FAMILY is not installed; f says what to install.
 status text_check_font(fault *f);
@@ -32,14 +32,14 @@ status text_check_font(fault *f);
 PangoContext *text_context_create(void);
 
 // A layout of t, to be given to g_object_unref. Markup that cannot be parsed is shown as it stands.
-PangoLayout *text_layout_create(PangoContext *context, const text *t);
+PangoLayout *text_layout_create(PangoContext *context, const text_block *t);
 
 // Width and height of t.
-void text_measure(PangoContext *context, const text *t, double *width, double *height);
+void text_measure(PangoContext *context, const text_block *t, double *width, double *height);
 
 // Draws t with its top left corner at the current point (of a possibly rotated cr) and returns its
 // width.
-double text_draw(cairo_t *cr, PangoContext *context, const text *t);
+double text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
 
 // Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size. Free the result
 // with g_free.

@@ -18,6 +18,13 @@ typedef struct labelling {
     double score;
 } labelling;
 
+// What ticks are wanted for.
+typedef struct wish {
+    double low, high; // of the data
+    int count;
+    bool inside; // no tick beyond low and high
+} wish;
+
 static double step_unit(const labelling *l)
 {
     return 0.1 * nice_tenths[l->nice] * pow(10, l->power);
@@ -75,37 +82,38 @@ static double density_most(int count, int wanted)
 }
 
 // Tries every start for the given step and count.
-static void try_starts(labelling l, double low, double high, int wanted, labelling *best)
+static void try_starts(labelling l, const wish *w, labelling *best)
 {
     double unit = step_unit(&l), step = unit * l.j;
-    double from = (floor(high / step) - (l.count - 1)) * l.j, to = ceil(low / step) * l.j;
+    double from = (floor(w->high / step) - (l.count - 1)) * l.j, to = ceil(w->low / step) * l.j;
+    double slack = w->inside ? 1e-9 * (w->high - w->low) : (double)INFINITY;
     for (l.start = from; l.start <= to; l.start++) {
         double first = l.start * unit, last = first + step * (l.count - 1);
-        l.score = combined(simplicity(&l), coverage(low, high, first, last),
-                           density(l.count, wanted, low, high, first, last));
-        if (l.score > best->score) {
+        l.score = combined(simplicity(&l), coverage(w->low, w->high, first, last),
+                           density(l.count, w->count, w->low, w->high, first, last));
+        if (l.score > best->score && first >= w->low - slack && last <= w->high + slack) {
             *best = l;
         }
     }
 }
 
 // Tries the powers of ten, from the one that just spans the data upwards.
-static void try_powers(labelling l, double low, double high, int wanted, labelling *best)
+static void try_powers(labelling l, const wish *w, labelling *best)
 {
     double nice = 0.1 * nice_tenths[l.nice];
-    l.power = (int)ceil(log10((high - low) / (l.count + 1) / l.j / nice));
+    l.power = (int)ceil(log10((w->high - w->low) / (l.count + 1) / l.j / nice));
     for (;; l.power++) {
         double span = l.j * step_unit(&l) * (l.count - 1);
-        double most = combined(simplicity_most(l.nice, l.j), coverage_most(low, high, span),
-                               density_most(l.count, wanted));
+        double most = combined(simplicity_most(l.nice, l.j), coverage_most(w->low, w->high, span),
+                               density_most(l.count, w->count));
         if (most < best->score) {
             return;
         }
-        try_starts(l, low, high, wanted, best);
+        try_starts(l, w, best);
     }
 }
 
-static labelling best_labelling(double low, double high, int wanted)
+static labelling best_labelling(const wish *w)
 {
     labelling best = {.score = -2};
     for (int j = 1;; j++) {
@@ -114,10 +122,9 @@ static labelling best_labelling(double low, double high, int wanted)
             if (combined(simple, 1, 1) < best.score) {
                 return best;
             }
-            for (int count = 2; combined(simple, 1, density_most(count, wanted)) >= best.score;
+            for (int count = 2; combined(simple, 1, density_most(count, w->count)) >= best.score;
                  count++) {
-                try_powers((labelling){.j = j, .nice = nice, .count = count}, low, high, wanted,
-                           &best);
+                try_powers((labelling){.j = j, .nice = nice, .count = count}, w, &best);
             }
         }
     }
@@ -162,24 +169,24 @@ static void choose_format(ticks *t)
 }
 
 // Puts the limits in order and apart; false if they are no numbers.
-static bool straighten(double *low, double *high, int *wanted)
+static bool straighten(wish *w)
 {
-    if (!isfinite(*low) || !isfinite(*high)) {
+    if (!isfinite(w->low) || !isfinite(w->high)) {
         return false;
     }
-    if (*low > *high) {
-        double other = *low;
-        *low = *high;
-        *high = other;
+    if (w->low > w->high) {
+        double other = w->low;
+        w->low = w->high;
+        w->high = other;
     }
-    double size = fmax(fabs(*low), fabs(*high));
-    if (*high - *low <= 1e-10 * size || *high == *low) {
+    double size = fmax(fabs(w->low), fabs(w->high));
+    if (w->high - w->low <= 1e-10 * size || w->high == w->low) {
         double half = size > 0 ? 0.1 * size : 1;
-        *low -= half;
-        *high += half;
+        w->low -= half;
+        w->high += half;
     }
-    *wanted = *wanted < 2 ? 2 : *wanted > TICKS_MOST / 2 ? TICKS_MOST / 2 : *wanted;
-    return isfinite(*high - *low);
+    w->count = w->count < 2 ? 2 : w->count > TICKS_MOST / 2 ? TICKS_MOST / 2 : w->count;
+    return isfinite(w->high - w->low);
 }
 
 static void fill(ticks *t, const labelling *l, double first, int count)
@@ -196,33 +203,31 @@ static void fill(ticks *t, const labelling *l, double first, int count)
 
 void ticks_extended(ticks *t, double low, double high, int wanted)
 {
+    wish w = {low, high, wanted, false};
     memset(t, 0, sizeof *t);
     t->minor = 1;
-    if (straighten(&low, &high, &wanted)) {
-        labelling best = best_labelling(low, high, wanted);
+    if (straighten(&w)) {
+        labelling best = best_labelling(&w);
         fill(t, &best, best.start, best.count);
     }
 }
 
 void ticks_between(ticks *t, double low, double high, int wanted)
 {
+    wish w = {low, high, wanted, true};
     memset(t, 0, sizeof *t);
     t->minor = 1;
-    if (!straighten(&low, &high, &wanted)) {
+    if (!straighten(&w)) {
         return;
     }
-    labelling best = best_labelling(low, high, wanted);
-    double unit = step_unit(&best), slack = 1e-9 * (high - low);
+    labelling best = best_labelling(&w);
+    double unit = step_unit(&best), slack = 1e-9 * (w.high - w.low);
     double first = best.start;
-    // whole steps outwards and inwards until the outermost ticks are the last ones inside
-    while (first * unit - best.j * unit >= low - slack) {
+    // whatever else lies on a whole step inside
+    while ((first - best.j) * unit >= w.low - slack) {
         first -= best.j;
     }
-    while (first * unit < low - slack) {
-        first += best.j;
-    }
-    int count = (int)floor((high + slack - first * unit) / (best.j * unit)) + 1;
-    fill(t, &best, first, count > 0 ? count : 0);
+    fill(t, &best, first, (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1);
 }
 
 void tick_label(const ticks *t, int index, char text[TICK_TEXT])

@@ -24,8 +24,7 @@ typedef struct ticks {
 // ones are widened; limits that are not finite give no ticks.
 void ticks_extended(ticks *t, double low, double high, int wanted);
 
-// The ticks for an axis that ends at low and high: the steps of ticks_extended, at all multiples
-// between the limits.
+// The same for an axis that ends at low and high: no tick lies outside, and none is missing inside.
 void ticks_between(ticks *t, double low, double high, int wanted);
 
 // The label of tick `index` with a true minus sign (U+2212) and no needless digits.

@@ -78,8 +78,21 @@ expect 2 run first-impct
 expect 2 run no-such-file.yaml
 expect 2 animate hit.yaml -o x.mp4
 says err "not there yet"
-expect 2 sweep hit.yaml --vary motor.voltage=1:2:3
-says err "not there yet"
+
+# pictures
+expect 0 run hit.yaml --quiet --plot hit.png
+expect 0 run hit.yaml --quiet --plot again.png
+cmp -s hit.png again.png || fail "two plots of the same run differ"
+[ "$(head -c 4 hit.png | tail -c 3)" = PNG ] || fail "hit.png is no PNG"
+expect 1 run hit.yaml --quiet --plot no/such/folder/hit.png
+expect 2 run hit.yaml --quiet --plot hit.gif
+expect 0 figures 3.4 -o pictures --format png,pdf,svg
+for ending in png pdf svg csv; do
+    [ -s "pictures/fig-3-4.$ending" ] || fail "pictures/fig-3-4.$ending is missing"
+done
+expect 2 figures 9.9 -o pictures
+says err "no figure '9.9'"
+expect 1 figures 3.4 -o /proc/pictures
 
 # --- list, show, check
 expect 0 list

@@ -21,7 +21,15 @@ static const option_info option_table[] = {
     {'c', false, "csv", "FILE|-", "write the recorded signals, one row a step"},
     {'p', false, "plot", "FILE.{png,pdf,svg}", "draw the recorded signals"},
     {'S', false, "scene", "FILE.png", "draw the arm"},
-    {'v', false, "vary", "PATH=a:b:n", "vary a parameter from a to b in n steps"},
+    {'v', false, "vary", "PATH=a:b:n", "vary a parameter: n values from a to b (may be repeated)"},
+    {'m', false, "sample", "grid|random|latin", "how the values are combined (grid)"},
+    {'n', false, "runs", "N", "number of runs at random or of a Latin hypercube"},
+    {'e', false, "seed", "S", "start of the random numbers (0)"},
+    {'J', false, "jobs", "J", "number of runs at a time (as many as processors)"},
+    {'d', false, "db", "FILE.sqlite", "keep every run in a database; go on where it ends"},
+    {'C', false, "csv", "FILE|-", "write a row for each run"},
+    {'P', false, "plot", "FILE.{png,pdf,svg}", "draw the quantity over one or two parameters"},
+    {'Q', false, "quantity", "KEY", "what to draw and to sum up (peak_force_N)"},
     {'o', true, "output", "PATH", "file or folder to write to"},
     {'f', false, "format", "png,pdf,svg", "which kinds of files to write"},
     {'q', true, "quiet", NULL, "print no summary"},
@@ -72,13 +80,28 @@ static bool take_option(arguments *a, int letter, char *value)
     case 'j':
         return take_text(&a->json, value);
     case 'c':
+    case 'C':
         return take_text(&a->csv, value);
     case 'p':
+    case 'P':
         return take_text(&a->plot, value);
     case 'S':
         return take_text(&a->scene, value);
     case 'v':
-        return take_text(&a->vary, value);
+        a->varies[a->vary_count++] = value;
+        return true;
+    case 'm':
+        return take_text(&a->sample, value);
+    case 'n':
+        return take_text(&a->runs, value);
+    case 'e':
+        return take_text(&a->seed, value);
+    case 'J':
+        return take_text(&a->jobs, value);
+    case 'd':
+        return take_text(&a->db, value);
+    case 'Q':
+        return take_text(&a->quantity, value);
     case 'o':
         return take_text(&a->output, value);
     case 'f':
@@ -144,8 +167,8 @@ static const char *option_name(int letter)
 // Two results must not end in one place.
 static int check_places(const arguments *a)
 {
-    const char *places[] = {a->json, a->csv, a->plot, a->scene};
-    for (size_t i = 0; i < 4; i++) {
+    const char *places[] = {a->json, a->csv, a->plot, a->scene, a->db};
+    for (size_t i = 0; i < 5; i++) {
         for (size_t j = 0; j < i; j++) {
             if (places[i] != NULL && places[j] != NULL && strcmp(places[i], places[j]) == 0) {
                 return complain("two results cannot both be written to %s",
@@ -176,7 +199,9 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
     int letter;
     memset(a, 0, sizeof *a);
     a->sets = calloc((size_t)argc + 1, sizeof *a->sets);
-    if (a->sets == NULL) {
+    a->varies = calloc((size_t)argc + 1, sizeof *a->varies);
+    if (a->sets == NULL || a->varies == NULL) {
+        arguments_finish(a);
         complain("out of memory");
         *exit_status = EXIT_FAILED;
         return false;
@@ -211,5 +236,6 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
 void arguments_finish(arguments *a)
 {
     free(a->sets);
+    free(a->varies);
     memset(a, 0, sizeof *a);
 }

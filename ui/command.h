@@ -16,7 +16,10 @@ typedef struct arguments {
     int operand_count;
     char **sets; // values of --set in their order
     int set_count;
-    const char *json, *csv, *plot, *scene, *vary, *output, *format; // NULL if not given
+    char **varies; // values of --vary in their order
+    int vary_count;
+    const char *json, *csv, *plot, *scene, *output, *format; // NULL if not given
+    const char *sample, *runs, *seed, *jobs, *db, *quantity; // of sweep; NULL if not given
     bool quiet;
 } arguments;
 

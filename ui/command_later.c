@@ -8,13 +8,6 @@ static int animate(const arguments *a)
                     "--plot draws curves)");
 }
 
-static int sweep(const arguments *a)
-{
-    (void)a;
-    return complain("sweep is not there yet: it comes with a later version (impactlab run --set "
-                    "runs one point)");
-}
-
 const command animate_command = {
     .name = "animate",
     .operands = "[SCENARIO]",
@@ -23,14 +16,4 @@ const command animate_command = {
     .help = "",
     .most = 1,
     .run = animate,
-};
-
-const command sweep_command = {
-    .name = "sweep",
-    .operands = "[SCENARIO]",
-    .options = "svj",
-    .summary = "A run for each of many parameter values (not there yet)",
-    .help = "",
-    .most = 1,
-    .run = sweep,
 };

@@ -2,11 +2,13 @@
 
 #include <math.h>
 
+#include "src/predict/linearised.h"
 #include "src/predict/predict.h"
 
 typedef struct predictor {
     const char *name; // key of --json
     const char *label;
+    // NULL: the linearised arm, which asks for the state of all links
     status (*predict)(const parameters *p, const three_body_state *s, prediction *out, fault *f);
 } predictor;
 
@@ -14,6 +16,7 @@ static const predictor predictors[] = {
     {"energy", "energy principle", predict_energy},
     {"impact_dynamics", "impact dynamics", predict_impact_dynamics},
     {"impact_quadratic", "impact dynamics, closed form", predict_impact_quadratic},
+    {"linearised", "linearised constrained arm", NULL},
 };
 enum { PREDICTORS = sizeof predictors / sizeof predictors[0] };
 
@@ -54,14 +57,35 @@ static parameters parameters_at(const scenario *s, double time)
     return p;
 }
 
-static void predict_all(const scenario *s, const sample *row, outcome *outcomes)
+static status predict_by_linearised_arm(const parameters *p, const run_result *result,
+                                        prediction *out, fault *f)
+{
+    if (result->touch == NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "for the corrected model only");
+    }
+    arm a;
+    arm_init(&a, p);
+    motion *work = motion_create(&a, &p->method);
+    if (work == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+    status code = predict_linearised(&a, work, result->touch, result->touch + a.dof, out);
+    motion_destroy(work);
+    return code == STATUS_OK ? code : fault_set(f, code, "%s", status_text(code));
+}
+
+static void predict_all(const scenario *s, const run_result *result, const sample *row,
+                        outcome *outcomes)
 {
     three_body_state state = state_of(row);
     parameters now = parameters_at(s, row->time);
     for (int i = 0; i < PREDICTORS; i++) {
         outcomes[i] = (outcome){.fault = {.code = STATUS_OK}};
-        outcomes[i].fault.code =
-            predictors[i].predict(&now, &state, &outcomes[i].prediction, &outcomes[i].fault);
+        outcome *o = &outcomes[i];
+        o->fault.code =
+            predictors[i].predict != NULL
+                ? predictors[i].predict(&now, &state, &o->prediction, &o->fault)
+                : predict_by_linearised_arm(&now, result, &o->prediction, &o->fault);
     }
 }
 
@@ -139,7 +163,7 @@ static void print_predictions(const scenario *s, const sample *row, const outcom
     print_line("simulation", m->first_pulse_peak_N, m->first_pulse_time_to_peak_s,
                m->contact_impulse_Ns);
     if (s->parameters.arm.links != 2) {
-        printf("\n  The predictors know two links, the simulation has %d.\n",
+        printf("\n  The thesis's predictors know two links, the simulation has %d.\n",
                s->parameters.arm.links);
     }
 }
@@ -153,7 +177,7 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
                  s->name);
         return EXIT_FAILED;
     }
-    predict_all(s, row, outcomes);
+    predict_all(s, result, row, outcomes);
     int code = EXIT_DONE;
     if (a->json != NULL) {
         code = write_json(a->json, predict_object(s, row, outcomes, &result->summary));

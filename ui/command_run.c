@@ -1,5 +1,7 @@
 #include "ui/command.h"
 
+#include "render/trace_plot.h"
+
 #include <math.h>
 
 #include "src/parameters.h"
@@ -129,6 +131,12 @@ static int write_results(const arguments *a, const scenario *s, const run_result
     if (a->csv != NULL) {
         code = worse(code, write_csv(a->csv, s, result));
     }
+    if (a->plot != NULL) {
+        fault f = {0};
+        if (plot_run(s, result, a->plot, &f) != STATUS_OK) {
+            code = worse(code, complain_fault(&f));
+        }
+    }
     return code;
 }
 
@@ -138,9 +146,6 @@ static int check_request(const arguments *a)
     if (a->scene != NULL) {
         return complain("run --scene is not there yet: pictures of the arm come with a later "
                         "version");
-    }
-    if (a->plot != NULL) {
-        return complain("run --plot is not there yet");
     }
     return worse(check_output(a->json), worse(check_output(a->csv), check_output(a->plot)));
 }

@@ -266,6 +266,14 @@ static status book_event(recording *r, motion *m, const motion_report *report)
 static status pass_event(recording *r, const arm *a, motion *m, motion_report *report)
 {
     status failed = record_row(r, a, m, m->state, 0);
+    if (report->event == MOTION_IMPACT && r->result->touch == NULL) {
+        size_t size = 2 * (size_t)m->dof * sizeof(double); // velocities stand behind the angles
+        r->result->touch = malloc(size);
+        if (r->result->touch == NULL) {
+            return STATUS_NO_MEMORY;
+        }
+        memcpy(r->result->touch, state_angles(m, m->state), size);
+    }
     motion_apply(a, m, report);
     if (failed == STATUS_OK) {
         failed = book_event(r, m, report);
@@ -633,6 +641,8 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
 void run_finish(run_result *result)
 {
     trace_finish(&result->trace);
+    free(result->touch);
+    result->touch = NULL;
 }
 
 int run_check_expectations(const scenario *s, const run_result *result, fault_handler report,

@@ -44,6 +44,8 @@ bool summary_get(const summary *s, const char *key, double *value);
 typedef struct run_result {
     summary summary;
     trace trace; // rows at every step and on both sides of every event; empty if not asked for
+    double *touch; // corrected model: angles[dof], then velocities[dof], at the instant before the
+                   // first impact [rad], [rad/s]; NULL if there was none
 } run_result;
 
 // Simulates the scenario. Returns STATUS_OK, or what stopped the run: then summary.message says

@@ -141,10 +141,15 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
     size_t count = split(text, ':', pieces, 4), n = 0;
     axis->is_range = true;
     if (axis_info(axis)->choices != NULL || axis_info(axis)->type == PARAMETER_BOOLEAN) {
+        char words[128];
+        snprintf(words, sizeof words, "%s",
+                 axis_info(axis)->choices ? axis_info(axis)->choices : "true|false");
+        for (char *c = words; *c != '\0'; c++) {
+            *c = *c == '|' ? ',' : *c;
+        }
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "%s takes words, which have no range; expected a list such as %s",
-                         axis_info(axis)->path,
-                         axis_info(axis)->type == PARAMETER_BOOLEAN ? "true,false" : "a,b");
+                         axis_info(axis)->path, words);
     }
     axis->logarithmic = count > 2 && count <= 4 && strcmp(pieces[count - 1], "log") == 0;
     count -= axis->logarithmic;

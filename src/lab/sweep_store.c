@@ -153,8 +153,11 @@ static void define_script(definition *d, const scenario *s)
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
         bool push = a->kind == ACTION_PUSH;
-        fprintf(stream, "%sat %.17g %s = %.17g", i > 0 ? "; " : "", a->time,
-                push ? "push" : parameter_table[a->parameter].path, a->value);
+        char time[NUMBER_TEXT], value[NUMBER_TEXT];
+        number_format(time, a->time);
+        number_format(value, a->value);
+        fprintf(stream, "%sat %s %s = %s", i > 0 ? "; " : "", time,
+                push ? "push" : parameter_table[a->parameter].path, value);
     }
     if (fclose(stream) == 0) {
         define(d, "script", "%s", text);
@@ -246,7 +249,9 @@ static status compare_definitions(const char *path, const definition *was, const
     int count = 0;
     for (int i = 0; i < now->count; i++) {
         const char *key = now->lines[i].key, *before = definition_value(was, key);
-        if (is_compared(key) && (before == NULL || strcmp(before, now->lines[i].value) != 0)) {
+        // which parameters were given is worth saying only if all values are the same
+        bool aside = !is_compared(key) || (count > 0 && strcmp(key, "given") == 0);
+        if (!aside && (before == NULL || strcmp(before, now->lines[i].value) != 0)) {
             add_difference(text, sizeof text, &count, key, before, now->lines[i].value);
         }
     }

@@ -33,7 +33,6 @@
 #include <math.h>
 #include <string.h>
 
-#define RESOLVED          1.0 // (fastest rate) x (step) up to which a step resolves every mode
 #define NEWTON_ITERATIONS 30
 #define NEWTON_TOLERANCE  1e-12 // of the last correction, relative to the largest angle or 1 rad
 
@@ -396,7 +395,7 @@ static bool makes_energy(const arm *a, const motion *m)
 static status step(const arm *a, motion *m, double h)
 {
     const contact_mode mode = state_mode(m->state);
-    const bool resolved = m->nominal_step * a->fastest_rate < RESOLVED;
+    const bool resolved = !motion_unresolved(a, m);
     coefficients k = {m->alpha_m, m->alpha_f, m->beta, m->gamma};
     if (!resolved && (mode.contact || m->state[SLOT_JUMPED] != 0)) {
         k = (coefficients){0, 0, 1, 1};

@@ -20,10 +20,16 @@
 #define TOUCH_SPEED         1e-11 // approach speed below which a touch carries no impulse [m/s]
 #define FORCE_TOLERANCE     1e-9  // tension that counts as a release [N]
 #define TORQUE_TOLERANCE    1e-12 // excess that counts as breaking away [N m]
+#define UNRESOLVED_IMPACT   0.1   // share of a step that an impact takes where steps do not resolve it
 #define MOST_HALVINGS       8     // of a step that does not converge or makes energy
 #define LOCATION_TIME       1e-15 // width to which the bracket of an event is narrowed [s]
 #define PROJECTION_GAP      1e-14 // drift that is projected away in contact [m]
 #define PROJECTION_RATE     1e-13 // [m/s]
+
+bool motion_unresolved(const arm *a, const motion *m)
+{
+    return m->stepper == &implicit_stepper && m->nominal_step * a->fastest_rate > 1;
+}
 
 static void choose_stepper(const arm *a, motion *m, const method_parameters *method)
 {
@@ -477,6 +483,13 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
     }
     *found = true;
     status s = narrow(a, m, w, guess, lo, v0, &hi, v1);
+    // an unresolved impact happens within its step: nothing is located inside its first part
+    double least = fmin(*h, UNRESOLVED_IMPACT * m->nominal_step);
+    bool within_impact = m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
+    if (s == STATUS_OK && within_impact && motion_unresolved(a, m)) {
+        hi = least;
+        s = take_step(a, m, hi);
+    }
     *h = hi;
     return s;
 }
@@ -628,20 +641,53 @@ static void impact(const arm *a, motion *m, motion_report *report)
     double *increment = m->scratch;
     double e = chain_penetration_rate(a, q, w) < a->rest_speed ? 0 : a->restitution;
     impact_result result = impact_velocity_increments(a, m->links, q, w, e, increment);
-    for (int i = 0; i < m->dof; i++) {
-        w[i] += increment[i];
-    }
     report->speed = result.speed;
     report->impulse = result.impulse;
     report->loss = result.loss;
     m->state[SLOT_IMPACT_LOSS] += result.loss;
+    if (motion_unresolved(a, m) && e == 0) {
+        m->state[SLOT_CONTACT] = 1;
+        m->state[SLOT_FORCE] = result.impulse / m->nominal_step;
+        m->state[SLOT_JUMPED] = 1;
+        report->holds = true;
+        return;
+    }
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += increment[i];
+    }
     resolve(a, m, e == 0, MOTION_IMPACT);
     report->holds = m->state[SLOT_CONTACT] != 0;
+}
+
+// The same choice where steps do not resolve the fastest modes: accelerations at an instant are then
+// no information, so the event itself says what holds next, and the next step corrects it.
+static void resolve_coarsely(const arm *a, motion *m, motion_report *report)
+{
+    double *state = m->state;
+    if (report->event == MOTION_RELEASE) {
+        state[SLOT_CONTACT] = state[SLOT_FORCE] = 0;
+    } else if (report->event == MOTION_TOUCH) {
+        state[SLOT_CONTACT] = 1;
+    } else if (report->event == MOTION_STICK) {
+        state_velocities(m, state)[0] = 0;
+        state[SLOT_FRICTION] = HUB_STICK;
+    } else if (report->event == MOTION_SLIP) {
+        bool forward = state[SLOT_FRICTION_TORQUE] < 0; // friction resists the way the hub goes
+        state[SLOT_FRICTION] = forward ? HUB_FORWARD : HUB_BACKWARD;
+        state[SLOT_FRICTION_TORQUE] = forward ? -a->stiction : a->stiction;
+    }
+    report->holds = state[SLOT_CONTACT] != 0;
+    state[SLOT_JUMPED] = 1;
 }
 
 void motion_apply(const arm *a, motion *m, motion_report *report)
 {
     bool contact = m->state[SLOT_CONTACT] != 0;
+    bool coarse = report->event == MOTION_SLIP || (contact && report->event != MOTION_IMPACT);
+    if (coarse && report->event != MOTION_REACHED && motion_unresolved(a, m)) {
+        resolve_coarsely(a, m, report);
+        return;
+    }
     switch (report->event) {
     case MOTION_REACHED:
         break;

@@ -178,5 +178,8 @@ void motion_evaluate(const arm *a, motion *m, double *state);
 // that moved it.
 void motion_project(const arm *a, motion *m, double *state);
 
+// Whether the motion's steps are too long for the arm's fastest modes, as with many links.
+bool motion_unresolved(const arm *a, const motion *m);
+
 // Energy that the ledger does not account for at a state of this motion [J].
 double motion_energy_residual(const arm *a, const motion *m, double *state);

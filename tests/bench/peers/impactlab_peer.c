@@ -38,22 +38,21 @@ static void *create(const peer *self)
     parameters *p = &s->parameters;
     parameters_defaults(p, ARM_CORRECTED);
     // everything the experiment states is set, so that a changed default cannot change it
-    bool good = set(p, "arm.model", "corrected") && set(p, "arm.hub_joint", "rigid") &&
-                set_number(p, "arm.links", self->links) &&
-                set_number(p, "arm.length", EXPERIMENT_BEAM_LENGTH) &&
-                set_number(p, "arm.mass", EXPERIMENT_BEAM_MASS) &&
-                set_number(p, "arm.hub_inertia", EXPERIMENT_HUB_INERTIA) &&
-                set_number(p, "arm.k2", EXPERIMENT_SPRING) &&
-                set_number(p, "arm.damping_ratio", 0) &&
-                set_number(p, "motor.voltage", EXPERIMENT_VOLTAGE) &&
-                set_number(p, "motor.torque_constant", EXPERIMENT_TORQUE_CONSTANT) &&
-                set_number(p, "motor.stiction", EXPERIMENT_STICTION) &&
-                set(p, "wall.kind", self->links == 2 ? "plane" : "none") &&
-                set_number(p, "wall.angle", EXPERIMENT_WALL) &&
-                set_number(p, "wall.restitution", 0) &&
-                set(p, "method.name", method_names[self->variant]) &&
-                set_number(p, "method.step", EXPERIMENT_STEP) &&
-                set_number(p, "run.duration", EXPERIMENT_DURATION);
+    bool good =
+        set(p, "arm.model", "corrected") && set(p, "arm.hub_joint", "rigid") &&
+        set_number(p, "arm.links", self->links) &&
+        set_number(p, "arm.length", EXPERIMENT_BEAM_LENGTH) &&
+        set_number(p, "arm.mass", EXPERIMENT_BEAM_MASS) &&
+        set_number(p, "arm.hub_inertia", EXPERIMENT_HUB_INERTIA) &&
+        set_number(p, "arm.k2", EXPERIMENT_SPRING) && set_number(p, "arm.damping_ratio", 0) &&
+        set_number(p, "motor.voltage", EXPERIMENT_VOLTAGE) &&
+        set_number(p, "motor.torque_constant", EXPERIMENT_TORQUE_CONSTANT) &&
+        set_number(p, "motor.stiction", EXPERIMENT_STICTION) &&
+        set(p, "wall.kind", self->links == 2 ? "plane" : "none") &&
+        set_number(p, "wall.angle", EXPERIMENT_WALL) && set_number(p, "wall.restitution", 0) &&
+        set(p, "method.name", method_names[self->variant]) &&
+        set_number(p, "method.step", EXPERIMENT_STEP) &&
+        set_number(p, "run.duration", EXPERIMENT_DURATION);
     if (good && parameters_resolve(p, &f) != STATUS_OK) {
         fprintf(stderr, "peers: impactlab: %s\n", f.text);
         good = false;
@@ -75,7 +74,7 @@ static bool run(void *instance, peer_answer *answer)
     answer->peak = s->first_pulse_peak_N;
     answer->peak_delay = s->first_pulse_time_to_peak_s;
     answer->release = s->first_contact_s + s->first_pulse_s;
-    answer->final_force = s->steady_force_N;
+    answer->final_force = isnan(s->first_contact_s) ? (double)NAN : s->steady_force_N;
     answer->steps = s->steps;
     answer->computing_time = s->wall_time_s;
     int impacts = 0;
@@ -105,7 +104,10 @@ static double duration(const void *instance)
 }
 
 #define IMPACTLAB(text, links, variant)                                                            \
-    {"impactlab", IMPACTLAB_VERSION, text, links, variant, create, free, run, fixed_step, duration}
+    {                                                                                              \
+        "impactlab", IMPACTLAB_VERSION, text, links, variant, create, free, run, fixed_step,       \
+            duration                                                                               \
+    }
 
 static const peer list_of_peers[] = {
     IMPACTLAB("event (its default)", 2, BY_EVENT),

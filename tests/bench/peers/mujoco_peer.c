@@ -19,7 +19,8 @@ typedef enum mujoco_variant {
     TENDON_IMPLICIT,
     TENDON_RK4,
     TENDON_DEFAULTS,
-    FREE_FLIGHT
+    FLIGHT_EULER,
+    FLIGHT_IMPLICIT
 } mujoco_variant;
 
 typedef struct simulation {
@@ -44,93 +45,71 @@ static void count_warning(const char *text)
     warnings++;
 }
 
-// As stiff as MuJoCo takes it: a time constant of two steps, critical damping, impedance 0.9999.
-static const char stiff[] = "\"0.002 1\"";
-static const char hard[] = "\"0.9999 0.9999 0.0001 0.5 2\"";
+// As stiff as MuJoCo takes it: a time constant of two steps and an impedance of 0.9999. With a
+// damping ratio of 1 the tip would bounce off by about a tenth of its speed; 10 makes the impact
+// plastic.
+#define STIFF(what) "solref" what "=\"0.002 10\" solimp" what "=\"0.9999 0.9999 0.0001 0.5 2\""
 
-static const char *integrator_name(int variant)
+// The two-link arm, the second link inside the first. Planar motion sees the third inertia only;
+// the first keeps a rod's triangle inequality. With variants of soft contact the wall is a tendon's
+// limit or a plane whose normal points back at the arm, moved by the sphere's radius.
+static int write_arm(char *xml, int size, int variant)
 {
-    switch (variant) {
-    case TENDON_IMPLICIT:
-    case FREE_FLIGHT:
-        return "implicit";
-    case TENDON_RK4:
-        return "RK4";
-    default:
-        return "Euler";
+    const double l = EXPERIMENT_BEAM_LENGTH / 2, m = EXPERIMENT_BEAM_MASS / 2;
+    const double inertia = m * l * l / 12, radius = 0.001;
+    const double s = sin(EXPERIMENT_WALL), c = cos(EXPERIMENT_WALL);
+    bool sphere = variant == SPHERE_EULER, soft = variant == TENDON_DEFAULTS;
+    char rod[200], tip[200] = "", plane[300] = "", tendon[300] = "";
+    snprintf(rod, sizeof rod,
+             "<inertial pos=\"%.17g 0 0\" mass=\"%.17g\" diaginertia=\"%.17g %.17g %.17g\"/>",
+             l / 2, m, inertia / 100, inertia, inertia);
+    if (sphere) {
+        snprintf(tip, sizeof tip,
+                 "<geom type=\"sphere\" size=\"%g\" pos=\"%.17g 0 0\" condim=\"1\" %s/>", radius, l,
+                 STIFF(""));
+        snprintf(
+            plane, sizeof plane,
+            "<geom type=\"plane\" size=\"2 2 1\" pos=\"%.17g %.17g 0\" zaxis=\"%.17g %.17g 0\" "
+            "condim=\"1\" %s/>",
+            -radius * s, radius * c, s, -c, STIFF(""));
+    } else {
+        snprintf(tendon, sizeof tendon,
+                 "<tendon><fixed limited=\"true\" range=\"-10 %.17g\" %s>"
+                 "<joint joint=\"hub\" coef=\"2\"/><joint joint=\"middle\" "
+                 "coef=\"1\"/></fixed></tendon>",
+                 2 * EXPERIMENT_WALL, soft ? "" : STIFF("limit"));
     }
+    return snprintf(
+        xml, (size_t)size,
+        "<mujoco><compiler angle=\"radian\" inertiafromgeom=\"false\"/>"
+        "<option integrator=\"%s\" solver=\"PGS\" jacobian=\"dense\">"
+        "<flag contact=\"%s\"/></option><worldbody>%s"
+        "<body><joint name=\"hub\" axis=\"0 0 1\"/>%s<body pos=\"%.17g 0 0\">"
+        "<joint name=\"middle\" axis=\"0 0 1\"/>%s%s</body></body></worldbody>%s</mujoco>",
+        variant == TENDON_IMPLICIT ? "implicit"
+        : variant == TENDON_RK4    ? "RK4"
+                                   : "Euler",
+        sphere ? "enable" : "disable", plane, rod, l, rod, tip, tendon);
 }
 
-static int write_options(char *xml, int size, int variant, double step)
+// A chain as URDF, which lists links and joints one after the other: MJCF, with each body inside
+// the one before it, may be nested only some hundred deep.
+static int write_chain(char *xml, int size, int links)
 {
-    return snprintf(xml, (size_t)size,
-                    "<mujoco><compiler angle=\"radian\" inertiafromgeom=\"false\"/>"
-                    "<option timestep=\"%.17g\" integrator=\"%s\" gravity=\"0 0 0\" jacobian=\"%s\" "
-                    "solver=\"Newton\">"
-                    "<flag gravity=\"disable\" contact=\"%s\"/></option><worldbody>",
-                    step, integrator_name(variant), variant == FREE_FLIGHT ? "auto" : "dense",
-                    variant == SPHERE_EULER ? "enable" : "disable");
-}
-
-// The bodies, each inside the one before it, with the hinge at its own base.
-static int write_bodies(char *xml, int size, const peer *self)
-{
-    int links = self->links, at = 0;
     double l = EXPERIMENT_BEAM_LENGTH / links, m = EXPERIMENT_BEAM_MASS / links;
-    double inertia = m * l * l / 12, spring = EXPERIMENT_SPRING * links / 2;
-    for (int k = 0; k < links; k++) {
-        at += snprintf(xml + at, (size_t)(size - at), "<body pos=\"%.17g 0 0\">", k > 0 ? l : 0);
-        if (k == 0) {
-            at += snprintf(xml + at, (size_t)(size - at),
-                           "<joint name=\"j0\" axis=\"0 0 1\" armature=\"%.17g\" damping=\"%.17g\" "
-                           "frictionloss=\"%.17g\"",
-                           EXPERIMENT_HUB_INERTIA, EXPERIMENT_HUB_DAMPING, EXPERIMENT_STICTION);
-            at += self->variant == TENDON_DEFAULTS
-                      ? snprintf(xml + at, (size_t)(size - at), "/>")
-                      : snprintf(xml + at, (size_t)(size - at),
-                                 " solreffriction=%s solimpfriction=%s/>", stiff, hard);
-        } else {
-            at += snprintf(xml + at, (size_t)(size - at),
-                           "<joint name=\"j%d\" axis=\"0 0 1\" stiffness=\"%.17g\"/>", k, spring);
-        }
-        // planar motion sees the third inertia only; the first keeps a rod's triangle inequality
-        at += snprintf(xml + at, (size_t)(size - at),
-                       "<inertial pos=\"%.17g 0 0\" mass=\"%.17g\" "
-                       "diaginertia=\"%.17g %.17g %.17g\"/>",
-                       l / 2, m, inertia / 100, inertia, inertia);
+    double inertia = m * l * l / 12;
+    int at = snprintf(xml, (size_t)size, "<robot name=\"chain\"><link name=\"l0\"/>");
+    for (int k = 1; k <= links; k++) {
+        at += snprintf(
+            xml + at, (size_t)(size - at),
+            "<link name=\"l%d\"><inertial><origin xyz=\"%.17g 0 0\"/><mass value=\"%.17g\"/>"
+            "<inertia ixx=\"%.17g\" iyy=\"%.17g\" izz=\"%.17g\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>"
+            "</inertial></link><joint name=\"j%d\" type=\"continuous\">"
+            "<origin xyz=\"%.17g 0 0\"/><parent link=\"l%d\"/><child link=\"l%d\"/>"
+            "<axis xyz=\"0 0 1\"/></joint>",
+            k, l / 2, m, inertia / 100, inertia, inertia, k, k > 1 ? l : 0, k - 1, k);
     }
-    if (self->variant == SPHERE_EULER) {
-        at += snprintf(xml + at, (size_t)(size - at),
-                       "<geom type=\"sphere\" size=\"0.001\" pos=\"%.17g 0 0\" condim=\"1\" "
-                       "solref=%s solimp=%s/>",
-                       l, stiff, hard);
-    }
-    for (int k = 0; k < links; k++) {
-        at += snprintf(xml + at, (size_t)(size - at), "</body>");
-    }
-    return at;
-}
-
-// A plane whose normal points back at the arm, moved by the sphere's radius.
-static int write_plane(char *xml, int size)
-{
-    double s = sin(EXPERIMENT_WALL), c = cos(EXPERIMENT_WALL);
-    return snprintf(xml, (size_t)size,
-                    "<geom type=\"plane\" size=\"2 2 1\" pos=\"%.17g %.17g 0\" "
-                    "zaxis=\"%.17g %.17g 0\" condim=\"1\" solref=%s solimp=%s/>",
-                    -0.001 * s, 0.001 * c, s, -c, stiff, hard);
-}
-
-static int write_tendon(char *xml, int size, bool defaults)
-{
-    int at = snprintf(xml, (size_t)size,
-                      "<tendon><fixed limited=\"true\" range=\"-10 %.17g\"", 2 * EXPERIMENT_WALL);
-    if (!defaults) {
-        at += snprintf(xml + at, (size_t)(size - at), " solreflimit=%s solimplimit=%s", stiff, hard);
-    }
-    return at + snprintf(xml + at, (size_t)(size - at),
-                         "><joint joint=\"j0\" coef=\"2\"/><joint joint=\"j1\" coef=\"1\"/>"
-                         "</fixed></tendon>");
+    return at + snprintf(xml + at, (size_t)(size - at), "</robot>");
 }
 
 static mjModel *load(const char *xml, int length)
@@ -198,29 +177,53 @@ static void destroy(void *instance)
     free(s);
 }
 
+// What both files leave out: springs, hub and surroundings.
+static void complete(mjModel *model, int links, bool soft)
+{
+    static const mjtNum stiff_reference[mjNREF] = {0.002, 10};
+    static const mjtNum stiff_impedance[mjNIMP] = {0.9999, 0.9999, 0.0001, 0.5, 2};
+    model->opt.timestep = EXPERIMENT_STEP;
+    model->opt.gravity[0] = model->opt.gravity[1] = model->opt.gravity[2] = 0;
+    model->opt.disableflags |= mjDSBL_GRAVITY;
+    model->dof_armature[0] = EXPERIMENT_HUB_INERTIA;
+    model->dof_damping[0] = EXPERIMENT_HUB_DAMPING;
+    model->dof_frictionloss[0] = EXPERIMENT_STICTION;
+    if (!soft) {
+        mju_copy(model->dof_solref, stiff_reference, mjNREF);
+        mju_copy(model->dof_solimp, stiff_impedance, mjNIMP);
+    }
+    for (int k = 1; k < links; k++) {
+        model->jnt_stiffness[k] = EXPERIMENT_SPRING * links / 2;
+    }
+}
+
+static bool prepare(simulation *s, const peer *self, char *xml)
+{
+    bool flight = self->variant == FLIGHT_EULER || self->variant == FLIGHT_IMPLICIT;
+    int length =
+        flight ? write_chain(xml, XML_SIZE, self->links) : write_arm(xml, XML_SIZE, self->variant);
+    s->links = self->links;
+    s->sphere = self->variant == SPHERE_EULER;
+    s->duration = EXPERIMENT_DURATION;
+    s->model = load(xml, length);
+    if (s->model == NULL) {
+        return false;
+    }
+    complete(s->model, s->links, self->variant == TENDON_DEFAULTS);
+    if (flight) {
+        s->model->opt.integrator = self->variant == FLIGHT_EULER ? mjINT_EULER : mjINT_IMPLICIT;
+        s->model->opt.solver = mjSOL_PGS;
+    }
+    s->data = mj_makeData(s->model);
+    return s->data != NULL && (!flight || find_stable_step(s));
+}
+
 static void *create(const peer *self)
 {
     simulation *s = calloc(1, sizeof *s);
     char *xml = malloc(XML_SIZE);
-    bool good = s != NULL && xml != NULL;
-    if (good) {
-        mju_user_warning = count_warning;
-        bool flight = self->variant == FREE_FLIGHT;
-        s->links = self->links;
-        s->sphere = self->variant == SPHERE_EULER;
-        s->duration = EXPERIMENT_DURATION;
-        int at = write_options(xml, XML_SIZE, self->variant, EXPERIMENT_STEP);
-        at += write_bodies(xml + at, XML_SIZE - at, self);
-        at += s->sphere ? write_plane(xml + at, XML_SIZE - at) : 0;
-        at += snprintf(xml + at, (size_t)(XML_SIZE - at), "</worldbody>");
-        if (!flight && !s->sphere) {
-            at += write_tendon(xml + at, XML_SIZE - at, self->variant == TENDON_DEFAULTS);
-        }
-        at += snprintf(xml + at, (size_t)(XML_SIZE - at), "</mujoco>");
-        s->model = load(xml, at);
-        s->data = s->model != NULL ? mj_makeData(s->model) : NULL;
-        good = s->data != NULL && (!flight || find_stable_step(s));
-    }
+    mju_user_warning = count_warning;
+    bool good = s != NULL && xml != NULL && prepare(s, self, xml);
     free(xml);
     if (!good && s != NULL) {
         destroy(s);
@@ -248,9 +251,10 @@ static bool run(void *instance, peer_answer *answer)
     long steps = lround(s->duration / s->model->opt.timestep);
     for (long i = 0; i < steps; i++) {
         double time = s->data->time, hub = s->data->qpos[0], bend = s->data->qpos[1];
+        double rate = 2 * s->data->qvel[0] + s->data->qvel[1];
         mj_step(s->model, s->data);
         if (s->links == 2) {
-            contact_watch_sample(&watch, time, 2 * hub + bend, wall_force(s, hub));
+            contact_watch_sample(&watch, time, 2 * hub + bend, rate, wall_force(s, hub));
         }
     }
     answer->hub_angle = s->data->qpos[0];
@@ -271,7 +275,9 @@ static double duration(const void *instance)
 }
 
 #define MUJOCO(text, links, variant)                                                               \
-    {"MuJoCo", NULL, text, links, variant, create, destroy, run, fixed_step, duration}
+    {                                                                                              \
+        "MuJoCo", NULL, text, links, variant, create, destroy, run, fixed_step, duration           \
+    }
 
 static peer list_of_peers[] = {
     MUJOCO("tendon limit, Euler", 2, TENDON_EULER),
@@ -279,9 +285,12 @@ static peer list_of_peers[] = {
     MUJOCO("tendon limit, implicit", 2, TENDON_IMPLICIT),
     MUJOCO("tendon limit, RK4", 2, TENDON_RK4),
     MUJOCO("tendon limit, its default softness", 2, TENDON_DEFAULTS),
-    MUJOCO("implicit, largest stable step", 8, FREE_FLIGHT),
-    MUJOCO("implicit, largest stable step", 32, FREE_FLIGHT),
-    MUJOCO("implicit, largest stable step", 128, FREE_FLIGHT),
+    MUJOCO("Euler, largest stable step", 8, FLIGHT_EULER),
+    MUJOCO("implicit, largest stable step", 8, FLIGHT_IMPLICIT),
+    MUJOCO("Euler, largest stable step", 32, FLIGHT_EULER),
+    MUJOCO("implicit, largest stable step", 32, FLIGHT_IMPLICIT),
+    MUJOCO("Euler, largest stable step", 128, FLIGHT_EULER),
+    MUJOCO("implicit, largest stable step", 128, FLIGHT_IMPLICIT),
 };
 
 int peers_mujoco(const peer **list)

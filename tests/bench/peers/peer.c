@@ -5,7 +5,8 @@
 
 void peer_answer_clear(peer_answer *answer)
 {
-    *answer = (peer_answer){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+    const double none = (double)NAN;
+    *answer = (peer_answer){none, none, none, none, none, none, none, none, none, none, none};
 }
 
 void contact_watch_begin(contact_watch *watch, peer_answer *answer)
@@ -13,13 +14,15 @@ void contact_watch_begin(contact_watch *watch, peer_answer *answer)
     *watch = (contact_watch){.answer = answer};
 }
 
-void contact_watch_sample(contact_watch *watch, double time, double angles, double force)
+void contact_watch_sample(contact_watch *watch, double time, double angles, double rate,
+                          double force)
 {
     peer_answer *a = watch->answer;
     // sin(q1 - wall) + sin(q2 - wall) is zero just where the angles' sum is twice the wall's
     double into = angles - 2 * EXPERIMENT_WALL, before = watch->into;
     if (into >= 0 && before < 0) {
-        double closed = time - EXPERIMENT_STEP * into / (into - before);
+        double closed =
+            time - EXPERIMENT_STEP * fmax(0, 1 + before / (EXPERIMENT_STEP * watch->rate));
         if (isnan(a->first_contact)) {
             a->first_contact = closed;
         } else if (watch->released && isnan(a->second_contact)) {
@@ -27,6 +30,7 @@ void contact_watch_sample(contact_watch *watch, double time, double angles, doub
         }
     }
     watch->into = into;
+    watch->rate = rate;
     a->final_force = force;
     if (isnan(a->first_contact)) {
         return;

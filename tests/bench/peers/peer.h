@@ -13,18 +13,19 @@ extern "C" {
 #endif
 
 // The experiment in SI units, the same for every program.
-#define EXPERIMENT_STEP          1e-3  // of fixed-step programs, two links [s]
-#define EXPERIMENT_DURATION      1.0   // [s]
-#define EXPERIMENT_VOLTAGE       1.0   // command before the amplifier [V]
-#define EXPERIMENT_WALL          0.1   // direction of the wall from the hub axis [rad]
-#define EXPERIMENT_BEAM_LENGTH   1.0   // all links together [m]
-#define EXPERIMENT_BEAM_MASS     0.40108 // all links together [kg]
-#define EXPERIMENT_HUB_INERTIA   5.2e-3  // added to the first link [kg m2]
-#define EXPERIMENT_SPRING        4.92    // inner joint of two links; N links: SPRING N/2 [N m/rad]
-#define EXPERIMENT_STICTION      0.045   // Coulomb friction at the hub [N m]
-#define EXPERIMENT_TORQUE_CONSTANT (0.249092 * 9.80665)              // [N m/A]
-#define EXPERIMENT_TORQUE        (6.02 * EXPERIMENT_TORQUE_CONSTANT / 33.6) // per volt [N m/V]
-#define EXPERIMENT_HUB_DAMPING   (5.4192e-3 + EXPERIMENT_TORQUE_CONSTANT * 2.443 / 33.6) // [N m s/rad]
+#define EXPERIMENT_STEP            1e-3    // of fixed-step programs, two links [s]
+#define EXPERIMENT_DURATION        1.0     // [s]
+#define EXPERIMENT_VOLTAGE         1.0     // command before the amplifier [V]
+#define EXPERIMENT_WALL            0.1     // direction of the wall from the hub axis [rad]
+#define EXPERIMENT_BEAM_LENGTH     1.0     // all links together [m]
+#define EXPERIMENT_BEAM_MASS       0.40108 // all links together [kg]
+#define EXPERIMENT_HUB_INERTIA     5.2e-3  // added to the first link [kg m2]
+#define EXPERIMENT_SPRING          4.92  // inner joint of two links; N links: SPRING N/2 [N m/rad]
+#define EXPERIMENT_STICTION        0.045 // Coulomb friction at the hub [N m]
+#define EXPERIMENT_TORQUE_CONSTANT (0.249092 * 9.80665)                       // [N m/A]
+#define EXPERIMENT_TORQUE          (6.02 * EXPERIMENT_TORQUE_CONSTANT / 33.6) // per volt [N m/V]
+#define EXPERIMENT_HUB_DAMPING                                                                     \
+    (5.4192e-3 + EXPERIMENT_TORQUE_CONSTANT * 2.443 / 33.6) // [N m s/rad]
 
 // Simulators with soft contact or impulses smeared over steps have their first pulse's peak taken
 // this long after first contact, when the impact itself is over [s].
@@ -46,11 +47,11 @@ typedef struct peer_answer {
 } peer_answer;
 
 typedef struct peer {
-    const char *program;   // "MuJoCo"
-    const char *version;   // "2.2.2"
-    const char *setup;     // "tendon limit, Euler": one line
-    int links;             // 2: the impact; more: a chain in free flight
-    int variant;           // the program's own number of the set-up
+    const char *program; // "MuJoCo"
+    const char *version; // "2.2.2"
+    const char *setup;   // "tendon limit, Euler": one line
+    int links;           // 2: the impact; more: a chain in free flight
+    int variant;         // the program's own number of the set-up
     // Whatever can be prepared before the first run. NULL if it could not be.
     void *(*create)(const struct peer *self);
     void (*destroy)(void *instance);
@@ -73,16 +74,18 @@ void peer_answer_clear(peer_answer *answer);
 // Watches the samples of a fixed-step simulator and finds contact times and peaks in them.
 typedef struct contact_watch {
     peer_answer *answer;
-    double into;   // how far the angles' sum was beyond the wall at the sample before [rad]
+    double into,
+        rate; // how far the angles' sum was beyond the wall at the sample before [rad], [rad/s]
     bool released;
 } contact_watch;
 
 void contact_watch_begin(contact_watch *watch, peer_answer *answer);
 
 // A sample: time [s], sum of the two links' angles [rad] (the tip lies in the wall when it is twice
-// the wall's angle) and the force from `time` to the next sample [N]. Contact times are
-// interpolated between samples.
-void contact_watch_sample(contact_watch *watch, double time, double angles, double force);
+// the wall's angle), its rate [rad/s] and the force from `time` to the next sample [N]. Contact
+// times are extrapolated from the last sample before the wall, which no force has touched yet.
+void contact_watch_sample(contact_watch *watch, double time, double angles, double rate,
+                          double force);
 
 #ifdef __cplusplus
 }

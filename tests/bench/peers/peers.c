@@ -20,9 +20,9 @@ enum { MOST_PEERS = 64, FEWEST_ROUNDS = 9, USUAL_ROUNDS = 11, MOST_ROUNDS = 1001
 typedef struct contestant {
     const peer *peer;
     void *instance;
-    int repetitions;     // runs in a sample
-    int reference;       // index of the impactlab row it is compared with
-    double *samples;     // computing time per simulated second, one a round [s/s]
+    int repetitions; // runs in a sample
+    int reference;   // index of the impactlab row it is compared with
+    double *samples; // computing time per simulated second, one a round [s/s]
     double median, ratio;
     double smallest, largest;
     peer_answer answer;
@@ -128,7 +128,8 @@ static bool run_rounds(contestant *all, int count, int rounds)
             contestant *c = &all[i];
             double time = time_runs(c, c->repetitions);
             if (time < 0) {
-                fprintf(stderr, "peers: %s, %s: the run failed\n", c->peer->program, c->peer->setup);
+                fprintf(stderr, "peers: %s, %s: the run failed\n", c->peer->program,
+                        c->peer->setup);
                 return false;
             }
             c->samples[round] = time / (c->repetitions * c->peer->duration(c->instance));
@@ -182,10 +183,11 @@ static double time_per_step(const contestant *c)
 
 static void print_speed(FILE *out, const contestant *c)
 {
-    fprintf(out, "%-9s %-7s %-34s", c->peer->program, c->peer->version, c->peer->setup);
     double step = c->peer->step(c->instance);
+    fprintf(out, "%-9s %-7s %-34s", c->peer->program, c->peer->version, c->peer->setup);
     print_cell(out, 9, "%.4g", step > 0 ? 1e3 * step : (double)NAN);
     print_cell(out, 9, "%.3f", 1e6 * time_per_step(c));
+    print_cell(out, 11, "%.3f", 1e3 * c->median);
     print_cell(out, 11, c->median < 1e-3 ? "%.1f" : "%.0f", 1e6 * c->median);
     print_cell(out, 10, c->ratio < 100 ? "%.2f" : "%.0f", c->ratio);
     fprintf(out, "\n");
@@ -193,10 +195,10 @@ static void print_speed(FILE *out, const contestant *c)
 
 static void print_speeds(FILE *out, const contestant *all, int count, int links)
 {
-    fprintf(out, "%-9s %-7s %-34s %9s %9s %11s %10s\n", "program", "version", "set-up", "step",
-            "us per", "us per", "times");
-    fprintf(out, "%-9s %-7s %-34s %9s %9s %11s %10s\n", "", "", "", "[ms]", "step", "simulated s",
-            "impactlab");
+    fprintf(out, "%-9s %-7s %-34s %9s %9s %11s %11s %10s\n", "program", "version", "set-up", "step",
+            "us per", "us per", "us per", "times");
+    fprintf(out, "%-9s %-7s %-34s %9s %9s %11s %11s %10s\n", "", "", "", "[ms]", "step", "1 ms",
+            "1 s", "impactlab");
     for (int i = 0; i < count; i++) {
         if (all[i].peer->links == links) {
             print_speed(out, &all[i]);
@@ -208,8 +210,8 @@ static void print_answers(FILE *out, const contestant *all, int count)
 {
     fprintf(out, "%-9s %-34s %8s %13s %9s %11s %9s %9s %13s %9s\n", "program", "set-up", "steps",
             "1st contact", "impulse", "peak", "delay", "release", "2nd contact", "end");
-    fprintf(out, "%-9s %-34s %8s %13s %9s %11s %9s %9s %13s %9s\n", "", "", "", "[s]", "[N s]", "[N]",
-            "[ms]", "[s]", "[s]", "[N]");
+    fprintf(out, "%-9s %-34s %8s %13s %9s %11s %9s %9s %13s %9s\n", "", "", "", "[s]", "[N s]",
+            "[N]", "[ms]", "[s]", "[s]", "[N]");
     for (int i = 0; i < count; i++) {
         const contestant *c = &all[i];
         const peer_answer *a = &c->answer;
@@ -233,7 +235,8 @@ static void print_differences(FILE *out, const contestant *all, int count)
 {
     fprintf(out, "%-9s %-34s %11s %11s %11s %11s %11s\n", "program", "set-up", "1st contact",
             "peak", "delay", "release", "2nd contact");
-    fprintf(out, "%-9s %-34s %11s %11s %11s %11s %11s\n", "", "", "[s]", "[N]", "[s]", "[s]", "[s]");
+    fprintf(out, "%-9s %-34s %11s %11s %11s %11s %11s\n", "", "", "[s]", "[N]", "[s]", "[s]",
+            "[s]");
     const peer_answer *ours = &all[0].answer;
     for (int i = 1; i < count; i++) {
         const peer_answer *a = &all[i].answer;
@@ -282,8 +285,10 @@ static void print_json(FILE *out, const contestant *all, int count, int rounds)
         const contestant *c = &all[i];
         const peer_answer *a = &c->answer;
         double step = c->peer->step(c->instance);
-        fprintf(out, "%s\n  {\"program\": \"%s\", \"version\": \"%s\", \"setup\": \"%s\", \"links\": %d",
-                i > 0 ? "," : "", c->peer->program, c->peer->version, c->peer->setup, c->peer->links);
+        fprintf(out,
+                "%s\n  {\"program\": \"%s\", \"version\": \"%s\", \"setup\": \"%s\", \"links\": %d",
+                i > 0 ? "," : "", c->peer->program, c->peer->version, c->peer->setup,
+                c->peer->links);
         json_number(out, "step_s", step > 0 ? step : (double)NAN);
         json_number(out, "us_per_step", 1e6 * time_per_step(c));
         json_number(out, "us_per_simulated_s", 1e6 * c->median);
@@ -337,8 +342,9 @@ static bool read_options(options *o, int argc, char **argv)
             }
             o->rounds = (int)rounds;
         } else {
-            fprintf(stderr, "peers: unknown or incomplete argument '%s', expected --json FILE|- or "
-                            "--rounds N\n",
+            fprintf(stderr,
+                    "peers: unknown or incomplete argument '%s', expected --json FILE|- or "
+                    "--rounds N\n",
                     argv[i]);
             return false;
         }

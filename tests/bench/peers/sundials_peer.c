@@ -127,7 +127,8 @@ static int roots(double t, N_Vector state, double *root, void *user)
     if (s->mode.contact || s->mode.friction == STUCK) {
         r = accelerate(y, s->mode, a);
     }
-    double gap = -link_length * (sin(y[ANGLE_1] - EXPERIMENT_WALL) + sin(y[ANGLE_2] - EXPERIMENT_WALL));
+    double gap =
+        -link_length * (sin(y[ANGLE_1] - EXPERIMENT_WALL) + sin(y[ANGLE_2] - EXPERIMENT_WALL));
     root[WALL_ROOT] = s->mode.contact ? r.force : gap;
     root[HUB_ROOT] = s->mode.friction == STUCK ? EXPERIMENT_STICTION - fabs(r.holding)
                                                : s->mode.friction * y[SPEED_1];
@@ -199,11 +200,10 @@ static bool prepare_integrator(simulation *s, double tolerance)
 
 static bool restart(simulation *s, double t)
 {
-    return s->variant == ARKODE_EIGHTH
-               ? ERKStepReInit(s->memory, rates, t, s->state) == 0 &&
-                     ERKStepSetStopTime(s->memory, EXPERIMENT_DURATION) == 0
-               : CVodeReInit(s->memory, t, s->state) == 0 &&
-                     CVodeSetStopTime(s->memory, EXPERIMENT_DURATION) == 0;
+    return s->variant == ARKODE_EIGHTH ? ERKStepReInit(s->memory, rates, t, s->state) == 0 &&
+                                             ERKStepSetStopTime(s->memory, EXPERIMENT_DURATION) == 0
+                                       : CVodeReInit(s->memory, t, s->state) == 0 &&
+                                             CVodeSetStopTime(s->memory, EXPERIMENT_DURATION) == 0;
 }
 
 // One step of its own, cut short at a root or the end. Negative on failure.
@@ -387,8 +387,7 @@ static void *create(const peer *self)
         free(s);
         return NULL;
     }
-    const char *given = getenv("PEERS_TOLERANCE");
-    if (!prepare_integrator(s, given ? atof(given) : tolerances[s->variant])) {
+    if (!prepare_integrator(s, tolerances[s->variant])) {
         fprintf(stderr, "peers: SUNDIALS: the integrator could not be prepared\n");
         destroy(s);
         return NULL;
@@ -409,7 +408,9 @@ static double duration(const void *instance)
 }
 
 #define SUNDIALS(text, variant)                                                                    \
-    {"SUNDIALS", SUNDIALS_VERSION, text, 2, variant, create, destroy, run, own_steps, duration}
+    {                                                                                              \
+        "SUNDIALS", SUNDIALS_VERSION, text, 2, variant, create, destroy, run, own_steps, duration  \
+    }
 
 static const peer list_of_peers[] = {
     SUNDIALS("CVODE, Adams", CVODE_ADAMS),

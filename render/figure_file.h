@@ -1,0 +1,14 @@
+// Figures as files.
+#pragma once
+
+#include "render/picture_file.h"
+#include "render/plot.h"
+
+// Draws the figure into a file as picture_write does. Title, software and parameters go into the
+// file's metadata.
+status figure_write(const figure *fig, const char *path, fault *f);
+
+// Writes what the figure shows as CSV in long form, panel,series,x,y: every point of every curve (y
+// empty where the curve has a gap), impulses as the series impulse[unit], then marks and shaded
+// intervals with an empty y.
+status figure_write_csv(const figure *fig, const char *path, fault *f);

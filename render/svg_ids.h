@@ -1,0 +1,8 @@
+// Makes the ids of an SVG independent of what was drawn before it.
+#pragma once
+
+// cairo names things after counters of the whole process ("surface96"), so that the second figure
+// of a program differs from the first. Returns the SVG with the number in every id="name<number>",
+// and in every reference to it, replaced by its place in the order of the ids. Free the result with
+// g_free.
+char *svg_renumber_ids(const char *svg);

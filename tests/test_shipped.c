@@ -1,0 +1,61 @@
+// Every shipped scenario runs, meets its own expectations and keeps its ledger.
+#include <stdlib.h>
+
+#include "src/lab/run.h"
+#include "tests/check.h"
+
+static void print_fault(void *context, const char *sentence)
+{
+    (void)context;
+    print_error("%s\n", sentence);
+}
+
+static void check_scenario(const char *name)
+{
+    scenario s;
+    run_result r;
+    if (scenario_open(&s, name, print_fault, NULL) != STATUS_OK) {
+        fail_msg("%s cannot be read", name);
+    }
+    if (run_scenario(&s, false, &r) != STATUS_OK) {
+        fail_msg("%s: %s", name, r.summary.message);
+    }
+    if (run_check_expectations(&s, &r, print_fault, NULL) != 0) {
+        fail_msg("%s does not meet its expectations", name);
+    }
+    if (s.parameters.arm.model == ARM_CORRECTED && s.parameters.method.name == METHOD_EVENT) {
+        // what the motor did, or where it did nothing, what the arm began with
+        double m = s.parameters.arm.mass, l = s.parameters.arm.length, v = s.parameters.initial.velocity;
+        double turned_over = fabs(r.summary.motor_work_J) + 0.5 * m * l * l / 3 * v * v;
+        double pushed = 0;
+        for (int i = 0; i < s.action_count; i++) {
+            pushed += s.actions[i].kind == ACTION_PUSH ? s.actions[i].value * s.actions[i].value / m : 0;
+        }
+        if (!(r.summary.energy_residual_J < 1e-6 * (turned_over + pushed))) {
+            fail_msg("%s: energy residual %g J of %g J", name, r.summary.energy_residual_J, turned_over);
+        }
+    }
+    run_finish(&r);
+    scenario_finish(&s);
+}
+
+static void every_scenario_is_its_own_test(void **state)
+{
+    (void)state;
+    char **names;
+    int count;
+    fault f;
+    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    assert_true(count > 30);
+    for (int i = 0; i < count; i++) {
+        check_scenario(names[i]);
+        free(names[i]);
+    }
+    free(names);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_scenario_is_its_own_test)};
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

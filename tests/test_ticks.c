@@ -1,0 +1,204 @@
+// Ticks: the published oracle, properties that must hold for any axis, and labels.
+#include "tests/check.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/ticks.h"
+
+static void expect_ticks(const ticks *t, int count, const double *expected)
+{
+    assert_int_equal(t->count, count);
+    for (int i = 0; i < count; i++) {
+        check_close(t->value[i], expected[i], 0);
+    }
+}
+
+static void expect_labels(const ticks *t, int count, const char *const *expected)
+{
+    char label[TICK_TEXT];
+    assert_int_equal(t->count, count);
+    for (int i = 0; i < count; i++) {
+        tick_label(t, i, label);
+        assert_string_equal(label, expected[i]);
+    }
+}
+
+// extended(8.1, 14.1, 4) of the R package labeling
+static void published_example(void **state)
+{
+    (void)state;
+    ticks t;
+    ticks_extended(&t, 8.1, 14.1, 4);
+    expect_ticks(&t, 4, (double[]){8, 10, 12, 14});
+    check_close(t.step, 2, 0);
+    ticks_extended(&t, 14.1, 8.1, 4);
+    expect_ticks(&t, 4, (double[]){8, 10, 12, 14});
+}
+
+static void round_ranges(void **state)
+{
+    (void)state;
+    ticks t;
+    ticks_extended(&t, 0, 1, 6);
+    expect_ticks(&t, 6, (double[]){0, 0.2, 0.4, 0.6, 0.8, 1});
+    ticks_extended(&t, -100, 100, 5);
+    expect_ticks(&t, 5, (double[]){-100, -50, 0, 50, 100});
+}
+
+// every tick is the double nearest to its decimal number, so that printing shows no noise
+static void values_are_decimal(void **state)
+{
+    (void)state;
+    for (int power = -12; power <= 12; power++) {
+        ticks t;
+        double scale = pow(10, power);
+        ticks_between(&t, -0.31 * scale, 0.94 * scale, 6);
+        assert_true(t.count >= 3);
+        for (int i = 0; i < t.count; i++) {
+            char text[64];
+            snprintf(text, sizeof text, "%.10g", t.value[i]);
+            check_close(t.value[i], strtod(text, NULL), 0);
+            assert_false(signbit(t.value[i]) && t.value[i] == 0);
+        }
+    }
+}
+
+// a cheap source of numbers that is the same everywhere
+static double next_random(unsigned long long *seed)
+{
+    *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
+    return (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+static void between_stays_inside_and_misses_none(void **state)
+{
+    (void)state;
+    unsigned long long seed = 7;
+    for (int trial = 0; trial < 3000; trial++) {
+        ticks t;
+        double centre = (next_random(&seed) - 0.5) * pow(10, 6 * next_random(&seed) - 3);
+        double width = pow(10, 8 * next_random(&seed) - 4);
+        double low = centre - width * next_random(&seed), high = low + width;
+        int wanted = 2 + (int)(8 * next_random(&seed));
+        ticks_between(&t, low, high, wanted);
+        assert_true(t.count >= 2);
+        assert_true(t.count <= 2 * wanted + 1);
+        assert_true(t.value[0] >= low - 1e-8 * width);
+        assert_true(t.value[t.count - 1] <= high + 1e-8 * width);
+        assert_true(t.value[0] - t.step < low + 1e-8 * width);
+        assert_true(t.value[t.count - 1] + t.step > high - 1e-8 * width);
+        for (int i = 1; i < t.count; i++) {
+            check_close(t.value[i] - t.value[i - 1], t.step, 1e-9 * fmax(fabs(centre), width));
+        }
+    }
+}
+
+static void about_as_many_as_wanted(void **state)
+{
+    (void)state;
+    unsigned long long seed = 11;
+    for (int wanted = 3; wanted <= 10; wanted++) {
+        double total = 0;
+        for (int trial = 0; trial < 300; trial++) {
+            ticks t;
+            double low = 100 * next_random(&seed) - 50;
+            ticks_extended(&t, low, low + 1 + 100 * next_random(&seed), wanted);
+            total += t.count;
+        }
+        check_close(total / 300, wanted, 0.35 * wanted);
+    }
+}
+
+static void labels_are_short_and_have_a_true_minus(void **state)
+{
+    (void)state;
+    ticks t;
+    ticks_between(&t, -1.2, 1.2, 5);
+    expect_labels(&t, 5, (const char *[]){"\u22121.0", "\u22120.5", "0.0", "0.5", "1.0"});
+    ticks_extended(&t, 8.1, 14.1, 4);
+    expect_labels(&t, 4, (const char *[]){"8", "10", "12", "14"});
+}
+
+static void small_and_large_numbers_get_a_factor(void **state)
+{
+    (void)state;
+    ticks t;
+    char factor[64];
+    ticks_between(&t, 0, 4e-6, 5);
+    tick_factor(&t, factor, sizeof factor);
+    assert_string_equal(factor, "\u00d710<sup>\u22126</sup>");
+    expect_labels(&t, 5, (const char *[]){"0", "1", "2", "3", "4"});
+    ticks_between(&t, 0, 2e6, 3);
+    tick_factor(&t, factor, sizeof factor);
+    assert_string_equal(factor, "\u00d710<sup>6</sup>");
+    ticks_between(&t, 0, 1, 5);
+    tick_factor(&t, factor, sizeof factor);
+    assert_string_equal(factor, "");
+}
+
+static void narrow_range_far_from_zero(void **state)
+{
+    (void)state;
+    ticks t;
+    char first[TICK_TEXT], second[TICK_TEXT];
+    ticks_between(&t, 0.293412, 0.293462, 4);
+    assert_true(t.count >= 2);
+    tick_label(&t, 0, first);
+    tick_label(&t, 1, second);
+    assert_string_not_equal(first, second);
+    check_close(strtod(first, NULL), t.value[0], 1e-12);
+}
+
+static void hopeless_limits(void **state)
+{
+    (void)state;
+    ticks t;
+    const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
+    for (int i = 0; i < 3; i++) {
+        ticks_between(&t, 0, bad[i], 5);
+        assert_int_equal(t.count, 0);
+        ticks_extended(&t, bad[i], 0, 5);
+        assert_int_equal(t.count, 0);
+    }
+    ticks_between(&t, 3, 3, 5);
+    assert_true(t.count >= 2);
+    ticks_between(&t, 0, 0, 5);
+    assert_true(t.count >= 2);
+    ticks_between(&t, -1e308, 1e308, 5);
+    assert_int_equal(t.count, 0);
+    ticks_extended(&t, 0, 1, -5);
+    assert_true(t.count >= 2);
+}
+
+static void minor_ticks_are_round(void **state)
+{
+    (void)state;
+    unsigned long long seed = 3;
+    for (int trial = 0; trial < 300; trial++) {
+        ticks t;
+        ticks_between(&t, 0, pow(10, 4 * next_random(&seed)), 5);
+        // a minor step has one digit, or is 25, or is no minor step at all
+        double part = t.step / t.minor, digits = part / pow(10, floor(log10(part * (1 + 1e-12))));
+        bool round_number = fabs(digits - round(digits)) < 1e-9 || fabs(digits - 2.5) < 1e-9;
+        assert_true(round_number || t.minor == 1);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(published_example),
+        cmocka_unit_test(round_ranges),
+        cmocka_unit_test(values_are_decimal),
+        cmocka_unit_test(between_stays_inside_and_misses_none),
+        cmocka_unit_test(about_as_many_as_wanted),
+        cmocka_unit_test(labels_are_short_and_have_a_true_minus),
+        cmocka_unit_test(small_and_large_numbers_get_a_factor),
+        cmocka_unit_test(narrow_range_far_from_zero),
+        cmocka_unit_test(hopeless_limits),
+        cmocka_unit_test(minor_ticks_are_round),
+    };
+    return cmocka_run_group_tests_name("ticks", tests, NULL, NULL) != 0;
+}
