@@ -22,7 +22,7 @@
 #define BAR_WIDTH    11.0
 #define BAR_DISTANCE 12.0
 
-enum { MOST_MARKERS = 80, LABELLED_VALUES = 9 };
+enum { MOST_MARKERS = 80, LABELLED_VALUES = 9, MARK_TEXT = 64 };
 
 // --- axes -----------------------------------------------------------------------------------
 
@@ -30,7 +30,7 @@ typedef enum scale_kind { SCALE_LINEAR, SCALE_LOGARITHMIC, SCALE_WORDS } scale_k
 
 typedef struct tick_mark {
     double at; // coordinate
-    char text[TICK_TEXT];
+    char text[MARK_TEXT];
 } tick_mark;
 
 // One axis of the picture. A coordinate is a value, its decimal logarithm, or the place of a word.
@@ -63,25 +63,25 @@ static void add_tick(scale *s, double at, const char *text)
 {
     if (s->tick_count < TICKS_MOST) {
         s->ticks[s->tick_count].at = at;
-        snprintf(s->ticks[s->tick_count++].text, TICK_TEXT, "%s", text);
+        snprintf(s->ticks[s->tick_count++].text, MARK_TEXT, "%s", text);
     }
 }
 
 // A number with few digits as markup: a true minus sign, "2·10<sup>−5</sup>" for "2e-05".
-static void number_label(double value, char text[TICK_TEXT])
+static void number_label(double value, char text[MARK_TEXT])
 {
-    char digits[TICK_TEXT - 4];
+    char digits[24];
     const char *sign = value < 0 ? "\u2212" : "";
     snprintf(digits, sizeof digits, "%.6g", fabs(value));
     char *exponent = strchr(digits, 'e');
     if (exponent == NULL) {
-        snprintf(text, TICK_TEXT, "%s%s", sign, digits);
+        snprintf(text, MARK_TEXT, "%s%s", sign, digits);
         return;
     }
     int power = atoi(exponent + 1);
     *exponent = '\0';
     bool one = strcmp(digits, "1") == 0;
-    snprintf(text, TICK_TEXT, "%s%.7s%s10<sup>%s%d</sup>", sign, one ? "" : digits,
+    snprintf(text, MARK_TEXT, "%s%s%s10<sup>%s%d</sup>", sign, one ? "" : digits,
              one ? "" : "\u00b7", power < 0 ? "\u2212" : "", abs(power));
 }
 
@@ -107,7 +107,7 @@ static void logarithmic_ticks(scale *s)
         for (int i = 0; i < (few ? 3 : 1); i++) {
             double value = steps[i] * pow(10, decade), at = log10(value);
             if (at >= s->low - 1e-9 && at <= s->high + 1e-9) {
-                char text[TICK_TEXT];
+                char text[MARK_TEXT];
                 number_label(value, text);
                 add_tick(s, at, text);
             }
@@ -119,7 +119,7 @@ static void logarithmic_ticks(scale *s)
 static void ticks_at_points(scale *s, const sweep_axis *axis)
 {
     for (size_t i = 0; i < s->count; i++) {
-        char text[TICK_TEXT] = "";
+        char text[MARK_TEXT] = "";
         if (s->kind == SCALE_WORDS) {
             parameters p = {0};
             parameter_set_number(&p, axis->parameter, axis->values[s->order[i]], NULL);

@@ -172,6 +172,30 @@ expect 2 run hit.yaml --json a --json b
 [ "$(cat status)" = 0 ] || fail "a closed pipe gave exit status $(cat status)"
 silent err
 
+# --- sweep
+expect 0 sweep hit.yaml --vary motor.voltage=1:2:3 --csv -
+[ "$(wc -l <out)" = 4 ] || fail "a sweep of three runs has not three rows"
+grep -q '^3,2,ok,,' out || fail "the third run is not the third row"
+silent err
+expect 0 sweep hit.yaml --vary motor.voltage=1:2:3 --db s.sqlite --csv one.csv --plot s.svg
+says out "largest"
+expect 0 sweep hit.yaml --vary motor.voltage=1:2:3 --db s.sqlite --csv two.csv --quiet
+silent out
+cmp -s one.csv two.csv || fail "a finished sweep gave other rows when it was called again"
+grep -q '</svg>' s.svg || fail "the sweep's plot is no whole SVG"
+expect 2 sweep hit.yaml --vary motor.voltage=1:2:4 --db s.sqlite
+says err "holds another sweep"
+expect 2 sweep hit.yaml
+says err "--vary"
+expect 2 sweep hit.yaml --vary motor.voltage=1:2:3 --jobs none
+expect 2 sweep hit.yaml --vary motor.voltage=1:2:3 --sample latn
+expect 2 sweep hit.yaml --vary motor.voltage=1:2:3 --quantity peak_forc_N
+says err "did you mean peak_force_N"
+expect 2 sweep hit.yaml --vary motor.voltage=1:2:3 --plot s.gif
+expect 1 sweep hit.yaml --vary motor.voltage=1:2:3 --csv no/such/folder/x.csv
+expect 1 sweep hit.yaml --vary motor.voltage=1:2:3 --csv /dev/full
+says err "No space left"
+
 # nothing half-written stays behind
 [ -z "$(find . -name '*.part')" ] || fail "a temporary file stayed behind"
 

@@ -80,6 +80,17 @@ static void print_row(const thesis_tables *t, const table_row *row)
     print_cells("difference", percent, 1, "%+8.1f %%");
 }
 
+// Constants the thesis never prints, inferred from its tables (errata A), and why.
+static const char *const inferred[] = {
+    "k1 = 90 N m/rad: with the printed 169 468 the thesis's own algorithm chatters at 1 ms; 85 to "
+    "100 bring its tables out",
+    "torque per volt of command 0.4377 N m/V: amplifier gain 6.02 times kT/Ra; matches the forces",
+    "kT = 2.443 N m/A: the printed 0.249092 kg m/A in SI units, equal to kB as it must be",
+    "links of 0.5 m and a contact point at 1 m in the direction of 0.1 rad: from the listing's "
+    "formulas",
+};
+enum { INFERRED = sizeof inferred / sizeof inferred[0] };
+
 static void print_tables(const thesis_tables *t)
 {
     const char *table = "", *model = "";
@@ -98,6 +109,10 @@ static void print_tables(const thesis_tables *t)
         printf("  %-36s %6.1f %% %6.1f %%\n", labels[i].label,
                100 * tables_mean_error(t, "printed", labels[i].quantity),
                100 * tables_mean_error(t, "corrected", labels[i].quantity));
+    }
+    printf("\nInferred, since the thesis does not print them (docs/physics.md):\n");
+    for (int i = 0; i < INFERRED; i++) {
+        printf("  %s\n", inferred[i]);
     }
 }
 

@@ -7,9 +7,19 @@
 #include "src/lab/run.h"
 #include "tests/bench/peers/peer.h"
 
-typedef enum impactlab_variant { BY_EVENT, BY_GENERALIZED_ALPHA, BY_NEWMARK } impactlab_variant;
+typedef enum impactlab_variant {
+    BY_EVENT,
+    BY_EVENT_WITH_ROWS,
+    BY_GENERALIZED_ALPHA,
+    BY_NEWMARK
+} impactlab_variant;
 
-static const char *const method_names[] = {"event", "generalized-alpha", "newmark"};
+typedef struct simulation {
+    scenario scenario;
+    bool keep_rows;
+} simulation;
+
+static const char *const method_names[] = {"event", "event", "generalized-alpha", "newmark"};
 
 static bool set(parameters *p, const char *path, const char *value)
 {
@@ -30,12 +40,13 @@ static bool set_number(parameters *p, const char *path, double value)
 
 static void *create(const peer *self)
 {
-    scenario *s = calloc(1, sizeof *s);
+    simulation *s = calloc(1, sizeof *s);
     if (s == NULL) {
         return NULL;
     }
     fault f;
-    parameters *p = &s->parameters;
+    parameters *p = &s->scenario.parameters;
+    s->keep_rows = self->variant == BY_EVENT_WITH_ROWS;
     parameters_defaults(p, ARM_CORRECTED);
     // everything the experiment states is set, so that a changed default cannot change it
     bool good =
@@ -66,8 +77,9 @@ static void *create(const peer *self)
 
 static bool run(void *instance, peer_answer *answer)
 {
+    const simulation *simulated = instance;
     run_result result;
-    bool good = run_scenario(instance, false, &result) == STATUS_OK;
+    status code = run_scenario(&simulated->scenario, simulated->keep_rows, &result);
     const summary *s = &result.summary;
     answer->first_contact = s->first_contact_s;
     answer->impulse = s->contact_impulse_Ns;
@@ -84,23 +96,22 @@ static bool run(void *instance, peer_answer *answer)
             answer->second_contact = e->time;
         }
     }
-    if (!good) {
+    if (code != STATUS_OK) {
         fprintf(stderr, "peers: impactlab: %s\n", s->message);
     }
     run_finish(&result);
-    return good;
+    return code == STATUS_OK;
 }
 
 static double fixed_step(const void *instance)
 {
-    const scenario *s = instance;
-    return s->parameters.method.name == METHOD_EVENT ? 0 : s->parameters.method.step;
+    const parameters *p = &((const simulation *)instance)->scenario.parameters;
+    return p->method.name == METHOD_EVENT ? 0 : p->method.step;
 }
 
 static double duration(const void *instance)
 {
-    const scenario *s = instance;
-    return s->parameters.run.duration;
+    return ((const simulation *)instance)->scenario.parameters.run.duration;
 }
 
 #define IMPACTLAB(text, links, variant)                                                            \
@@ -111,6 +122,7 @@ static double duration(const void *instance)
 
 static const peer list_of_peers[] = {
     IMPACTLAB("event (its default)", 2, BY_EVENT),
+    IMPACTLAB("event, a row every 1 ms", 2, BY_EVENT_WITH_ROWS),
     IMPACTLAB("generalized-alpha", 2, BY_GENERALIZED_ALPHA),
     IMPACTLAB("Newmark", 2, BY_NEWMARK),
     IMPACTLAB("generalized-alpha", 8, BY_GENERALIZED_ALPHA),

@@ -41,7 +41,8 @@ fi
 quietly ninja -C "$build" src/libimpactlab.a || give_up "impactlab's library could not be built"
 
 version=$(sed -n "s/^ *version: '\([^']*\)',.*/\1/p" "$root/meson.build" | head -n 1)
-flags=(-O3 -D_GNU_SOURCE -ffp-contract=off -Wall -Wextra "-I$root" "-DIMPACTLAB_VERSION=\"$version\"")
+flags=(-O3 -D_GNU_SOURCE -ffp-contract=off -Wall -Wextra "-I$root"
+    "-DIMPACTLAB_VERSION=\"$version\"")
 read -r -a libraries <<<"$(pkg-config --libs yaml-0.1 jansson lapack) -lm"
 used=()
 linker=$cc

@@ -1,0 +1,143 @@
+#include <string.h>
+
+#include "src/lab/random.h"
+#include "tests/check.h"
+
+static void xoshiro_gives_its_published_sequence(void **state)
+{
+    (void)state;
+    static const uint64_t expected[] = {UINT64_C(11520), UINT64_C(0), UINT64_C(1509978240),
+                                        UINT64_C(1215971899390074240)};
+    random_generator g = {{1, 2, 3, 4}};
+    for (int i = 0; i < 4; i++) {
+        assert_true(random_bits(&g) == expected[i]);
+    }
+}
+
+static void splitmix_gives_its_published_sequence(void **state)
+{
+    (void)state;
+    // of the seed 1234567, as other implementations list it
+    static const uint64_t expected[] = {
+        UINT64_C(6457827717110365317), UINT64_C(3203168211198807973), UINT64_C(9817491932198370423),
+        UINT64_C(4593380528125082431)};
+    uint64_t counter = 1234567;
+    for (int i = 0; i < 4; i++) {
+        assert_true(splitmix64_next(&counter) == expected[i]);
+    }
+}
+
+static void equal_seeds_give_equal_sequences(void **state)
+{
+    (void)state;
+    random_generator a, b, c;
+    random_seed(&a, 7);
+    random_seed(&b, 7);
+    random_seed(&c, 8);
+    int same = 0;
+    for (int i = 0; i < 100; i++) {
+        uint64_t bits = random_bits(&a);
+        assert_true(bits == random_bits(&b));
+        same += bits == random_bits(&c);
+    }
+    assert_int_equal(same, 0);
+}
+
+static void uniform_numbers_fill_the_unit_interval_evenly(void **state)
+{
+    (void)state;
+    enum { DRAWN = 100000, BINS = 20 };
+    int bins[BINS] = {0};
+    double sum = 0, squares = 0;
+    random_generator g;
+    random_seed(&g, 1);
+    for (int i = 0; i < DRAWN; i++) {
+        double u = random_uniform(&g);
+        assert_true(u >= 0 && u < 1);
+        bins[(int)(u * BINS)]++;
+        sum += u;
+        squares += u * u;
+    }
+    // five standard deviations of each
+    check_close(sum / DRAWN, 0.5, 5 * 0.2887 / sqrt(DRAWN));
+    check_close(squares / DRAWN, 1 / 3.0, 5 * 0.2981 / sqrt(DRAWN));
+    for (int i = 0; i < BINS; i++) {
+        check_close(bins[i], DRAWN / BINS, 5 * sqrt(DRAWN * 0.05 * 0.95));
+    }
+}
+
+static void whole_numbers_are_equally_likely_up_to_the_bound(void **state)
+{
+    (void)state;
+    int counts[6] = {0};
+    random_generator g;
+    random_seed(&g, 2);
+    for (int i = 0; i < 60000; i++) {
+        uint64_t n = random_below(&g, 6);
+        assert_true(n < 6);
+        counts[n]++;
+    }
+    for (int i = 0; i < 6; i++) {
+        check_close(counts[i], 10000, 5 * sqrt(60000 * 5.0 / 36));
+    }
+    assert_true(random_below(&g, 1) == 0);
+    // a bound above half of the range, where plain remainders would favour small numbers two to one
+    uint64_t bound = UINT64_C(3) << 62;
+    int low = 0;
+    for (int i = 0; i < 10000; i++) {
+        low += random_below(&g, bound) < bound / 3;
+    }
+    check_close(low, 10000 / 3.0, 5 * sqrt(10000 * 2.0 / 9));
+}
+
+static void a_permutation_has_every_number_once(void **state)
+{
+    (void)state;
+    enum { COUNT = 1000 };
+    size_t order[COUNT];
+    unsigned char seen[COUNT] = {0};
+    random_generator g;
+    random_seed(&g, 3);
+    random_permutation(&g, order, COUNT);
+    int unmoved = 0;
+    for (size_t i = 0; i < COUNT; i++) {
+        assert_true(order[i] < COUNT);
+        assert_false(seen[order[i]]);
+        seen[order[i]] = 1;
+        unmoved += order[i] == i;
+    }
+    // one is expected
+    assert_true(unmoved < 10);
+}
+
+static void all_permutations_are_equally_likely(void **state)
+{
+    (void)state;
+    int counts[3][3] = {{0}};
+    random_generator g;
+    random_seed(&g, 4);
+    for (int i = 0; i < 9000; i++) {
+        size_t order[3];
+        random_permutation(&g, order, 3);
+        for (int k = 0; k < 3; k++) {
+            counts[k][order[k]]++;
+        }
+    }
+    for (int i = 0; i < 9; i++) {
+        check_close(counts[i / 3][i % 3], 3000, 5 * sqrt(9000 * 2.0 / 9));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(xoshiro_gives_its_published_sequence),
+        cmocka_unit_test(splitmix_gives_its_published_sequence),
+        cmocka_unit_test(equal_seeds_give_equal_sequences),
+        cmocka_unit_test(uniform_numbers_fill_the_unit_interval_evenly),
+        cmocka_unit_test(whole_numbers_are_equally_likely_up_to_the_bound),
+        cmocka_unit_test(a_permutation_has_every_number_once),
+        cmocka_unit_test(all_permutations_are_equally_likely),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
