@@ -188,7 +188,7 @@ static void column_flush(column *c, pen *p)
 // Columns only make sense where x never goes back.
 static bool x_ascends(const figure_series *s)
 {
-    double last = -INFINITY;
+    double last = -(double)INFINITY;
     for (size_t i = 0; i < s->count; i++) {
         double x = series_x(s, i);
         if (x < last) {

@@ -77,7 +77,7 @@ double placement_find(const placement *g, double width, double height, double ma
     double cell_height = g->box.height / PLACEMENT_ROWS;
     int columns = (int)ceil((width + 2 * margin) / cell_width);
     int rows = (int)ceil((height + 2 * margin) / cell_height);
-    double best = INFINITY, best_ink = INFINITY;
+    double best = (double)INFINITY, best_ink = (double)INFINITY;
     for (int r = 0; r + rows <= PLACEMENT_ROWS; r++) {
         for (int c = 0; c + columns <= PLACEMENT_COLUMNS; c++) {
             double ink = sums.ink[r + rows][c + columns] - sums.ink[r][c + columns] -

@@ -547,13 +547,13 @@ static void draw_impulses(drawing *d, const panel_layout *l)
     }
     label_impulses(d, l, base);
     if (panel->impulse_label != NULL) {
-        char *name = g_strconcat(panel->impulse_label, "\n", NULL);
-        char *label = axis_label(name, panel->impulse_unit, impulse_exponent(panel));
+        char *unit = axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
+        char *label = g_strconcat(panel->impulse_label, "\n", unit, NULL);
         text_block t = {.markup = label, .size = SMALL_SIZE, .align = TEXT_RIGHT};
         draw_text(d, t, d->left - TICK_LENGTH - TICK_SPACE, base + 1.5, (anchor){1, 1},
                   d->colours->text);
         g_free(label);
-        g_free(name);
+        g_free(unit);
     }
 }
 

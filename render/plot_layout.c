@@ -42,7 +42,8 @@ char *axis_label(const char *label, const char *unit, int exponent)
         return g_strdup(label ? label : "");
     }
     char *whole = unit_markup(unit, exponent);
-    char *both = g_strdup_printf("%s %s", label ? label : "", whole);
+    bool named = label != NULL && label[0] != '\0';
+    char *both = g_strconcat(named ? label : "", named ? " " : "", whole, NULL);
     g_free(whole);
     return both;
 }
@@ -100,8 +101,8 @@ static void choose_x_range(drawing *d)
     d->x_low = fig->x_low;
     d->x_high = fig->x_high;
     if (!(fig->x_low < fig->x_high)) {
-        d->x_low = INFINITY;
-        d->x_high = -INFINITY;
+        d->x_low = (double)INFINITY;
+        d->x_high = -(double)INFINITY;
         for (int p = 0; p < fig->panel_count; p++) {
             for (int s = 0; s < fig->panels[p].series_count; s++) {
                 series_x_range(&fig->panels[p].series[s], &d->x_low, &d->x_high);
@@ -114,8 +115,8 @@ static void choose_x_range(drawing *d)
 static void data_range(const figure_panel *panel, double x_low, double x_high, double *low,
                        double *high)
 {
-    *low = INFINITY;
-    *high = -INFINITY;
+    *low = (double)INFINITY;
+    *high = -(double)INFINITY;
     for (int s = 0; s < panel->series_count; s++) {
         series_y_range(&panel->series[s], x_low, x_high, low, high);
     }

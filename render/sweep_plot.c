@@ -327,7 +327,7 @@ static void draw_grid(canvas *c)
 // before it is left out.
 static void draw_axes(canvas *c)
 {
-    double bottom = c->box.y + c->box.height, taken = -INFINITY, taken_y = INFINITY;
+    double bottom = c->box.y + c->box.height, taken = -(double)INFINITY, taken_y = (double)INFINITY;
     set_colour(c->cr, c->colours->axis);
     cairo_set_line_width(c->cr, 0.7);
     cairo_rectangle(c->cr, c->box.x, c->box.y, c->box.width, c->box.height);
@@ -406,8 +406,8 @@ static void place_box(canvas *c, double right, bool note)
 // Smallest and largest finite value; false if there is none.
 static bool value_range(const double *values, size_t count, double *low, double *high)
 {
-    *low = INFINITY;
-    *high = -INFINITY;
+    *low = (double)INFINITY;
+    *high = -(double)INFINITY;
     for (size_t i = 0; i < count; i++) {
         if (isfinite(values[i])) {
             *low = fmin(*low, values[i]);

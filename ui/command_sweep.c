@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "render/sweep_plot.h"
@@ -16,19 +17,30 @@
 enum { ROWS_SHOWN = 40, BAR_LENGTH = 24 };
 
 static volatile sig_atomic_t signal_caught;
+static volatile time_t time_caught;
 
+// The first signal lets the runs in hand finish; one that comes a second or more later ends the
+// program. One that follows at once is the same again: timeout and some shells send it both to the
+// program and to its group.
 static void catch_signal(int number)
 {
-    signal_caught = number;
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (signal_caught == 0) {
+        signal_caught = number;
+        time_caught = now.tv_sec;
+    } else if (now.tv_sec > time_caught + 1) {
+        signal(number, SIG_DFL);
+        raise(number);
+    }
 }
 
-// The first signal lets the runs in hand finish, a second one ends the program.
 static void catch_signals(void)
 {
-    struct sigaction once = {.sa_handler = catch_signal, .sa_flags = (int)SA_RESETHAND};
-    sigemptyset(&once.sa_mask);
-    sigaction(SIGINT, &once, NULL);
-    sigaction(SIGTERM, &once, NULL);
+    struct sigaction caught = {.sa_handler = catch_signal};
+    sigemptyset(&caught.sa_mask);
+    sigaction(SIGINT, &caught, NULL);
+    sigaction(SIGTERM, &caught, NULL);
 }
 
 // --- the request ----------------------------------------------------------------------------

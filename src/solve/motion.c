@@ -378,7 +378,7 @@ static double suspected_dip(const arm *a, const motion *m, double h, watch w, do
         return fmin(v0, v1) < 0.2 * a->stiction ? 0.5 : -1;
     }
     double s = cubic_dip(v0, v1, d0, d1);
-    if (s <= 0 || s >= 1) {
+    if (s <= 1e-6 || s >= 1) { // a dip right at the start is the edge it starts from
         return -1;
     }
     return cubic(s, v0, v1, d0, d1) < 1e-3 * fmax(v0, v1) ? s : -1;
@@ -410,7 +410,9 @@ static double guess_crossing(const motion *m, double h, watch w, double v0, doub
 static status narrow(const arm *a, motion *m, watch w, double s, double lo, double v_lo, double *hi,
                      double v_hi)
 {
-    const double resolution = LOCATION_TIME * fmax(1, m->state[SLOT_TIME]);
+    // the velocities of an implicit step are differences of angles over it: it must not be tiny
+    const double least = motion_unresolved(a, m) ? 1e-6 * m->nominal_step : LOCATION_TIME;
+    const double resolution = fmax(least, LOCATION_TIME * m->state[SLOT_TIME]);
     double evaluated = -1;
     for (int i = 0; i < 200 && *hi - lo > resolution; i++) {
         s = fmin(fmax(s, lo + 0.5 * resolution), *hi - 0.5 * resolution);

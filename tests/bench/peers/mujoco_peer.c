@@ -93,7 +93,7 @@ static int write_arm(char *xml, int size, int variant)
 }
 
 // A chain as URDF, which lists links and joints one after the other: MJCF, with each body inside
-// the one before it, may be nested only some hundred deep.
+// the one before it, may be nested less than a hundred deep.
 static int write_chain(char *xml, int size, int links)
 {
     double l = EXPERIMENT_BEAM_LENGTH / links, m = EXPERIMENT_BEAM_MASS / links;
