@@ -20,7 +20,8 @@ static void check_case(int links, const char *hub, const char *wall, double volt
     check_close(r.summary.steady_force_N, torque, 0.045 + 0.05 * torque);
     // the touch comes when the beam as a whole gets there, whatever the number of links
     check_close(r.summary.first_contact_s, volts > 2 ? 0.1509 : 0.3004, 3e-3);
-    assert_true(r.summary.max_penetration_m < 1e-9);
+    // events are located to a millionth of a step, in which the tip goes some nanometres
+    check_below(r.summary.max_penetration_m, 1e-7);
     // a method's own damping may take energy, nothing may make any
     assert_true(r.summary.energy_residual_J < 0.35 * r.summary.motor_work_J);
     run_finish(&r);
