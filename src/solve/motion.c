@@ -8,8 +8,8 @@
 #include "src/arm/impact.h"
 #include "src/solve/implicit_stepper.h"
 
-// Substeps keep (fastest rate) x (step) below this; the 8th-order method then loses less than
-// 1e-13 of the fastest mode's energy in a step.
+// Strides keep (fastest rate) x (stride) below this; the 8th-order method then loses a few parts in
+// 1e12 of the fastest mode's energy in one.
 #define EXPLICIT_LIMIT 0.36
 // The event method steps implicitly where the explicit one would need more substeps than this.
 #define MOST_SUBSTEPS 90
