@@ -20,6 +20,12 @@ double motor_limited_voltage(const motor_parameters *m)
     return fmax(-m->voltage_limit, fmin(m->voltage, m->voltage_limit));
 }
 
+void arm_set_voltage(arm *a, const motor_parameters *m, double volts)
+{
+    double limited = fmax(-m->voltage_limit, fmin(volts, m->voltage_limit));
+    a->motor_torque = motor_torque_per_volt(m) * limited;
+}
+
 // First frequency of the straight chain clamped at the hub, from inverse iteration on
 // M x = (1/w^2) K x: bending moments of the inertia forces, summed twice, give the next shape.
 // Uniform rods: force on node and moment per unit acceleration of link k, see chain.h.
@@ -96,7 +102,11 @@ static double highest_frequency(const arm *source)
         if (size == 0) {
             return 0;
         }
+        double last = value;
         value = sqrt(size / before);
+        if (sweep >= 4 && fabs(value - last) < 1e-6 * value) {
+            break;
+        }
         for (int k = 0; k < a.dof; k++) {
             q[k] = -alpha[k] * small / sqrt(size);
         }

@@ -39,6 +39,9 @@ typedef struct arm {
 // Derives the constants from resolved parameters (corrected model). Cost grows linearly with N.
 void arm_init(arm *a, const parameters *p);
 
+// Another command [V], limited as the D/A limits it, at the cost of a multiplication; all else stays.
+void arm_set_voltage(arm *a, const motor_parameters *m, double volts);
+
 // Torque of the motor per volt of command, gain kT / Ra [N m/V].
 double motor_torque_per_volt(const motor_parameters *m);
 

@@ -6,9 +6,10 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
                          contact_mode mode, double *alpha, chain_reaction *reaction)
 {
     if (a->links == 2 && !a->hub_spring) {
-        chain_sweep(a, 2, false, work, q, w, mode, alpha, reaction);
+        chain_sweep(a, 2, false, mode.contact, true, work, q, w, mode, alpha, reaction);
     } else {
-        chain_sweep(a, a->links, a->hub_spring, work, q, w, mode, alpha, reaction);
+        chain_sweep(a, a->links, a->hub_spring, mode.contact, true, work, q, w, mode, alpha,
+                    reaction);
     }
 }
 

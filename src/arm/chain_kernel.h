@@ -44,24 +44,25 @@ KERNEL wall_geometry wall_geometry_at(const arm *a, double x, double y, double v
     return wall;
 }
 
-// Accelerations under `mode`; N and hub_spring are passed apart from the arm so that they can be
-// compile-time constants. The derivation stands in chain.h.
-KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, chain_link *link, const double *q,
-                        const double *w, contact_mode mode, double *alpha,
-                        chain_reaction *reaction)
+// Accelerations under `mode`; N, hub_spring and contact (which is mode.contact) are passed apart so
+// that they can be compile-time constants. Without `gap` the reaction's gap and its derivatives are
+// left out in free flight. The derivation stands in chain.h.
+KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool gap,
+                        chain_link *link, const double *q, const double *w, contact_mode mode,
+                        double *alpha, chain_reaction *reaction)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
     const double own = a->link_inertia + m * half * half;
     const double kj = a->joint_stiffness, cj = a->joint_damping;
     const int first = hub_spring ? 1 : 0;
     const double *theta = q + first, *omega = w + first;
-    const bool contact = mode.contact;
+    const bool wanted = contact || gap; // the wall's geometry
 
     // directions of the links, and place and velocity of the last one's base
     double x = 0, y = 0, vx = 0, vy = 0;
     for (int k = 0; k < N; k++) {
         inline_sincos(theta[k], &link[k].s, &link[k].c);
-        if (k < N - 1) {
+        if (wanted && k < N - 1) {
             x += l * link[k].c;
             y += l * link[k].s;
             vx -= l * link[k].s * omega[k];
@@ -69,7 +70,7 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, chain_link *link, 
         }
     }
     wall_geometry wall = {0};
-    if (a->wall != WALL_NONE) {
+    if (wanted && a->wall != WALL_NONE) {
         wall = wall_geometry_at(a, x, y, vx, vy, link[N - 1].c, link[N - 1].s, omega[N - 1]);
     }
 
@@ -114,9 +115,9 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, chain_link *link, 
             d += a->hub_inertia;
         }
         double moment = torque - l * (c * fy - s * fx);
-        double moment2 = -l * (c * uy2 - s * ux2);
-        if (k == N - 1) {
-            moment2 -= wall.lever;
+        double moment2 = 0;
+        if (contact) {
+            moment2 = -l * (c * uy2 - s * ux2) - (k == N - 1 ? wall.lever : 0);
         }
         if (k == 0) {
             root_free = moment;
@@ -130,12 +131,16 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, chain_link *link, 
         link[k].ux = ux;
         link[k].uy = uy;
         link[k].free = moment * inv_d;
-        link[k].unit = moment2 * inv_d;
+        if (contact) {
+            link[k].unit = moment2 * inv_d;
+        }
         if (k > 0) {
             qx = fx - m * half * w2 * c + ux * link[k].free;
             qy = fy - m * half * w2 * s + uy * link[k].free;
-            ux2 += ux * link[k].unit;
-            uy2 += uy * link[k].unit;
+            if (contact) {
+                ux2 += ux * link[k].unit;
+                uy2 += uy * link[k].unit;
+            }
             pxx += m - ux * ux * inv_d;
             pxy -= ux * uy * inv_d;
             pyy += m - uy * uy * inv_d;
@@ -155,8 +160,10 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, chain_link *link, 
             double w2 = omega[k] * omega[k];
             ax -= l * (s * out[k] + c * w2);
             ay += l * (c * out[k] - s * w2);
-            bx -= l * s * link[k].unit;
-            by += l * c * link[k].unit;
+            if (contact) {
+                bx -= l * s * link[k].unit;
+                by += l * c * link[k].unit;
+            }
         }
     }
 
@@ -172,9 +179,11 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, chain_link *link, 
         rate2 = 0;
     }
     reaction->force = force;
-    reaction->gap_acceleration = -rate2;
-    reaction->gap = a->wall == WALL_NONE ? HUGE_VAL : -wall.g;
-    reaction->gap_rate = -(wall.ex * vx + wall.ey * vy + last * omega[N - 1]);
+    if (gap) {
+        reaction->gap_acceleration = -rate2;
+        reaction->gap = a->wall == WALL_NONE ? HUGE_VAL : -wall.g;
+        reaction->gap_rate = -(wall.ex * vx + wall.ey * vy + last * omega[N - 1]);
+    }
     reaction->friction = sliding;
     if (hub_spring) {
         alpha[0] = hub / a->hub_inertia;

@@ -126,7 +126,7 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     }
     w[0] = v;
     w[1] = -along / lever * v; // (3.12)
-    chain_sweep(a, 2, false, p->links, q, w, p->mode, alpha, &r);
+    chain_sweep(a, 2, false, true, false, p->links, q, w, p->mode, alpha, &r);
     p->force = r.force;
     p->acceleration = alpha[0];
 }

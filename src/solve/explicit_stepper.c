@@ -46,8 +46,10 @@ static const double weights[STAGES + 1][STAGES] = {
      2.01365400804030348374776537501e-1, 4.47106157277725905176885569043e-2},
 };
 
-// One step for n degrees of freedom; n, links and hub_spring are constants in the two-link case.
-KERNEL void explicit_step(const arm *a, motion *m, double h, int n, int links, bool hub_spring)
+// One step for n degrees of freedom; n, links, hub_spring and contact are constants in the two-link
+// case.
+KERNEL void explicit_step(const arm *a, motion *m, double h, int n, int links, bool hub_spring,
+                          bool contact)
 {
     const int length = 2 * n + QUADRATURE_COUNT;
     const contact_mode mode = state_mode(m->state);
@@ -83,7 +85,8 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, int n, int links, b
             break;
         }
         double *k = rate + stage * length;
-        chain_sweep(a, links, hub_spring, m->links, y, y + n, mode, k + n, &reaction);
+        chain_sweep(a, links, hub_spring, contact, false, m->links, y, y + n, mode, k + n,
+                    &reaction);
         for (int i = 0; i < n; i++) {
             k[i] = y[n + i];
         }
@@ -95,10 +98,13 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, int n, int links, b
 
 static status step(const arm *a, motion *m, double h)
 {
-    if (a->links == 2 && !a->hub_spring) {
-        explicit_step(a, m, h, 2, 2, false);
+    const bool contact = m->state[SLOT_CONTACT] != 0;
+    if (a->links == 2 && !a->hub_spring && contact) {
+        explicit_step(a, m, h, 2, 2, false, true);
+    } else if (a->links == 2 && !a->hub_spring) {
+        explicit_step(a, m, h, 2, 2, false, false);
     } else {
-        explicit_step(a, m, h, a->dof, a->links, a->hub_spring);
+        explicit_step(a, m, h, a->dof, a->links, a->hub_spring, contact);
     }
     motion_evaluate(a, m, m->trial);
     if (m->trial[SLOT_CONTACT] != 0) {

@@ -8,13 +8,16 @@
 #include "src/arm/impact.h"
 #include "src/solve/implicit_stepper.h"
 
-// Strides keep (fastest rate) x (stride) below this; the 8th-order method then loses a few parts in
-// 1e12 of the fastest mode's energy in one.
+// Strides of a fraction of a time step keep (fastest rate) x (stride) below this; the 8th-order
+// method then loses a few parts in 1e12 of the fastest mode's energy in one.
 #define EXPLICIT_LIMIT 0.36
+// Strides over several time steps, which slow arms take, may go this far: they are few, and what
+// they lose in a second is less than the short ones of fast arms do.
+#define STRIDE_LIMIT 0.45
 // The event method steps implicitly where the explicit one would need more substeps than this.
 #define MOST_SUBSTEPS 90
 // The explicit method takes at most this many time steps in one stride.
-#define LONGEST_STRIDE 10
+#define LONGEST_STRIDE 12
 
 #define TOUCH_TOLERANCE     1e-12 // penetration that counts as crossing the wall [m]
 #define TOUCH_SPEED         1e-11 // approach speed below which a touch carries no impulse [m/s]
@@ -555,8 +558,8 @@ static double stride_length(const arm *a, const motion *m, double remaining, dou
     }
     double longest = step;
     if (m->stepper == &explicit_stepper) {
-        double steps = floor(EXPLICIT_LIMIT / (step * fmax(a->fastest_rate, 1e-3)));
-        longest = steps >= 1 ? fmin(steps, LONGEST_STRIDE) * step
+        double steps = floor(STRIDE_LIMIT / (step * fmax(a->fastest_rate, 1e-3)));
+        longest = steps >= 2 ? fmin(steps, LONGEST_STRIDE) * step
                              : step / ceil(step * a->fastest_rate / EXPLICIT_LIMIT);
     }
     return remaining < longest * (1 + 1e-9) ? remaining : longest;
