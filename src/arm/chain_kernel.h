@@ -96,12 +96,18 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     double outer = 0;                            // torque of the joint beyond
     double root_free = 0, root_unit = 0;         // moments on the first link before division
     for (int k = N - 1; k >= 0; k--) {
+        const bool tip = k == N - 1;
         double c = link[k].c, s = link[k].s, w2 = omega[k] * omega[k];
-        double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c; // P t
-        double prx = pxx * c + pxy * s, pry = pxy * c + pyy * s;   // P r
-        double ux = l * ptx - m * half * s, uy = l * pty + m * half * c;
-        double d = own + l * l * (c * pty - s * ptx);
-        double fx = qx - l * w2 * prx, fy = qy - l * w2 * pry;
+        double ux = -m * half * s, uy = m * half * c, d = own, fx = 0, fy = 0;
+        if (!tip) {
+            double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c; // P t
+            double prx = pxx * c + pxy * s, pry = pxy * c + pyy * s;   // P r
+            ux += l * ptx;
+            uy += l * pty;
+            d += l * l * (c * pty - s * ptx);
+            fx = qx - l * w2 * prx;
+            fy = qy - l * w2 * pry;
+        }
         double torque = outer;
         if (k > 0) {
             double rate = omega[k] - omega[k - 1];
@@ -114,10 +120,10 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
             torque += hub;
             d += a->hub_inertia;
         }
-        double moment = torque - l * (c * fy - s * fx);
+        double moment = tip ? torque : torque - l * (c * fy - s * fx);
         double moment2 = 0;
         if (contact) {
-            moment2 = -l * (c * uy2 - s * ux2) - (k == N - 1 ? wall.lever : 0);
+            moment2 = -l * (c * uy2 - s * ux2) - (tip ? wall.lever : 0);
         }
         if (k == 0) {
             root_free = moment;
@@ -141,9 +147,9 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
                 ux2 += ux * link[k].unit;
                 uy2 += uy * link[k].unit;
             }
-            pxx += m - ux * ux * inv_d;
-            pxy -= ux * uy * inv_d;
-            pyy += m - uy * uy * inv_d;
+            pxx = (tip ? m : pxx + m) - ux * ux * inv_d;
+            pxy = (tip ? 0 : pxy) - ux * uy * inv_d;
+            pyy = (tip ? m : pyy + m) - uy * uy * inv_d;
         }
     }
 
@@ -152,8 +158,11 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     double *out = alpha + first;
     for (int k = 0; k < N; k++) {
         double c = link[k].c, s = link[k].s;
-        out[k] = link[k].free - (link[k].ux * ax + link[k].uy * ay) * link[k].inv_d;
-        if (contact) {
+        out[k] = link[k].free;
+        if (k > 0) { // the first link's base rests
+            out[k] -= (link[k].ux * ax + link[k].uy * ay) * link[k].inv_d;
+        }
+        if (contact && k > 0) {
             link[k].unit -= (link[k].ux * bx + link[k].uy * by) * link[k].inv_d;
         }
         if (k < N - 1) {
@@ -168,9 +177,11 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     }
 
     // d2g/dt2 = 0 gives the force
-    double last = wall.lever + l * (link[N - 1].c * wall.ey - link[N - 1].s * wall.ex); // J_N
-    double rate2 = wall.ex * ax + wall.ey * ay + last * out[N - 1] + wall.convective;
-    double force = 0;
+    double last = 0, rate2 = 0, force = 0; // J_N, d2g/dt2
+    if (wanted) {
+        last = wall.lever + l * (link[N - 1].c * wall.ey - link[N - 1].s * wall.ex);
+        rate2 = wall.ex * ax + wall.ey * ay + last * out[N - 1] + wall.convective;
+    }
     if (contact) {
         force = -rate2 / (wall.ex * bx + wall.ey * by + last * link[N - 1].unit);
         for (int k = 0; k < N; k++) {

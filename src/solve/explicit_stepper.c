@@ -71,7 +71,8 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, int n, int links, b
 
 #pragma GCC unroll 12
     for (int stage = 1; stage <= STAGES; stage++) {
-        for (int i = 0; i < length; i++) {
+        // the quadratures do not enter the accelerations: only their result is wanted
+        for (int i = 0; i < (stage < STAGES ? 2 * n : length); i++) {
             double sum = weights[stage][0] * rate[i];
 #pragma GCC unroll 12
             for (int j = 1; j < stage; j++) {
