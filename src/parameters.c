@@ -8,14 +8,14 @@
 
 #include "src/words.h"
 
-#define AT(field)  offsetof(parameters, field)
-#define REAL       PARAMETER_REAL
-#define INTEGER    PARAMETER_INTEGER
-#define BOOLEAN    PARAMETER_BOOLEAN
-#define CHOICE     PARAMETER_CHOICE
-#define DERIVED    (double)NAN // the default follows from other parameters, see parameters_resolve
-#define TIMED      true
-#define NOT_TIMED  false
+#define AT(field) offsetof(parameters, field)
+#define REAL      PARAMETER_REAL
+#define INTEGER   PARAMETER_INTEGER
+#define BOOLEAN   PARAMETER_BOOLEAN
+#define CHOICE    PARAMETER_CHOICE
+#define DERIVED   (double)NAN // the default follows from other parameters, see parameters_resolve
+#define TIMED     true
+#define NOT_TIMED false
 
 // k1 with which the printed model reproduces the thesis's tables. The thesis prints
 // 169 468 N m/rad, with which its own algorithm at h = 1 ms chatters; 90 lies in the range
@@ -27,9 +27,10 @@
 #define TORQUE_CONSTANT (0.249092 * 9.80665)
 
 const parameter_info parameter_table[] = {
-    // path, unit, type, offset, default (corrected), default (printed), min, max, choices, timed, description
-    {"arm.model", "", CHOICE, AT(arm.model), ARM_CORRECTED, ARM_PRINTED, 0, 1,
-     "corrected|printed", NOT_TIMED, "equations of motion: derived anew, or as the thesis prints them"},
+    // path, unit, type, offset, default (corrected), default (printed), min, max, choices, timed,
+    // description
+    {"arm.model", "", CHOICE, AT(arm.model), ARM_CORRECTED, ARM_PRINTED, 0, 1, "corrected|printed",
+     NOT_TIMED, "equations of motion: derived anew, or as the thesis prints them"},
     {"arm.links", "", INTEGER, AT(arm.links), 2, 2, 1, 1024, NULL, NOT_TIMED,
      "number of rigid links the beam is cut into (N)"},
     {"arm.hub_joint", "", CHOICE, AT(arm.hub_joint), HUB_RIGID, HUB_SPRING, 0, 1, "rigid|spring",
@@ -65,7 +66,8 @@ const parameter_info parameter_table[] = {
     {"motor.stiction", "N m", REAL, AT(motor.stiction), 0.045, 0.045, 0, 1000, NULL, TIMED,
      "Coulomb friction torque at the hub, sliding and sticking (kst)"},
     {"wall.kind", "", CHOICE, AT(wall.kind), WALL_POINT, WALL_POINT, 0, 2, "point|plane|none",
-     NOT_TIMED, "a fixed point the last link's line may not pass, a flat wall the tip may not pass, or none"},
+     NOT_TIMED,
+     "a fixed point the last link's line may not pass, a flat wall the tip may not pass, or none"},
     {"wall.angle", "rad", REAL, AT(wall.angle), 0.1, 0.1, -3, 3, NULL, NOT_TIMED,
      "direction of contact point or flat wall as seen from the hub axis"},
     {"wall.restitution", "", REAL, AT(wall.restitution), 0, 0, 0, 1, NULL, TIMED,
@@ -74,28 +76,34 @@ const parameter_info parameter_table[] = {
      "event|newmark|generalized-alpha", NOT_TIMED, "time integration"},
     {"method.step", "s", REAL, AT(method.step), 1e-3, 1e-3, 1e-7, 1, NULL, NOT_TIMED,
      "time step h, and the spacing of the recorded rows"},
-    {"method.beta", "", REAL, AT(method.beta), 0.4, 0.4, 0.01, 2, NULL, NOT_TIMED, "Newmark's beta"},
-    {"method.gamma", "", REAL, AT(method.gamma), 0.5, 0.5, 0, 2, NULL, NOT_TIMED, "Newmark's gamma"},
-    {"method.spectral_radius", "", REAL, AT(method.spectral_radius), 0.8, 0.8, 0, 1, NULL, NOT_TIMED,
-     "what generalised-alpha leaves of the highest modes in one step (rho at infinity)"},
+    {"method.beta", "", REAL, AT(method.beta), 0.4, 0.4, 0.01, 2, NULL, NOT_TIMED,
+     "Newmark's beta"},
+    {"method.gamma", "", REAL, AT(method.gamma), 0.5, 0.5, 0, 2, NULL, NOT_TIMED,
+     "Newmark's gamma"},
+    {"method.spectral_radius", "", REAL, AT(method.spectral_radius), 0.8, 0.8, 0, 1, NULL,
+     NOT_TIMED, "what generalised-alpha leaves of the highest modes in one step (rho at infinity)"},
     {"method.rest_speed", "m/s", REAL, AT(method.rest_speed), 1e-4, 1e-4, 0, 1, NULL, NOT_TIMED,
      "rest rule: an impact slower than this is plastic whatever e is"},
-    {"printed.spring_counted_twice", "", BOOLEAN, AT(printed.spring_counted_twice), 1, 1, 0, 1, NULL,
-     NOT_TIMED, "printed model: (2.16) carries the spring k2 that belongs in (2.17) alone"},
+    {"printed.spring_counted_twice", "", BOOLEAN, AT(printed.spring_counted_twice), 1, 1, 0, 1,
+     NULL, NOT_TIMED, "printed model: (2.16) carries the spring k2 that belongs in (2.17) alone"},
     {"printed.force_at_link_end", "", BOOLEAN, AT(printed.force_at_link_end), 1, 1, 0, 1, NULL,
-     NOT_TIMED, "printed model: the contact force acts at the link's end instead of the contact point"},
+     NOT_TIMED,
+     "printed model: the contact force acts at the link's end instead of the contact point"},
     {"printed.sign_dead_band", "", BOOLEAN, AT(printed.sign_dead_band), 1, 1, 0, 1, NULL, NOT_TIMED,
      "printed model: sign() takes -0.01 for the lower edge of its dead band instead of -1e-5"},
     {"printed.energy_cross_term", "", BOOLEAN, AT(printed.energy_cross_term), 1, 1, 0, 1, NULL,
      NOT_TIMED, "printed model: kinetic energy of the predictor has eps w2 w3 for 2 l eps w2 w3"},
-    {"printed.reevaluation", "", CHOICE, AT(printed.reevaluation), REEVALUATE_RHS, REEVALUATE_RHS, 0,
-     1, "rhs|listing", NOT_TIMED,
-     "printed model: where the re-evaluation puts 2 l sin(d) w2 w3, as (3.13) has it or as the listing has it"},
+    {"printed.reevaluation", "", CHOICE, AT(printed.reevaluation), REEVALUATE_RHS, REEVALUATE_RHS,
+     0, 1, "rhs|listing", NOT_TIMED,
+     "printed model: where the re-evaluation puts 2 l sin(d) w2 w3, as (3.13) has it or as the "
+     "listing has it"},
     {"printed.force_after_release", "", BOOLEAN, AT(printed.force_after_release), 1, 1, 0, 1, NULL,
-     NOT_TIMED, "printed model: the force is evaluated from the constrained system after release too"},
+     NOT_TIMED,
+     "printed model: the force is evaluated from the constrained system after release too"},
     {"printed.feed_newmark_acceleration", "", BOOLEAN, AT(printed.feed_newmark_acceleration), 0, 0,
      0, 1, NULL, NOT_TIMED,
-     "printed model: the next step starts from Newmark's own acceleration, not the re-evaluated one"},
+     "printed model: the next step starts from Newmark's own acceleration, not the re-evaluated "
+     "one"},
     {"printed.newton_iterations", "", INTEGER, AT(printed.newton_iterations), 2, 2, 1, 100, NULL,
      NOT_TIMED, "printed model: Newton solves per time step"},
     {"initial.angle", "rad", REAL, AT(initial.angle), 0, 0, -3, 3, NULL, NOT_TIMED,
@@ -108,8 +116,7 @@ const parameter_info parameter_table[] = {
 
 const int parameter_count = (int)(sizeof parameter_table / sizeof parameter_table[0]);
 
-_Static_assert(sizeof parameter_table / sizeof parameter_table[0] <=
-                   sizeof(((parameters *)0)->set),
+_Static_assert(sizeof parameter_table / sizeof parameter_table[0] <= sizeof(((parameters *)0)->set),
                "parameters.set has room for every parameter");
 
 int parameter_find(const char *path)
@@ -196,7 +203,8 @@ status parameter_set_number(parameters *p, int index, double value, fault *f)
                          info->path, info->minimum, info->maximum, space, unit);
     }
     if (info->type != PARAMETER_REAL && value != floor(value)) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s = %g is not a whole number", info->path, value);
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s = %g is not a whole number", info->path,
+                         value);
     }
     if (value < info->minimum || value > info->maximum) {
         return fault_set(f, STATUS_BAD_SCENARIO, "%s = %g is out of range, expected %g to %g%s%s",
@@ -231,13 +239,14 @@ static status parse_quantity(const parameter_info *info, const char *text, doubl
         bool infinite = strncasecmp(digits, "inf", 3) == 0 || strncasecmp(digits, "nan", 3) == 0;
         const char *type = info->type == PARAMETER_INTEGER ? "a whole number" : "a number";
         return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is not %s, expected %g to %g%s%s",
-                         info->path, text, infinite ? "finite" : type, info->minimum,
-                         info->maximum, info->unit[0] ? " " : "", info->unit);
+                         info->path, text, infinite ? "finite" : type, info->minimum, info->maximum,
+                         info->unit[0] ? " " : "", info->unit);
     }
     if (*unit != '\0' && strcmp(unit, info->unit) != 0) {
         if (info->unit[0] == '\0') {
             return fault_set(f, STATUS_BAD_SCENARIO,
-                             "%s = '%.60s' carries a unit, expected a pure number", info->path, text);
+                             "%s = '%.60s' carries a unit, expected a pure number", info->path,
+                             text);
         }
         return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is in '%.20s', expected %s",
                          info->path, text, unit, info->unit);
@@ -266,8 +275,9 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
     if (info->type == PARAMETER_CHOICE) {
         int choice = choice_index(info->choices, word, length);
         if (choice < 0) {
-            return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is not known, expected one of %s",
-                             info->path, word, info->choices);
+            return fault_set(f, STATUS_BAD_SCENARIO,
+                             "%s = '%.60s' is not known, expected one of %s", info->path, word,
+                             info->choices);
         }
         value = choice;
     } else if (info->type == PARAMETER_BOOLEAN) {

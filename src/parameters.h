@@ -17,16 +17,16 @@ typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPH
 typedef enum listing_reevaluation { REEVALUATE_RHS, REEVALUATE_LISTING } listing_reevaluation;
 
 typedef struct arm_parameters {
-    int model;             // arm_model_kind
-    int links;             // number of links of the beam, N
-    int hub_joint;         // hub_joint_kind
-    double length;         // beam length, N links together [m]
-    double mass;           // beam mass, N links together [kg]
-    double hub_inertia;    // I1 [kg m2]
-    double link_inertia;   // I2 = I3 about the centre of mass, N = 2 only [kg m2]
-    double k1;             // hub joint spring [N m/rad]
-    double k2;             // joint spring of the two-link beam [N m/rad]; N links: k2 N/2 each
-    double damping_ratio;  // structural damping ratio of the first clamped-free mode [-]
+    int model;            // arm_model_kind
+    int links;            // number of links of the beam, N
+    int hub_joint;        // hub_joint_kind
+    double length;        // beam length, N links together [m]
+    double mass;          // beam mass, N links together [kg]
+    double hub_inertia;   // I1 [kg m2]
+    double link_inertia;  // I2 = I3 about the centre of mass, N = 2 only [kg m2]
+    double k1;            // hub joint spring [N m/rad]
+    double k2;            // joint spring of the two-link beam [N m/rad]; N links: k2 N/2 each
+    double damping_ratio; // structural damping ratio of the first clamped-free mode [-]
 } arm_parameters;
 
 typedef struct motor_parameters {
@@ -41,34 +41,34 @@ typedef struct motor_parameters {
 } motor_parameters;
 
 typedef struct wall_parameters {
-    int kind;            // wall_kind
-    double angle;        // direction of the contact point (or the flat wall) from the hub [rad]
-    double restitution;  // coefficient of restitution e [-]
+    int kind;           // wall_kind
+    double angle;       // direction of the contact point (or the flat wall) from the hub [rad]
+    double restitution; // coefficient of restitution e [-]
 } wall_parameters;
 
 typedef struct method_parameters {
-    int name;                // method_kind
-    double step;             // h [s]
-    double beta;             // Newmark's beta [-]
-    double gamma;            // Newmark's gamma [-]
-    double spectral_radius;  // generalised-alpha's rho at infinite frequency [-]
-    double rest_speed;       // approach speed below which an impact is plastic (rest rule) [m/s]
+    int name;               // method_kind
+    double step;            // h [s]
+    double beta;            // Newmark's beta [-]
+    double gamma;           // Newmark's gamma [-]
+    double spectral_radius; // generalised-alpha's rho at infinite frequency [-]
+    double rest_speed;      // approach speed below which an impact is plastic (rest rule) [m/s]
 } method_parameters;
 
 typedef struct printed_parameters {
-    bool spring_counted_twice;  // (2.16) carries k2 (errata B1)
-    bool force_at_link_end;     // contact force acts at l, not at the contact point (B5)
-    bool sign_dead_band;        // sign() uses -1e-2 where it means -1e-5 (C1)
-    bool energy_cross_term;     // energy predictor uses E2 w2 w3 for 2 l e w2 w3 (C2)
-    int reevaluation;           // listing_reevaluation: where C3's term stands
-    bool force_after_release;   // re-evaluates the force after release (C4)
+    bool spring_counted_twice;      // (2.16) carries k2 (errata B1)
+    bool force_at_link_end;         // contact force acts at l, not at the contact point (B5)
+    bool sign_dead_band;            // sign() uses -1e-2 where it means -1e-5 (C1)
+    bool energy_cross_term;         // energy predictor uses E2 w2 w3 for 2 l e w2 w3 (C2)
+    int reevaluation;               // listing_reevaluation: where C3's term stands
+    bool force_after_release;       // re-evaluates the force after release (C4)
     bool feed_newmark_acceleration; // next step starts from Newmark's own acceleration (C5)
-    int newton_iterations;      // Newton solves per step
+    int newton_iterations;          // Newton solves per step
 } printed_parameters;
 
 typedef struct initial_parameters {
-    double angle;     // all bodies [rad]
-    double velocity;  // all bodies [rad/s]
+    double angle;    // all bodies [rad]
+    double velocity; // all bodies [rad/s]
 } initial_parameters;
 
 typedef struct run_parameters {
@@ -94,10 +94,10 @@ typedef enum parameter_type {
 } parameter_type;
 
 typedef struct parameter_info {
-    const char *path;        // "arm.k2"
-    const char *unit;        // "N m/rad", "" for a pure number
+    const char *path; // "arm.k2"
+    const char *unit; // "N m/rad", "" for a pure number
     parameter_type type;
-    size_t offset;           // in struct parameters
+    size_t offset; // in struct parameters
     double default_corrected;
     double default_printed;
     double minimum, maximum; // both included

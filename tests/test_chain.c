@@ -12,7 +12,8 @@ static arm make_arm(int links, const char *hub, const char *wall)
     snprintf(n, sizeof n, "arm.links=%d", links);
     snprintf(joint, sizeof joint, "arm.hub_joint=%s", hub);
     snprintf(kind, sizeof kind, "wall.kind=%s", wall);
-    parameters p = fixture_parameters(SETTINGS(n, joint, kind, "arm.k1=90", "arm.damping_ratio=0.02"));
+    parameters p =
+        fixture_parameters(SETTINGS(n, joint, kind, "arm.k1=90", "arm.damping_ratio=0.02"));
     arm a;
     arm_init(&a, &p);
     return a;
@@ -122,13 +123,15 @@ static double numeric_second_rate(const arm *a, const double *q, const double *w
 static void satisfies_the_lagrangian(void **state)
 {
     (void)state;
-    static const char *const hubs[] = {"rigid", "spring"}, *const walls[] = {"point", "plane", "none"};
+    static const char *const hubs[] = {"rigid", "spring"}, *const walls[] = {"point", "plane",
+                                                                             "none"};
     static const hub_friction frictions[] = {HUB_FORWARD, HUB_BACKWARD, HUB_STICK};
     int cases = 0;
     for (int links = 1; links <= 10; links++) {
         for (int choice = 0; choice < 2 * 3 * 3 * 2; choice++) {
             arm a = make_arm(links, hubs[choice % 2], walls[choice / 2 % 3]);
-            contact_mode mode = {choice / 18 == 1 && a.wall != WALL_NONE, frictions[choice / 6 % 3]};
+            contact_mode mode = {choice / 18 == 1 && a.wall != WALL_NONE,
+                                 frictions[choice / 6 % 3]};
             if (a.dof == 1 && mode.contact) {
                 continue; // tested below
             }

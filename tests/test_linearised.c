@@ -39,7 +39,8 @@ static comparison compare(double k2, double volts, const char *wall, const char 
         }
     } while (report.event != MOTION_IMPACT);
     assert_int_equal(predict_linearised(&a, m, state_angles(m, m->state),
-                                        state_velocities(m, m->state), &c.predicted), STATUS_OK);
+                                        state_velocities(m, m->state), &c.predicted),
+                     STATUS_OK);
     motion_destroy(m);
     return c;
 }

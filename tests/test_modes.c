@@ -20,7 +20,8 @@ static double beta_length(int links, tip_end tip, int mode)
     assert_int_equal(modes_compute(&a, HUB_LOCKED, tip, &count, frequencies, shapes), STATUS_OK);
     assert_true(mode < count);
     double stiffness = p.arm.k2 * p.arm.length / 2, density = p.arm.mass / p.arm.length;
-    double result = sqrt(frequencies[mode] / sqrt(stiffness / density) * p.arm.length * p.arm.length);
+    double result =
+        sqrt(frequencies[mode] / sqrt(stiffness / density) * p.arm.length * p.arm.length);
     free(frequencies);
     free(shapes);
     return result;

@@ -155,7 +155,8 @@ static void the_steady_force_is_the_springs(void **state)
     run_result r = run(SETTINGS("run.duration=2"));
     const sample *last = &r.trace.rows[r.trace.row_count - 1];
     double d = last->last_angle - last->first_angle;
-    double lever = cos(0.1) * cos(last->last_angle) + sin(0.1) * sin(last->last_angle) - 0.5 * cos(d);
+    double lever =
+        cos(0.1) * cos(last->last_angle) + sin(0.1) * sin(last->last_angle) - 0.5 * cos(d);
     check_close(last->sticking, 1, 0);
     check_relative(last->force, -4.92 * d / lever, 1e-9);
     check_relative(r.summary.steady_force_N, last->force, 1e-9);
@@ -203,7 +204,8 @@ static void script_acts_at_its_time_and_is_booked(void **state)
         {.time = 1.4, .kind = ACTION_PUSH, .value = -0.2}, // away from the wall
     };
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=2")),
-                  .actions = todo, .action_count = 4};
+                  .actions = todo,
+                  .action_count = 4};
     run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
     check_close(find_event(&r, EVENT_PUSH, 0)->time, 0.70005, 1e-12);
@@ -227,8 +229,8 @@ static void script_acts_at_its_time_and_is_booked(void **state)
 static void a_step_that_cannot_be_taken_stops_with_time_and_reason(void **state)
 {
     (void)state;
-    scenario s = {.parameters = fixture_parameters(SETTINGS("method.name=newmark", "method.step=0.5",
-                                                            "motor.voltage=10", "arm.k2=1e5"))};
+    scenario s = {.parameters = fixture_parameters(SETTINGS(
+                      "method.name=newmark", "method.step=0.5", "motor.voltage=10", "arm.k2=1e5"))};
     s.parameters.motor.stiction = NAN; // a bad number that slipped in
     run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
@@ -241,8 +243,8 @@ static void a_step_that_cannot_be_taken_stops_with_time_and_reason(void **state)
 static void a_run_that_makes_energy_from_nothing_is_stopped(void **state)
 {
     (void)state;
-    scenario s = {.parameters = fixture_parameters(SETTINGS("method.name=newmark", "method.gamma=0.3",
-                                                            "arm.links=8", "run.duration=3"))};
+    scenario s = {.parameters = fixture_parameters(SETTINGS(
+                      "method.name=newmark", "method.gamma=0.3", "arm.links=8", "run.duration=3"))};
     run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_UNSTABLE);
     assert_non_null(strstr(r.summary.message, "method.step"));

@@ -25,14 +25,17 @@ static void check_scenario(const char *name)
     }
     if (s.parameters.arm.model == ARM_CORRECTED && s.parameters.method.name == METHOD_EVENT) {
         // what the motor did, or where it did nothing, what the arm began with
-        double m = s.parameters.arm.mass, l = s.parameters.arm.length, v = s.parameters.initial.velocity;
+        double m = s.parameters.arm.mass, l = s.parameters.arm.length,
+               v = s.parameters.initial.velocity;
         double turned_over = fabs(r.summary.motor_work_J) + 0.5 * m * l * l / 3 * v * v;
         double pushed = 0;
         for (int i = 0; i < s.action_count; i++) {
-            pushed += s.actions[i].kind == ACTION_PUSH ? s.actions[i].value * s.actions[i].value / m : 0;
+            pushed +=
+                s.actions[i].kind == ACTION_PUSH ? s.actions[i].value * s.actions[i].value / m : 0;
         }
         if (!(r.summary.energy_residual_J < 1e-6 * (turned_over + pushed))) {
-            fail_msg("%s: energy residual %g J of %g J", name, r.summary.energy_residual_J, turned_over);
+            fail_msg("%s: energy residual %g J of %g J", name, r.summary.energy_residual_J,
+                     turned_over);
         }
     }
     run_finish(&r);

@@ -10,9 +10,9 @@ static arm oscillator(double frequency, const char *method, const char *more, me
 {
     char k1[64];
     snprintf(k1, sizeof k1, "arm.k1=%.17g", frequency * frequency * 0.40108 / 3);
-    parameters p = fixture_parameters(SETTINGS("arm.links=1", "arm.hub_joint=spring", k1,
-                                               "wall.kind=none", "motor.voltage=0",
-                                               "motor.stiction=1000", method, more));
+    parameters p =
+        fixture_parameters(SETTINGS("arm.links=1", "arm.hub_joint=spring", k1, "wall.kind=none",
+                                    "motor.voltage=0", "motor.stiction=1000", method, more));
     arm a;
     arm_init(&a, &p);
     *mp = p.method;
@@ -49,8 +49,8 @@ static double spectral_radius(double frequency_step, const char *method, const c
         double *q = &state_angles(m, m->state)[1], *v = &state_velocities(m, m->state)[1];
         double *algorithmic = &state_algorithmic(m, m->state)[1];
         double f = frequency_step / h;
-        double size = sqrt(*q * *q + *v * *v / (f * f) +
-                           *algorithmic * *algorithmic / (f * f * f * f));
+        double size =
+            sqrt(*q * *q + *v * *v / (f * f) + *algorithmic * *algorithmic / (f * f * f * f));
         growth += i > STEPS / 2 ? log(size / wanted) : 0;
         *q *= wanted / size;
         *v *= wanted / size;
@@ -92,8 +92,10 @@ static void orders_are_as_published(void **state)
     check_close(order_of("method.name=newmark", "method.beta=0.25", 1e-3), 2, 0.05);
     check_close(order_of("method.name=newmark", "method.beta=0.4", 1e-3), 2, 0.05);
     check_close(order_of("method.name=newmark", "method.gamma=0.6", 2.5e-4), 1, 0.1);
-    check_close(order_of("method.name=generalized-alpha", "method.spectral_radius=0.8", 1e-3), 2, 0.05);
-    check_close(order_of("method.name=generalized-alpha", "method.spectral_radius=0", 1e-3), 2, 0.1);
+    check_close(order_of("method.name=generalized-alpha", "method.spectral_radius=0.8", 1e-3), 2,
+                0.05);
+    check_close(order_of("method.name=generalized-alpha", "method.spectral_radius=0", 1e-3), 2,
+                0.1);
     check_close(order_of("method.name=event", "method.beta=0.4", 2e-2), 8, 0.5);
 }
 
@@ -179,8 +181,8 @@ static double distance_to_event_method(const char *links, const char *wall, cons
 {
     double angle[2];
     for (int side = 0; side < 2; side++) {
-        parameters p = fixture_parameters(SETTINGS(links, wall, "arm.damping_ratio=0.02",
-                                                   side ? "method.name=event" : method));
+        parameters p = fixture_parameters(
+            SETTINGS(links, wall, "arm.damping_ratio=0.02", side ? "method.name=event" : method));
         arm a;
         arm_init(&a, &p);
         motion *m = motion_create(&a, &p.method);

@@ -52,7 +52,8 @@ static double first_clamped_frequency(const arm *a)
         for (int k = a->links - 1; k >= 1; k--) {
             double base = tip_y[k] - l * shape[k];
             double own_force = m * (base + l * shape[k] / 2);
-            double moment = moment_beyond + force * l + own_force * l / 2 + a->link_inertia * shape[k];
+            double moment =
+                moment_beyond + force * l + own_force * l / 2 + a->link_inertia * shape[k];
             moment_beyond = moment;
             force += own_force;
             next[k] = moment / a->joint_stiffness; // bend of joint k

@@ -12,34 +12,35 @@
 #include "src/parameters.h"
 
 typedef struct arm {
-    int links;               // N
-    int dof;                 // degrees of freedom n: N, or N + 1 with a hub spring
-    int first;               // index of the first link's angle: 0, or 1 with a hub spring
+    int links; // N
+    int dof;   // degrees of freedom n: N, or N + 1 with a hub spring
+    int first; // index of the first link's angle: 0, or 1 with a hub spring
     bool hub_spring;
-    double link_length;      // l [m]
-    double link_mass;        // m [kg]
-    double link_inertia;     // about the centre of mass [kg m2]
-    double hub_inertia;      // I1 [kg m2]
-    double hub_stiffness;    // k1, zero with a rigid hub joint [N m/rad]
-    double joint_stiffness;  // of each inner joint, k2 N/2 [N m/rad]
+    double link_length;       // l [m]
+    double link_mass;         // m [kg]
+    double link_inertia;      // about the centre of mass [kg m2]
+    double hub_inertia;       // I1 [kg m2]
+    double hub_stiffness;     // k1, zero with a rigid hub joint [N m/rad]
+    double joint_stiffness;   // of each inner joint, k2 N/2 [N m/rad]
     double hub_joint_damping; // structural damping of the hub spring [N m s/rad]
-    double joint_damping;    // structural damping of each inner joint [N m s/rad]
-    double motor_torque;     // kT/Ra times the amplified, limited command [N m]
-    double hub_damping;      // back EMF and viscous friction [N m s/rad]
-    double stiction;         // Coulomb friction torque at the hub [N m]
+    double joint_damping;     // structural damping of each inner joint [N m s/rad]
+    double motor_torque;      // kT/Ra times the amplified, limited command [N m]
+    double hub_damping;       // back EMF and viscous friction [N m s/rad]
+    double stiction;          // Coulomb friction torque at the hub [N m]
     wall_kind wall;
     double wall_cos, wall_sin; // direction of the wall [-]
-    double wall_x, wall_y;   // contact point (a, b) [m]
-    double restitution;      // e [-]
-    double rest_speed;       // impacts slower than this are plastic [m/s]
-    double highest_frequency; // upper estimate over the arm's free modes [rad/s]
-    double fastest_rate;     // the same or, if faster, weighted decays: sets the steps [1/s]
+    double wall_x, wall_y;     // contact point (a, b) [m]
+    double restitution;        // e [-]
+    double rest_speed;         // impacts slower than this are plastic [m/s]
+    double highest_frequency;  // upper estimate over the arm's free modes [rad/s]
+    double fastest_rate;       // the same or, if faster, weighted decays: sets the steps [1/s]
 } arm;
 
 // Derives the constants from resolved parameters (corrected model). Cost grows linearly with N.
 void arm_init(arm *a, const parameters *p);
 
-// Another command [V], limited as the D/A limits it, at the cost of a multiplication; all else stays.
+// Another command [V], limited as the D/A limits it, at the cost of a multiplication; all else
+// stays.
 void arm_set_voltage(arm *a, const motor_parameters *m, double volts);
 
 // Torque of the motor per volt of command, gain kT / Ra [N m/V].

@@ -88,8 +88,8 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
         if (k == 0 && !a->hub_spring && hub_locked) {
             moment = 0;
         }
-        link[k] = (chain_link){.c = c, .s = s, .inv_d = 1 / d, .ux = ux, .uy = uy,
-                               .unit = moment / d};
+        link[k] =
+            (chain_link){.c = c, .s = s, .inv_d = 1 / d, .ux = ux, .uy = uy, .unit = moment / d};
         fx += ux * link[k].unit;
         fy += uy * link[k].unit;
         pxx += m - ux * ux / d;

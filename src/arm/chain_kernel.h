@@ -11,10 +11,10 @@
 
 // Where and how the wall acts on the last link.
 typedef struct wall_geometry {
-    double ex, ey;      // direction of the contact force's reaction, J_j = l t_j'e for inner links
-    double lever;       // distance of the contact point beyond the last link's end, s - l [m]
-    double g;           // penetration [m]
-    double convective;  // d2g/dt2 - J alpha - (base acceleration)'e, velocity terms of the last link
+    double ex, ey;     // direction of the contact force's reaction, J_j = l t_j'e for inner links
+    double lever;      // distance of the contact point beyond the last link's end, s - l [m]
+    double g;          // penetration [m]
+    double convective; // d2g/dt2 - J alpha - (base acceleration)'e, velocity terms of the last link
 } wall_geometry;
 
 // Geometry of contact from the last link's base (x, y) moving at (vx, vy), its direction (c, s) and
@@ -90,11 +90,11 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     }
 
     // tip to hub: eliminate each link's acceleration
-    double pxx = 0, pxy = 0, pyy = 0;            // P: mass shown by the links beyond
-    double qx = 0, qy = 0;                       // Q of velocity and springs
-    double ux2 = wall.ex, uy2 = wall.ey;         // Q of a unit contact force
-    double outer = 0;                            // torque of the joint beyond
-    double root_free = 0, root_unit = 0;         // moments on the first link before division
+    double pxx = 0, pxy = 0, pyy = 0;    // P: mass shown by the links beyond
+    double qx = 0, qy = 0;               // Q of velocity and springs
+    double ux2 = wall.ex, uy2 = wall.ey; // Q of a unit contact force
+    double outer = 0;                    // torque of the joint beyond
+    double root_free = 0, root_unit = 0; // moments on the first link before division
     for (int k = N - 1; k >= 0; k--) {
         const bool tip = k == N - 1;
         double c = link[k].c, s = link[k].s, w2 = omega[k] * omega[k];

@@ -91,7 +91,8 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
     reduce(mass, basis, n, columns, product, m);
     *count = columns;
     if (columns > 0) {
-        dsygv_(&itype, "V", "U", &columns, k, &columns, m, &columns, values, work, &work_size, &info);
+        dsygv_(&itype, "V", "U", &columns, k, &columns, m, &columns, values, work, &work_size,
+               &info);
     }
     for (int i = 0; i < columns && info == 0; i++) {
         frequencies[i] = sqrt(fmax(values[i], 0));

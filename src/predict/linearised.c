@@ -80,8 +80,8 @@ static void oscillation_at(const oscillation *o, double t, double *y, double *ve
         s = sinh(o->frequency * t);
     }
     *y = o->rest + decay * (o->sine * s - o->rest * c);
-    *velocity = decay * (o->sine * (o->frequency * c - o->decay * s) -
-                         o->rest * (turn * s - o->decay * c));
+    *velocity =
+        decay * (o->sine * (o->frequency * c - o->decay * s) - o->rest * (turn * s - o->decay * c));
 }
 
 // First instant at which the oscillation comes to rest, its velocity being positive at 0.

@@ -16,10 +16,10 @@
 // out of the results. Where it does not (many links), accelerations of modes faster than the step
 // are no information: a1 and f stay those of the step's own balance, and in contact and just after
 // a jump the step is backward Euler's, beta = gamma = 1, which asks nothing of the accelerations
-// before it, with dg/dt = 0 for a constraint, on which the force does no work; what g drifts is bent
-// away along a smooth shape that costs next to no strain. It is of first order, but loses energy
-// whatever the step; generalised-alpha, started from the jumps of a thousand links, was seen to
-// make some.
+// before it, with dg/dt = 0 for a constraint, on which the force does no work; what g drifts is
+// bent away along a smooth shape that costs next to no strain. It is of first order, but loses
+// energy whatever the step; generalised-alpha, started from the jumps of a thousand links, was seen
+// to make some.
 //
 // Newton's linear system is solved by two sweeps like those of chain.h. With dw = gamma' dq and
 // da = beta' dq, the acceleration of a node changes by da_k = da_{k-1} + l z_k dq_k,
@@ -37,7 +37,7 @@
 // The iteration ends with a correction below this share of the largest angle or of 1 rad. It
 // converges quadratically, or by 1e-5 a step where the lever is left out, so that what is left is
 // below 1e-12.
-#define NEWTON_TOLERANCE  1e-8
+#define NEWTON_TOLERANCE 1e-8
 
 typedef struct tangent {
     double beta;  // beta': acceleration per angle [1/s2]
@@ -128,9 +128,9 @@ typedef struct iterate {
     const double *q, *w, *acceleration;
     double force;
     bool contact, stuck;
-    bool velocity_level;  // the constraint is dg/dt = 0 instead of g = 0
-    double sliding; // Coulomb friction torque while sliding [N m]
-    double excess;  // out: what the balance of a stuck hub lacks, minus friction [N m]
+    bool velocity_level; // the constraint is dg/dt = 0 instead of g = 0
+    double sliding;      // Coulomb friction torque while sliding [N m]
+    double excess;       // out: what the balance of a stuck hub lacks, minus friction [N m]
 } iterate;
 
 // Solves the tangent system for the corrections of the angles, dq[dof], and of the force.
@@ -150,13 +150,13 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
     forces_between_links(a, link, w, al, it->force * point.ex, it->force * point.ey);
 
     // tip to hub
-    double pxx = 0, pxy = 0, pyx = 0, pyy = 0; // P, no longer symmetric
+    double pxx = 0, pxy = 0, pyx = 0, pyy = 0;                 // P, no longer symmetric
     double hx = -it->force * point.angle_force * link[last].c; // p_f: the point wall's force turns
     double hy = -it->force * point.angle_force * link[last].s; // with the last link
-    double gx = 0, gy = 0, yy = 0;             // p_t and y of the joint beyond
-    double fx = 0, fy = 0, torque0 = 0;        // F0, T0 of the residual
-    double ex = point.ex, ey = point.ey, torque1 = 0; // and of a unit force
-    double outer = 0;                          // torque of the joint beyond
+    double gx = 0, gy = 0, yy = 0;                             // p_t and y of the joint beyond
+    double fx = 0, fy = 0, torque0 = 0;                        // F0, T0 of the residual
+    double ex = point.ex, ey = point.ey, torque1 = 0;          // and of a unit force
+    double outer = 0;                                          // torque of the joint beyond
     for (int k = last; k >= 0; k--) {
         implicit_sweep *L = &link[k];
         double c = L->c, s = L->s, omega = w[first + k], alpha = al[first + k];
@@ -191,10 +191,11 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
         if (first + k == 0) {
             // the first link turns with the hub
             pivot += a->hub_inertia * t.beta + a->hub_damping * t.gamma;
-            right -= a->hub_inertia * alpha + a->hub_damping * omega - a->motor_torque - it->sliding;
+            right -=
+                a->hub_inertia * alpha + a->hub_damping * omega - a->motor_torque - it->sliding;
             if (it->stuck) {
-                it->excess = -residual - a->hub_inertia * alpha - a->hub_damping * omega +
-                             a->motor_torque;
+                it->excess =
+                    -residual - a->hub_inertia * alpha - a->hub_damping * omega + a->motor_torque;
                 right = right1 = 0;
             }
         }
@@ -226,8 +227,8 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
         it->excess = a->motor_torque + outer;
     } else if (a->hub_spring) {
         double pivot = a->hub_inertia * t.beta + a->hub_damping * t.gamma - yy;
-        double residual = a->hub_inertia * al[0] + a->hub_damping * w[0] - a->motor_torque -
-                          it->sliding - outer;
+        double residual =
+            a->hub_inertia * al[0] + a->hub_damping * w[0] - a->motor_torque - it->sliding - outer;
         dq[0] = (torque0 - residual) / pivot;
         unit[0] = torque1 / pivot;
     }
@@ -360,8 +361,8 @@ static void keep_balance(const arm *a, motion *m, const iterate *it)
     trial[SLOT_DAMPING_POWER] = power;
 }
 
-// Bends a drift of the constraint away: angles c x (2 - x) with x from 0 at the hub to 1 at the tip,
-// like a beam under a load at its tip.
+// Bends a drift of the constraint away: angles c x (2 - x) with x from 0 at the hub to 1 at the
+// tip, like a beam under a load at its tip.
 static void bend_to_wall(const arm *a, motion *m)
 {
     double *q = state_angles(m, m->trial), *shape = m->scratch;
@@ -388,8 +389,8 @@ static bool makes_energy(const arm *a, const motion *m)
     for (int i = 0; i < 2; i++) {
         double *state = i == 0 ? m->state : m->trial;
         const double *q = state_angles(m, state);
-        energy[i] = chain_kinetic_energy(a, q, state_velocities(m, state)) +
-                    chain_strain_energy(a, q);
+        energy[i] =
+            chain_kinetic_energy(a, q, state_velocities(m, state)) + chain_strain_energy(a, q);
     }
     double turned = state_angles(m, m->trial)[0] - state_angles(m, m->state)[0];
     return energy[1] - energy[0] > fmax(a->motor_torque * turned, 0) + 1e-3 * energy[0] + 1e-9;
@@ -403,9 +404,12 @@ static status step(const arm *a, motion *m, double h)
     if (!resolved && (mode.contact || m->state[SLOT_JUMPED] != 0)) {
         k = (coefficients){0, 0, 1, 1};
     }
-    iterate it = {.q = state_angles(m, m->trial), .w = state_velocities(m, m->trial),
-                  .acceleration = state_accelerations(m, m->trial), .force = m->state[SLOT_FORCE],
-                  .contact = mode.contact, .stuck = mode.friction == HUB_STICK,
+    iterate it = {.q = state_angles(m, m->trial),
+                  .w = state_velocities(m, m->trial),
+                  .acceleration = state_accelerations(m, m->trial),
+                  .force = m->state[SLOT_FORCE],
+                  .contact = mode.contact,
+                  .stuck = mode.friction == HUB_STICK,
                   .velocity_level = !resolved,
                   .sliding = -mode.friction * a->stiction};
     status s = solve_step(a, m, h, &k, &it);
@@ -436,4 +440,5 @@ static status step(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
-const stepper implicit_stepper = {"generalised-alpha", step, 0};
+const stepper newmark_stepper = {"Newmark", step, 0};
+const stepper generalized_alpha_stepper = {"generalised-alpha", step, 0};

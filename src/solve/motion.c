@@ -1,12 +1,12 @@
 #include "src/solve/motion.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/arm/impact.h"
 #include "src/solve/implicit_stepper.h"
+#include "src/solve/locate.h"
 
 // Strides of a fraction of a time step keep (fastest rate) x (stride) below this; the 8th-order
 // method then loses a few parts in 1e12 of the fastest mode's energy in one.
@@ -17,32 +17,28 @@
 // The event method steps implicitly where the explicit one would need more substeps than this.
 #define MOST_SUBSTEPS 90
 // The explicit method takes at most this many time steps in one stride.
-#define LONGEST_STRIDE 12
+#define LONGEST_STRIDE  12
 
-#define TOUCH_TOLERANCE     1e-12 // penetration that counts as crossing the wall [m]
-#define TOUCH_SPEED         1e-11 // approach speed below which a touch carries no impulse [m/s]
-#define FORCE_TOLERANCE     1e-9  // tension that counts as a release [N]
-#define TORQUE_TOLERANCE    1e-12 // excess that counts as breaking away [N m]
-#define UNRESOLVED_IMPACT   0.1   // share of a step that an impact takes where steps do not resolve it
-#define MOST_HALVINGS       8     // of a step that does not converge or makes energy
-#define LOCATION_TIME       1e-15 // width to which the bracket of an event is narrowed [s]
-#define PROJECTION_GAP      1e-14 // drift that is projected away in contact [m]
-#define PROJECTION_RATE     1e-13 // [m/s]
+#define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
+#define MOST_HALVINGS   8     // of a step that does not converge or makes energy
+#define PROJECTION_GAP  1e-14 // drift that is projected away in contact [m]
+#define PROJECTION_RATE 1e-13 // [m/s]
 
 bool motion_unresolved(const arm *a, const motion *m)
 {
-    return m->stepper == &implicit_stepper && m->nominal_step * a->fastest_rate > 1;
+    return m->stepper != &explicit_stepper && m->nominal_step * a->fastest_rate > 1;
 }
 
 static void choose_stepper(const arm *a, motion *m, const method_parameters *method)
 {
     double rho = method->spectral_radius;
     bool too_stiff = a->fastest_rate * method->step > EXPLICIT_LIMIT * MOST_SUBSTEPS;
-    m->stepper = &implicit_stepper;
     if (method->name == METHOD_NEWMARK) {
+        m->stepper = &newmark_stepper;
         m->beta = method->beta;
         m->gamma = method->gamma;
     } else if (method->name == METHOD_GENERALIZED_ALPHA || too_stiff) {
+        m->stepper = &generalized_alpha_stepper;
         // Chung and Hulbert (1993), equations (17), (18), (25)
         m->alpha_m = (2 * rho - 1) / (rho + 1);
         m->alpha_f = rho / (rho + 1);
@@ -72,7 +68,8 @@ motion *motion_create(const arm *a, const method_parameters *method)
     m->scratch = calloc(4 * n, sizeof(double));
     m->links = calloc(links, sizeof(chain_link));
     m->sweeps = calloc(links, IMPLICIT_SWEEP_SIZE);
-    if (!m->state || !m->trial || !m->between || !m->stages || !m->scratch || !m->links || !m->sweeps) {
+    if (!m->state || !m->trial || !m->between || !m->stages || !m->scratch || !m->links ||
+        !m->sweeps) {
         motion_destroy(m);
         return NULL;
     }
@@ -109,8 +106,7 @@ void motion_evaluate(const arm *a, motion *m, double *state)
 
 // --- what holds at an instant ---------------------------------------------------------------
 
-// Whether contact and friction together leave the arm no way to move.
-static bool held_still(const motion *m)
+bool motion_held_still(const motion *m)
 {
     contact_mode mode = state_mode(m->state);
     int holds = mode.contact + (mode.friction == HUB_STICK);
@@ -171,11 +167,11 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     }
     state[SLOT_CONTACT] = best.contact;
     state[SLOT_FRICTION] = best.friction;
-    if (held_still(m)) {
+    if (motion_held_still(m)) {
         memset(state_velocities(m, state), 0, (size_t)m->dof * sizeof(double));
     }
     motion_evaluate(a, m, state);
-    if (held_still(m)) {
+    if (motion_held_still(m)) {
         memset(state_accelerations(m, state), 0, (size_t)m->dof * sizeof(double));
     }
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
@@ -190,8 +186,9 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
         state_angles(m, m->state)[i] = angle;
         state_velocities(m, m->state)[i] = velocity;
     }
-    m->start_energy = chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
-                      chain_strain_energy(a, state_angles(m, m->state));
+    m->start_energy =
+        chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
+        chain_strain_energy(a, state_angles(m, m->state));
     m->steps = 0;
     m->largest_penetration = 0;
     motion_watch(m);
@@ -248,11 +245,10 @@ static void wait(motion *m, double h)
     state_quadratures(m, m->trial)[QUADRATURE_FORCE] += h * m->state[SLOT_FORCE];
 }
 
-// Advances m->state by h into m->trial, books the ledger, and checks the result for finiteness.
-static status take_step(const arm *a, motion *m, double h)
+status motion_try_step(const arm *a, motion *m, double h)
 {
     double *trial = m->trial;
-    if (held_still(m)) {
+    if (motion_held_still(m)) {
         wait(m, h);
         return STATUS_OK;
     }
@@ -283,277 +279,12 @@ static void accept(motion *m, double step)
     m->largest_penetration = fmax(m->largest_penetration, -m->state[SLOT_GAP]);
 }
 
-// --- locating what happens within a step ----------------------------------------------------
-
-typedef enum watch { WATCH_GAP, WATCH_FORCE, WATCH_HUB, WATCH_STICTION } watch;
-
-// Positive on the admissible side.
-static double watch_value(const arm *a, const motion *m, const double *state, watch w)
-{
-    switch (w) {
-    case WATCH_GAP:
-        return state[SLOT_GAP];
-    case WATCH_FORCE:
-        return state[SLOT_FORCE];
-    case WATCH_HUB:
-        return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
-    case WATCH_STICTION:
-        return a->stiction - fabs(state[SLOT_FRICTION_TORQUE]);
-    }
-    return 1;
-}
-
-static double watch_tolerance(watch w)
-{
-    return w == WATCH_GAP ? TOUCH_TOLERANCE
-           : w == WATCH_FORCE ? FORCE_TOLERANCE
-           : w == WATCH_STICTION ? TORQUE_TOLERANCE : 0;
-}
-
-static bool watch_active(const arm *a, const motion *m, watch w)
-{
-    bool contact = m->state[SLOT_CONTACT] != 0;
-    bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
-    bool held = m->dof == 1 && contact;
-    switch (w) {
-    case WATCH_GAP:
-        return !contact && a->wall != WALL_NONE;
-    case WATCH_FORCE:
-        return contact;
-    case WATCH_HUB:
-        return !stuck && !held && a->stiction > 0;
-    case WATCH_STICTION:
-        return stuck && !held;
-    }
-    return false;
-}
-
-// Where in (0, 1) a cubic with the given end values and end slopes (per step) is least, if that
-// lies inside and the cubic falls at the start and rises at the end; else -1.
-static double cubic_dip(double v0, double v1, double d0, double d1)
-{
-    if (!(d0 < 0 && d1 > 0)) {
-        return -1;
-    }
-    // derivative of the Hermite cubic: d0 + 2 b s + 3 c s^2
-    double c = d0 + d1 - 2 * (v1 - v0), b = 3 * (v1 - v0) - 2 * d0 - d1;
-    double root = sqrt(fmax(b * b - 3 * c * d0, 0));
-    return b + root != 0 ? -d0 / (b + root) : -1;
-}
-
-// Slopes of a watched function at both ends of the step from m->state to m->trial, per step. False
-// where they are not known.
-static bool watch_slopes(const motion *m, double h, watch w, double *d0, double *d1)
-{
-    const double *state = m->state, *trial = m->trial;
-    if (w == WATCH_GAP) {
-        *d0 = state[SLOT_GAP_RATE] * h;
-        *d1 = trial[SLOT_GAP_RATE] * h;
-    } else if (w == WATCH_HUB) {
-        *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
-        *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
-    } else if (w == WATCH_FORCE) {
-        // parabola through both ends with the mean the quadrature gives
-        double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
-                       state_quadratures(m, m->state)[QUADRATURE_FORCE]) / h;
-        double rise = trial[SLOT_FORCE] - state[SLOT_FORCE];
-        double curve = 3 * (state[SLOT_FORCE] + trial[SLOT_FORCE]) - 6 * mean;
-        *d0 = rise - curve;
-        *d1 = rise + curve;
-    }
-    return w != WATCH_STICTION;
-}
-
-// Hermite's cubic at s in (0, 1).
-static double cubic(double s, double v0, double v1, double d0, double d1)
-{
-    double t = 1 - s;
-    return t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 - s * s * t * d1;
-}
-
-// Fraction of the step at which a function, admissible at both ends, may have been violated in
-// between; -1 if there is no sign of that.
-static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
-{
-    double d0, d1;
-    if (!watch_slopes(m, h, w, &d0, &d1)) {
-        // near the limit of friction the middle of the step is worth a look
-        return fmin(v0, v1) < 0.2 * a->stiction ? 0.5 : -1;
-    }
-    double s = cubic_dip(v0, v1, d0, d1);
-    if (s <= 1e-6 || s >= 1) { // a dip right at the start is the edge it starts from
-        return -1;
-    }
-    return cubic(s, v0, v1, d0, d1) < 1e-3 * fmax(v0, v1) ? s : -1;
-}
-
-// A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of Hermite's
-// cubic by a few steps of false position, or of the straight line.
-static double guess_crossing(const motion *m, double h, watch w, double v0, double v1)
-{
-    double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
-    if (!watch_slopes(m, h, w, &d0, &d1)) {
-        return s;
-    }
-    for (int i = 0; i < 12; i++) {
-        double v = cubic(s, v0, v1, d0, d1);
-        if (v > 0) {
-            lo = s, v_lo = v, v_hi /= 2;
-        } else {
-            hi = s, v_hi = v, v_lo /= 2;
-        }
-        s = lo + (hi - lo) * v_lo / (v_lo - v_hi);
-    }
-    return s;
-}
-
-// Narrows the bracket [lo, hi] of a sign change until it is as narrow as LOCATION_TIME; m->trial
-// ends as the state at its far side *hi. Starts at `s` and goes on by Chandrupatla's method:
-// inverse quadratic interpolation where the last three values allow it, else bisection.
-static status narrow(const arm *a, motion *m, watch w, double s, double lo, double v_lo, double *hi,
-                     double v_hi)
-{
-    // the velocities of an implicit step are differences of angles over it: it must not be tiny
-    const double least = motion_unresolved(a, m) ? 1e-6 * m->nominal_step : LOCATION_TIME;
-    const double resolution = fmax(least, LOCATION_TIME * m->state[SLOT_TIME]);
-    double evaluated = -1;
-    for (int i = 0; i < 200 && *hi - lo > resolution; i++) {
-        s = fmin(fmax(s, lo + 0.5 * resolution), *hi - 0.5 * resolution);
-        status failed = take_step(a, m, s);
-        if (failed != STATUS_OK) {
-            return failed;
-        }
-        evaluated = s;
-        double v = watch_value(a, m, m->trial, w), other, v_other, old, v_old;
-        if (v > 0) {
-            old = lo, v_old = v_lo, other = *hi, v_other = v_hi;
-            lo = s, v_lo = v;
-        } else {
-            old = *hi, v_old = v_hi, other = lo, v_other = v_lo;
-            *hi = s, v_hi = v;
-        }
-        double xi = (s - other) / (old - other), phi = (v - v_other) / (v_old - v_other);
-        double t = 0.5;
-        if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
-            t = v / (v_other - v) * v_old / (v_other - v_old) +
-                (old - s) / (other - s) * v / (v_old - v) * v_other / (v_old - v_other);
-        }
-        // an estimate that has settled is stepped past, so that the bracket closes on it
-        double next = s + t * (other - s);
-        s = fabs(next - s) < 0.5 * resolution ? s + copysign(resolution, other - s) : next;
-    }
-    return evaluated == *hi ? STATUS_OK : take_step(a, m, *hi);
-}
-
-// Looks for the first instant in (0, *h] at which `w` leaves its admissible side; if there is one,
-// *h and m->trial move there.
-static status search(const arm *a, motion *m, watch w, double *h, bool *found)
-{
-    double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
-    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(m, *h, w, v0, v1) : 0.5 * *h;
-    double lo = 0, hi = *h, tolerance = watch_tolerance(w);
-    *found = false;
-    if (v1 >= -tolerance) {
-        double dip = v0 > 0 && v1 > 0 ? suspected_dip(a, m, *h, w, v0, v1) : -1;
-        if (dip < 0) {
-            return STATUS_OK;
-        }
-        status s = take_step(a, m, dip * *h);
-        v1 = watch_value(a, m, m->trial, w);
-        if (s != STATUS_OK || v1 >= -tolerance) {
-            return s == STATUS_OK ? take_step(a, m, *h) : s;
-        }
-        hi = dip * *h;
-        guess = 0.5 * hi;
-    }
-    if (v0 <= tolerance) {
-        // it starts on the edge (a release, a breakaway): find where it is well admissible
-        double s = hi;
-        for (int i = 0; i < 20; i++) {
-            s /= 2;
-            status failed = take_step(a, m, s);
-            if (failed != STATUS_OK) {
-                return failed;
-            }
-            double v = watch_value(a, m, m->trial, w);
-            if (v > 0) {
-                lo = s;
-                v0 = v;
-                break;
-            }
-            hi = s;
-            v1 = v;
-        }
-        guess = 0.5 * (lo + hi);
-    }
-    *found = true;
-    status s = narrow(a, m, w, guess, lo, v0, &hi, v1);
-    // an unresolved impact happens within its step: nothing is located inside its first part
-    double least = fmin(*h, UNRESOLVED_IMPACT * m->nominal_step);
-    bool within_impact = m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
-    if (s == STATUS_OK && within_impact && motion_unresolved(a, m)) {
-        hi = least;
-        s = take_step(a, m, hi);
-    }
-    *h = hi;
-    return s;
-}
-
-// --- the largest force ----------------------------------------------------------------------
-
-// Records the largest force within the step from m->state to m->trial, located between its ends by
-// refining a parabola. m->trial is left as it was.
-static status record_peak(const arm *a, motion *m, double h)
-{
-    double f0 = m->state[SLOT_FORCE], f1 = m->trial[SLOT_FORCE], t0 = m->state[SLOT_TIME];
-    if (f0 > m->pulse_peak) {
-        m->pulse_peak = f0;
-        m->pulse_peak_time = t0;
-    }
-    if (f1 > m->pulse_peak) {
-        m->pulse_peak = f1;
-        m->pulse_peak_time = t0 + h;
-    }
-    double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
-                   state_quadratures(m, m->state)[QUADRATURE_FORCE]) / h;
-    double curve = 3 * (f0 + f1) - 6 * mean, slope = f1 - f0 - curve;
-    if (!(slope > 0 && slope + 2 * curve < 0)) {
-        return STATUS_OK;
-    }
-    double s = -slope / (2 * curve) * h, top = f0 + slope * (s / h) / 2;
-    if (top <= m->pulse_peak * (1 + 1e-12)) {
-        return STATUS_OK;
-    }
-    for (double width = h / 8; width > h / 1000; width /= 8) {
-        double f[3];
-        s = fmin(fmax(s, width), h - width);
-        for (int i = 0; i < 3; i++) {
-            status failed = take_step(a, m, s + (i - 1) * width);
-            if (failed != STATUS_OK) {
-                return failed;
-            }
-            f[i] = m->trial[SLOT_FORCE];
-            if (f[i] > m->pulse_peak) {
-                m->pulse_peak = f[i];
-                m->pulse_peak_time = m->trial[SLOT_TIME];
-            }
-        }
-        double second = f[0] - 2 * f[1] + f[2];
-        if (second >= 0) {
-            break;
-        }
-        double move = 0.5 * (f[0] - f[2]) / second;
-        s += fmin(fmax(move, -1), 1) * width;
-    }
-    return take_step(a, m, h);
-}
-
 // --- the machine ----------------------------------------------------------------------------
 
 // How long the next stride may be.
 static double stride_length(const arm *a, const motion *m, double remaining, double step)
 {
-    if (held_still(m)) {
+    if (motion_held_still(m)) {
         return remaining;
     }
     double longest = step;
@@ -584,22 +315,18 @@ status motion_stride(const arm *a, motion *m, double until, double step, motion_
 {
     *report = (motion_report){.event = MOTION_REACHED};
     double h = stride_length(a, m, until - m->state[SLOT_TIME], step);
-    status s = take_step(a, m, h);
+    status s = motion_try_step(a, m, h);
     for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
         h /= 2;
-        s = take_step(a, m, h);
+        s = motion_try_step(a, m, h);
     }
-    bool any = false, found;
-    watch first = WATCH_GAP;
-    for (watch w = WATCH_GAP; s == STATUS_OK && w <= WATCH_STICTION && !held_still(m); w++) {
-        if (watch_active(a, m, w)) {
-            s = search(a, m, w, &h, &found);
-            first = found ? w : first;
-            any |= found;
-        }
+    watch first;
+    bool any = false;
+    if (s == STATUS_OK) {
+        s = locate_first_event(a, m, &h, &first, &any);
     }
     if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
-        s = record_peak(a, m, h);
+        s = locate_peak(a, m, h);
     }
     if (s != STATUS_OK) {
         m->failure_time = m->state[SLOT_TIME] + h;
@@ -631,7 +358,7 @@ double *motion_between(const arm *a, motion *m, double time)
     double *now = m->state, *start = m->trial;
     m->state = start;
     m->trial = m->between;
-    status s = take_step(a, m, time - start[SLOT_TIME]);
+    status s = motion_try_step(a, m, time - start[SLOT_TIME]);
     m->state = now;
     m->trial = start;
     m->between[SLOT_TIME] = time;
@@ -664,8 +391,8 @@ static void impact(const arm *a, motion *m, motion_report *report)
     report->holds = m->state[SLOT_CONTACT] != 0;
 }
 
-// The same choice where steps do not resolve the fastest modes: accelerations at an instant are then
-// no information, so the event itself says what holds next, and the next step corrects it.
+// The same choice where steps do not resolve the fastest modes: accelerations at an instant are
+// then no information, so the event itself says what holds next, and the next step corrects it.
 static void resolve_coarsely(const arm *a, motion *m, motion_report *report)
 {
     double *state = m->state;

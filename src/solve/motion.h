@@ -15,21 +15,21 @@
 
 // Bookkeeping at the head of the state vector; angles, velocities and the rest follow.
 enum motion_slot {
-    SLOT_TIME,          // [s]
-    SLOT_CONTACT,       // 1 in contact
-    SLOT_FRICTION,      // hub_friction
-    SLOT_FORCE,         // f at this state [N]
-    SLOT_FRICTION_TORQUE, // at this state [N m]
+    SLOT_TIME,             // [s]
+    SLOT_CONTACT,          // 1 in contact
+    SLOT_FRICTION,         // hub_friction
+    SLOT_FORCE,            // f at this state [N]
+    SLOT_FRICTION_TORQUE,  // at this state [N m]
     SLOT_GAP_ACCELERATION, // [m/s2]
-    SLOT_MOTOR_WORK,    // [J]
-    SLOT_EXTERNAL_WORK, // [J]
-    SLOT_FRICTION_LOSS, // [J]
-    SLOT_IMPACT_LOSS,   // [J]
-    SLOT_GAP,           // [m]
-    SLOT_GAP_RATE,      // [m/s]
-    SLOT_VISCOUS_POWER, // at this state [W]
-    SLOT_DAMPING_POWER, // at this state [W]
-    SLOT_JUMPED,        // 1 just after an event, before the first step
+    SLOT_MOTOR_WORK,       // [J]
+    SLOT_EXTERNAL_WORK,    // [J]
+    SLOT_FRICTION_LOSS,    // [J]
+    SLOT_IMPACT_LOSS,      // [J]
+    SLOT_GAP,              // [m]
+    SLOT_GAP_RATE,         // [m/s]
+    SLOT_VISCOUS_POWER,    // at this state [W]
+    SLOT_DAMPING_POWER,    // at this state [W]
+    SLOT_JUMPED,           // 1 just after an event, before the first step
     SLOT_COUNT
 };
 
@@ -47,27 +47,27 @@ typedef struct motion {
     double *state;
     int size;
     int dof;
-    double start_energy;   // kinetic and strain energy at the start [J]
+    double start_energy; // kinetic and strain energy at the start [J]
 
     // how the smooth motion is advanced
     const struct stepper *stepper;
-    double nominal_step;   // method.step [s]
+    double nominal_step;                  // method.step [s]
     double alpha_m, alpha_f, beta, gamma; // implicit steppers' coefficients [-]
 
     // scratch, nothing of it outlives a step
-    double *trial;         // state at the end of the step tried; after it, at the step's start
-    double *between;       // state within the last step, for motion_between
-    double *stages;        // explicit stages
-    double *scratch;       // vectors of length dof
+    double *trial;   // state at the end of the step tried; after it, at the step's start
+    double *between; // state within the last step, for motion_between
+    double *stages;  // explicit stages
+    double *scratch; // vectors of length dof
     chain_link *links;
-    void *sweeps;          // the implicit solver's scratch, one element a link
+    void *sweeps; // the implicit solver's scratch, one element a link
 
     // records since motion_watch
-    long steps;            // time steps taken: `step` long, or cut short by an event or a stop
-    double pulse_peak;     // largest f since the last impact or touch, -1 if none [N]
-    double pulse_peak_time; // [s]
+    long steps;                 // time steps taken: `step` long, or cut short by an event or a stop
+    double pulse_peak;          // largest f since the last impact or touch, -1 if none [N]
+    double pulse_peak_time;     // [s]
     double largest_penetration; // [m]
-    double failure_time;   // where a step could not be taken [s]
+    double failure_time;        // where a step could not be taken [s]
 } motion;
 
 // Advances `m->state` by h into `m->trial` under the mode the state is in: angles, velocities,
@@ -79,7 +79,8 @@ typedef struct stepper {
 } stepper;
 
 extern const stepper explicit_stepper; // Dormand and Prince's 8th-order Runge-Kutta
-extern const stepper implicit_stepper; // Newmark and generalised-alpha
+extern const stepper newmark_stepper;
+extern const stepper generalized_alpha_stepper; // the same step with other coefficients
 
 // Views into a state vector.
 static inline double *state_angles(const motion *m, double *state)
@@ -126,7 +127,7 @@ void motion_start(const arm *a, motion *m, double angle, double velocity);
 typedef enum motion_event {
     MOTION_REACHED, // the wanted time
     MOTION_IMPACT,
-    MOTION_TOUCH,   // contact begins without an approach velocity
+    MOTION_TOUCH, // contact begins without an approach velocity
     MOTION_RELEASE,
     MOTION_STICK,
     MOTION_SLIP,
@@ -172,6 +173,12 @@ void motion_watch(motion *m);
 
 // Evaluates accelerations, reactions and gap of a state under its own mode.
 void motion_evaluate(const arm *a, motion *m, double *state);
+
+// Whether contact and friction together leave the arm no way to move.
+bool motion_held_still(const motion *m);
+
+// Advances m->state by h into m->trial, books the ledger, and checks the result for finiteness.
+status motion_try_step(const arm *a, motion *m, double h);
 
 // Puts an evaluated state in contact back onto the constraint, position and velocity, along
 // M^-1 J^T: the nearest admissible state in the metric of the kinetic energy. Evaluates it again if

@@ -1,0 +1,286 @@
+#include "src/solve/locate.h"
+
+#include <math.h>
+
+#define TOUCH_TOLERANCE   1e-12 // penetration that counts as crossing the wall [m]
+#define TORQUE_TOLERANCE  1e-12 // excess that counts as breaking away [N m]
+#define UNRESOLVED_IMPACT 0.1 // share of a step that an impact takes where steps do not resolve it
+#define LOCATION_TIME     1e-15 // width to which the bracket of an event is narrowed [s]
+
+// Positive on the admissible side.
+static double watch_value(const arm *a, const motion *m, const double *state, watch w)
+{
+    switch (w) {
+    case WATCH_GAP:
+        return state[SLOT_GAP];
+    case WATCH_FORCE:
+        return state[SLOT_FORCE];
+    case WATCH_HUB:
+        return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
+    case WATCH_STICTION:
+        return a->stiction - fabs(state[SLOT_FRICTION_TORQUE]);
+    }
+    return 1;
+}
+
+static double watch_tolerance(watch w)
+{
+    return w == WATCH_GAP        ? TOUCH_TOLERANCE
+           : w == WATCH_FORCE    ? FORCE_TOLERANCE
+           : w == WATCH_STICTION ? TORQUE_TOLERANCE
+                                 : 0;
+}
+
+static bool watch_active(const arm *a, const motion *m, watch w)
+{
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
+    bool held = m->dof == 1 && contact;
+    switch (w) {
+    case WATCH_GAP:
+        return !contact && a->wall != WALL_NONE;
+    case WATCH_FORCE:
+        return contact;
+    case WATCH_HUB:
+        return !stuck && !held && a->stiction > 0;
+    case WATCH_STICTION:
+        return stuck && !held;
+    }
+    return false;
+}
+
+// Where in (0, 1) a cubic with the given end values and end slopes (per step) is least, if that
+// lies inside and the cubic falls at the start and rises at the end; else -1.
+static double cubic_dip(double v0, double v1, double d0, double d1)
+{
+    if (!(d0 < 0 && d1 > 0)) {
+        return -1;
+    }
+    // derivative of the Hermite cubic: d0 + 2 b s + 3 c s^2
+    double c = d0 + d1 - 2 * (v1 - v0), b = 3 * (v1 - v0) - 2 * d0 - d1;
+    double root = sqrt(fmax(b * b - 3 * c * d0, 0));
+    return b + root != 0 ? -d0 / (b + root) : -1;
+}
+
+// Slopes of a watched function at both ends of the step from m->state to m->trial, per step. False
+// where they are not known.
+static bool watch_slopes(const motion *m, double h, watch w, double *d0, double *d1)
+{
+    const double *state = m->state, *trial = m->trial;
+    if (w == WATCH_GAP) {
+        *d0 = state[SLOT_GAP_RATE] * h;
+        *d1 = trial[SLOT_GAP_RATE] * h;
+    } else if (w == WATCH_HUB) {
+        *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
+        *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
+    } else if (w == WATCH_FORCE) {
+        // parabola through both ends with the mean the quadrature gives
+        double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
+                       state_quadratures(m, m->state)[QUADRATURE_FORCE]) /
+                      h;
+        double rise = trial[SLOT_FORCE] - state[SLOT_FORCE];
+        double curve = 3 * (state[SLOT_FORCE] + trial[SLOT_FORCE]) - 6 * mean;
+        *d0 = rise - curve;
+        *d1 = rise + curve;
+    }
+    return w != WATCH_STICTION;
+}
+
+// Hermite's cubic at s in (0, 1).
+static double cubic(double s, double v0, double v1, double d0, double d1)
+{
+    double t = 1 - s;
+    return t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 - s * s * t * d1;
+}
+
+// Fraction of the step at which a function, admissible at both ends, may have been violated in
+// between; -1 if there is no sign of that.
+static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
+{
+    double d0, d1;
+    if (!watch_slopes(m, h, w, &d0, &d1)) {
+        // near the limit of friction the middle of the step is worth a look
+        return fmin(v0, v1) < 0.2 * a->stiction ? 0.5 : -1;
+    }
+    double s = cubic_dip(v0, v1, d0, d1);
+    if (s <= 1e-6 || s >= 1) { // a dip right at the start is the edge it starts from
+        return -1;
+    }
+    return cubic(s, v0, v1, d0, d1) < 1e-3 * fmax(v0, v1) ? s : -1;
+}
+
+// A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of Hermite's
+// cubic by a few steps of false position, or of the straight line.
+static double guess_crossing(const motion *m, double h, watch w, double v0, double v1)
+{
+    double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
+    if (!watch_slopes(m, h, w, &d0, &d1)) {
+        return s;
+    }
+    for (int i = 0; i < 12; i++) {
+        double v = cubic(s, v0, v1, d0, d1);
+        if (v > 0) {
+            lo = s, v_lo = v, v_hi /= 2;
+        } else {
+            hi = s, v_hi = v, v_lo /= 2;
+        }
+        s = lo + (hi - lo) * v_lo / (v_lo - v_hi);
+    }
+    return s;
+}
+
+// Narrows the bracket [lo, hi] of a sign change until it is as narrow as LOCATION_TIME; m->trial
+// ends as the state at its far side *hi. Starts at `s` and goes on by Chandrupatla's method:
+// inverse quadratic interpolation where the last three values allow it, else bisection.
+static status narrow(const arm *a, motion *m, watch w, double s, double lo, double v_lo, double *hi,
+                     double v_hi)
+{
+    // the velocities of an implicit step are differences of angles over it: it must not be tiny
+    const double least = motion_unresolved(a, m) ? 1e-6 * m->nominal_step : LOCATION_TIME;
+    const double resolution = fmax(least, LOCATION_TIME * m->state[SLOT_TIME]);
+    double evaluated = -1;
+    for (int i = 0; i < 200 && *hi - lo > resolution; i++) {
+        s = fmin(fmax(s, lo + 0.5 * resolution), *hi - 0.5 * resolution);
+        status failed = motion_try_step(a, m, s);
+        if (failed != STATUS_OK) {
+            return failed;
+        }
+        evaluated = s;
+        double v = watch_value(a, m, m->trial, w), other, v_other, old, v_old;
+        if (v > 0) {
+            old = lo, v_old = v_lo, other = *hi, v_other = v_hi;
+            lo = s, v_lo = v;
+        } else {
+            old = *hi, v_old = v_hi, other = lo, v_other = v_lo;
+            *hi = s, v_hi = v;
+        }
+        double xi = (s - other) / (old - other), phi = (v - v_other) / (v_old - v_other);
+        double t = 0.5;
+        if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
+            t = v / (v_other - v) * v_old / (v_other - v_old) +
+                (old - s) / (other - s) * v / (v_old - v) * v_other / (v_old - v_other);
+        }
+        // an estimate that has settled is stepped past, so that the bracket closes on it
+        double next = s + t * (other - s);
+        s = fabs(next - s) < 0.5 * resolution ? s + copysign(resolution, other - s) : next;
+    }
+    return evaluated == *hi ? STATUS_OK : motion_try_step(a, m, *hi);
+}
+
+// Looks for the first instant in (0, *h] at which `w` leaves its admissible side; if there is one,
+// *h and m->trial move there.
+static status search(const arm *a, motion *m, watch w, double *h, bool *found)
+{
+    double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
+    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(m, *h, w, v0, v1) : 0.5 * *h;
+    double lo = 0, hi = *h, tolerance = watch_tolerance(w);
+    *found = false;
+    if (v1 >= -tolerance) {
+        double dip = v0 > 0 && v1 > 0 ? suspected_dip(a, m, *h, w, v0, v1) : -1;
+        if (dip < 0) {
+            return STATUS_OK;
+        }
+        status s = motion_try_step(a, m, dip * *h);
+        v1 = watch_value(a, m, m->trial, w);
+        if (s != STATUS_OK || v1 >= -tolerance) {
+            return s == STATUS_OK ? motion_try_step(a, m, *h) : s;
+        }
+        hi = dip * *h;
+        guess = 0.5 * hi;
+    }
+    if (v0 <= tolerance) {
+        // it starts on the edge (a release, a breakaway): find where it is well admissible
+        double s = hi;
+        for (int i = 0; i < 20; i++) {
+            s /= 2;
+            status failed = motion_try_step(a, m, s);
+            if (failed != STATUS_OK) {
+                return failed;
+            }
+            double v = watch_value(a, m, m->trial, w);
+            if (v > 0) {
+                lo = s;
+                v0 = v;
+                break;
+            }
+            hi = s;
+            v1 = v;
+        }
+        guess = 0.5 * (lo + hi);
+    }
+    *found = true;
+    status s = narrow(a, m, w, guess, lo, v0, &hi, v1);
+    // an unresolved impact happens within its step: nothing is located inside its first part
+    double least = fmin(*h, UNRESOLVED_IMPACT * m->nominal_step);
+    bool within_impact = m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
+    if (s == STATUS_OK && within_impact && motion_unresolved(a, m)) {
+        hi = least;
+        s = motion_try_step(a, m, hi);
+    }
+    *h = hi;
+    return s;
+}
+
+status locate_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    status s = STATUS_OK;
+    *any = false;
+    *first = WATCH_GAP;
+    for (watch w = WATCH_GAP; s == STATUS_OK && w <= WATCH_STICTION && !motion_held_still(m); w++) {
+        bool found = false;
+        if (watch_active(a, m, w)) {
+            s = search(a, m, w, h, &found);
+        }
+        *first = found ? w : *first;
+        *any |= found;
+    }
+    return s;
+}
+
+// --- the largest force ----------------------------------------------------------------------
+
+status locate_peak(const arm *a, motion *m, double h)
+{
+    double f0 = m->state[SLOT_FORCE], f1 = m->trial[SLOT_FORCE], t0 = m->state[SLOT_TIME];
+    if (f0 > m->pulse_peak) {
+        m->pulse_peak = f0;
+        m->pulse_peak_time = t0;
+    }
+    if (f1 > m->pulse_peak) {
+        m->pulse_peak = f1;
+        m->pulse_peak_time = t0 + h;
+    }
+    double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
+                   state_quadratures(m, m->state)[QUADRATURE_FORCE]) /
+                  h;
+    double curve = 3 * (f0 + f1) - 6 * mean, slope = f1 - f0 - curve;
+    if (!(slope > 0 && slope + 2 * curve < 0)) {
+        return STATUS_OK;
+    }
+    double s = -slope / (2 * curve) * h, top = f0 + slope * (s / h) / 2;
+    if (top <= m->pulse_peak * (1 + 1e-12)) {
+        return STATUS_OK;
+    }
+    for (double width = h / 8; width > h / 1000; width /= 8) {
+        double f[3];
+        s = fmin(fmax(s, width), h - width);
+        for (int i = 0; i < 3; i++) {
+            status failed = motion_try_step(a, m, s + (i - 1) * width);
+            if (failed != STATUS_OK) {
+                return failed;
+            }
+            f[i] = m->trial[SLOT_FORCE];
+            if (f[i] > m->pulse_peak) {
+                m->pulse_peak = f[i];
+                m->pulse_peak_time = m->trial[SLOT_TIME];
+            }
+        }
+        double second = f[0] - 2 * f[1] + f[2];
+        if (second >= 0) {
+            break;
+        }
+        double move = 0.5 * (f[0] - f[2]) / second;
+        s += fmin(fmax(move, -1), 1) * width;
+    }
+    return motion_try_step(a, m, h);
+}
