@@ -25,8 +25,7 @@ status figure_write(const figure *fig, const char *path, fault *f)
     return picture_write(&p, path, f);
 }
 
-// A CSV field, in quotes where it needs them.
-static void write_field(FILE *stream, const char *field)
+void csv_field(FILE *stream, const char *field)
 {
     if (strpbrk(field, ",\"\r\n") == NULL) {
         fputs(field, stream);
@@ -45,7 +44,7 @@ static void write_name(FILE *stream, const char *name, const char *label, const 
     char *plain = name ? g_strdup(name) : text_plain(label ? label : "");
     bool has_unit = unit != NULL && unit[0] != '\0';
     char *field = has_unit ? g_strdup_printf("%s[%s]", plain, unit) : g_strdup(plain);
-    write_field(stream, field);
+    csv_field(stream, field);
     g_free(field);
     g_free(plain);
 }

@@ -1,6 +1,8 @@
 // Figures as files.
 #pragma once
 
+#include <stdio.h>
+
 #include "render/picture_file.h"
 #include "render/plot.h"
 
@@ -12,3 +14,6 @@ status figure_write(const figure *fig, const char *path, fault *f);
 // empty where the curve has a gap), impulses as the series impulse[unit], then marks and shaded
 // intervals with an empty y.
 status figure_write_csv(const figure *fig, const char *path, fault *f);
+
+// Writes one CSV field, in quotes where it needs them.
+void csv_field(FILE *stream, const char *field);

@@ -1,12 +1,15 @@
 #include "render/figures.h"
 
-#include <errno.h>
 #include <glib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-#include "render/figure_file.h"
+#include "render/diagrams.h"
+#include "render/impact_figures.h"
+#include "render/opened_run.h"
+#include "render/stability_map.h"
+#include "render/thesis_tables.h"
 
+// Panels that several figures have.
 #define FORCE                                                                                      \
     {                                                                                              \
         .signals = {"force"}, .with_zero = true, .inset = true, .weight = 1.6                      \
@@ -23,181 +26,305 @@
     {                                                                                              \
         .signals = { body "_acceleration" }                                                        \
     }
+#define ENCODER(other)                                                                             \
+    {                                                                                              \
+        .label = "Hub angle", .signals = {"encoder", other}, .weight = 1.2                         \
+    }
+#define TACHOMETER(other)                                                                          \
+    {                                                                                              \
+        .label = "Hub velocity", .signals = {"tachometer", other}, .weight = 1.2                   \
+    }
+#define FORCE_READING                                                                              \
+    {                                                                                              \
+        .label = "Contact force", .signals = {"force_reading", "force"}, .with_zero = true,        \
+        .weight = 1.4                                                                              \
+    }
+#define CALCULATED_FORCE                                                                           \
+    {                                                                                              \
+        .label = "Contact force", .signals = {"calculated_force", "force"}, .with_zero = true,     \
+        .weight = 1.4                                                                              \
+    }
+#define COMMAND                                                                                    \
+    {                                                                                              \
+        .label = "Command <i>u</i>", .signals = {"command"}, .with_zero = true, .modes = true,     \
+        .weight = 1.2                                                                              \
+    }
+
+// A figure of chapter 3, and one of the virtual rig; each has a scenario of its own name.
+#define RUN(number, name)                                                                          \
+    .id = number, .file = name, .scenario = "thesis/" name, .model = "printed; corrected dashed"
+#define RIG(number, name)                                                                          \
+    .id = number, .file = name, .scenario = "thesis/" name, .model = "corrected, on the rig",      \
+    .alone = true
 
 const thesis_figure thesis_figures[] = {
-    {"3.2",
-     "fig-3-2",
-     "Motion of the hub at 1 V, step 1 ms",
-     "thesis/fig-3-2",
-     {VELOCITY("hub"), ANGLE("hub")},
-     2},
-    {"3.3",
-     "fig-3-3",
-     "Motion of the last link at 1 V, step 1 ms",
-     "thesis/fig-3-3",
-     {VELOCITY("last"), ANGLE("last")},
-     2},
-    {"3.4", "fig-3-4", "Contact force at 1 V, step 1 ms", "thesis/fig-3-4", {FORCE}, 1},
-    {"3.5",
-     "fig-3-5",
-     "Acceleration of the last link at 1 V, step 1 ms",
-     "thesis/fig-3-5",
-     {{.signals = {"last_acceleration"}, .weight = 1.6}},
-     1},
-    {"3.6",
-     "fig-3-6",
-     "Motion of the hub at 1 V, step 10 ms",
-     "thesis/fig-3-6",
-     {VELOCITY("hub"), ANGLE("hub")},
-     2},
-    {"3.7", "fig-3-7", "Contact force at 1 V, step 10 ms", "thesis/fig-3-7", {FORCE}, 1},
-    {"3.8",
-     "fig-3-8",
-     "Motion of the last link at 1 V, step 10 ms",
-     "thesis/fig-3-8",
-     {ACCELERATION("last"), VELOCITY("last"), ANGLE("last")},
-     3},
-    {"3.9",
-     "fig-3-9",
-     "Motion of the hub at 5 V, step 1 ms",
-     "thesis/fig-3-9",
-     {VELOCITY("hub"), ANGLE("hub")},
-     2},
-    {"3.10", "fig-3-10", "Contact force at 5 V, step 1 ms", "thesis/fig-3-10", {FORCE}, 1},
-    {"3.11",
-     "fig-3-11",
-     "Motion of the last link at 5 V, step 1 ms",
-     "thesis/fig-3-11",
-     {ACCELERATION("last"), VELOCITY("last"), ANGLE("last")},
-     3},
+    {.id = "2.1",
+     .file = "fig-2-1",
+     .caption = "Force sensor: interface circuit and its curve",
+     .scenario = NULL,
+     .model = "the rig's sensor",
+     .open = diagram_sensor},
+    {.id = "2.2",
+     .file = "fig-2-2",
+     .caption = "The arm as a hub and two links",
+     .scenario = NULL,
+     .model = "corrected",
+     .open = diagram_links},
+    {.id = "2.3",
+     .file = "fig-2-3",
+     .caption = "Torques and forces on each body",
+     .scenario = NULL,
+     .model = "corrected",
+     .open = diagram_free_bodies},
+    {RIG("2.4", "fig-2-4"), .caption = "Optical encoder under a constant 1 V",
+     .panels = {ENCODER("hub_angle")}, .panel_count = 1},
+    {RIG("2.5", "fig-2-5"), .caption = "Tachometer under a constant 1 V",
+     .panels = {TACHOMETER("hub_velocity")}, .panel_count = 1},
+    {RIG("2.6", "fig-2-6"), .caption = "Force sensor under a constant 1 V",
+     .panels = {FORCE_READING}, .panel_count = 1},
+    {.id = "T2.1",
+     .file = "table-2-1",
+     .caption = "Constants of the motor",
+     .scenario = NULL,
+     .model = "both",
+     .open = table_motor},
+    {.id = "3.1",
+     .file = "fig-3-1",
+     .caption = "The arm in contact at two successive steps",
+     .scenario = "thesis/fig-3-1",
+     .model = "printed",
+     .open = figure_contact},
+    {RUN("3.2", "fig-3-2"), .caption = "Motion of the hub at 1 V, step 1 ms",
+     .panels = {VELOCITY("hub"), ANGLE("hub")}, .panel_count = 2},
+    {RUN("3.3", "fig-3-3"), .caption = "Motion of the last link at 1 V, step 1 ms",
+     .panels = {VELOCITY("last"), ANGLE("last")}, .panel_count = 2},
+    {RUN("3.4", "fig-3-4"), .caption = "Contact force at 1 V, step 1 ms", .panels = {FORCE},
+     .panel_count = 1},
+    {RUN("3.5", "fig-3-5"), .caption = "Acceleration of the last link at 1 V, step 1 ms",
+     .panels = {{.signals = {"last_acceleration"}, .weight = 1.6}}, .panel_count = 1},
+    {RUN("3.6", "fig-3-6"), .caption = "Motion of the hub at 1 V, step 10 ms",
+     .panels = {VELOCITY("hub"), ANGLE("hub")}, .panel_count = 2},
+    {RUN("3.7", "fig-3-7"), .caption = "Contact force at 1 V, step 10 ms", .panels = {FORCE},
+     .panel_count = 1},
+    {RUN("3.8", "fig-3-8"), .caption = "Motion of the last link at 1 V, step 10 ms",
+     .panels = {ACCELERATION("last"), VELOCITY("last"), ANGLE("last")}, .panel_count = 3},
+    {RUN("3.9", "fig-3-9"), .caption = "Motion of the hub at 5 V, step 1 ms",
+     .panels = {VELOCITY("hub"), ANGLE("hub")}, .panel_count = 2},
+    {RUN("3.10", "fig-3-10"), .caption = "Contact force at 5 V, step 1 ms", .panels = {FORCE},
+     .panel_count = 1},
+    {RUN("3.11", "fig-3-11"), .caption = "Motion of the last link at 5 V, step 1 ms",
+     .panels = {ACCELERATION("last"), VELOCITY("last"), ANGLE("last")}, .panel_count = 3},
+    {.id = "T3.1",
+     .file = "table-3-1",
+     .caption = "Stability of Newmark's method",
+     .scenario = NULL,
+     .model = "both",
+     .open = table_stability},
+    {.id = "T3.2",
+     .file = "table-3-2",
+     .caption = "The algorithm of the constrained motion",
+     .scenario = NULL,
+     .model = "printed",
+     .open = table_algorithm},
+    {.id = "beta-gamma",
+     .file = "beta-gamma",
+     .caption = "Force error over Newmark's parameters",
+     .scenario = "corrected/first-impact",
+     .model = "corrected",
+     .open = stability_map},
+    {.id = "4.1",
+     .file = "fig-4-1",
+     .caption = "Springs in series against the wall",
+     .scenario = "corrected/first-impact",
+     .model = "corrected",
+     .open = diagram_springs},
+    {.id = "4.2",
+     .file = "fig-4-2",
+     .caption = "The arm at the instant of the collision",
+     .scenario = "corrected/first-impact",
+     .model = "corrected",
+     .open = diagram_collision},
+    {.id = "4.3",
+     .file = "fig-4-3",
+     .caption = "Contact force of an impact: impulse, then pulse",
+     .scenario = "corrected/first-impact",
+     .model = "corrected",
+     .open = figure_force_profile},
+    {.id = "4.4",
+     .file = "fig-4-4",
+     .caption = "Angular velocity during the pulse, assumed and computed",
+     .scenario = "corrected/first-impact",
+     .model = "corrected",
+     .open = figure_linear_velocity},
+    {.id = "4.5",
+     .file = "fig-4-5",
+     .caption = "Angle during the pulse, assumed and computed",
+     .scenario = "corrected/first-impact",
+     .model = "corrected",
+     .open = figure_quadratic_angle},
+    {.id = "4.6",
+     .file = "fig-4-6",
+     .caption = "The arm at its largest deformation",
+     .scenario = "corrected/first-impact",
+     .model = "corrected",
+     .open = figure_peak_shape},
+    {.id = "T4.1",
+     .file = "table-4-1",
+     .caption = "Peak force and delay, 100 times the nominal stiffness",
+     .scenario = "thesis/table-4-1",
+     .model = "printed and corrected",
+     .open = table_hundredfold},
+    {.id = "T4.2",
+     .file = "table-4-2",
+     .caption = "Peak force and delay, 10 times the nominal stiffness",
+     .scenario = "thesis/table-4-2",
+     .model = "printed and corrected",
+     .open = table_tenfold},
+    {.id = "T4.3",
+     .file = "table-4-3",
+     .caption = "Peak force and delay, the nominal stiffness",
+     .scenario = "thesis/table-4-3",
+     .model = "printed and corrected",
+     .open = table_nominal},
+    {.id = "errors",
+     .file = "table-4-errors",
+     .caption = "How near Tables 4.1 to 4.3 come out",
+     .scenario = NULL,
+     .model = "printed and corrected",
+     .open = table_errors},
+    {RIG("5.1", "fig-5-1"), .caption = "Hybrid control at 1 N: encoder and desired angle",
+     .panels = {ENCODER("desired_angle")}, .panel_count = 1},
+    {RIG("5.2", "fig-5-2"), .caption = "Hybrid control at 1 N: tachometer and desired velocity",
+     .panels = {TACHOMETER("desired_velocity")}, .panel_count = 1},
+    {RIG("5.3", "fig-5-3"), .caption = "Hybrid control at 1 N: force sensor",
+     .panels = {FORCE_READING}, .panel_count = 1},
+    {RIG("5.4", "fig-5-4"), .caption = "Hybrid control at 1 N: calculated tip force",
+     .panels = {CALCULATED_FORCE}, .panel_count = 1},
+    {RIG("5.5", "fig-5-5"), .caption = "Hybrid control at 1 N: command to the motor",
+     .panels = {COMMAND}, .panel_count = 1},
+    {RIG("5.6", "fig-5-6"), .caption = "Hybrid control at 2 N: angle and velocity of the hub",
+     .panels = {ENCODER("desired_angle"), TACHOMETER("desired_velocity")}, .panel_count = 2},
+    {RIG("5.7", "fig-5-7"), .caption = "Hybrid control at 2 N: force and command",
+     .panels = {FORCE_READING, COMMAND}, .panel_count = 2},
 };
 const int thesis_figure_count = (int)G_N_ELEMENTS(thesis_figures);
 
 const thesis_figure *thesis_figure_find(const char *id)
 {
     for (int i = 0; i < thesis_figure_count; i++) {
-        if (strcmp(thesis_figures[i].id, id) == 0 || strcmp(thesis_figures[i].file, id) == 0) {
+        if (g_ascii_strcasecmp(thesis_figures[i].id, id) == 0 ||
+            strcmp(thesis_figures[i].file, id) == 0) {
             return &thesis_figures[i];
         }
     }
     return NULL;
 }
 
-// Keeps the first of a scenario's faults.
-static void keep_first(void *context, const char *sentence)
+// ---- recorded signals
+// ----------------------------------------------------------------------------
+
+// A figure of recorded signals with the runs it borrows from.
+typedef struct signal_figure {
+    opened_run runs[2];
+    int run_count;
+    trace_figure figure;
+    char *title;
+} signal_figure;
+
+static void release_signals(void *owner)
 {
-    fault *f = context;
-    if (f != NULL && f->code == STATUS_OK) {
-        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
+    signal_figure *s = owner;
+    trace_figure_finish(&s->figure);
+    for (int i = 0; i < s->run_count; i++) {
+        run_end(&s->runs[i]);
     }
+    g_free(s->title);
+    g_free(s);
 }
 
-// A run with its scenario, finished by run_end.
-typedef struct opened_run {
-    scenario scenario;
-    run_result result;
-} opened_run;
-
-static void run_end(opened_run *r)
+// Runs the scenario, and once more with the corrected model unless it stands alone.
+static status run_scenarios(signal_figure *s, const thesis_figure *which, fault *f)
 {
-    run_finish(&r->result);
-    scenario_finish(&r->scenario);
-}
-
-// Opens and runs a scenario, with the model changed if `model` is not NULL.
-static status run_begin(opened_run *r, const char *name, const char *model, fault *f)
-{
-    fault first = {STATUS_OK, ""};
-    status code = scenario_open(&r->scenario, name, keep_first, &first);
-    if (code != STATUS_OK) {
-        return fault_set(f, code, "%s", first.text);
+    static const char *const changes[] = {NULL, "arm.model=corrected"};
+    status code = STATUS_OK;
+    for (int i = 0; i < (which->alone ? 1 : 2) && code == STATUS_OK; i++) {
+        code = run_begin(&s->runs[i], which->scenario, changes[i], f);
+        s->run_count += code == STATUS_OK;
     }
-    if (model != NULL) {
-        code = scenario_override(&r->scenario, model, f);
-    }
-    if (code == STATUS_OK) {
-        code = run_scenario(&r->scenario, true, &r->result);
-        if (code == STATUS_OK) {
-            return code;
-        }
-        fault_set(f, code, "%s: %s", name, r->result.summary.message);
-        run_finish(&r->result);
-    }
-    scenario_finish(&r->scenario);
     return code;
 }
 
-static status check_formats(char *const *formats, fault *f)
+static status open_signals(const thesis_figure *which, const char *title, const figure_options *o,
+                           artwork *out, fault *f)
 {
-    for (int i = 0; formats[i] != NULL; i++) {
-        if (picture_format_of(formats[i]) == FORMAT_NONE) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "there is no figure format '%s', expected png, pdf or svg",
-                             formats[i]);
-        }
+    signal_figure *s = g_new0(signal_figure, 1);
+    status code = run_scenarios(s, which, f);
+    if (code == STATUS_OK) {
+        const trace_run runs[] = {{&s->runs[0].scenario, &s->runs[0].result, "printed"},
+                                  {&s->runs[1].scenario, &s->runs[1].result, "corrected"}};
+        s->title = g_strdup(title);
+        code = trace_figure_init(&s->figure, s->title, which->panels, which->panel_count, runs,
+                                 s->run_count, f);
     }
+    if (code != STATUS_OK) {
+        release_signals(s);
+        return code;
+    }
+    s->figure.figure.theme = o->theme;
+    s->figure.figure.width = o->width_mm;
+    s->figure.figure.dpi = o->dpi;
+    *out = artwork_of_figure(&s->figure.figure, s, release_signals);
     return STATUS_OK;
 }
 
-static status write_files(const figure *fig, const thesis_figure *which, const char *folder,
-                          char *const *formats, fault *f)
+// ---- any figure
+// ----------------------------------------------------------------------------------
+
+// "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone.
+static char *title_of(const thesis_figure *which)
 {
-    status code = STATUS_OK;
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "the folder '%s' cannot be made: %s", folder,
-                         strerror(errno));
+    if (g_ascii_isdigit(which->id[0])) {
+        return g_strdup_printf("Fig. %s  %s", which->id, which->caption);
     }
-    for (int i = 0; formats[i] != NULL && code == STATUS_OK; i++) {
-        char *path = g_strdup_printf("%s/%s.%s", folder, which->file, formats[i]);
-        code = figure_write(fig, path, f);
-        g_free(path);
+    if (which->id[0] == 'T') {
+        return g_strdup_printf("Table %s  %s", which->id + 1, which->caption);
     }
-    if (code == STATUS_OK) {
-        char *path = g_strdup_printf("%s/%s.csv", folder, which->file);
-        code = figure_write_csv(fig, path, f);
-        g_free(path);
-    }
-    return code;
+    return g_strdup(which->caption);
 }
 
-static status draw_runs(const thesis_figure *which, const opened_run *printed,
-                        const opened_run *corrected, const char *folder, char *const *formats,
-                        fault *f)
+status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f)
 {
-    const trace_run runs[] = {{&printed->scenario, &printed->result, "printed"},
-                              {&corrected->scenario, &corrected->result, "corrected"}};
-    trace_figure t;
-    char *title = g_strdup_printf("Fig. %s  %s", which->id, which->caption);
-    status code = trace_figure_init(&t, title, which->panels, which->panel_count, runs, 2, f);
-    if (code == STATUS_OK) {
-        code = write_files(&t.figure, which, folder, formats, f);
-        trace_figure_finish(&t);
-    }
+    char *title = title_of(which);
+    status code =
+        which->open != NULL ? which->open(title, o, out, f) : open_signals(which, title, o, out, f);
     g_free(title);
     return code;
 }
 
-status figure_draw(const char *id, const char *folder, const char *formats, fault *f)
+status figure_draw_as(const char *id, const figure_options *o, const char *folder,
+                      const char *formats, fault *f)
 {
     const thesis_figure *which = thesis_figure_find(id);
     if (which == NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "there is no figure '%s', expected %s to %s", id,
                          thesis_figures[0].id, thesis_figures[thesis_figure_count - 1].id);
     }
+    artwork drawn;
     char **list = g_strsplit(formats, ",", -1);
-    opened_run printed, corrected;
-    status code = check_formats(list, f);
+    status code = artwork_check_formats(list, f);
     if (code == STATUS_OK) {
-        code = run_begin(&printed, which->scenario, NULL, f);
-        if (code == STATUS_OK) {
-            code = run_begin(&corrected, which->scenario, "arm.model=corrected", f);
-            if (code == STATUS_OK) {
-                code = draw_runs(which, &printed, &corrected, folder, list, f);
-                run_end(&corrected);
-            }
-            run_end(&printed);
-        }
+        code = figure_open(which, o, &drawn, f);
+    }
+    if (code == STATUS_OK) {
+        code = artwork_write(&drawn, o, folder, which->file, list, f);
+        artwork_finish(&drawn);
     }
     g_strfreev(list);
     return code;
+}
+
+status figure_draw(const char *id, const char *folder, const char *formats, fault *f)
+{
+    const figure_options as_it_comes = {0};
+    return figure_draw_as(id, &as_it_comes, folder, formats, f);
 }

@@ -111,7 +111,7 @@ static void set_metadata(cairo_surface_t *surface, cairo_pdf_metadata_t what, co
     }
 }
 
-static status write_pdf(FILE *stream, const picture *p, fault *f)
+static status write_pages(FILE *stream, const picture *p, int count, fault *f)
 {
     cairo_surface_t *surface =
         cairo_pdf_surface_create_for_stream(to_stream, stream, p->width, p->height);
@@ -120,9 +120,21 @@ static status write_pdf(FILE *stream, const picture *p, fault *f)
     set_metadata(surface, CAIRO_PDF_METADATA_TITLE, p->title);
     set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, p->software);
     set_metadata(surface, CAIRO_PDF_METADATA_KEYWORDS, p->parameters);
-    status code = paint_surface(surface, p, true, f);
+    status code = STATUS_OK;
+    for (int i = 0; i < count && code == STATUS_OK; i++) {
+        cairo_pdf_surface_set_size(surface, p[i].width, p[i].height);
+        code = paint_surface(surface, &p[i], i == count - 1, f);
+        if (i < count - 1) {
+            cairo_surface_show_page(surface);
+        }
+    }
     cairo_surface_destroy(surface);
     return code;
+}
+
+static status write_pdf(FILE *stream, const picture *p, fault *f)
+{
+    return write_pages(stream, p, 1, f);
 }
 
 static cairo_status_t to_string(void *string, const unsigned char *bytes, unsigned length)
@@ -156,8 +168,9 @@ static GString *svg_metadata(const picture *p)
     return out;
 }
 
-static status write_svg(FILE *stream, const picture *p, fault *f)
+char *picture_svg(const picture *p, fault *f)
 {
+    char *numbered = NULL;
     GString *svg = g_string_new(NULL);
     cairo_surface_t *surface =
         cairo_svg_surface_create_for_stream(to_string, svg, p->width, p->height);
@@ -170,12 +183,37 @@ static status write_svg(FILE *stream, const picture *p, fault *f)
             g_string_insert(svg, end + 1 - svg->str, metadata->str);
             g_string_free(metadata, TRUE);
         }
-        char *numbered = svg_renumber_ids(svg->str);
-        fputs(numbered, stream);
-        g_free(numbered);
+        numbered = svg_renumber_ids(svg->str);
     }
     g_string_free(svg, TRUE);
-    return code;
+    return numbered;
+}
+
+static status write_svg(FILE *stream, const picture *p, fault *f)
+{
+    fault why = {0};
+    char *svg = picture_svg(p, &why);
+    if (svg == NULL) {
+        return fault_set(f, why.code, "%s", why.text);
+    }
+    fputs(svg, stream);
+    g_free(svg);
+    return STATUS_OK;
+}
+
+status picture_write_pages(const picture *pages, int count, const char *path, fault *f)
+{
+    whole_file file;
+    status code = whole_file_open(&file, path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = write_pages(file.stream, pages, count, f);
+    if (code != STATUS_OK) {
+        whole_file_abandon(&file);
+        return code;
+    }
+    return whole_file_commit(&file, f);
 }
 
 status picture_write(const picture *p, const char *path, fault *f)

@@ -30,3 +30,10 @@ status picture_check_path(const char *path, fault *f);
 // STATUS_BAD_ARGUMENT for an unknown extension or a resolution out of range, STATUS_CANNOT_WRITE
 // with path and reason.
 status picture_write(const picture *p, const char *path, fault *f);
+
+// The picture as the text of an SVG file, to be freed with g_free; NULL if it cannot be drawn.
+char *picture_svg(const picture *p, fault *f);
+
+// Draws pictures as the pages of one PDF, whose metadata are the first one's. Returns what
+// picture_write does.
+status picture_write_pages(const picture *pages, int count, const char *path, fault *f);

@@ -363,6 +363,10 @@ static void draw_swatch(drawing *d, const figure_panel *panel, int index, double
 static void draw_legend(drawing *d, const panel_layout *l)
 {
     double x = l->legend.x, y = l->legend.y;
+    if (l->legend.width > 0 && !l->legend_inside) {
+        // hairlines of marks do not cross it
+        fill_box(d->cr, &l->legend, d->colours->page);
+    }
     for (int i = 0; i < l->panel->series_count && l->legend.width > 0; i++) {
         double width, height;
         const char *label = l->panel->series[i].label;
@@ -373,7 +377,7 @@ static void draw_legend(drawing *d, const panel_layout *l)
         text_measure(d->context, &t, &width, &height);
         draw_swatch(d, l->panel, i, x, y + 0.55 * height);
         draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->colours->text);
-        if (l->legend_inside) {
+        if (l->legend_inside || l->legend_column) {
             y += height;
         } else {
             x += width + SWATCH + 3 * SWATCH_SPACE;

@@ -274,7 +274,9 @@ static double height_of(const drawing *d, const char *markup, double size, bool 
 
 static double space_above(const panel_layout *l)
 {
-    return (l->legend_row ? 11 : 0) +
+    return (l->legend_column ? l->legend.height + 2
+            : l->legend_row  ? 11
+                             : 0) +
            (l->panel->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0);
 }
 
@@ -438,10 +440,15 @@ static bool place_legend(const drawing *d, panel_layout *l, const placement *gri
     l->legend = (figure_rect){0};
     l->legend_inside = false;
     if (l->panel->legend != LEGEND_AUTO || labelled_series(l->panel) < 2) {
-        l->legend_row = false;
+        l->legend_row = l->legend_column = false;
         return true;
     }
     legend_size(d, l->panel, l->legend_row, &width, &height);
+    // a row that is wider than the panel becomes a column
+    if (l->legend_row && width > d->right - d->left) {
+        l->legend_column = true;
+        legend_size(d, l->panel, false, &width, &height);
+    }
     if (l->legend_row) {
         l->legend = (figure_rect){d->right - width, l->plane.box.y - height - 1, width, height};
         if (l->panel->impulse_count > 0) {
@@ -514,9 +521,11 @@ static bool fill_panels(drawing *d, placement *grid)
         panel_layout *l = &d->panels[i];
         collect_ink(d, l, grid);
         place_inset(d, l, grid);
+        bool column = l->legend_column;
         if (!place_legend(d, l, grid)) {
             l->legend_row = moved = true;
         }
+        moved = moved || l->legend_column != column;
         if (has_end_labels(l->panel)) {
             place_end_labels(d, l);
         }
@@ -573,7 +582,7 @@ status layout_figure(drawing *d, fault *f)
     }
     status code = STATUS_OK;
     bool again = true;
-    for (int pass = 0; pass < 3 && again && code == STATUS_OK; pass++) {
+    for (int pass = 0; pass < 4 && again && code == STATUS_OK; pass++) {
         place_all(d, &mark_rows);
         code = check_room(d, f);
         again = code == STATUS_OK && fill_panels(d, grid);

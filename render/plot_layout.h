@@ -35,6 +35,7 @@ typedef struct panel_layout {
     ticks y_ticks;
     double strip_top;   // of the strip for impulses, if there are any
     bool legend_row;    // the legend stands above the panel
+    bool legend_column; // it does, with its entries one above the other
     bool legend_inside; // it stands within the panel
     figure_rect legend; // width 0: none
     figure_rect inset;  // with its labels; width 0: none

@@ -29,17 +29,41 @@ static GHashTable *collect_ids(const char *svg)
     return names;
 }
 
-char *svg_renumber_ids(const char *svg)
+// Length of what stands before an id at `text`; 0 if no id follows.
+static size_t opening_length(const char *text)
 {
     static const char *const openings[] = {" id=\"", "\"#", "url(#"};
+    for (size_t i = 0; i < G_N_ELEMENTS(openings); i++) {
+        size_t length = strlen(openings[i]);
+        if (strncmp(text, openings[i], length) == 0) {
+            return length;
+        }
+    }
+    return 0;
+}
+
+char *svg_prefix_ids(const char *svg, const char *prefix)
+{
+    GString *out = g_string_sized_new(strlen(svg) + 1);
+    while (*svg != '\0') {
+        size_t length = opening_length(svg);
+        if (length == 0) {
+            g_string_append_c(out, *svg++);
+            continue;
+        }
+        g_string_append_len(out, svg, (gssize)length);
+        g_string_append(out, prefix);
+        svg += length;
+    }
+    return g_string_free(out, FALSE);
+}
+
+char *svg_renumber_ids(const char *svg)
+{
     GHashTable *names = collect_ids(svg);
     GString *out = g_string_sized_new(strlen(svg) + 1);
     while (*svg != '\0') {
-        size_t length = 0;
-        for (size_t i = 0; i < G_N_ELEMENTS(openings) && length == 0; i++) {
-            size_t n = strlen(openings[i]);
-            length = strncmp(svg, openings[i], n) == 0 ? n : 0;
-        }
+        size_t length = opening_length(svg);
         if (length == 0) {
             g_string_append_c(out, *svg++);
             continue;

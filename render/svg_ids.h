@@ -6,3 +6,7 @@
 // and in every reference to it, replaced by its place in the order of the ids. Free the result with
 // g_free.
 char *svg_renumber_ids(const char *svg);
+
+// Puts a prefix before every id and every reference to one, so that several SVGs can stand in one
+// page. Free the result with g_free.
+char *svg_prefix_ids(const char *svg, const char *prefix);

@@ -6,8 +6,10 @@
 #include <string.h>
 
 #include "render/figure_file.h"
+#include "render/opened_run.h"
 #include "render/text.h"
 #include "src/lab/export.h"
+#include "src/rig/rig.h"
 
 #define SHORT_PULSE 0.1  // share of the run below which the first pulse is shown enlarged
 #define INSET_SPACE 0.15 // of the pulse, shown before and after it
@@ -71,7 +73,9 @@ static char *series_label(const scenario *s, int index, bool joined)
         label = g_strdup_printf("%s = %s  hub and first link", symbol, other);
         g_free(other);
     } else {
-        label = g_strdup_printf("%s  %s", symbol, body_of(signal));
+        // what belongs to no body is described as a whole
+        const char *body = body_of(signal);
+        label = g_strdup_printf("%s  %s", symbol, body[0] ? body : signal->description);
     }
     g_free(symbol);
     return label;
@@ -103,15 +107,49 @@ static char *duration_text(double seconds)
                                    : "s");
 }
 
-// Model, links, voltage and method in one line.
-static char *caption_of(const trace_run *run)
+static bool on_the_rig(const scenario *s)
+{
+    return s->parameters.control.law != LAW_NONE;
+}
+
+// Name of a mode of the scenario's controller, NULL if it is not known.
+static const char *mode_name(const scenario *s, int mode)
+{
+    const controller *law = controller_of(s->parameters.control.law);
+    for (int i = 0; law != NULL && law->modes[i] != NULL; i++) {
+        if (i == mode) {
+            return law->modes[i];
+        }
+    }
+    return NULL;
+}
+
+// What drives the arm: a voltage, or a controller.
+static void add_drive(GString *out, const parameters *p)
+{
+    char law[PARAMETER_TEXT_SIZE];
+    if (p->control.law == LAW_NONE) {
+        g_string_append_printf(out, ", %g\u2009V; ", p->motor.voltage);
+        return;
+    }
+    parameter_format(p, parameter_find("control.law"), law, sizeof law);
+    g_string_append_printf(out, ", on the rig: %s at %g\u2009Hz", law, p->control.rate);
+    if (p->control.law == LAW_OPEN_LOOP) {
+        g_string_append_printf(out, ", %g\u2009V; ", p->control.approach_voltage);
+    } else {
+        g_string_append_printf(out, ", %g\u2009N commanded; ", p->control.force);
+    }
+}
+
+// Model, links, drive and method in one line.
+static char *caption_of(const trace_run *run, const char *shaded)
 {
     const parameters *p = &run->scenario->parameters;
     GString *out = g_string_new(p->arm.model == ARM_PRINTED ? "Printed model" : "Corrected model");
     char *step = duration_text(p->method.step);
     g_string_append_printf(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
                            p->arm.hub_joint == HUB_RIGID ? "rigid" : "spring");
-    g_string_append_printf(out, ", %g\u2009V; ", p->motor.voltage);
+    add_drive(out, p);
     if (p->arm.model == ARM_PRINTED || p->method.name == METHOD_NEWMARK) {
         g_string_append_printf(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta,
                                p->method.gamma);
@@ -121,7 +159,7 @@ static char *caption_of(const trace_run *run)
     } else {
         g_string_append(out, "explicit steps, located events");
     }
-    g_string_append_printf(out, ", <i>h</i> = %s. Shaded: contact. impactlab %s.", step,
+    g_string_append_printf(out, ", <i>h</i> = %s. Shaded: %s. impactlab %s.", step, shaded,
                            lab_version());
     if (run->result->summary.status != STATUS_OK) {
         char *why = text_escape(run->result->summary.message);
@@ -129,18 +167,6 @@ static char *caption_of(const trace_run *run)
         g_free(why);
     }
     g_free(step);
-    return g_string_free(out, FALSE);
-}
-
-static char *parameters_text(const scenario *s)
-{
-    GString *out = g_string_new(NULL);
-    g_string_printf(out, "scenario=%s", s->name);
-    for (int i = 0; i < parameter_count; i++) {
-        char value[128];
-        parameter_format(&s->parameters, i, value, sizeof value);
-        g_string_append_printf(out, " %s=%s", parameter_table[i].path, value);
-    }
     return g_string_free(out, FALSE);
 }
 
@@ -172,9 +198,38 @@ static char *action_label(const scenario *s, const event *e)
     return g_strdup_printf("%s %s\u2009%s", name, value, unit);
 }
 
+static char *mode_label(const char *name, double mode)
+{
+    char *escaped = name != NULL ? text_escape(name) : g_strdup_printf("%g", mode);
+    char *label = g_strdup_printf(name != NULL ? "%s mode" : "mode %s", escaped);
+    g_free(escaped);
+    return label;
+}
+
+// Where the controller went into another mode, with the mode's name. False if it never did.
+static bool mark_modes(trace_figure *t, const trace_run *run, GPtrArray *texts)
+{
+    const trace *rows = &run->result->trace;
+    bool marked = false;
+    double mode = (double)NAN;
+    for (size_t i = 0; i < rows->row_count; i++) {
+        double now = rows->rows[i].controller_mode;
+        if (isfinite(now) && isfinite(mode) && now != mode && t->figure.mark_count < MARKS) {
+            const char *name = mode_name(run->scenario, (int)now);
+            add_mark(t, rows->rows[i].time, keep(texts, mode_label(name, now)));
+            marked = true;
+        }
+        mode = isfinite(now) ? now : mode;
+    }
+    return marked;
+}
+
 static void mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts)
 {
     const summary *m = &run->result->summary;
+    if (on_the_rig(run->scenario) && mark_modes(t, run, texts)) {
+        return;
+    }
     const trace *rows = &run->result->trace;
     if (isfinite(m->first_contact_s)) {
         add_mark(t, m->first_contact_s, "contact");
@@ -194,14 +249,23 @@ static void mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts)
     }
 }
 
-// Calls of contact: from the first row in contact to the next one that is not. Counts them where
-// `out` is NULL.
-static int contact_intervals(const trace *rows, figure_interval *out)
+static bool in_contact(const sample *row)
+{
+    return row->contact > 0.5;
+}
+
+static bool in_second_mode(const sample *row)
+{
+    return row->controller_mode == 1;
+}
+
+// From each first row that is so to the next one that is not. Counts them where `out` is NULL.
+static int intervals_of(const trace *rows, bool (*is_so)(const sample *row), figure_interval *out)
 {
     int count = 0;
     bool touching = false;
     for (size_t i = 0; i < rows->row_count; i++) {
-        bool now = rows->rows[i].contact > 0.5;
+        bool now = is_so(&rows->rows[i]);
         if (now && !touching) {
             if (out != NULL) {
                 out[count] = (figure_interval){rows->rows[i].time, rows->rows[i].time};
@@ -265,6 +329,10 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         }
         figure_series *out = &t->series[panel_index][panel->series_count++];
         *out = series_of(&runs[run], index);
+        for (int k = 0; k + 1 < panel->series_count && run == 0; k++) {
+            // two readings of one quantity: the second in grey
+            out->colour = t->series[panel_index][k].colour == out->colour ? 7 : out->colour;
+        }
         out->secondary = run > 0;
         if (run > 0) {
             out->name = keep(texts, g_strconcat(out->name, " ", runs[run].name, NULL));
@@ -348,7 +416,13 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
         return code;
     }
     const trace *rows = &runs[0].result->trace;
-    int intervals = contact_intervals(rows, NULL), impulses = impact_impulses(rows, NULL);
+    bool modes = false;
+    for (int i = 0; i < panel_count; i++) {
+        modes = modes || panels[i].modes;
+    }
+    bool (*shaded)(const sample *row) = modes ? in_second_mode : in_contact;
+    const char *mode = modes ? mode_name(runs[0].scenario, 1) : NULL;
+    int intervals = intervals_of(rows, shaded, NULL), impulses = impact_impulses(rows, NULL);
     t->marks = calloc(MARKS, sizeof *t->marks);
     t->intervals = calloc((size_t)intervals + 1, sizeof *t->intervals);
     t->impulses = calloc((size_t)impulses + 1, sizeof *t->impulses);
@@ -360,7 +434,10 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     GPtrArray *texts = g_ptr_array_new();
     figure *fig = &t->figure;
     fig->title = title ? title : runs[0].scenario->title;
-    fig->caption = keep(texts, caption_of(&runs[0]));
+    char *shading = mode != NULL ? g_strdup_printf("%s mode", mode)
+                                 : g_strdup(modes ? "second mode" : "contact");
+    fig->caption = keep(texts, caption_of(&runs[0], shading));
+    g_free(shading);
     fig->x_name = "time";
     fig->x_label = "Time <i>t</i>";
     fig->x_unit = "s";
@@ -371,10 +448,10 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     }
     mark_events(t, &runs[0], texts);
     fig->marks = t->marks;
-    fig->interval_count = contact_intervals(rows, t->intervals);
+    fig->interval_count = intervals_of(rows, shaded, t->intervals);
     fig->intervals = t->intervals;
     fig->software = keep(texts, g_strconcat("impactlab ", lab_version(), NULL));
-    fig->parameters = keep(texts, parameters_text(runs[0].scenario));
+    fig->parameters = keep(texts, parameters_line(runs[0].scenario));
     g_ptr_array_add(texts, NULL);
     t->texts = (char **)g_ptr_array_free(texts, FALSE);
     return STATUS_OK;

@@ -15,6 +15,7 @@ typedef struct trace_panel {
     bool impulses;                      // impulses of impacts in a strip above the panel
     bool inset;                         // the first pulse once more, if it is short
     bool wall;                          // the wall's angle as a line
+    bool modes;                         // shade the controller's second mode instead of contact
 } trace_panel;
 
 // A run to draw. The first one gives marks, shading, impulses and caption; further ones are thin

@@ -8,14 +8,15 @@
 
 #include "src/words.h"
 
-#define AT(field) offsetof(parameters, field)
-#define REAL      PARAMETER_REAL
-#define INTEGER   PARAMETER_INTEGER
-#define BOOLEAN   PARAMETER_BOOLEAN
-#define CHOICE    PARAMETER_CHOICE
-#define DERIVED   (double)NAN // the default follows from other parameters, see parameters_resolve
-#define TIMED     true
-#define NOT_TIMED false
+#define AT(field)  offsetof(parameters, field)
+#define REAL       PARAMETER_REAL
+#define INTEGER    PARAMETER_INTEGER
+#define BOOLEAN    PARAMETER_BOOLEAN
+#define CHOICE     PARAMETER_CHOICE
+#define TEXT       PARAMETER_TEXT
+#define DERIVED    (double)NAN // the default follows from other parameters, see parameters_resolve
+#define TIMED      true
+#define NOT_TIMED  false
 
 // k1 with which the printed model reproduces the thesis's tables. The thesis prints
 // 169 468 N m/rad, with which its own algorithm at h = 1 ms chatters; 90 lies in the range
@@ -112,6 +113,86 @@ const parameter_info parameter_table[] = {
      "angular velocity of hub and all links at the start"},
     {"run.duration", "s", REAL, AT(run.duration), 1, 1, 1e-6, 1e5, NULL, NOT_TIMED,
      "simulated time"},
+    {"control.law", "", CHOICE, AT(control.law), LAW_NONE, LAW_NONE, 0, LAW_PLUGIN,
+     "none|open-loop|hybrid|force-pd|force-integral|reverse-torque|speed-limit|bang-bang|"
+     "discontinuous|recovering|optimal|plugin",
+     NOT_TIMED, "control law on the rig, or none: the bare arm under motor.voltage"},
+    {"control.plugin", "", TEXT, AT(control.plugin), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "shared object with a controller of one's own (control.law = plugin)"},
+    {"control.settings", "", TEXT, AT(control.settings), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "a plug-in's own parameters, written name=value and separated by spaces"},
+    {"control.rate", "Hz", REAL, AT(control.rate), 200, 200, 1, 1e5, NULL, NOT_TIMED,
+     "samples a second"},
+    {"control.delay", "s", REAL, AT(control.delay), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "from a sample to the instant its command takes effect, at most one period"},
+    {"control.jitter", "s", REAL, AT(control.jitter), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "width over which the sampling instants scatter, at most half a period"},
+    {"control.seed", "", INTEGER, AT(control.seed), 1, 1, 0, 2147483647, NULL, NOT_TIMED,
+     "seed of all noise of the rig"},
+    {"control.force", "N", REAL, AT(control.force), 1, 1, 0, 1000, NULL, NOT_TIMED,
+     "commanded contact force"},
+    {"control.approach_voltage", "V", REAL, AT(control.approach_voltage), 1, 1, -1000, 1000, NULL,
+     NOT_TIMED, "constant command of the approach"},
+    {"control.kp", "", REAL, AT(control.kp), 10.15, 10.15, -1e6, 1e6, NULL, NOT_TIMED,
+     "position gain, per rad, of a torque in N m or of volts (control.gains)"},
+    {"control.kv", "", REAL, AT(control.kv), 0.75, 0.75, -1e6, 1e6, NULL, NOT_TIMED,
+     "velocity gain, per rad/s, of a torque in N m or of volts (control.gains)"},
+    {"control.gains", "", CHOICE, AT(control.gains), 0, 0, 0, 2, "torque|volts|printed", NOT_TIMED,
+     "hybrid: what kp and kv give; printed: torque in the impact mode and volts in the force mode"},
+    {"control.coefficients", "", CHOICE, AT(control.coefficients), 0, 0, 0, 1, "corrected|printed",
+     NOT_TIMED, "hybrid: factors of its model, 4 k2 and 2 f l, or 6 k2 and 3 f l as printed"},
+    {"control.transition_time", "s", REAL, AT(control.transition_time), 0.35, 0.35, 1e-3, 100, NULL,
+     NOT_TIMED, "hybrid: length of the impact mode (t_f)"},
+    {"control.contact_threshold", "N", REAL, AT(control.contact_threshold), 0.05, 0.05, 0, 1000,
+     NULL, NOT_TIMED, "force reading that a controller takes for contact"},
+    {"control.k2_factor", "", REAL, AT(control.k2_factor), 1, 1, 0.01, 100, NULL, NOT_TIMED,
+     "k2 that the controller believes in, divided by the arm's"},
+    {"control.wall_error", "rad", REAL, AT(control.wall_error), 0, 0, -3, 3, NULL, NOT_TIMED,
+     "wall angle that the controller believes in, minus the wall's"},
+    {"control.force_gain", "V/N", REAL, AT(control.force_gain), 1, 1, -1000, 1000, NULL, NOT_TIMED,
+     "gain of the force error"},
+    {"control.integral_gain", "V/(N s)", REAL, AT(control.integral_gain), 5, 5, -1e4, 1e4, NULL,
+     NOT_TIMED, "gain of the integrated force error"},
+    {"control.speed_limit", "rad/s", REAL, AT(control.speed_limit), 0.3, 0.3, 0, 1000, NULL,
+     NOT_TIMED, "speed-limit: hub velocity of the approach"},
+    {"control.reverse_time", "s", REAL, AT(control.reverse_time), 0.02, 0.02, 0, 10, NULL, NOT_TIMED,
+     "reverse-torque: how long the motor pulls back after contact"},
+    {"control.switch_share", "", REAL, AT(control.switch_share), 0.5, 0.5, 0, 1, NULL, NOT_TIMED,
+     "bang-bang: share of the way to the wall at which the command is reversed"},
+    {"sensor.ideal", "", BOOLEAN, AT(sensor.ideal), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "switches off every imperfection of sensors and converters"},
+    {"sensor.encoder_counts", "", INTEGER, AT(sensor.encoder_counts), 8000, 8000, 0, 1000000000,
+     NULL, NOT_TIMED, "counts of the encoder per revolution, 0 for a continuous reading"},
+    {"sensor.tachometer_gain", "V s/rad", REAL, AT(sensor.tachometer_gain), 2, 2, 1e-6, 1000, NULL,
+     NOT_TIMED, "volts of the tachometer per hub velocity"},
+    {"sensor.tachometer_ripple", "", REAL, AT(sensor.tachometer_ripple), 0.01, 0.01, 0, 1, NULL,
+     NOT_TIMED, "amplitude of the tachometer's ripple as a share of its reading"},
+    {"sensor.tachometer_ripple_count", "", INTEGER, AT(sensor.tachometer_ripple_count), 79, 79, 0,
+     100000, NULL, NOT_TIMED, "ripples a revolution"},
+    {"sensor.tachometer_noise", "V", REAL, AT(sensor.tachometer_noise), 0.01, 0.01, 0, 10, NULL,
+     NOT_TIMED, "standard deviation of the tachometer's noise"},
+    {"sensor.fsr_rise_time", "s", REAL, AT(sensor.fsr_rise_time), 1.5e-3, 1.5e-3, 0, 1, NULL,
+     NOT_TIMED, "rise time of the force sensor from 10 % to 90 %, 0 for an instant one"},
+    {"sensor.fsr_resistance", "ohm", REAL, AT(sensor.fsr_resistance), 30e3, 30e3, 1, 1e9, NULL,
+     NOT_TIMED, "resistance of the force sensor at 1 N"},
+    {"sensor.fsr_exponent", "", REAL, AT(sensor.fsr_exponent), 0.75, 0.75, 0.1, 3, NULL, NOT_TIMED,
+     "exponent of its power law, resistance = fsr_resistance (force/1 N)^-fsr_exponent"},
+    {"sensor.fsr_divider", "ohm", REAL, AT(sensor.fsr_divider), 40e3, 40e3, 1, 1e9, NULL, NOT_TIMED,
+     "measuring resistor of the voltage divider (R_M)"},
+    {"sensor.fsr_supply", "V", REAL, AT(sensor.fsr_supply), 5, 5, 1e-3, 1000, NULL, NOT_TIMED,
+     "voltage across the divider"},
+    {"sensor.fsr_gain", "", REAL, AT(sensor.fsr_gain), 2, 2, 1e-3, 1000, NULL, NOT_TIMED,
+     "gain of the stage behind the divider, 1 + R5/R6"},
+    {"sensor.fsr_saturation", "N", REAL, AT(sensor.fsr_saturation), 10, 10, 1e-3, 1e6, NULL,
+     NOT_TIMED, "force beyond which the sensor's resistance falls no further"},
+    {"sensor.fsr_noise", "V", REAL, AT(sensor.fsr_noise), 0.02, 0.02, 0, 10, NULL, NOT_TIMED,
+     "standard deviation of the force channel's noise"},
+    {"sensor.adc_bits", "", INTEGER, AT(sensor.adc_bits), 12, 12, 0, 32, NULL, NOT_TIMED,
+     "bits of the A/D converter, 0 for a continuous one"},
+    {"sensor.dac_bits", "", INTEGER, AT(sensor.dac_bits), 12, 12, 0, 32, NULL, NOT_TIMED,
+     "bits of the D/A converter, 0 for a continuous one"},
+    {"sensor.adc_range", "V", REAL, AT(sensor.adc_range), 10, 10, 1e-3, 1000, NULL, NOT_TIMED,
+     "range of the A/D converter either way"},
 };
 
 const int parameter_count = (int)(sizeof parameter_table / sizeof parameter_table[0]);
@@ -156,6 +237,9 @@ static void store(parameters *p, const parameter_info *info, double value)
         memcpy(at, &whole, sizeof whole);
         break;
     }
+    case PARAMETER_TEXT:
+        memset(at, 0, PARAMETER_TEXT_SIZE);
+        break;
     }
 }
 
@@ -177,6 +261,8 @@ double parameter_get(const parameters *p, int index)
     case PARAMETER_CHOICE:
         memcpy(&whole, at, sizeof whole);
         return whole;
+    case PARAMETER_TEXT:
+        return 0;
     }
     return (double)NAN;
 }
@@ -198,6 +284,9 @@ status parameter_set_number(parameters *p, int index, double value, fault *f)
 {
     const parameter_info *info = &parameter_table[index];
     const char *unit = info->unit, *space = unit[0] ? " " : "";
+    if (info->type == PARAMETER_TEXT) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s is a text and takes no number", info->path);
+    }
     if (!isfinite(value)) {
         return fault_set(f, STATUS_BAD_SCENARIO, "%s is not a finite number, expected %g to %g%s%s",
                          info->path, info->minimum, info->maximum, space, unit);
@@ -264,7 +353,21 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
     while (length > 0 && isspace((unsigned char)text[length - 1])) {
         length--;
     }
-    char word[128];
+    char word[PARAMETER_TEXT_SIZE];
+    if (info->type == PARAMETER_TEXT && length < sizeof word) {
+        for (size_t i = 0; i < length; i++) {
+            if (iscntrl((unsigned char)text[i])) {
+                return fault_set(f, STATUS_BAD_SCENARIO,
+                                 "%s holds a control character, expected one line of text",
+                                 info->path);
+            }
+        }
+        char *at = (char *)p + info->offset;
+        memset(at, 0, PARAMETER_TEXT_SIZE);
+        memcpy(at, text, length);
+        p->set[index] = 1;
+        return STATUS_OK;
+    }
     if (length == 0 || length >= sizeof word) {
         return fault_set(f, STATUS_BAD_SCENARIO, "%s has %s", info->path,
                          length ? "a value of more than 127 characters" : "no value");
@@ -300,7 +403,9 @@ void parameter_format(const parameters *p, int index, char *text, size_t size)
 {
     const parameter_info *info = &parameter_table[index];
     double value = parameter_get(p, index);
-    if (info->type == PARAMETER_BOOLEAN) {
+    if (info->type == PARAMETER_TEXT) {
+        snprintf(text, size, "%s", (const char *)p + info->offset);
+    } else if (info->type == PARAMETER_BOOLEAN) {
         snprintf(text, size, "%s", value != 0 ? "true" : "false");
     } else if (info->type == PARAMETER_CHOICE) {
         const char *c = info->choices;
@@ -343,6 +448,20 @@ status parameters_resolve(parameters *p, fault *f)
     if (isnan(p->arm.link_inertia)) {
         double m = p->arm.mass / p->arm.links, l = p->arm.length / p->arm.links;
         p->arm.link_inertia = m * l * l / 12; // uniform rod (errata B3)
+    }
+    if (p->control.law == LAW_PLUGIN && p->control.plugin[0] == '\0') {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.law = plugin needs the file of a shared object in control.plugin");
+    }
+    if (p->control.delay * p->control.rate > 1) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.delay = %g s is longer than the period of %g s (control.rate)",
+                         p->control.delay, 1 / p->control.rate);
+    }
+    if (p->control.jitter * p->control.rate > 0.5) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.jitter = %g s is more than half the period of %g s (control.rate)",
+                         p->control.jitter, 1 / p->control.rate);
     }
     if (p->arm.model == ARM_PRINTED) {
         if (p->arm.links != 2) {

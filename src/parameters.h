@@ -75,6 +75,67 @@ typedef struct run_parameters {
     double duration; // [s]
 } run_parameters;
 
+enum { PARAMETER_TEXT_SIZE = 128 }; // room for a parameter that is a text, its end included
+
+// In the order of the choices of control.law.
+typedef enum control_law {
+    LAW_NONE, // no rig: the bare arm under motor.voltage
+    LAW_OPEN_LOOP,
+    LAW_HYBRID,
+    LAW_FORCE_PD,
+    LAW_FORCE_INTEGRAL,
+    LAW_REVERSE_TORQUE,
+    LAW_SPEED_LIMIT,
+    LAW_BANG_BANG,
+    LAW_DISCONTINUOUS,
+    LAW_RECOVERING,
+    LAW_OPTIMAL,
+    LAW_PLUGIN
+} control_law;
+
+typedef struct control_parameters {
+    int law;                           // control_law
+    char plugin[PARAMETER_TEXT_SIZE];  // file of a shared object
+    char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
+    double rate;                       // samples a second [Hz]
+    double delay;                      // from sampling to the command's effect [s]
+    double jitter;                     // of the sampling instants, whole width [s]
+    int seed;                          // of every random number of the rig
+    double force;                      // commanded force [N]
+    double approach_voltage;           // [V]
+    double kp, kv;                     // gains of (5.24), (5.25), in N m/rad or V/rad, and s
+    int gains;                         // 0 torque, 1 volts, 2 printed (errata B7)
+    int coefficients;                  // 0 corrected, 1 printed (errata B2)
+    double transition_time;            // t_f [s]
+    double contact_threshold;          // force reading that means contact [N]
+    double k2_factor;                  // k2 that the controller believes in, over the arm's
+    double wall_error;                 // wall angle that it believes in, minus the wall's [rad]
+    double force_gain;                 // of force errors [V/N]
+    double integral_gain;              // of their integral [V/(N s)]
+    double speed_limit;                // hub velocity of a limited approach [rad/s]
+    double reverse_time;               // how long reverse-torque brakes [s]
+    double switch_share;               // where bang-bang switches, share of the way to the wall
+} control_parameters;
+
+typedef struct sensor_parameters {
+    bool ideal;                   // all imperfections of sensors and converters are off
+    int encoder_counts;           // per revolution, 0: continuous
+    double tachometer_gain;       // [V s/rad]
+    double tachometer_ripple;     // amplitude as a share of the reading
+    int tachometer_ripple_count;  // ripples a revolution
+    double tachometer_noise;      // standard deviation [V]
+    double fsr_rise_time;         // 10 % to 90 % [s]
+    double fsr_resistance;        // at 1 N [ohm]
+    double fsr_exponent;          // of the power law
+    double fsr_divider;           // measuring resistor [ohm]
+    double fsr_supply;            // across the divider [V]
+    double fsr_gain;              // of the stage behind it
+    double fsr_saturation;        // force beyond which the resistance falls no further [N]
+    double fsr_noise;             // standard deviation [V]
+    int adc_bits, dac_bits;       // 0: continuous
+    double adc_range;             // either way [V]
+} sensor_parameters;
+
 typedef struct parameters {
     arm_parameters arm;
     motor_parameters motor;
@@ -83,6 +144,8 @@ typedef struct parameters {
     printed_parameters printed;
     initial_parameters initial;
     run_parameters run;
+    control_parameters control;
+    sensor_parameters sensor;
     unsigned char set[128]; // set[i] is 1 if parameter i was given, 0 if it is a default
 } parameters;
 
@@ -90,7 +153,8 @@ typedef enum parameter_type {
     PARAMETER_REAL,
     PARAMETER_INTEGER,
     PARAMETER_BOOLEAN,
-    PARAMETER_CHOICE
+    PARAMETER_CHOICE,
+    PARAMETER_TEXT // of at most PARAMETER_TEXT_SIZE - 1 bytes; has no number, no range
 } parameter_type;
 
 typedef struct parameter_info {
@@ -124,10 +188,11 @@ void parameters_defaults(parameters *p, arm_model_kind model);
 // one out of range nothing is stored and f says what was wrong and what was expected.
 status parameter_set_text(parameters *p, int index, const char *text, fault *f);
 
-// Stores a number (an enumeration's index for a choice, 0 or 1 for a boolean), checked as above.
+// Stores a number (an enumeration's index for a choice, 0 or 1 for a boolean), checked as above. A
+// text takes no number.
 status parameter_set_number(parameters *p, int index, double value, fault *f);
 
-// The value as a number; NaN where an optional parameter has none.
+// The value as a number; NaN where an optional parameter has none, 0 for a text.
 double parameter_get(const parameters *p, int index);
 
 // The value as text, as a scenario file would give it, without its unit.

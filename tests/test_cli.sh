@@ -57,7 +57,7 @@ says out corrected/first-impact
 expect 0 --version
 says out "impactlab "
 expect 0 --help
-for command in list show check run tables figures animate predict modes sweep bench; do
+for command in list show check run tables figures animate predict modes sweep compare bench converge study; do
     grep -q "^  $command " out || fail "--help does not name $command"
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
@@ -76,8 +76,8 @@ expect 2 run hit.yaml one-more
 says err "one-more"
 expect 2 run first-impct
 expect 2 run no-such-file.yaml
-expect 2 animate hit.yaml -o x.mp4
-says err "not there yet"
+expect 2 animate hit.yaml
+says err "-o FILE.mp4"
 
 # pictures
 expect 0 run hit.yaml --quiet --plot hit.png
@@ -207,8 +207,25 @@ says err "nothing to predict"
 expect 0 modes hit.yaml --json - --quiet
 says out '"hub": "locked"'
 expect 2 modes thesis/fig-3-4
-expect 0 bench --json bench.json --quiet
+expect 0 bench --only arm_n2_us_per_ms --json bench.json --quiet
 grep -q '"name": "arm_n2_us_per_ms"' bench.json || fail "bench names no figure"
+sed 's/"median": [0-9.e+-]*/"median": 1e-9/' bench.json >fast.json
+expect 0 bench --only arm_n2_us_per_ms --baseline fast.json
+says out "slower"
+expect 2 bench --only predict_su
+says err "did you mean 'predict_us'?"
+expect 2 bench --baseline hit.yaml
+says err "expected what bench --json writes"
+expect 0 converge hit.yaml --set method.name=newmark --json converge.json --plot converge.svg
+says out "first contact"
+grep -q '"order": 2' converge.json || grep -q '"order": 1.9' converge.json ||
+    fail "converge finds no second order"
+[ -s converge.svg ] || fail "converge draws nothing"
+expect 0 study sensor --plot sensor.pdf
+says out "beam"
+[ -s sensor.pdf ] && [ -s sensor.csv ] || fail "study draws nothing"
+expect 2 study sense
+says err "expected methods or sensor"
 
 [ $failures = 0 ] && echo "all well"
 [ $failures = 0 ]

@@ -138,7 +138,9 @@ static void text_and_value_go_both_ways(void **state)
 {
     (void)state;
     for (int i = 0; i < parameter_count; i++) {
-        check_round_trip(i);
+        if (parameter_table[i].type != PARAMETER_TEXT) {
+            check_round_trip(i);
+        }
     }
 }
 

@@ -11,7 +11,6 @@
 #include <zlib.h>
 
 #include "render/figure_file.h"
-#include "render/figures.h"
 #include "render/text.h"
 #include "render/trace_plot.h"
 
@@ -944,43 +943,6 @@ static void a_scenario_is_plotted(void **state)
     scenario_finish(&s);
 }
 
-static void every_thesis_figure_is_tidy_and_overlaid(void **state)
-{
-    (void)state;
-    for (int i = 0; i < thesis_figure_count; i++) {
-        fault f = {0};
-        size_t length;
-        char name[64];
-        const thesis_figure *which = &thesis_figures[i];
-        assert_ptr_equal(thesis_figure_find(which->id), which);
-        if (figure_draw(which->id, path_of("thesis"), "svg,pdf", &f) != STATUS_OK) {
-            fail_msg("%s: %s", which->id, f.text);
-        }
-        snprintf(name, sizeof name, "thesis/%s.csv", which->file);
-        char *csv = read_file(path_of(name), &length);
-        char printed[64], corrected[64];
-        snprintf(printed, sizeof printed, ",%s,", which->panels[0].signals[0]);
-        snprintf(corrected, sizeof corrected, ",%s corrected,", which->panels[0].signals[0]);
-        assert_non_null(strstr(csv, printed));
-        assert_non_null(strstr(csv, corrected));
-        assert_non_null(strstr(csv, "mark,contact,"));
-        free(csv);
-    }
-    assert_int_equal(access(path_of("thesis/fig-3-4.svg"), F_OK), 0);
-    assert_int_equal(access(path_of("thesis/fig-3-11.pdf"), F_OK), 0);
-}
-
-static void thesis_figures_are_asked_for_by_id(void **state)
-{
-    (void)state;
-    fault f = {0};
-    assert_int_equal(figure_draw("3.99", folder, "png", &f), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, "3.99"));
-    assert_int_equal(figure_draw("3.4", folder, "png,gif", &f), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, "gif"));
-    assert_int_equal(figure_draw("3.4", path_of("a/b/c"), "png", &f), STATUS_CANNOT_WRITE);
-}
-
 // ---------------------------------------------------------------------------------------------------
 
 static int make_folder(void **state)
@@ -1028,8 +990,6 @@ int main(void)
         cmocka_unit_test(faults_are_sentences),
         cmocka_unit_test(a_full_disk_is_noticed),
         cmocka_unit_test(a_scenario_is_plotted),
-        cmocka_unit_test(every_thesis_figure_is_tidy_and_overlaid),
-        cmocka_unit_test(thesis_figures_are_asked_for_by_id),
     };
     return cmocka_run_group_tests_name("plot", tests, make_folder, remove_folder) != 0;
 }

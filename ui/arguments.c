@@ -30,6 +30,27 @@ static const option_info option_table[] = {
     {'C', false, "csv", "FILE|-", "write a row for each run"},
     {'P', false, "plot", "FILE.{png,pdf,svg}", "draw the quantity over one or two parameters"},
     {'Q', false, "quantity", "KEY", "what to draw and to sum up (peak_force_N)"},
+    {'L', false, "plot", "FILE.{png,pdf,svg}", "draw the study; a CSV of what is drawn beside it"},
+    {'O', false, "only", "NAME", "measure this one alone"},
+    {'B', false, "baseline", "FILE", "compare with what --json wrote before"},
+    {'A', false, "against", "SCENARIO", "a run to hold the others against"},
+    {'t', false, "tolerance", "PERCENT", "differences beyond it are marked (5)"},
+    {'M', false, "mono", NULL, "black and greys on white"},
+    {'D', false, "dark", NULL, "on near black"},
+    {'W', false, "width", "MM", "width of the page in millimetres"},
+    {'i', false, "dpi", "N", "resolution of a PNG (200)"},
+    {'T', false, "at", "T", "draw the arm at this instant [s] (may be repeated)"},
+    {'G', false, "gl", "osmesa|egl|cairo|auto", "what draws the arm (auto)"},
+    {'K', false, "camera", "three-quarter|top|side", "where it is seen from (three-quarter)"},
+    {'Z', false, "size", "WIDTHxHEIGHT", "of the picture in pixels (1280x720)"},
+    {'F', false, "fps", "N", "frames per second of the film (30)"},
+    {'U', false, "seconds", "S", "length of the film (10)"},
+    {'V', false, "slow", "N", "how much the first impact is slowed down (8)"},
+    {'k', false, "keys", "KEYS", "press these keys: characters, and <Right>, <Enter>, <C-l>..."},
+    {'r', false, "script", "FILE|-", "carry out commands, one a line, as : takes them"},
+    {'z', false, "size", "WIDTHxHEIGHT", "print a screen of this size in characters (120x40)"},
+    {'g', false, "glyphs", "braille|blocks|ascii", "characters to draw with"},
+    {'E', false, "theme", "dark|light|mono", "colours"},
     {'o', true, "output", "PATH", "file or folder to write to"},
     {'f', false, "format", "png,pdf,svg", "which kinds of files to write"},
     {'q', true, "quiet", NULL, "print no summary"},
@@ -84,6 +105,7 @@ static bool take_option(arguments *a, int letter, char *value)
         return take_text(&a->csv, value);
     case 'p':
     case 'P':
+    case 'L':
         return take_text(&a->plot, value);
     case 'S':
         return take_text(&a->scene, value);
@@ -102,6 +124,49 @@ static bool take_option(arguments *a, int letter, char *value)
         return take_text(&a->db, value);
     case 'Q':
         return take_text(&a->quantity, value);
+    case 'O':
+        return take_text(&a->only, value);
+    case 'B':
+        return take_text(&a->baseline, value);
+    case 'A':
+        return take_text(&a->against, value);
+    case 't':
+        return take_text(&a->tolerance, value);
+    case 'M':
+        a->mono = true;
+        return true;
+    case 'D':
+        a->dark = true;
+        return true;
+    case 'W':
+        return take_text(&a->width, value);
+    case 'i':
+        return take_text(&a->dpi, value);
+    case 'T':
+        a->ats[a->at_count++] = value;
+        return true;
+    case 'G':
+        return take_text(&a->gl, value);
+    case 'K':
+        return take_text(&a->camera, value);
+    case 'Z':
+        return take_text(&a->size, value);
+    case 'F':
+        return take_text(&a->fps, value);
+    case 'U':
+        return take_text(&a->seconds, value);
+    case 'V':
+        return take_text(&a->slow, value);
+    case 'k':
+        return take_text(&a->keys, value);
+    case 'r':
+        return take_text(&a->script, value);
+    case 'z':
+        return take_text(&a->size, value);
+    case 'g':
+        return take_text(&a->glyphs, value);
+    case 'E':
+        return take_text(&a->theme, value);
     case 'o':
         return take_text(&a->output, value);
     case 'f':
@@ -200,7 +265,8 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
     memset(a, 0, sizeof *a);
     a->sets = calloc((size_t)argc + 1, sizeof *a->sets);
     a->varies = calloc((size_t)argc + 1, sizeof *a->varies);
-    if (a->sets == NULL || a->varies == NULL) {
+    a->ats = calloc((size_t)argc + 1, sizeof *a->ats);
+    if (a->sets == NULL || a->varies == NULL || a->ats == NULL) {
         arguments_finish(a);
         complain("out of memory");
         *exit_status = EXIT_FAILED;
@@ -237,5 +303,6 @@ void arguments_finish(arguments *a)
 {
     free(a->sets);
     free(a->varies);
+    free(a->ats);
     memset(a, 0, sizeof *a);
 }

@@ -18,8 +18,17 @@ typedef struct arguments {
     int set_count;
     char **varies; // values of --vary in their order
     int vary_count;
+    char **ats; // values of --at in their order
+    int at_count;
     const char *json, *csv, *plot, *scene, *output, *format; // NULL if not given
     const char *sample, *runs, *seed, *jobs, *db, *quantity; // of sweep; NULL if not given
+    const char *only, *baseline;                             // of bench; NULL if not given
+    const char *width, *dpi;                                 // of figures; NULL if not given
+    bool mono, dark;                                         // of figures
+    const char *against, *tolerance; // of compare; NULL if not given
+    const char *gl, *camera, *size;  // of scenes; NULL if not given
+    const char *fps, *seconds, *slow; // of films; NULL if not given
+    const char *keys, *script, *glyphs, *theme; // of the terminal lab; NULL if not given
     bool quiet;
 } arguments;
 
@@ -34,7 +43,9 @@ typedef struct command {
 } command;
 
 extern const command list_command, show_command, check_command, run_command, tables_command,
-    figures_command, animate_command, predict_command, modes_command, sweep_command, bench_command;
+    figures_command, animate_command, predict_command, modes_command, sweep_command, bench_command,
+    compare_command, lab_command,
+    converge_command, study_command, report_command;
 
 // Prints "impactlab: " and the sentence to stderr. Returns EXIT_BAD_ARGUMENTS.
 int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));

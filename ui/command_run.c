@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "src/parameters.h"
+#include "ui/scene_request.h"
 
 enum { EVENTS_SHOWN = 16 };
 
@@ -137,23 +138,24 @@ static int write_results(const arguments *a, const scenario *s, const run_result
             code = worse(code, complain_fault(&f));
         }
     }
+    if (a->scene != NULL) {
+        code = worse(code, write_scene(a, s, result));
+    }
     return code;
 }
 
 // Whether what is asked for can be done at all, before anything is computed.
 static int check_request(const arguments *a)
 {
-    if (a->scene != NULL) {
-        return complain("run --scene is not there yet: pictures of the arm come with a later "
-                        "version");
-    }
-    return worse(check_output(a->json), worse(check_output(a->csv), check_output(a->plot)));
+    int result = worse(check_output(a->json), worse(check_output(a->csv), check_output(a->plot)));
+    return worse(result, check_scene(a));
 }
 
 static int run_and_report(const arguments *a, scenario *s)
 {
     run_result result;
-    status code = run_scenario(s, a->csv != NULL || a->plot != NULL, &result);
+    bool keep_trace = a->csv != NULL || a->plot != NULL || a->scene != NULL;
+    status code = run_scenario(s, keep_trace, &result);
     int exit_status = write_results(a, s, &result);
     if (summary_wanted(a)) {
         print_heading(s);
@@ -194,11 +196,12 @@ static int run(const arguments *a)
 const command run_command = {
     .name = "run",
     .operands = "SCENARIO",
-    .options = "sjcpSq",
+    .options = "sjcpSTGKZq",
     .summary = "Simulate a scenario and sum it up",
     .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
             "checked unless\n--set changed something. A run that fails still writes what it has "
-            "until then.\n",
+            "until then.\nThe scene shows the arm at every --at, or from the start to the peak "
+            "force of the first pulse.\n",
     .least = 1,
     .most = 1,
     .run = run,

@@ -6,11 +6,13 @@
 
 static void print_range(const parameter_info *info)
 {
-    char text[160];
+    char text[256];
     if (info->type == PARAMETER_CHOICE) {
         snprintf(text, sizeof text, "%s", info->choices);
     } else if (info->type == PARAMETER_BOOLEAN) {
         snprintf(text, sizeof text, "true|false");
+    } else if (info->type == PARAMETER_TEXT) {
+        snprintf(text, sizeof text, "text");
     } else {
         snprintf(text, sizeof text, "%g to %g", info->minimum, info->maximum);
     }

@@ -7,11 +7,14 @@
 #include <string.h>
 
 #include "src/words.h"
+#include "ui/terminal.h"
 
 static const command *const command_table[] = {
+    &lab_command,
     &list_command,   &show_command,    &check_command,   &run_command,
     &tables_command, &figures_command, &animate_command, &predict_command,
-    &modes_command,  &sweep_command,   &bench_command,
+    &modes_command,  &sweep_command,  &compare_command,   &bench_command,
+    &converge_command, &study_command, &report_command,
 };
 enum { COMMANDS = sizeof command_table / sizeof command_table[0] };
 
@@ -69,14 +72,39 @@ static const command *find_command(const char *name)
     return NULL;
 }
 
+// --keys, --script and --size may stand without a command.
+static bool is_lab_option(const char *word)
+{
+    static const char *const options[] = {"--keys", "--script", "--size"};
+    for (int i = 0; i < 3; i++) {
+        size_t length = strlen(options[i]);
+        if (strncmp(word, options[i], length) == 0 && strchr("=", word[length]) != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // Runs the command that argv asks for. Returns the exit status.
 static int dispatch(int argc, char **argv)
 {
     int result;
     arguments a;
+    fault f = {0};
     const char *word = argc > 1 ? argv[1] : NULL;
-    if (word == NULL) {
+    if (word == NULL && !terminal_usable(&f)) {
         return print_welcome();
+    }
+    // without a command, or with options of its own, it is the lab
+    if (word == NULL || is_lab_option(word)) {
+        char *call[] = {"lab", NULL};
+        char **own = word == NULL ? call : argv;
+        if (!arguments_read(&a, &lab_command, word == NULL ? 1 : argc, own, &result)) {
+            return result;
+        }
+        result = lab_command.run(&a);
+        arguments_finish(&a);
+        return result;
     }
     if (strcmp(word, "--version") == 0) {
         printf("impactlab %s\n", lab_version());

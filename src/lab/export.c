@@ -145,8 +145,9 @@ static json_t *parameter_value(const parameters *p, int index)
     char text[128];
     switch (parameter_table[index].type) {
     case PARAMETER_CHOICE:
+    case PARAMETER_TEXT:
         parameter_format(p, index, text, sizeof text);
-        return json_string(text);
+        return json_text(text);
     case PARAMETER_BOOLEAN:
         return json_boolean(parameter_get(p, index) != 0);
     case PARAMETER_INTEGER:

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "src/rig/rig.h"
 #include "src/solve/motion.h"
 #include "src/solve/printed_algorithm.h"
 
@@ -25,6 +26,11 @@ const summary_info summary_table[] = {
     {"max_penetration_m", AT(max_penetration_m), false},
     {"motor_work_J", AT(motor_work_J), false},
     {"energy_residual_J", AT(energy_residual_J), false},
+    {"force_command_N", AT(force_command_N), false},
+    {"force_over_command_N", AT(force_over_command_N), false},
+    {"steady_error_N", AT(steady_error_N), false},
+    {"largest_command_V", AT(largest_command_V), false},
+    {"electrical_energy_J", AT(electrical_energy_J), false},
     {"steps", AT(steps), false},
     {"wall_time_s", AT(wall_time_s), true},
 };
@@ -41,12 +47,13 @@ bool summary_get(const summary *s, const char *key, double *value)
     return false;
 }
 
-#define SEPARATION_GAP  1e-6 // a smaller gap is no separation [m]
-#define STEADY_WINDOW   0.1  // steady force: mean over the last of the run [s]
-#define SETTLED_BAND    0.05 // of the steady force
-#define TINY_ENERGY     1e-9 // below it nothing is called unstable [J]
-#define MADE_ENERGY     0.1  // share of the energy turned over that an integration may not make
-#define MOST_EVENTS_AT_ONCE 100 // events without time passing before the run is given up
+#define SEPARATION_GAP      1e-6 // a smaller gap is no separation [m]
+#define STEADY_WINDOW       0.1  // steady force: mean over the last of the run [s]
+#define SETTLED_BAND        0.05 // of the steady force
+#define SHORTEST_MEAN       1e-9 // a stride shorter than this has the mean of its ends [s]
+#define TINY_ENERGY         1e-9 // below it nothing is called unstable [J]
+#define MADE_ENERGY         0.1  // share of the energy turned over that an integration may not make
+#define MOST_EVENTS_AT_ONCE 100  // events without time passing before the run is given up
 
 // The force over a stride: at its ends, and its mean.
 typedef struct force_stride {
@@ -59,20 +66,25 @@ typedef struct recording {
     const scenario *scenario;
     run_result *result;
     bool keep_trace;
-    parameters now;          // parameters as changed by the script so far
+    parameters now; // parameters as changed by the script so far
     int next_action;
-    force_stride *strides;   // the force all along
+    force_stride *strides; // the force all along
     size_t count, capacity;
-    long grid_row;           // number of the next row of the grid
-    bool separated;          // gap above SEPARATION_GAP in the present flight
-    bool pulse_open;         // the first pulse has not ended
+    long grid_row;                      // number of the next row of the grid
+    bool separated;                     // gap above SEPARATION_GAP in the present flight
+    bool pulse_open;                    // the first pulse has not ended
+    rig *rig;                           // NULL for the bare arm
+    double command_time, command_angle; // when and where the present command took effect [s], [rad]
+    double hub_angle, hub_velocity, force; // printed model: after the last step [rad], [rad/s], [N]
+    fault *rig_fault;                      // printed model: where the rig's fault goes
+    status rig_status;
 } recording;
 
 static void summary_clear(summary *s)
 {
     memset(s, 0, sizeof *s);
     for (int i = 0; i < summary_count; i++) {
-        double none = NAN;
+        double none = (double)NAN;
         memcpy((char *)s + summary_table[i].offset, &none, sizeof none);
     }
     s->impacts = s->separations = s->steps = s->max_penetration_m = 0;
@@ -119,7 +131,8 @@ static double settled_since(const recording *r, double final)
     double band = SETTLED_BAND * fabs(final);
     for (size_t i = r->count; i-- > 0;) {
         const force_stride *stride = &r->strides[i];
-        double upper = last_crossing(stride, final + band), lower = last_crossing(stride, final - band);
+        double upper = last_crossing(stride, final + band),
+               lower = last_crossing(stride, final - band);
         double left = fmax(upper, lower);
         if (fabs(stride->last - final) > band) {
             // outside at its end: inside only from the next stride's start on
@@ -130,6 +143,60 @@ static double settled_since(const recording *r, double final)
         }
     }
     return r->count > 0 ? r->strides[0].start : (double)NAN;
+}
+
+// Copies what the rig knows into a row.
+static void add_rig_signals(const recording *r, sample *row)
+{
+    const rig *on = r->rig;
+    bool sampled = on != NULL && on->samples > 0;
+    row->encoder = sampled ? on->reading.angle : (double)NAN;
+    row->tachometer = sampled ? on->reading.velocity : (double)NAN;
+    row->force_reading = sampled ? on->reading.force : (double)NAN;
+    row->command = sampled ? on->output.command : (double)NAN;
+    row->controller_mode = sampled ? on->output.mode : (double)NAN;
+    row->desired_angle = sampled ? on->output.desired_angle : (double)NAN;
+    row->desired_velocity = sampled ? on->output.desired_velocity : (double)NAN;
+    row->calculated_force = sampled ? on->output.force_estimate : (double)NAN;
+}
+
+// Books what the amplifier fed in since the present command took effect: the integral of
+// V (V - kB w) / Ra with the motor's voltage V constant.
+static void book_electrical_energy(recording *r, double time, double hub_angle)
+{
+    const motor_parameters *motor = &r->now.motor;
+    double volts = motor->amplifier_gain * motor_limited_voltage(motor);
+    r->result->summary.electrical_energy_J +=
+        volts / motor->resistance *
+        (volts * (time - r->command_time) - motor->back_emf * (hub_angle - r->command_angle));
+    r->command_time = time;
+    r->command_angle = hub_angle;
+}
+
+// Sets up the rig, if the scenario has a control law; until its first command the motor rests.
+static status start_rig(recording *r, fault *f)
+{
+    const parameters *p = &r->scenario->parameters;
+    if (p->control.law == LAW_NONE) {
+        return STATUS_OK;
+    }
+    r->now.motor.voltage = 0;
+    r->command_angle = p->initial.angle;
+    r->result->summary.electrical_energy_J = 0;
+    return rig_create(&r->rig, p, f);
+}
+
+static void finish_rig_summary(recording *r, double hub_angle)
+{
+    summary *s = &r->result->summary;
+    const parameters *p = &r->scenario->parameters;
+    if (r->rig != NULL) {
+        book_electrical_energy(r, p->run.duration, hub_angle);
+        s->largest_command_V = r->rig->largest_command;
+        s->force_command_N = p->control.force;
+        s->force_over_command_N = s->peak_force_N - p->control.force;
+        s->steady_error_N = s->steady_force_N - p->control.force;
+    }
 }
 
 static void finish_summary(recording *r, double force_integral)
@@ -145,7 +212,7 @@ static void finish_summary(recording *r, double force_integral)
         double settled = settled_since(r, s->steady_force_N);
         s->settling_time_s = fmax(0, settled - s->first_contact_s);
         if (isnan(settled)) {
-            s->settling_time_s = NAN;
+            s->settling_time_s = (double)NAN;
         }
     }
 }
@@ -203,6 +270,7 @@ static status record_row(recording *r, const arm *a, motion *m, double *state, d
         .impact_loss = state[SLOT_IMPACT_LOSS],
         .energy_residual = motion_energy_residual(a, m, state),
     };
+    add_rig_signals(r, &row);
     return trace_add_row(&r->result->trace, &row, q);
 }
 
@@ -232,9 +300,11 @@ static void close_first_pulse(recording *r, const motion *m)
 // Books an event that has just been applied.
 static status book_event(recording *r, motion *m, const motion_report *report)
 {
-    static const event_kind kinds[] = {
-        [MOTION_IMPACT] = EVENT_IMPACT, [MOTION_TOUCH] = EVENT_CONTACT,
-        [MOTION_RELEASE] = EVENT_RELEASE, [MOTION_STICK] = EVENT_STICK, [MOTION_SLIP] = EVENT_SLIP};
+    static const event_kind kinds[] = {[MOTION_IMPACT] = EVENT_IMPACT,
+                                       [MOTION_TOUCH] = EVENT_CONTACT,
+                                       [MOTION_RELEASE] = EVENT_RELEASE,
+                                       [MOTION_STICK] = EVENT_STICK,
+                                       [MOTION_SLIP] = EVENT_SLIP};
     summary *s = &r->result->summary;
     double now = m->state[SLOT_TIME];
     bool touches = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
@@ -275,6 +345,9 @@ static status pass_event(recording *r, const arm *a, motion *m, motion_report *r
         memcpy(r->result->touch, state_angles(m, m->state), size);
     }
     motion_apply(a, m, report);
+    if (r->rig != NULL && report->event == MOTION_IMPACT && !motion_unresolved(a, m)) {
+        sensors_strike(&r->rig->sensors, report->impulse);
+    }
     if (failed == STATUS_OK) {
         failed = book_event(r, m, report);
     }
@@ -321,6 +394,54 @@ static status act(recording *r, arm *a, motion *m, fault *f)
         }
     }
     return STATUS_OK;
+}
+
+// Evaluates the state under the torque as it now is. Whether the mode that it is in still holds: an
+// arm that moves and, where it touches the wall, presses.
+static bool keeps_its_mode(const arm *a, motion *m)
+{
+    double *state = m->state;
+    motion_evaluate(a, m, state);
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
+    state[SLOT_JUMPED] = 1;
+    return state_velocities(m, state)[0] != 0 && state[SLOT_FRICTION] != HUB_STICK &&
+           (state[SLOT_CONTACT] == 0 || state[SLOT_FORCE] > 0);
+}
+
+// Lets another command take effect: the torque jumps, and with it accelerations and force.
+static status take_command(recording *r, arm *a, motion *m)
+{
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    double now = m->state[SLOT_TIME];
+    book_electrical_energy(r, now, state_angles(m, m->state)[0]);
+    r->now.motor.voltage = r->rig->applied;
+    arm before = *a;
+    arm_set_voltage(a, &r->now.motor, r->rig->applied);
+    // where steps do not resolve the fastest modes, an instant's accelerations say nothing: the
+    // next step finds out what the torque does
+    if (!motion_unresolved(a, m) && !keeps_its_mode(a, m)) {
+        motion_rebind(&before, a, m);
+    }
+    status failed = STATUS_OK;
+    if (contact && m->state[SLOT_CONTACT] == 0) {
+        motion_report lost = {.event = MOTION_RELEASE};
+        failed = book_event(r, m, &lost);
+    }
+    return failed == STATUS_OK && now > 0 ? record_row(r, a, m, m->state, 0) : failed;
+}
+
+// Samples the sensors and changes the command where the time for it has come.
+static status control(recording *r, arm *a, motion *m, fault *f)
+{
+    bool changed;
+    double now = m->state[SLOT_TIME];
+    if (r->rig == NULL || rig_next_time(r->rig) > now) {
+        return STATUS_OK;
+    }
+    status s = rig_act(r->rig, now, state_angles(m, m->state)[0], state_velocities(m, m->state)[0],
+                       m->state[SLOT_FORCE], &changed, f);
+    return s == STATUS_OK && changed ? take_command(r, a, m) : s;
 }
 
 // Records the rows of the grid that lie within the stride just made, and steps over one at its end.
@@ -381,10 +502,15 @@ static status book_stride(recording *r, const arm *a, motion *m, bool at_event)
         r->separated = stride_separated(a, m);
     }
     status s = audit(r, a, m);
+    // between stops that differ by rounding only, the integral's difference is all rounding
+    double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
+    double mean = length > SHORTEST_MEAN ? integral / length : ends;
+    if (r->rig != NULL) {
+        sensors_follow(&r->rig->sensors, length, start[SLOT_FORCE], m->state[SLOT_FORCE], mean);
+    }
     if (s == STATUS_OK && length > 0) {
         s = remember_stride(r, (force_stride){start[SLOT_TIME], m->state[SLOT_TIME],
-                                              start[SLOT_FORCE], m->state[SLOT_FORCE],
-                                              integral / length});
+                                              start[SLOT_FORCE], m->state[SLOT_FORCE], mean});
     }
     return s == STATUS_OK ? record_grid(r, a, m, at_event) : s;
 }
@@ -398,8 +524,9 @@ static status travel(recording *r, const arm *a, motion *m, double until, fault 
         motion_report report;
         status s = motion_stride(a, m, until, r->now.method.step, &report);
         if (s != STATUS_OK) {
-            return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
-                             m->failure_time, m->state[SLOT_TIME], status_text(s), m->stepper->name);
+            return fault_set(
+                f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
+                m->failure_time, m->state[SLOT_TIME], status_text(s), m->stepper->name);
         }
         bool at_event = report.event != MOTION_REACHED;
         s = book_stride(r, a, m, at_event);
@@ -412,8 +539,10 @@ static status travel(recording *r, const arm *a, motion *m, double until, fault 
             s = STATUS_NO_PROGRESS;
         }
         if (s == STATUS_UNSTABLE) {
-            return fault_set(f, s, "at t = %.9g s: %s (residual %.3g J); the method was %s, a "
-                             "shorter method.step may help", m->state[SLOT_TIME], status_text(s),
+            return fault_set(f, s,
+                             "at t = %.9g s: %s (residual %.3g J); the method was %s, a "
+                             "shorter method.step may help",
+                             m->state[SLOT_TIME], status_text(s),
                              motion_energy_residual(a, m, m->state), m->stepper->name);
         }
         if (s != STATUS_OK) {
@@ -429,6 +558,9 @@ static double next_stop(const recording *r, double window, double now)
 {
     const scenario *s = r->scenario;
     double stop = s->parameters.run.duration;
+    if (r->rig != NULL) {
+        stop = fmin(stop, rig_next_time(r->rig));
+    }
     if (r->next_action < s->action_count) {
         stop = fmin(stop, s->actions[r->next_action].time);
     }
@@ -439,7 +571,7 @@ static status run_corrected(recording *r, fault *f)
 {
     const parameters *p = &r->scenario->parameters;
     arm a;
-    arm_init(&a, p);
+    arm_init(&a, &r->now);
     motion *m = motion_create(&a, &p->method);
     if (m == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links);
@@ -449,7 +581,10 @@ static status run_corrected(recording *r, fault *f)
     motion_start(&a, m, p->initial.angle, p->initial.velocity);
     double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
     double integral_at_window = 0;
-    status failed = record_row(r, &a, m, m->state, 0);
+    status failed = control(r, &a, m, f);
+    if (failed == STATUS_OK) {
+        failed = record_row(r, &a, m, m->state, 0);
+    }
     r->grid_row = 1;
     while (failed == STATUS_OK && m->state[SLOT_TIME] < duration) {
         if (m->state[SLOT_TIME] == window) {
@@ -457,10 +592,14 @@ static status run_corrected(recording *r, fault *f)
         }
         failed = act(r, &a, m, f);
         if (failed == STATUS_OK) {
+            failed = control(r, &a, m, f);
+        }
+        if (failed == STATUS_OK) {
             failed = travel(r, &a, m, next_stop(r, window, m->state[SLOT_TIME]), f);
         }
     }
-    if (failed == STATUS_OK && (double)(r->grid_row - 1) * p->method.step < duration - 1e-9 * p->method.step) {
+    if (failed == STATUS_OK &&
+        (double)(r->grid_row - 1) * p->method.step < duration - 1e-9 * p->method.step) {
         failed = record_row(r, &a, m, m->state, 0); // the end lies between rows of the grid
     }
     s->steps = (double)m->steps;
@@ -470,7 +609,7 @@ static status run_corrected(recording *r, fault *f)
     if (!isnan(s->first_contact_s)) {
         if (r->pulse_open) {
             close_first_pulse(r, m);
-            s->first_pulse_s = NAN; // it never ended
+            s->first_pulse_s = (double)NAN; // it never ended
         }
         if (m->pulse_peak >= 0) {
             s->peak_force_N = m->pulse_peak;
@@ -479,6 +618,7 @@ static status run_corrected(recording *r, fault *f)
     }
     if (failed == STATUS_OK) {
         finish_summary(r, state_quadratures(m, m->state)[QUADRATURE_FORCE] - integral_at_window);
+        finish_rig_summary(r, state_angles(m, m->state)[0]);
     }
     motion_destroy(m);
     return failed;
@@ -497,8 +637,9 @@ static bool observe_printed(void *context, const printed_row *row)
         s->first_contact_s = row->time;
         s->peak_force_N = s->first_pulse_peak_N = -1;
         r->pulse_open = was_in_contact = true;
-        s->first_pulse_s = NAN;
-        trace_add_event(&r->result->trace, (event){.time = row->time, .kind = EVENT_CONTACT, .index = -1});
+        s->first_pulse_s = (double)NAN;
+        trace_add_event(&r->result->trace,
+                        (event){.time = row->time, .kind = EVENT_CONTACT, .index = -1});
     }
     if (!isnan(s->first_contact_s)) {
         double since = row->time - s->first_contact_s;
@@ -541,28 +682,34 @@ static bool observe_printed(void *context, const printed_row *row)
         .first_acceleration = row->acceleration[1],
         .last_acceleration = row->acceleration[2],
         .gap = row->gap,
-        .gap_velocity = NAN,
+        .gap_velocity = (double)NAN,
         .force = row->force,
         .contact = row->contact,
         .voltage = motor_limited_voltage(motor),
         .motor_torque = motor_torque_per_volt(motor) * motor_limited_voltage(motor),
-        .friction_torque = NAN,
-        .kinetic_energy = NAN,
-        .strain_energy = NAN,
-        .motor_work = NAN,
-        .external_work = NAN,
-        .viscous_loss = NAN,
-        .friction_loss = NAN,
-        .damping_loss = NAN,
-        .impact_loss = NAN,
-        .energy_residual = NAN,
+        .friction_torque = (double)NAN,
+        .kinetic_energy = (double)NAN,
+        .strain_energy = (double)NAN,
+        .motor_work = (double)NAN,
+        .external_work = (double)NAN,
+        .viscous_loss = (double)NAN,
+        .friction_loss = (double)NAN,
+        .damping_loss = (double)NAN,
+        .impact_loss = (double)NAN,
+        .energy_residual = (double)NAN,
     };
+    add_rig_signals(r, &sampled);
     double before = r->count > 0 ? r->strides[r->count - 1].last : 0;
     double start = r->count > 0 ? r->strides[r->count - 1].end : row->time;
     force_stride stride = {start, row->time, before, row->force, (before + row->force) / 2};
-    return remember_stride(r, stride) == STATUS_OK &&
-           (!r->keep_trace ||
-            trace_add_row(&r->result->trace, &sampled, row->angle) == STATUS_OK);
+    if (r->rig != NULL) {
+        sensors_follow(&r->rig->sensors, row->time - start, before, row->force, stride.mean);
+        r->hub_angle = row->angle[0];
+        r->hub_velocity = row->velocity[0];
+        r->force = row->force;
+    }
+    return r->rig_status == STATUS_OK && remember_stride(r, stride) == STATUS_OK &&
+           (!r->keep_trace || trace_add_row(&r->result->trace, &sampled, row->angle) == STATUS_OK);
 }
 
 // Scripted changes take effect at the next step; the printed model knows no pushes.
@@ -580,6 +727,15 @@ static void script_printed(void *context, double time, parameters *p)
                             (event){.time = time, .kind = EVENT_CHANGE, .index = r->next_action});
         }
     }
+    if (r->rig != NULL && r->rig_status == STATUS_OK) {
+        bool changed;
+        r->rig_status =
+            rig_act(r->rig, time, r->hub_angle, r->hub_velocity, r->force, &changed, r->rig_fault);
+        if (changed) {
+            book_electrical_energy(r, time, r->hub_angle);
+        }
+        p->motor.voltage = r->rig->applied;
+    }
     r->now = *p;
 }
 
@@ -589,14 +745,18 @@ static status run_printed(recording *r, fault *f)
     trace_init(&r->result->trace, 3);
     for (int i = 0; i < r->scenario->action_count; i++) {
         if (r->scenario->actions[i].kind == ACTION_PUSH) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "the script pushes the arm at %g s, but the printed model knows no pushes",
-                             r->scenario->actions[i].time);
+            return fault_set(
+                f, STATUS_BAD_SCENARIO,
+                "the script pushes the arm at %g s, but the printed model knows no pushes",
+                r->scenario->actions[i].time);
         }
     }
-    status s = printed_run(p, observe_printed, script_printed, r, f);
+    r->rig_fault = f;
+    status s = printed_run(&r->now, observe_printed, script_printed, r, f);
+    s = s == STATUS_OK ? r->rig_status : s;
     summary *sum = &r->result->summary;
-    sum->motor_work_J = sum->energy_residual_J = NAN; // (2.16) as printed conserves no energy
+    sum->motor_work_J = sum->energy_residual_J =
+        (double)NAN; // (2.16) as printed conserves no energy
     if (s == STATUS_OK && r->count > 0) {
         double window = p->run.duration - STEADY_WINDOW, total = 0, weight = 0;
         for (size_t i = 1; i < r->count; i++) {
@@ -606,6 +766,7 @@ static status run_printed(recording *r, fault *f)
             }
         }
         finish_summary(r, weight > 0 ? total / weight * fmin(STEADY_WINDOW, p->run.duration) : 0);
+        finish_rig_summary(r, r->hub_angle);
     }
     return s;
 }
@@ -626,7 +787,11 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
     double start = computing_time();
     memset(result, 0, sizeof *result);
     summary_clear(&result->summary);
-    status code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
+    status code = start_rig(&r, &f);
+    if (code == STATUS_OK) {
+        code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
+    }
+    rig_destroy(r.rig);
     if (code != STATUS_OK && f.code == STATUS_OK) {
         fault_set(&f, code, "%s", status_text(code));
     }
@@ -652,7 +817,7 @@ int run_check_expectations(const scenario *s, const run_result *result, fault_ha
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
         char sentence[512], found[64] = "nothing (null)";
-        double value = NAN;
+        double value = (double)NAN;
         summary_get(&result->summary, e->quantity, &value);
         bool met = e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance;
         if (met) {
@@ -662,11 +827,11 @@ int run_check_expectations(const scenario *s, const run_result *result, fault_ha
             snprintf(found, sizeof found, "%.9g", value);
         }
         if (e->is_null) {
-            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected null", s->file, e->line,
-                     e->column, e->quantity, found);
+            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected null", s->file,
+                     e->line, e->column, e->quantity, found);
         } else {
-            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected %.9g within %g", s->file,
-                     e->line, e->column, e->quantity, found, e->value, e->tolerance);
+            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected %.9g within %g",
+                     s->file, e->line, e->column, e->quantity, found, e->value, e->tolerance);
         }
         report(context, sentence);
         missed++;

@@ -52,6 +52,21 @@ const signal_info signal_table[] = {
     {"impact_loss", "D<sub>i</sub>", "Di", "J", "lost in impacts", 5, LINE_DASHED, AT(impact_loss)},
     {"energy_residual", "r", "res", "J", "energy the ledger does not account for", 7, LINE_SOLID,
      AT(energy_residual)},
+    {"encoder", "θ<sub>enc</sub>", "enc", "rad", "hub angle as the encoder reads it", 0, LINE_SOLID,
+     AT(encoder)},
+    {"tachometer", "θ̇<sub>tach</sub>", "tach", "rad/s", "hub velocity as the tachometer reads it", 0,
+     LINE_SOLID, AT(tachometer)},
+    {"force_reading", "f<sub>FSR</sub>", "fsr", "N", "contact force as the FSR reads it", 5,
+     LINE_SOLID, AT(force_reading)},
+    {"command", "u", "u", "V", "command of the controller", 6, LINE_SOLID, AT(command)},
+    {"controller_mode", "mode", "mode", "", "mode of the controller, counted from 0", 3, LINE_SOLID,
+     AT(controller_mode)},
+    {"desired_angle", "θ<sub>d</sub>", "thd", "rad", "hub angle that the controller wants", 1,
+     LINE_DASHED, AT(desired_angle)},
+    {"desired_velocity", "θ̇<sub>d</sub>", "wd", "rad/s", "hub velocity that the controller wants", 1,
+     LINE_DASHED, AT(desired_velocity)},
+    {"calculated_force", "f<sub>calc</sub>", "fcalc", "N",
+     "contact force that the controller calculates", 2, LINE_DASHED, AT(calculated_force)},
 };
 
 const int signal_count = (int)(sizeof signal_table / sizeof signal_table[0]);

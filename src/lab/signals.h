@@ -34,6 +34,15 @@ typedef struct sample {
     double damping_loss;        // structural damping [J]
     double impact_loss;         // [J]
     double energy_residual;     // what the ledger does not account for [J]
+    // on the rig, as of its last sample; NaN without one
+    double encoder;             // hub angle as read [rad]
+    double tachometer;          // hub velocity as read [rad/s]
+    double force_reading;       // contact force as the FSR reads it [N]
+    double command;             // what the controller asked for [V]
+    double controller_mode;     // index of its mode
+    double desired_angle;       // of the hub [rad]
+    double desired_velocity;    // of the hub [rad/s]
+    double calculated_force;    // what the controller takes the contact force to be [N]
 } sample;
 
 typedef enum line_style { LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT } line_style;

@@ -1,0 +1,76 @@
+// What a controller is: the one header that a controller is written against, built in or one's own.
+//
+// A controller sees what the sensors give it and what it was told at the start, nothing else. It
+// keeps what it remembers in `memory`, which the rig allocates, clears and frees: no allocation in
+// `sample`, no variables of its own outside. docs/add-a-controller.md has a complete example.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+// Version of this interface; a controller carries the one it was compiled with.
+enum { CONTROLLER_INTERFACE = 1 };
+
+// A number that a user may give a controller. Built-in names are those of `control.NAME`, a
+// plug-in's further ones are given in control.settings as NAME=VALUE.
+typedef struct controller_parameter {
+    const char *name;
+    const char *unit;        // "" for a pure number
+    double initial;          // where neither the scenario nor the rig gives it
+    double minimum, maximum; // both included
+    const char *description; // one sentence without a full stop
+} controller_parameter;
+
+// What a controller is told about the rig it runs on: nominal values, not necessarily true ones.
+typedef struct controller_setup {
+    double period;            // between samples [s]
+    double delay;             // from a sample to the effect of its command [s]
+    double voltage_limit;     // largest command either way [V]
+    double torque_per_volt;   // of command, gain kT / Ra [N m/V]
+    double hub_damping;       // k_fr + kT kB / Ra [N m s/rad]
+    double stiction;          // k_st [N m]
+    double hub_inertia;       // I1 [kg m2]
+    double link_mass;         // m of each of two links [kg]
+    double link_length;       // l of each of two links [m]
+    double link_inertia;      // I2 = I3 about the centre of mass [kg m2]
+    double k2;                // stiffness of the beam's joint, as believed [N m/rad]
+    double wall_angle;        // theta_imp, as believed [rad]
+    const double *parameters; // values in the order of controller.parameters
+} controller_setup;
+
+// What the sensors read at a sample. Numbers are in physical units, through the nominal curves of
+// the sensors; noise, quantisation, lag and saturation are in them.
+typedef struct controller_input {
+    double time;         // since the start [s]
+    double hub_angle;    // encoder [rad]
+    double hub_velocity; // tachometer [rad/s]
+    double force;        // FSR [N]
+    double applied;      // command at present in effect, after the D/A [V]
+} controller_input;
+
+// What a controller answers.
+typedef struct controller_output {
+    double command;          // [V]; beyond the limit it saturates, not finite it ends the run
+    int mode;                // index in controller.modes
+    double desired_angle;    // of the hub, NaN if it has none [rad]
+    double desired_velocity; // of the hub, NaN if it has none [rad/s]
+    double force_estimate;   // what it takes the contact force to be, NaN if it does not [N]
+} controller_output;
+
+typedef struct controller {
+    int interface; // CONTROLLER_INTERFACE
+    const char *name;
+    const char *const *modes; // names, ended by NULL
+    const controller_parameter *parameters;
+    int parameter_count;
+    size_t memory_size; // bytes of memory
+    // Called once before the first sample with cleared memory. Returns NULL, or a sentence that
+    // says why the controller cannot run.
+    const char *(*start)(void *memory, const controller_setup *setup);
+    // Called at every sampling instant.
+    void (*sample)(void *memory, const controller_input *input, controller_output *output);
+} controller;
+
+// A shared object named in control.plugin exports this function under this name.
+#define CONTROLLER_ENTRY "impactlab_controller"
+typedef const controller *(*controller_entry)(void);

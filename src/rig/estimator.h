@@ -1,0 +1,38 @@
+// A linear model sampled at a fixed period, and a Kalman filter on it: small, fixed sizes, nothing
+// allocated. For controllers.
+#pragma once
+
+#include <stdbool.h>
+
+enum { ESTIMATOR_STATES = 4 };
+
+// z' = a z + b u over one period.
+typedef struct sampled_model {
+    int n;
+    double a[ESTIMATOR_STATES][ESTIMATOR_STATES];
+    double b[ESTIMATOR_STATES];
+} sampled_model;
+
+// Samples dz/dt = rate z + input u, u constant over h [s].
+void sampled_model_init(sampled_model *m, int n, double rate[ESTIMATOR_STATES][ESTIMATOR_STATES],
+                        const double input[ESTIMATOR_STATES], double h);
+
+typedef struct estimator {
+    double z[ESTIMATOR_STATES];                   // estimate
+    double p[ESTIMATOR_STATES][ESTIMATOR_STATES]; // its covariance
+} estimator;
+
+// Estimate and covariance one period on; noise[i]: variance that state i gains meanwhile.
+void estimator_predict(estimator *e, const sampled_model *m, double u, const double *noise);
+
+// Takes in one reading of row z + offset with the given variance.
+void estimator_correct(estimator *e, int n, const double *row, double offset, double reading,
+                       double variance);
+
+// Gain k[2] of the feedback u = -k z that makes the sum over samples of
+// ((output z + direct u)^2 + effort u^2) growth^2k least on a sampled model of two states, k
+// counting samples: growth = 1 is the plain optimum, with growth > 1 errors die faster than
+// growth^-k. The stabilising solution of the discrete Riccati equation, from LAPACK's ordered Schur
+// form of the symplectic matrix. False if there is none.
+bool optimal_gain(const sampled_model *m, const double output[2], double direct, double effort,
+                  double growth, double k[2]);

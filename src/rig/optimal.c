@@ -1,0 +1,318 @@
+// State feedback with an observer on the linearised arm.
+//
+// In contact the two-link arm has one degree of freedom, x = theta2 - theta_imp:
+//
+//     M x'' = Kt u - D x' - friction - 4 k2 x,      f = 4 k2 x - mu x'',
+//     M = I1 + 2 I + m l^2/2,     mu = (m l^2/4 - I)/l  (l = 1/2 of the beam; see docs/control.md)
+//
+// so braking presses, and with f as the input x'' = s^2 (x - f/(4 k2)), s^2 = 4 k2/mu, is unstable.
+// The feedback that makes the sum of (f - command)^2 + effort u^2 least comes from the discrete
+// Riccati equation. What it asks for is limited to commands that keep the force positive.
+//
+// The observer is a Kalman filter: in free flight on both links, so that the wall is found where
+// the tip is when the force sensor first feels it; in contact on theta2, its velocity, the wall's
+// angle and a constant torque, from encoder, tachometer and force sensor.
+#include <math.h>
+#include <string.h>
+
+#include "src/rig/estimator.h"
+#include "src/rig/laws.h"
+
+enum { APPROACH, PRESS, HOLD };
+static const char *const mode_names[] = {"approach", "press", "hold", NULL};
+
+enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, PARAMETERS };
+static const controller_parameter table[PARAMETERS] = {
+    {"force", "N", 1, 0, 1000, "commanded contact force"},
+    {"approach_voltage", "V", 1, -1000, 1000, "constant command of the approach"},
+    {"contact_threshold", "N", 0.05, 0, 1000, "force reading that means contact"},
+};
+
+enum { FREE_FIRST, FREE_LAST, FREE_FIRST_RATE, FREE_LAST_RATE };    // states in free flight
+enum { PRESSED_ANGLE, PRESSED_RATE, PRESSED_WALL, PRESSED_TORQUE }; // states in contact
+
+typedef struct optimal_memory {
+    controller_setup rig;
+    double force, approach_voltage, threshold;
+    int mode;
+    bool started;
+    int samples_in_contact;
+    double inertia;      // M [kg m2]
+    double stiffness;    // 4 k2 [N m/rad]
+    double spring_force; // of x: 2 k2/l [N/rad]
+    double mass_force;   // mu [N s2/rad]
+    double divergence;   // s [1/s]
+    double gain[2];      // of x and its rate [V/rad], [V s/rad]
+    sampled_model flight, contact, during_delay;
+    estimator e;         // of the flight or of the contact
+    double ceiling;      // largest force to brake with [N]
+    double hold_command; // [V]
+    double held_force;   // reading of the force sensor, smoothed [N]
+} optimal_memory;
+
+// Standard deviations of what the models leave out, a sample each, and of the readings.
+static const double flight_noise[4] = {1e-8, 1e-8, 1e-5, 1e-5};
+static const double contact_noise[4] = {1e-8, 2e-4, 1e-8, 1e-5};
+#define ANGLE_VARIANCE 2e-7  // [rad2]
+#define RATE_VARIANCE  2e-4  // [rad2/s2]
+#define EFFORT         1e-3  // of a command in the cost [N2/V2]
+#define URGENCY        20.0  // errors die faster than exp(-URGENCY t) [1/s]
+#define AIM            0.985 // share of the wanted force that is aimed at: short, not beyond
+
+// Free flight of both links under a torque on the hub: M q'' = torque e1 - D q1' e1 - K q.
+static void model_flight(optimal_memory *m)
+{
+    const controller_setup *r = &m->rig;
+    double ml2 = r->link_mass * r->link_length * r->link_length;
+    double m11 = r->hub_inertia + r->link_inertia + 1.25 * ml2, m12 = 0.5 * ml2;
+    double m22 = r->link_inertia + 0.25 * ml2, det = m11 * m22 - m12 * m12;
+    double bend_first = r->k2 * (m22 + m12) / det, bend_last = -r->k2 * (m12 + m11) / det;
+    double rate[4][4] = {
+        [FREE_FIRST] = {[FREE_FIRST_RATE] = 1},
+        [FREE_LAST] = {[FREE_LAST_RATE] = 1},
+        [FREE_FIRST_RATE] = {-bend_first, bend_first, -m22 / det * r->hub_damping},
+        [FREE_LAST_RATE] = {-bend_last, bend_last, m12 / det * r->hub_damping},
+    };
+    double input[4] = {0, 0, m22 / det, -m12 / det};
+    sampled_model_init(&m->flight, 4, rate, input, r->period);
+}
+
+static void model_contact(optimal_memory *m, double h, sampled_model *model)
+{
+    double k = m->stiffness / m->inertia, d = m->rig.hub_damping / m->inertia;
+    double rate[4][4] = {
+        [PRESSED_ANGLE] = {[PRESSED_RATE] = 1}, [PRESSED_RATE] = {-k, -d, k, 1 / m->inertia}};
+    double input[4] = {[PRESSED_RATE] = 1 / m->inertia};
+    sampled_model_init(model, 4, rate, input, h);
+}
+
+static const char *start(void *memory, const controller_setup *setup)
+{
+    optimal_memory *m = memory;
+    const double l = setup->link_length, quarter = setup->link_mass * l * l / 4;
+    m->rig = *setup;
+    m->force = setup->parameters[FORCE_WANTED];
+    m->approach_voltage = setup->parameters[APPROACH_VOLTAGE];
+    m->threshold = setup->parameters[THRESHOLD];
+    m->inertia = setup->hub_inertia + 2 * setup->link_inertia + 2 * quarter;
+    m->stiffness = 4 * setup->k2;
+    m->spring_force = 2 * setup->k2 / l;
+    m->mass_force = (quarter - setup->link_inertia) / l;
+    m->divergence = m->mass_force > 0 ? sqrt(m->spring_force / m->mass_force) : HUGE_VAL;
+    if (!(setup->torque_per_volt > 0) || !(m->inertia > 0)) {
+        return "it needs a motor that turns the hub and an arm with inertia";
+    }
+    model_flight(m);
+    model_contact(m, setup->period, &m->contact);
+    model_contact(m, setup->delay, &m->during_delay);
+    // force of deviations from rest: x and its rate, and a command's immediate effect
+    sampled_model plant = {.n = 2};
+    for (int i = 0; i < 2; i++) {
+        memcpy(plant.a[i], m->contact.a[i], 2 * sizeof(double));
+        plant.b[i] = m->contact.b[i] * setup->torque_per_volt;
+    }
+    double per_torque = m->mass_force / m->inertia;
+    double output[2] = {m->spring_force + per_torque * m->stiffness,
+                        per_torque * setup->hub_damping};
+    if (!optimal_gain(&plant, output, -per_torque * setup->torque_per_volt, EFFORT,
+                      exp(URGENCY * setup->period), m->gain)) {
+        return "the Riccati equation of its gains has no stabilising solution";
+    }
+    return NULL;
+}
+
+// Coulomb friction at a velocity, taken as what holds where the hub is as good as at rest.
+static double friction(const optimal_memory *m, double velocity, double other_torque)
+{
+    const double rest = 0.01; // [rad/s]
+    double limit = m->rig.stiction;
+    if (fabs(velocity) > rest) {
+        return velocity > 0 ? limit : -limit;
+    }
+    return fmax(-limit, fmin(other_torque, limit));
+}
+
+static double motor_torque(const optimal_memory *m, double volts)
+{
+    return m->rig.torque_per_volt * volts;
+}
+
+// --- free flight ----------------------------------------------------------------------------
+
+static void observe_flight(optimal_memory *m, const controller_input *in)
+{
+    static const double angle_row[4] = {[FREE_FIRST] = 1}, rate_row[4] = {[FREE_FIRST_RATE] = 1};
+    estimator *e = &m->e;
+    estimator_correct(e, 4, angle_row, 0, in->hub_angle, ANGLE_VARIANCE);
+    estimator_correct(e, 4, rate_row, 0, in->hub_velocity, RATE_VARIANCE);
+}
+
+static void predict_flight(optimal_memory *m, const controller_input *in)
+{
+    double drive = motor_torque(m, in->applied);
+    drive -= friction(m, m->e.z[FREE_FIRST_RATE], drive);
+    estimator_predict(&m->e, &m->flight, drive, flight_noise);
+}
+
+// The tip met the wall between the last sample and this one: there the wall is.
+static void enter_contact(optimal_memory *m, const controller_input *in)
+{
+    double before = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2;
+    predict_flight(m, in);
+    double after = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2, way = after - before;
+    estimator e = {.z = {in->hub_angle, in->hub_velocity, (before + after) / 2, 0}};
+    e.p[PRESSED_ANGLE][PRESSED_ANGLE] = ANGLE_VARIANCE;
+    e.p[PRESSED_RATE][PRESSED_RATE] = RATE_VARIANCE;
+    e.p[PRESSED_WALL][PRESSED_WALL] = way * way / 12 + 1e-6;
+    e.p[PRESSED_TORQUE][PRESSED_TORQUE] = 1e-4;
+    m->e = e;
+    m->ceiling = m->force;
+    m->mode = PRESS;
+}
+
+// --- in contact -----------------------------------------------------------------------------
+
+// Hub acceleration of a state in contact under a torque on the hub [rad/s2].
+static double acceleration(const optimal_memory *m, const double *z, double drive)
+{
+    double x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
+    double torque =
+        drive + z[PRESSED_TORQUE] - m->rig.hub_damping * z[PRESSED_RATE] - m->stiffness * x;
+    return (torque - friction(m, z[PRESSED_RATE], torque)) / m->inertia;
+}
+
+static double contact_force(const optimal_memory *m, const double *z, double drive)
+{
+    return m->spring_force * (z[PRESSED_ANGLE] - z[PRESSED_WALL]) -
+           m->mass_force * acceleration(m, z, drive);
+}
+
+// The state after h: the sampled model, or rest where friction holds the hub.
+static void predict_contact(const optimal_memory *m, const sampled_model *model, estimator *e,
+                            double drive)
+{
+    double *z = e->z, x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
+    double torque = drive + z[PRESSED_TORQUE] - m->stiffness * x;
+    double rest_angle = z[PRESSED_ANGLE];
+    bool rests = fabs(z[PRESSED_RATE]) < 0.01 && fabs(torque) <= m->rig.stiction;
+    double held = friction(m, z[PRESSED_RATE], torque);
+    estimator_predict(e, model, drive - held, contact_noise);
+    if (rests) {
+        z[PRESSED_ANGLE] = rest_angle;
+        z[PRESSED_RATE] = 0;
+    }
+}
+
+static void observe_contact(optimal_memory *m, const controller_input *in)
+{
+    static const double angle_row[4] = {[PRESSED_ANGLE] = 1}, rate_row[4] = {[PRESSED_RATE] = 1};
+    estimator *e = &m->e;
+    double drive = motor_torque(m, in->applied);
+    predict_contact(m, &m->contact, e, drive);
+    estimator_correct(e, 4, angle_row, 0, in->hub_angle, ANGLE_VARIANCE);
+    estimator_correct(e, 4, rate_row, 0, in->hub_velocity, RATE_VARIANCE);
+    // the force is linear in the state but for friction: row times state, plus what is left
+    double whole = m->spring_force + m->mass_force * m->stiffness / m->inertia;
+    double row[4] = {whole, m->mass_force * m->rig.hub_damping / m->inertia, -whole,
+                     -m->mass_force / m->inertia};
+    double linear = 0;
+    for (int i = 0; i < 4; i++) {
+        linear += row[i] * e->z[i];
+    }
+    double deviation = 0.02 + 0.02 * in->force; // [N]
+    estimator_correct(e, 4, row, contact_force(m, e->z, drive) - linear, in->force,
+                      deviation * deviation);
+}
+
+// Limits a command so that the force it leaves at once stays positive, and does not brake harder
+// than stopping takes. x + x'/s grows as exp(s t) wherever it is above f/(4 k2): a force a little
+// above 4 k2 times it stops the hub, at ever faster a rate.
+static double limit_command(optimal_memory *m, const double *z, double command)
+{
+    double x = z[PRESSED_ANGLE] - z[PRESSED_WALL], limit = m->rig.voltage_limit;
+    double stopping = m->spring_force * (x + z[PRESSED_RATE] / m->divergence);
+    double excess = stopping - m->force, least = fmin(0.1 + 0.05 * m->force, 0.5 * m->force);
+    if (excess > 0) {
+        m->ceiling = fmax(m->ceiling, stopping + 0.2 * excess + 0.01);
+    }
+    double per_volt = m->mass_force / m->inertia * m->rig.torque_per_volt;
+    double force = contact_force(m, z, motor_torque(m, command));
+    double wanted = fmax(least, fmin(force, m->ceiling));
+    if (per_volt > 0) {
+        command += (force - wanted) / per_volt;
+    }
+    return fmax(-limit, fmin(command, limit));
+}
+
+// Friction holds the hub best in the middle of its band; the beam does the rest.
+static double hold(optimal_memory *m, const controller_input *in)
+{
+    const double smoothing = 0.05;
+    m->held_force += smoothing * (in->force - m->held_force);
+    if (fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
+        m->mode = PRESS;
+        m->e.z[PRESSED_WALL] = in->hub_angle - m->held_force / m->spring_force;
+        m->e.p[PRESSED_WALL][PRESSED_WALL] = 1e-6;
+    }
+    return m->hold_command;
+}
+
+static double press(optimal_memory *m, const controller_input *in)
+{
+    estimator ahead = m->e;
+    if (m->rig.delay > 0) {
+        predict_contact(m, &m->during_delay, &ahead, motor_torque(m, in->applied));
+    }
+    const double *z = ahead.z;
+    double aim = AIM * m->force / m->spring_force, x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
+    double error = aim - x, tolerance = 0.01 * m->force + 0.005; // [N]
+    double velocity = z[PRESSED_RATE];
+    bool rests = fabs(velocity) < 0.02;
+    if (rests && fabs(error) * m->spring_force < tolerance) {
+        m->mode = HOLD;
+        m->held_force = m->spring_force * x;
+        m->hold_command = m->stiffness * x / m->rig.torque_per_volt;
+        return m->hold_command;
+    }
+    double against = rests ? copysign(m->rig.stiction, error) : friction(m, velocity, 0);
+    double steady = (m->stiffness * aim - z[PRESSED_TORQUE] + against) / m->rig.torque_per_volt;
+    return limit_command(m, z, steady + m->gain[0] * error - m->gain[1] * velocity);
+}
+
+static void sample(void *memory, const controller_input *in, controller_output *out)
+{
+    optimal_memory *m = memory;
+    if (!m->started) {
+        m->started = true;
+        m->e = (estimator){.z = {in->hub_angle, in->hub_angle, 0, 0}};
+    } else if (m->mode == PRESS) {
+        observe_contact(m, in);
+    } else if (m->mode == APPROACH && in->force > m->threshold) {
+        enter_contact(m, in);
+    } else if (m->mode == APPROACH) {
+        predict_flight(m, in);
+        observe_flight(m, in);
+    }
+    out->command = m->mode == APPROACH ? m->approach_voltage
+                   : m->mode == HOLD   ? hold(m, in)
+                                       : press(m, in);
+    out->mode = m->mode;
+    if (m->mode != APPROACH) {
+        out->desired_angle = m->e.z[PRESSED_WALL] + m->force / m->spring_force;
+        out->desired_velocity = 0;
+        out->force_estimate = m->mode == HOLD
+                                  ? m->held_force
+                                  : contact_force(m, m->e.z, motor_torque(m, in->applied));
+    } else {
+        out->force_estimate = 0;
+    }
+}
+
+const controller optimal_law = {.interface = CONTROLLER_INTERFACE,
+                                .name = "optimal",
+                                .modes = mode_names,
+                                .parameters = table,
+                                .parameter_count = PARAMETERS,
+                                .memory_size = sizeof(optimal_memory),
+                                .start = start,
+                                .sample = sample};

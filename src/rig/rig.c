@@ -1,0 +1,273 @@
+#include "src/rig/rig.h"
+
+#include <dlfcn.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/arm/arm.h"
+#include "src/rig/laws.h"
+#include "src/words.h"
+
+const controller *controller_of(int law)
+{
+    static const controller *const built_in[] = {[LAW_OPEN_LOOP] = &open_loop_law,
+                                                 [LAW_HYBRID] = &hybrid_law,
+                                                 [LAW_FORCE_PD] = &force_pd_law,
+                                                 [LAW_FORCE_INTEGRAL] = &force_integral_law,
+                                                 [LAW_REVERSE_TORQUE] = &reverse_torque_law,
+                                                 [LAW_SPEED_LIMIT] = &speed_limit_law,
+                                                 [LAW_BANG_BANG] = &bang_bang_law,
+                                                 [LAW_DISCONTINUOUS] = &discontinuous_law,
+                                                 [LAW_RECOVERING] = &recovering_law,
+                                                 [LAW_OPTIMAL] = &optimal_law,
+                                                 [LAW_PLUGIN] = NULL};
+    return built_in[law];
+}
+
+// --- starting -------------------------------------------------------------------------------
+
+static status load_plugin(rig *r, const char *file, fault *f)
+{
+    r->library = dlopen(file, RTLD_NOW | RTLD_LOCAL);
+    if (r->library == NULL) {
+        return fault_set(f, STATUS_CANNOT_READ, "control.plugin = %s cannot be loaded: %.600s",
+                         file, dlerror());
+    }
+    // a function behind a pointer to data: as POSIX has it
+    controller_entry entry = NULL;
+    void *symbol = dlsym(r->library, CONTROLLER_ENTRY);
+    memcpy(&entry, &symbol, sizeof entry);
+    r->law = entry != NULL ? entry() : NULL;
+    if (r->law == NULL) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.plugin = %s has no function %s that returns a controller", file,
+                         CONTROLLER_ENTRY);
+    }
+    if (r->law->interface != CONTROLLER_INTERFACE) {
+        return fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "control.plugin = %s was made for version %d of the interface, expected %d; "
+            "compile it again",
+            file, r->law->interface, CONTROLLER_INTERFACE);
+    }
+    if (r->law->sample == NULL) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "control.plugin = %s has no function `sample`",
+                         file);
+    }
+    return STATUS_OK;
+}
+
+// Initial values, then those of the scenario's parameters of the same name.
+static void take_parameters(rig *r, const parameters *p)
+{
+    for (int i = 0; i < r->law->parameter_count; i++) {
+        const controller_parameter *wanted = &r->law->parameters[i];
+        char path[80];
+        snprintf(path, sizeof path, "control.%.60s", wanted->name);
+        int index = parameter_find(path);
+        bool own = r->library != NULL && (index < 0 || !p->set[index]);
+        r->values[i] = index < 0 || own ? wanted->initial : parameter_get(p, index);
+    }
+}
+
+static status take_setting(rig *r, const char *word, size_t length, fault *f)
+{
+    const char *equals = memchr(word, '=', length);
+    size_t name = equals != NULL ? (size_t)(equals - word) : length;
+    for (int i = 0; i < r->law->parameter_count; i++) {
+        const controller_parameter *wanted = &r->law->parameters[i];
+        if (strlen(wanted->name) != name || strncmp(wanted->name, word, name) != 0) {
+            continue;
+        }
+        char text[PARAMETER_TEXT_SIZE] = "";
+        const char *end = text;
+        double value = 0;
+        if (equals != NULL) {
+            memcpy(text, equals + 1, length - name - 1);
+        }
+        if (!decimal_read(text, &value, &end) || *end != '\0' ||
+            !(value >= wanted->minimum && value <= wanted->maximum)) {
+            return fault_set(
+                f, STATUS_BAD_SCENARIO,
+                "control.settings: '%.*s' is wrong, expected %s=NUMBER from %g to %g%s%s",
+                (int)length, word, wanted->name, wanted->minimum, wanted->maximum,
+                wanted->unit[0] ? " " : "", wanted->unit);
+        }
+        r->values[i] = value;
+        return STATUS_OK;
+    }
+    nearest_word near = nearest_begin(word);
+    for (int i = 0; i < r->law->parameter_count; i++) {
+        nearest_try(&near, r->law->parameters[i].name);
+    }
+    return fault_set(f, STATUS_BAD_SCENARIO,
+                     "control.settings: the controller '%s' has no parameter '%.*s'%s%s%s",
+                     r->law->name, (int)name, word, near.best ? ", did you mean '" : "",
+                     near.best ? near.best : "", near.best ? "'?" : "");
+}
+
+static status take_settings(rig *r, const char *settings, fault *f)
+{
+    status s = STATUS_OK;
+    while (s == STATUS_OK && *(settings += strspn(settings, " ")) != '\0') {
+        size_t length = strcspn(settings, " ");
+        s = take_setting(r, settings, length, f);
+        settings += length;
+    }
+    return s;
+}
+
+static controller_setup make_setup(const rig *r, const parameters *p)
+{
+    // controllers work on the two-link beam, whatever the arm is
+    double m = p->arm.mass / 2, l = p->arm.length / 2;
+    return (controller_setup){
+        .period = r->period,
+        .delay = r->delay,
+        .voltage_limit = r->voltage_limit,
+        .torque_per_volt = motor_torque_per_volt(&p->motor),
+        .hub_damping = motor_damping(&p->motor),
+        .stiction = p->motor.stiction,
+        .hub_inertia = p->arm.hub_inertia,
+        .link_mass = m,
+        .link_length = l,
+        .link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12,
+        .k2 = p->arm.k2 * p->control.k2_factor,
+        .wall_angle = p->wall.angle + p->control.wall_error,
+        .parameters = r->values,
+    };
+}
+
+// Memory, values and the controller's own start, once it is known which controller it is.
+static status start_controller(rig *r, const parameters *p, fault *f)
+{
+    size_t count = (size_t)(r->law->parameter_count > 0 ? r->law->parameter_count : 1);
+    r->memory = calloc(1, r->law->memory_size + 1);
+    r->values = calloc(count, sizeof *r->values);
+    if (r->memory == NULL || r->values == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for the controller '%s'", r->law->name);
+    }
+    take_parameters(r, p);
+    status s = take_settings(r, p->control.settings, f);
+    controller_setup setup = make_setup(r, p);
+    const char *refusal = s == STATUS_OK && r->law->start ? r->law->start(r->memory, &setup) : NULL;
+    if (refusal != NULL) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "the controller '%s' cannot run: %.600s",
+                         r->law->name, refusal);
+    }
+    return s;
+}
+
+static double sampling_instant(rig *r)
+{
+    double nominal = (double)r->samples * r->period;
+    if (r->jitter == 0 || r->samples == 0) {
+        return nominal;
+    }
+    return nominal + r->jitter * (random_uniform(&r->clock) - 0.5);
+}
+
+status rig_create(rig **created, const parameters *p, fault *f)
+{
+    rig *r = calloc(1, sizeof *r);
+    *created = NULL;
+    if (r == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for the rig");
+    }
+    r->period = 1 / p->control.rate;
+    r->delay = p->control.delay;
+    r->jitter = p->control.jitter;
+    r->voltage_limit = p->motor.voltage_limit;
+    r->effect_time = HUGE_VAL;
+    r->output = (controller_output){.desired_angle = (double)NAN,
+                                    .desired_velocity = (double)NAN,
+                                    .force_estimate = (double)NAN};
+    sensors_init(&r->sensors, &p->sensor, p->control.seed);
+    random_seed(&r->clock, ~(uint64_t)p->control.seed);
+    r->law = controller_of(p->control.law);
+    status s = STATUS_OK;
+    if (p->control.law == LAW_PLUGIN) {
+        s = load_plugin(r, p->control.plugin, f);
+    }
+    s = s == STATUS_OK ? start_controller(r, p, f) : s;
+    if (s != STATUS_OK) {
+        rig_destroy(r);
+        return s;
+    }
+    *created = r;
+    return STATUS_OK;
+}
+
+void rig_destroy(rig *r)
+{
+    if (r != NULL) {
+        free(r->memory);
+        free(r->values);
+        if (r->library != NULL) {
+            dlclose(r->library);
+        }
+        free(r);
+    }
+}
+
+// --- the sampled loop -----------------------------------------------------------------------
+
+double rig_next_time(const rig *r)
+{
+    return fmin(r->sample_time, r->effect_time);
+}
+
+static void apply(rig *r, bool *changed)
+{
+    *changed = *changed || r->pending != r->applied;
+    r->applied = r->pending;
+    r->effect_time = HUGE_VAL;
+}
+
+static status take_sample(rig *r, double time, double angle, double velocity, double force,
+                          fault *f)
+{
+    r->reading = sensors_read(&r->sensors, angle, velocity, force);
+    controller_input input = {.time = time,
+                              .hub_angle = r->reading.angle,
+                              .hub_velocity = r->reading.velocity,
+                              .force = r->reading.force,
+                              .applied = r->applied};
+    controller_output *out = &r->output;
+    *out = (controller_output){.desired_angle = (double)NAN,
+                               .desired_velocity = (double)NAN,
+                               .force_estimate = (double)NAN};
+    r->law->sample(r->memory, &input, out);
+    if (!isfinite(out->command)) {
+        return fault_set(
+            f, STATUS_NOT_FINITE,
+            "at t = %.9g s the controller '%s' gave the command %g V, expected a finite "
+            "number; its sensors read %.6g rad, %.6g rad/s and %.6g N",
+            time, r->law->name, out->command, input.hub_angle, input.hub_velocity, input.force);
+    }
+    r->pending = converter_value(out->command, r->sensors.p.dac_bits, r->voltage_limit);
+    r->largest_command = fmax(r->largest_command, fabs(r->pending));
+    r->effect_time = time + r->delay;
+    r->samples++;
+    r->sample_time = sampling_instant(r);
+    return STATUS_OK;
+}
+
+status rig_act(rig *r, double time, double angle, double velocity, double force, bool *changed,
+               fault *f)
+{
+    const double late = 1e-9 * r->period; // instants of another grid may miss ours by rounding
+    status s = STATUS_OK;
+    *changed = false;
+    if (r->effect_time <= time + late) {
+        apply(r, changed);
+    }
+    if (r->sample_time <= time + late) {
+        s = take_sample(r, time, angle, velocity, force, f);
+    }
+    if (s == STATUS_OK && r->effect_time <= time + late) {
+        apply(r, changed);
+    }
+    return s;
+}

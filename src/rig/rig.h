@@ -1,0 +1,47 @@
+// The rig: sensors, a controller that samples them, and the command it sends to the amplifier.
+//
+// The run's motion is the plant. It stops at rig_next_time; where the time of a sample has come,
+// sensors are read and the controller is called, and `delay` later its command takes effect and
+// holds (zero-order hold) until the next one does.
+#pragma once
+
+#include "src/rig/controller.h"
+#include "src/rig/sensors.h"
+#include "src/status.h"
+
+typedef struct rig {
+    const controller *law;
+    void *library;  // of a plug-in, else NULL
+    void *memory;   // the controller's
+    double *values; // of the controller's parameters
+    sensors sensors;
+    double period, delay, jitter; // [s]
+    double voltage_limit;         // [V]
+    double sample_time;           // of the next sample [s]
+    double effect_time;           // when the pending command takes effect, HUGE_VAL if none [s]
+    double pending;               // that command, after the D/A [V]
+    long samples;                 // taken so far
+    random_generator clock;       // of the jitter
+    double applied;               // command in effect [V]
+    sensor_reading reading;       // of the last sample
+    controller_output output;     // of the last sample
+    double largest_command;       // in magnitude, as put out [V]
+} rig;
+
+// Sets up the rig of resolved parameters with control.law other than none. On failure (a plug-in
+// that cannot be loaded, a setting that is not known, a controller that refuses) f says why and
+// nothing is to be freed.
+status rig_create(rig **created, const parameters *p, fault *f);
+void rig_destroy(rig *r); // r may be NULL
+
+// The next instant at which the rig has something to do [s].
+double rig_next_time(const rig *r);
+
+// What is due at `time` [s], with the hub at `angle` [rad] and `velocity` [rad/s] under the given
+// contact force [N]. *changed: another command took effect, r->applied. STATUS_NOT_FINITE, with a
+// sentence in f, if the controller answers with a command that is not finite.
+status rig_act(rig *r, double time, double angle, double velocity, double force, bool *changed,
+               fault *f);
+
+// The built-in controller of a law; NULL for LAW_NONE and LAW_PLUGIN.
+const controller *controller_of(int law);

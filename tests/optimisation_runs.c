@@ -1,0 +1,95 @@
+// Runs of many kinds written as JSON and CSV to the standard output, without what depends on the
+// machine's speed; tests/optimisation_levels.sh compares it over the compiler's optimisation levels.
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/lab/export.h"
+#include "src/predict/linearised.h"
+
+// Each line a run: settings, separated by blanks.
+static const char *const runs[] = {
+    "",
+    "wall.kind=plane motor.voltage=5 arm.links=3",
+    "arm.links=8 wall.restitution=0.4 arm.damping_ratio=0.01",
+    "arm.hub_joint=spring run.duration=0.4",
+    "method.name=newmark",
+    "method.name=generalized-alpha arm.links=5",
+    "arm.links=64 wall.kind=plane run.duration=0.5",
+    "arm.model=printed",
+    "arm.model=printed motor.voltage=5 method.step=0.01",
+};
+enum { RUNS = sizeof runs / sizeof runs[0] };
+
+static int fail(const char *run, const char *why)
+{
+    fprintf(stderr, "optimisation_runs: %s: %s\n", run, why);
+    return 1;
+}
+
+static status apply(scenario *s, const char *settings, fault *f)
+{
+    char text[256], *rest = NULL;
+    snprintf(text, sizeof text, "%s", settings);
+    for (char *one = strtok_r(text, " ", &rest); one != NULL; one = strtok_r(NULL, " ", &rest)) {
+        status code = scenario_override(s, one, f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    return STATUS_OK;
+}
+
+// The predictors of both kinds, at the touch.
+static void print_prediction(const parameters *p, const run_result *result)
+{
+    arm a;
+    prediction out = {0};
+    if (result->touch == NULL) {
+        return;
+    }
+    arm_init(&a, p);
+    motion *m = motion_create(&a, &p->method);
+    status code = predict_linearised(&a, m, result->touch, result->touch + a.dof, &out);
+    printf("predicted %d %a %a %a\n", (int)code, out.force, out.delay, out.impulse);
+    motion_destroy(m);
+}
+
+static int print_run(const char *settings)
+{
+    static const char text[] = "title: t\n";
+    scenario s;
+    run_result result;
+    fault f;
+    if (scenario_parse(&s, text, strlen(text), "t.yaml", "t", NULL, NULL) != STATUS_OK) {
+        return fail(settings, "the empty scenario was refused");
+    }
+    int code = 0;
+    if (apply(&s, settings, &f) != STATUS_OK) {
+        code = fail(settings, f.text);
+    } else {
+        run_scenario(&s, true, &result);
+        result.summary.wall_time_s = 0;
+        json_t *object = export_run(&s, &result);
+        json_write(stdout, object);
+        json_decref(object);
+        export_csv(stdout, &result.trace, s.parameters.arm.links);
+        if (s.parameters.arm.model == ARM_CORRECTED) {
+            print_prediction(&s.parameters, &result);
+        }
+        if (result.summary.status != STATUS_OK) {
+            code = fail(settings, result.summary.message);
+        }
+        run_finish(&result);
+    }
+    scenario_finish(&s);
+    return code;
+}
+
+int main(void)
+{
+    int code = 0;
+    for (int i = 0; i < RUNS; i++) {
+        code |= print_run(runs[i]);
+    }
+    return code;
+}

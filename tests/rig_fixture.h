@@ -1,0 +1,36 @@
+// Runs on the rig for tests: the impact of the thesis's 5.4 with settings as "path=value" strings.
+#pragma once
+
+#include "src/lab/run.h"
+#include "tests/arm_fixture.h"
+
+// Resolved parameters: wall at 0, start at rest 0.1 rad before it, 1.5 s, then the settings.
+static inline parameters rig_parameters(const char *const *settings)
+{
+    const char *all[32] = {"wall.angle=0", "initial.angle=-0.1", "run.duration=1.5"};
+    int count = 3;
+    for (; settings != NULL && *settings != NULL; settings++) {
+        all[count++] = *settings;
+    }
+    return fixture_parameters(all);
+}
+
+// Runs them; the caller calls run_finish.
+static inline run_result rig_run(const char *const *settings, bool keep_trace)
+{
+    run_result result;
+    scenario s = {.parameters = rig_parameters(settings)};
+    if (run_scenario(&s, keep_trace, &result) != STATUS_OK) {
+        fail_msg("%s", result.summary.message);
+    }
+    return result;
+}
+
+// Runs them and keeps the summary only.
+static inline summary rig_summary(const char *const *settings)
+{
+    run_result result = rig_run(settings, false);
+    summary s = result.summary;
+    run_finish(&result);
+    return s;
+}

@@ -1,0 +1,170 @@
+#include "src/lab/bench.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/lab/export.h"
+#include "tests/check.h"
+
+static int calls;
+
+// 9, 1, 2, 3 ...: the first one, which warms the caches, must not count
+static status count_up(double *value, fault *f)
+{
+    (void)f;
+    *value = calls == 0 ? 9 : calls;
+    calls++;
+    return STATUS_OK;
+}
+
+static status give_up(double *value, fault *f)
+{
+    *value = 0;
+    return fault_set(f, STATUS_NOT_FINITE, "it went wrong");
+}
+
+static void median_and_extremes_leave_out_the_first(void **state)
+{
+    (void)state;
+    const benchmark b = {"name", "us", false, count_up};
+    bench_result r;
+    fault f;
+    calls = 0;
+    assert_int_equal(bench_run(&b, &r, &f), STATUS_OK);
+    assert_int_equal(calls, BENCH_REPETITIONS + 1);
+    check_close(r.min, 1, 0);
+    check_close(r.max, BENCH_REPETITIONS, 0);
+    check_close(r.median, (BENCH_REPETITIONS + 1) / 2.0, 0);
+    assert_string_equal(r.name, "name");
+    assert_string_equal(r.unit, "us");
+}
+
+static void a_measurement_that_fails_is_passed_on(void **state)
+{
+    (void)state;
+    const benchmark b = {"name", "us", false, give_up};
+    bench_result r;
+    fault f;
+    assert_int_equal(bench_run(&b, &r, &f), STATUS_NOT_FINITE);
+    assert_string_equal(f.text, "it went wrong");
+}
+
+static void slower_is_said_of_times_and_rates(void **state)
+{
+    (void)state;
+    const benchmark time = {"t", "us", false, NULL}, rate = {"r", "1/s", true, NULL};
+    const bench_result before = {.median = 10, .min = 9, .max = 11};
+    const bench_result twice = {.median = 20, .min = 19, .max = 21};
+    const bench_result noisy = {.median = 20, .min = 9.5, .max = 30};
+    const bench_result little = {.median = 11, .min = 10.5, .max = 12};
+    assert_true(bench_is_slower(&time, &twice, &before));
+    assert_false(bench_is_slower(&time, &before, &twice));
+    assert_false(bench_is_slower(&time, &noisy, &before));
+    assert_false(bench_is_slower(&time, &little, &before));
+    assert_false(bench_is_slower(&rate, &twice, &before));
+    assert_true(bench_is_slower(&rate, &before, &twice));
+    check_close(bench_slowdown(&time, &twice, &before), 2, 0);
+    check_close(bench_slowdown(&rate, &twice, &before), 0.5, 0);
+}
+
+// A file with the given text, to be unlinked.
+static void make_file(char *path, const char *text)
+{
+    strcpy(path, "/tmp/impactlab-test-XXXXXX");
+    int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    assert_int_equal(write(descriptor, text, strlen(text)), (ssize_t)strlen(text));
+    close(descriptor);
+}
+
+static void what_is_written_is_read_back(void **state)
+{
+    (void)state;
+    const bench_result written[] = {{"one", "us/ms", 1.25, 1, 2}, {"two", "1/s", 3e7, 2e7, 4e7}};
+    char path[64], *text;
+    json_t *object = bench_export(written, 2);
+    text = json_dumps(object, 0);
+    make_file(path, text);
+    bench_result *read;
+    int count;
+    fault f;
+    assert_int_equal(bench_read(path, &read, &count, &f), STATUS_OK);
+    assert_int_equal(count, 2);
+    for (int i = 0; i < 2; i++) {
+        assert_string_equal(read[i].name, written[i].name);
+        assert_string_equal(read[i].unit, written[i].unit);
+        check_close(read[i].median, written[i].median, 0);
+        check_close(read[i].min, written[i].min, 0);
+        check_close(read[i].max, written[i].max, 0);
+    }
+    free(read);
+    free(text);
+    json_decref(object);
+    unlink(path);
+}
+
+static void a_file_that_is_no_baseline_is_refused(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"{", "[]", "{\"bench\": 3}",
+                                        "{\"bench\": [{\"name\": \"x\"}]}",
+                                        "{\"bench\": [{\"name\": \"x\", \"unit\": \"s\"}]}"};
+    bench_result *read;
+    int count;
+    fault f;
+    for (int i = 0; i < 5; i++) {
+        char path[64];
+        make_file(path, texts[i]);
+        f.text[0] = '\0';
+        assert_int_equal(bench_read(path, &read, &count, &f), STATUS_CANNOT_READ);
+        assert_non_null(strstr(f.text, path));
+        assert_null(read);
+        unlink(path);
+    }
+    assert_int_equal(bench_read("/nowhere/x.json", &read, &count, &f), STATUS_CANNOT_READ);
+    assert_non_null(strstr(f.text, "/nowhere/x.json"));
+}
+
+static void every_benchmark_of_the_library_gives_a_number(void **state)
+{
+    (void)state;
+    for (int i = 0; i < bench_count; i++) {
+        double value = -1;
+        fault f = {0};
+        if (bench_table[i].measure(&value, &f) != STATUS_OK) {
+            fail_msg("%s: %s", bench_table[i].name, f.text);
+        }
+        assert_true(value > 0 && isfinite(value));
+        assert_true(strlen(bench_table[i].name) < BENCH_NAME);
+        assert_true(strlen(bench_table[i].unit) < BENCH_UNIT);
+    }
+}
+
+// Of every number of links the chain is stepped; eight times the links cost no 24 times the time.
+static void a_step_costs_in_proportion_to_the_links(void **state)
+{
+    (void)state;
+    double free_us[2], contact_us[2];
+    fault f;
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(bench_step_cost(i == 0 ? 32 : 256, &free_us[i], &contact_us[i], &f),
+                         STATUS_OK);
+    }
+    check_below(free_us[1], 24 * free_us[0]);
+    check_below(contact_us[1], 24 * contact_us[0]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(median_and_extremes_leave_out_the_first),
+        cmocka_unit_test(a_measurement_that_fails_is_passed_on),
+        cmocka_unit_test(slower_is_said_of_times_and_rates),
+        cmocka_unit_test(what_is_written_is_read_back),
+        cmocka_unit_test(a_file_that_is_no_baseline_is_refused),
+        cmocka_unit_test(every_benchmark_of_the_library_gives_a_number),
+        cmocka_unit_test(a_step_costs_in_proportion_to_the_links),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

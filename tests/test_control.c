@@ -1,0 +1,268 @@
+// What the control laws have to show, on the impact of the thesis's 5.4: 1 V from rest, 0.1 rad
+// before the wall.
+#include "src/rig/estimator.h"
+#include "tests/rig_fixture.h"
+
+// --- the hybrid law -------------------------------------------------------------------------
+
+static void hybrid_makes_contact_once_and_settles(void **state)
+{
+    (void)state;
+    summary one = rig_summary(SETTINGS("control.law=hybrid", "control.force=1"));
+    summary two = rig_summary(SETTINGS("control.law=hybrid", "control.force=2"));
+    check_close(one.impacts, 1, 0);
+    check_close(one.separations, 0, 0);
+    check_close(one.settling_time_s, 0.3, 0.1);
+    check_close(two.separations, 0, 0);
+    check_below(two.settling_time_s, one.settling_time_s);
+    summary printed_one = rig_summary(
+        SETTINGS("control.law=hybrid", "arm.model=printed", "control.coefficients=printed"));
+    summary printed_two = rig_summary(SETTINGS("control.law=hybrid", "arm.model=printed",
+                                               "control.coefficients=printed", "control.force=2"));
+    check_close(printed_one.separations, 0, 0);
+    check_close(printed_one.settling_time_s, 0.3, 0.1);
+    check_below(printed_two.settling_time_s, printed_one.settling_time_s);
+}
+
+static void hybrid_force_follows_its_coefficients(void **state)
+{
+    (void)state;
+    summary corrected = rig_summary(SETTINGS("control.law=hybrid", "sensor.ideal=true"));
+    summary printed = rig_summary(
+        SETTINGS("control.law=hybrid", "sensor.ideal=true", "control.coefficients=printed"));
+    check_close(corrected.steady_force_N, 1, 0.02);
+    // 3 f l and a torque gain: f (1 + kp/(4 k2)) = (1.5 + kp/(4 k2)) f_command
+    double share = 10.15 / (4 * 4.92);
+    check_close(printed.steady_force_N, (1.5 + share) / (1 + share), 0.05);
+}
+
+// The impact mode starts where the hub is and ends at the angle that (5.23) gives.
+static void quintic_joins_contact_and_rest(void **state)
+{
+    (void)state;
+    run_result r = rig_run(SETTINGS("control.law=hybrid", "sensor.ideal=true"), true);
+    const trace *t = &r.trace;
+    size_t first = 0, last = 0;
+    for (size_t i = 0; i < t->row_count; i++) {
+        if (t->rows[i].controller_mode == 1) {
+            first = first == 0 ? i : first;
+            last = i;
+        }
+    }
+    const sample *begin = &t->rows[first], *end = &t->rows[last];
+    check_close(begin->desired_angle, begin->hub_angle, 1e-9);
+    check_close(begin->desired_velocity, begin->hub_velocity, 1e-9);
+    check_close(end->time - begin->time, 0.35, 0.0051);
+    check_close(end->desired_angle, 0.5 / (2 * 4.92), 1e-4);
+    check_close(end->desired_velocity, 0, 1e-2);
+    check_close(t->rows[last + 1].controller_mode, 2, 0);
+    // (5.14) with the model's own acceleration is the true force to the motion's nonlinearity
+    check_close(t->rows[t->row_count - 1].calculated_force, r.summary.steady_force_N, 0.05);
+    run_finish(&r);
+}
+
+static void gains_have_both_readings(void **state)
+{
+    (void)state;
+    summary torque = rig_summary(SETTINGS("control.law=hybrid", "control.coefficients=printed",
+                                          "control.gains=torque", "sensor.ideal=true"));
+    summary volts = rig_summary(SETTINGS("control.law=hybrid", "control.coefficients=printed",
+                                         "control.gains=volts", "sensor.ideal=true"));
+    summary printed = rig_summary(SETTINGS("control.law=hybrid", "control.coefficients=printed",
+                                           "control.gains=printed", "sensor.ideal=true"));
+    // a volt is 0.4377 N m: read as volts the gain pulls less against the wrong feed-forward
+    check_below(torque.steady_force_N + 0.05, volts.steady_force_N);
+    check_close(printed.steady_force_N, volts.steady_force_N, 0.02);
+    check_close(printed.peak_force_N, torque.peak_force_N, 1e-9);
+}
+
+// --- the optimal law ------------------------------------------------------------------------
+
+static void gain_makes_the_cost_least(void **state)
+{
+    (void)state;
+    // the arm in contact at 200 Hz; the cost of 400 samples from one start, gains moved either way
+    double rate[4][4] = {{0, 1}, {-510, -4.7}}, input[4] = {0, 11.3}, gain[2];
+    const double output[2] = {28.2, 0.08}, direct = -0.19, effort = 2e-3;
+    sampled_model m;
+    sampled_model_init(&m, 2, rate, input, 0.005);
+    assert_true(optimal_gain(&m, output, direct, effort, 1, gain));
+    double costs[5];
+    for (int trial = 0; trial < 5; trial++) {
+        double k[2] = {gain[0], gain[1]}, z[2] = {0.02, 0.5};
+        k[(trial - 1) / 2] *= trial == 0 ? 1 : trial % 2 ? 1.01 : 0.99;
+        costs[trial] = 0;
+        for (int i = 0; i < 400; i++) {
+            double u = -k[0] * z[0] - k[1] * z[1];
+            double f = output[0] * z[0] + output[1] * z[1] + direct * u;
+            double next = m.a[0][0] * z[0] + m.a[0][1] * z[1] + m.b[0] * u;
+            z[1] = m.a[1][0] * z[0] + m.a[1][1] * z[1] + m.b[1] * u;
+            z[0] = next;
+            costs[trial] += f * f + effort * u * u;
+        }
+    }
+    for (int trial = 1; trial < 5; trial++) {
+        check_below(costs[0], costs[trial]);
+    }
+}
+
+static void estimator_finds_a_constant(void **state)
+{
+    (void)state;
+    estimator e = {.z = {0}, .p = {{4}}};
+    const double row[4] = {2};
+    for (int i = 0; i < 100; i++) {
+        estimator_correct(&e, 1, row, 1, 7 + (i % 2 ? 0.1 : -0.1), 0.01);
+    }
+    check_close(e.z[0], 3, 1e-3);
+    // variance of the mean of 100 readings of 2 z
+    check_relative(e.p[0][0], 0.01 / 4 / 100, 1e-3);
+}
+
+// Against the hybrid law with corrected coefficients on the noisy default rig.
+static void optimal_law_beats_the_hybrid(void **state)
+{
+    (void)state;
+    const struct {
+        const char *force;
+        double share; // of the hybrid law's overshoot that is allowed
+    } cases[] = {{"control.force=0.5", 0.5},
+                 {"control.force=1", 1.0 / 3},
+                 {"control.force=2", 1.0 / 3},
+                 {"control.force=3", 1.0 / 3}};
+    for (int i = 0; i < 4; i++) {
+        for (int seed = 1; seed <= 10; seed++) {
+            char text[32];
+            snprintf(text, sizeof text, "control.seed=%d", seed);
+            summary hybrid = rig_summary(SETTINGS("control.law=hybrid", cases[i].force, text));
+            summary optimal = rig_summary(SETTINGS("control.law=optimal", cases[i].force, text));
+            check_close(optimal.separations, 0, 0);
+            check_below(optimal.force_over_command_N,
+                        fmax(cases[i].share * hybrid.force_over_command_N, 1e-9));
+            check_below(optimal.settling_time_s, 0.4 * hybrid.settling_time_s);
+            check_close(optimal.steady_error_N, 0, 0.025 * optimal.force_command_N);
+        }
+    }
+}
+
+static void optimal_law_stands_wrong_beliefs(void **state)
+{
+    (void)state;
+    const char *const beliefs[] = {"control.k2_factor=0.8", "control.k2_factor=1.2",
+                                   "control.wall_error=0.02", "control.wall_error=-0.02"};
+    const char *const forces[] = {"control.force=0.5", "control.force=1", "control.force=2"};
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) {
+            summary hybrid = rig_summary(SETTINGS("control.law=hybrid", forces[k], beliefs[i]));
+            summary optimal = rig_summary(SETTINGS("control.law=optimal", forces[k], beliefs[i]));
+            check_close(optimal.separations, 0, 0);
+            check_below(optimal.peak_force_N - optimal.force_command_N,
+                        fmax(hybrid.peak_force_N - hybrid.force_command_N, 0));
+            check_below(fabs(optimal.steady_error_N), fabs(hybrid.steady_error_N));
+        }
+    }
+}
+
+// --- the others -----------------------------------------------------------------------------
+
+static void bang_bang_hits_harder_than_the_plain_approach(void **state)
+{
+    (void)state;
+    summary plain = rig_summary(SETTINGS("control.law=hybrid"));
+    summary bang = rig_summary(SETTINGS("control.law=bang-bang"));
+    check_below(1.2 * plain.peak_force_N, bang.peak_force_N);
+    check_below(plain.contact_impulse_Ns, bang.contact_impulse_Ns);
+}
+
+// Speed of the tip at the first touch and the peak that follows, wall at `angle` [rad].
+static double peak_of_touch(const char *angle, double *tip_speed)
+{
+    fault f;
+    scenario s;
+    run_result r;
+    char setting[64];
+    assert_int_equal(scenario_open(&s, "compare/vibration-phase", NULL, NULL), STATUS_OK);
+    snprintf(setting, sizeof setting, "wall.angle=%s", angle);
+    assert_int_equal(scenario_override(&s, setting, &f), STATUS_OK);
+    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    assert_non_null(r.touch);
+    *tip_speed = 0.5 * (r.touch[2] + r.touch[3]);
+    double peak = r.summary.peak_force_N;
+    run_finish(&r);
+    scenario_finish(&s);
+    return peak;
+}
+
+static void same_tip_speed_at_another_phase_gives_another_peak(void **state)
+{
+    (void)state;
+    double early, late, soft = peak_of_touch("0.11", &early), hard = peak_of_touch("0.21", &late);
+    check_relative(early, late, 0.01);
+    check_below(1.4 * soft, hard);
+}
+
+static void slower_approach_hits_softer(void **state)
+{
+    (void)state;
+    double last = HUGE_VAL;
+    const char *const limits[] = {"control.speed_limit=0.6", "control.speed_limit=0.4",
+                                  "control.speed_limit=0.2"};
+    for (int i = 0; i < 3; i++) {
+        summary s = rig_summary(SETTINGS("control.law=speed-limit", limits[i], "run.duration=2.5"));
+        check_below(s.contact_impulse_Ns, last);
+        last = s.contact_impulse_Ns;
+    }
+}
+
+// The force at rest is the commanded one to what friction holds, 0.045 N m over 2 l, for every law
+// that regulates it.
+static void every_law_ends_near_its_force(void **state)
+{
+    (void)state;
+    const char *const laws[] = {"control.law=hybrid",         "control.law=force-pd",
+                                "control.law=reverse-torque", "control.law=speed-limit",
+                                "control.law=discontinuous",  "control.law=recovering",
+                                "control.law=optimal",        "control.law=bang-bang"};
+    for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
+        summary s = rig_summary(SETTINGS(laws[i]));
+        check_close(s.steady_force_N, 1, 0.05);
+    }
+    summary integral = rig_summary(SETTINGS("control.law=force-integral", "run.duration=4"));
+    check_close(integral.steady_force_N, 1, 0.05);
+}
+
+static void recovering_law_returns_to_position_control(void **state)
+{
+    (void)state;
+    run_result r = rig_run(SETTINGS("control.law=recovering", "control.approach_voltage=7",
+                                    "control.force=0.5", "run.duration=2"),
+                           true);
+    bool recovered = false, pressed_after = false;
+    for (size_t i = 0; i < r.trace.row_count; i++) {
+        recovered |= r.trace.rows[i].controller_mode == 3;
+        pressed_after |= recovered && r.trace.rows[i].controller_mode == 2;
+    }
+    assert_true(recovered);
+    assert_true(pressed_after);
+    run_finish(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hybrid_makes_contact_once_and_settles),
+        cmocka_unit_test(hybrid_force_follows_its_coefficients),
+        cmocka_unit_test(quintic_joins_contact_and_rest),
+        cmocka_unit_test(gains_have_both_readings),
+        cmocka_unit_test(gain_makes_the_cost_least),
+        cmocka_unit_test(estimator_finds_a_constant),
+        cmocka_unit_test(optimal_law_beats_the_hybrid),
+        cmocka_unit_test(optimal_law_stands_wrong_beliefs),
+        cmocka_unit_test(bang_bang_hits_harder_than_the_plain_approach),
+        cmocka_unit_test(same_tip_speed_at_another_phase_gives_another_peak),
+        cmocka_unit_test(slower_approach_hits_softer),
+        cmocka_unit_test(every_law_ends_near_its_force),
+        cmocka_unit_test(recovering_law_returns_to_position_control),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,113 @@
+#include "src/lab/convergence.h"
+#include "tests/arm_fixture.h"
+
+static void the_order_of_made_up_errors_is_found(void **state)
+{
+    (void)state;
+    for (int p = 1; p <= 4; p++) {
+        double value[3];
+        for (int i = 0; i < 3; i++) {
+            value[i] = 5 + 0.3 * pow(0.5, p * i);
+        }
+        check_close(observed_order(value[0], value[1], value[2]), p, 1e-9);
+    }
+    // rounding, differences of two signs and such that grow tell nothing
+    assert_true(isnan(observed_order(1, 1 + 1e-15, 1 - 1e-15)));
+    assert_true(isnan(observed_order(1, 2, 1.5)));
+    assert_true(isnan(observed_order(1, 1.1, 1.3)));
+    assert_true(isnan(observed_order((double)NAN, 1, 2)));
+}
+
+static convergence_panel panel_of(const char *const *settings)
+{
+    static char name[] = "test";
+    scenario s = {.name = name, .parameters = fixture_parameters(settings)};
+    convergence_panel panel;
+    fault f = {0};
+    if (convergence_compute(&s, &panel, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return panel;
+}
+
+static const convergence_row *row_of(const convergence_panel *panel, const char *key)
+{
+    for (int i = 0; i < panel->row_count; i++) {
+        if (strcmp(panel->rows[i].key, key) == 0) {
+            return &panel->rows[i];
+        }
+    }
+    fail_msg("no row %s", key);
+    return NULL;
+}
+
+static void the_implicit_methods_are_of_second_order_through_impacts(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"method.name=newmark", "method.name=generalized-alpha"};
+    static const char *const keys[] = {"first_contact_s", "contact_impulse_Ns",
+                                       "first_pulse_peak_N", "steady_force_N", "motor_work_J"};
+    for (int m = 0; m < 2; m++) {
+        convergence_panel panel = panel_of(SETTINGS(methods[m]));
+        check_close(panel.step[0], 1e-3, 0);
+        check_close(panel.step[2], 2.5e-4, 0);
+        for (int k = 0; k < 5; k++) {
+            check_close(row_of(&panel, keys[k])->order, 2, 0.15);
+        }
+    }
+}
+
+static void the_event_method_needs_no_shorter_step(void **state)
+{
+    (void)state;
+    convergence_panel panel = panel_of(SETTINGS("method.step=2e-3"));
+    for (int i = 0; i < 2; i++) {
+        const convergence_row *peak = row_of(&panel, "first_pulse_peak_N");
+        check_relative(peak->value[i], peak->value[2], 1e-9);
+        check_close(row_of(&panel, "first_contact_s")->value[i],
+                    row_of(&panel, "first_contact_s")->value[2], 1e-10);
+    }
+}
+
+static void a_run_that_fails_is_told_with_its_step(void **state)
+{
+    (void)state;
+    static char name[] = "test";
+    scenario s = {.name = name,
+                  .parameters = fixture_parameters(SETTINGS(
+                      "method.name=newmark", "method.gamma=0.3", "arm.links=8", "run.duration=3"))};
+    convergence_panel panel;
+    fault f;
+    assert_int_equal(convergence_compute(&s, &panel, &f), STATUS_UNSTABLE);
+    assert_non_null(strstr(f.text, "with a step of 0.001 s"));
+}
+
+// The cheapest of the points that keep an error, and none beyond the first one that does not.
+static void the_least_cost_is_read_off_a_study(void **state)
+{
+    (void)state;
+    method_study study;
+    for (int i = 0; i < STUDY_STEPS; i++) {
+        study.points[0][i] =
+            (study_point){.step = pow(2, -i), .cost = 1 + i, .error = {pow(4, -i), (double)NAN, 0}};
+    }
+    study.points[0][2].error[0] = 1; // an accident among the long steps
+    double step = 0;
+    check_close(method_study_cost(&study, 0, 0, 1.01 * pow(4, -5), &step), 6, 0);
+    check_close(step, pow(2, -5), 0);
+    check_close(method_study_cost(&study, 0, 0, 0.9, &step), 4, 0);
+    assert_true(isnan(method_study_cost(&study, 0, 0, 1e-30, &step)));
+    assert_true(isnan(method_study_cost(&study, 0, 1, 1, &step)));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_order_of_made_up_errors_is_found),
+        cmocka_unit_test(the_implicit_methods_are_of_second_order_through_impacts),
+        cmocka_unit_test(the_event_method_needs_no_shorter_step),
+        cmocka_unit_test(a_run_that_fails_is_told_with_its_step),
+        cmocka_unit_test(the_least_cost_is_read_off_a_study),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,441 @@
+// The catalogue of figures and tables, judged by what is drawn: texts and where they are, numbers
+// beside them, bytes of files.
+#include "tests/check.h"
+
+#include <cairo.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "render/figures.h"
+#include "render/report.h"
+#include "render/text.h"
+
+// fontconfig keeps its cache until the process ends
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig\n";
+}
+
+static char folder[64];
+
+static char *path_of(const char *name)
+{
+    static char paths[4][256];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static char *read_file(const char *path, size_t *length)
+{
+    FILE *stream = fopen(path, "rb");
+    if (stream == NULL) {
+        fail_msg("%s cannot be read", path);
+    }
+    fseek(stream, 0, SEEK_END);
+    *length = (size_t)ftell(stream);
+    rewind(stream);
+    char *text = malloc(*length + 1);
+    assert_non_null(text);
+    assert_int_equal(fread(text, 1, *length, stream), *length);
+    text[*length] = '\0';
+    fclose(stream);
+    return text;
+}
+
+static artwork open_figure(const char *id, figure_options o)
+{
+    fault f = {0};
+    artwork drawn;
+    const thesis_figure *which = thesis_figure_find(id);
+    assert_non_null(which);
+    if (figure_open(which, &o, &drawn, &f) != STATUS_OK) {
+        fail_msg("%s: %s", id, f.text);
+    }
+    return drawn;
+}
+
+// Paints it on an unbounded recording; reports, and gives what the ink covers.
+static figure_rect record(const artwork *a, figure_report *report)
+{
+    fault f = {0};
+    figure_rect ink;
+    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
+    cairo_t *cr = cairo_create(surface);
+    if (a->paint(cr, a->what, report, &f) != STATUS_OK) {
+        fail_msg("%s: %s", a->title, f.text);
+    }
+    assert_int_equal(cairo_status(cr), CAIRO_STATUS_SUCCESS);
+    cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
+    cairo_destroy(cr);
+    cairo_surface_destroy(surface);
+    return ink;
+}
+
+static bool is_within(const figure_rect *r, const figure_rect *outer)
+{
+    const double slack = 0.5;
+    return r->x >= outer->x - slack && r->y >= outer->y - slack &&
+           r->x + r->width <= outer->x + outer->width + slack &&
+           r->y + r->height <= outer->y + outer->height + slack;
+}
+
+static bool overlap(const figure_rect *a, const figure_rect *b)
+{
+    // line boxes are taller than letters
+    double down = fmin(a->y + a->height, b->y + b->height) - fmax(a->y, b->y);
+    double across = fmin(a->x + a->width, b->x + b->width) - fmax(a->x, b->x);
+    return across > 0.5 && down > 0.3 * fmin(a->height, b->height);
+}
+
+// Nothing leaves the page and no text covers another.
+static void expect_tidy(const char *id, figure_options o)
+{
+    static figure_report r;
+    artwork drawn = open_figure(id, o);
+    figure_rect ink = record(&drawn, &r), page = {0, 0, ceil(drawn.width), ceil(drawn.height)};
+    if (!is_within(&ink, &page)) {
+        fail_msg("%s: ink at %g, %g of %g x %g leaves the page of %g x %g", id, ink.x, ink.y,
+                 ink.width, ink.height, page.width, page.height);
+    }
+    assert_true(r.text_count >= 3);
+    for (int i = 0; i < r.text_count; i++) {
+        if (!is_within(&r.texts[i].place, &page)) {
+            fail_msg("%s: '%s' is not within the page", id, r.texts[i].text);
+        }
+        for (int k = 0; k < i; k++) {
+            if (overlap(&r.texts[i].place, &r.texts[k].place)) {
+                fail_msg("%s: '%s' covers '%s'", id, r.texts[i].text, r.texts[k].text);
+            }
+        }
+    }
+    artwork_finish(&drawn);
+}
+
+static void every_figure_is_tidy(void **state)
+{
+    (void)state;
+    for (int i = 0; i < thesis_figure_count; i++) {
+        assert_ptr_equal(thesis_figure_find(thesis_figures[i].id), &thesis_figures[i]);
+        expect_tidy(thesis_figures[i].id, (figure_options){0});
+    }
+}
+
+static void figures_fit_a_column_of_85_mm(void **state)
+{
+    (void)state;
+    static const char *const ids[] = {"2.1", "2.2", "3.4", "3.11", "4.3", "4.6",
+                                      "5.2", "5.6", "5.7", "T3.1", "T4.2"};
+    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
+        artwork drawn = open_figure(ids[i], (figure_options){.width_mm = 85});
+        check_close(drawn.width, 85 / 25.4 * 72, 1e-6);
+        artwork_finish(&drawn);
+        expect_tidy(ids[i], (figure_options){.width_mm = 85});
+    }
+}
+
+static bool has_text(const figure_report *r, const char *wanted)
+{
+    for (int i = 0; i < r->text_count; i++) {
+        if (strstr(r->texts[i].text, wanted) != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void expect_texts(const char *id, const char *const *texts)
+{
+    static figure_report r;
+    artwork drawn = open_figure(id, (figure_options){0});
+    record(&drawn, &r);
+    for (; *texts != NULL; texts++) {
+        if (!has_text(&r, *texts)) {
+            fail_msg("%s: '%s' is not drawn", id, *texts);
+        }
+    }
+    artwork_finish(&drawn);
+}
+
+static void figures_say_what_they_show(void **state)
+{
+    (void)state;
+    expect_texts("2.1", (const char *[]){"Fig. 2.1", "40\u2009kΩ", "FSR", "(V)", "(N)", NULL});
+    expect_texts("4.3", (const char *[]){"0.0443", "T = 70.0\u2009ms", "fmax = 1.34\u2009N", NULL});
+    expect_texts("4.2", (const char *[]){"impulse 0.0443\u2009N·s", "0.743\u2009m/s", NULL});
+    expect_texts("5.5", (const char *[]){"impact mode", "force mode", "(V)", NULL});
+    expect_texts("T2.1", (const char *[]){"2.443\u2009V·s/rad", "33.6\u2009Ω", NULL});
+    expect_texts("T4.3", (const char *[]){"2.04", "7.43", "4.92\u2009N·m/rad", NULL});
+}
+
+// The number in the column `column` of the line that begins with `start`; fails if there is none.
+static double csv_number(const char *csv, const char *start, int column)
+{
+    const char *line = strstr(csv, start);
+    if (line == NULL) {
+        fail_msg("no line begins with '%s'", start);
+    }
+    for (int i = 0; i < column; i++) {
+        line = strchr(line, ',');
+        assert_non_null(line);
+        line++;
+    }
+    return *line == ',' || *line == '\n' ? (double)NAN : atof(line);
+}
+
+static char *csv_of(const char *id)
+{
+    fault f = {0};
+    size_t length;
+    const thesis_figure *which = thesis_figure_find(id);
+    char name[64];
+    if (figure_draw(id, path_of("csv"), "svg", &f) != STATUS_OK) {
+        fail_msg("%s: %s", id, f.text);
+    }
+    snprintf(name, sizeof name, "csv/%s.csv", which->file);
+    return read_file(path_of(name), &length);
+}
+
+static void recorded_signals_stand_beside_their_picture(void **state)
+{
+    (void)state;
+    char *csv = csv_of("3.4");
+    assert_non_null(strstr(csv, ",force,"));
+    assert_non_null(strstr(csv, ",force corrected,"));
+    assert_non_null(strstr(csv, "mark,contact,"));
+    free(csv);
+    csv = csv_of("5.4");
+    assert_non_null(strstr(csv, ",calculated_force,"));
+    assert_null(strstr(csv, "corrected"));
+    assert_non_null(strstr(csv, "mark,force mode,"));
+    free(csv);
+}
+
+// The error of one cell of the map; NaN where the run was stopped.
+static double map_error(const char *csv, const char *step, double beta, double gamma)
+{
+    double nearest = HUGE_VAL, error = (double)NAN;
+    char start[64];
+    snprintf(start, sizeof start, "newmark,%s,", step);
+    for (const char *line = strstr(csv, start); line != NULL; line = strstr(line + 1, start)) {
+        double b = csv_number(line, start, 2), g = csv_number(line, start, 3);
+        double distance = hypot(b - beta, g - gamma);
+        if (distance < nearest) {
+            nearest = distance;
+            error = csv_number(line, start, 4);
+        }
+    }
+    check_below(nearest, 0.02);
+    return error;
+}
+
+static void the_map_tells_good_pairs_from_bad(void **state)
+{
+    (void)state;
+    char *csv = csv_of("beta-gamma");
+    // the thesis's pair at its step, and the same at a fifth of the step
+    double at_1_ms = map_error(csv, "0.001", 0.4, 0.5);
+    check_below(at_1_ms, 0.1);
+    check_below(map_error(csv, "0.0002", 0.4, 0.5), at_1_ms);
+    // first order beside gamma = 1/2
+    check_below(2 * at_1_ms, map_error(csv, "0.001", 0.4, 0.9));
+    // below a quarter contact is unstable whatever gamma: stopped, or nothing like the force
+    double low = map_error(csv, "0.0002", 0.1, 0.5), high = map_error(csv, "0.0002", 0.1, 0.9);
+    assert_true(isnan(low) || low > 10);
+    assert_true(isnan(high) || high > 10);
+    free(csv);
+}
+
+static void table_cells_are_right(void **state)
+{
+    (void)state;
+    char *csv = csv_of("T4.1");
+    const char *group = "Peak force by the energy principle (N),thesis";
+    check_close(csv_number(csv, group, 2), 23.93, 0);
+    check_close(csv_number(csv, group, 5), 82.92, 0);
+    group = "Peak force by the energy principle (N),printed model";
+    check_close(csv_number(csv, group, 2), 23.93, 0.5);
+    free(csv);
+    // what the stability table allows to the arm's 986 Hz mode (impactlab modes)
+    csv = csv_of("T3.1");
+    const char *row = strstr(csv, "linear acceleration");
+    assert_non_null(row);
+    assert_non_null(strstr(row, "0.559\u2009ms"));
+    free(csv);
+}
+
+// ---- files
+// ---------------------------------------------------------------------------------------
+
+static void expect_same_file(const char *name)
+{
+    char first[80], second[80];
+    size_t lengths[2];
+    snprintf(first, sizeof first, "once/%s", name);
+    snprintf(second, sizeof second, "twice/%s", name);
+    char *a = read_file(path_of(first), &lengths[0]), *b = read_file(path_of(second), &lengths[1]);
+    assert_int_equal(lengths[0], lengths[1]);
+    assert_memory_equal(a, b, lengths[0]);
+    free(a);
+    free(b);
+}
+
+static void a_second_run_writes_the_same_bytes(void **state)
+{
+    (void)state;
+    static const char *const ids[] = {"2.3", "4.2", "4.6", "5.7", "T4.2"};
+    static const char *const folders[] = {"once", "twice"};
+    fault f = {0};
+    for (int pass = 0; pass < 2; pass++) {
+        // in another order, so that nothing drawn before shows
+        for (int i = 0; i < 5; i++) {
+            const char *id = ids[pass == 0 ? i : 4 - i];
+            assert_int_equal(figure_draw(id, path_of(folders[pass]), "png,pdf,svg", &f), STATUS_OK);
+        }
+    }
+    for (int i = 0; i < 5; i++) {
+        static const char *const endings[] = {"png", "pdf", "svg", "csv"};
+        for (int k = 0; k < 4; k++) {
+            char name[64];
+            snprintf(name, sizeof name, "%s.%s", thesis_figure_find(ids[i])->file, endings[k]);
+            expect_same_file(name);
+        }
+    }
+}
+
+static void fonts_are_embedded_as_outlines(void **state)
+{
+    (void)state;
+    static const char *const ids[] = {"2.1", "T3.2", "beta-gamma"};
+    fault f = {0};
+    for (size_t i = 0; i < 3; i++) {
+        size_t length;
+        char name[64];
+        assert_int_equal(figure_draw(ids[i], path_of("fonts"), "pdf", &f), STATUS_OK);
+        snprintf(name, sizeof name, "fonts/%s.pdf", thesis_figure_find(ids[i])->file);
+        char *pdf = read_file(path_of(name), &length);
+        assert_null(memmem(pdf, length, "/Type3", 6));
+        assert_non_null(memmem(pdf, length, "/FontFile2", 10));
+        free(pdf);
+    }
+}
+
+static void themes_change_the_page(void **state)
+{
+    (void)state;
+    static const char *const ids[] = {"3.4", "4.1", "T2.1"};
+    fault f = {0};
+    for (size_t i = 0; i < 3; i++) {
+        for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
+            artwork drawn = open_figure(ids[i], (figure_options){.theme = theme});
+            cairo_surface_t *surface =
+                cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)drawn.width, 40);
+            cairo_t *cr = cairo_create(surface);
+            assert_int_equal(drawn.paint(cr, drawn.what, NULL, &f), STATUS_OK);
+            cairo_destroy(cr);
+            cairo_surface_flush(surface);
+            unsigned char corner = cairo_image_surface_get_data(surface)[4];
+            assert_true(theme == THEME_DARK ? corner < 60 : corner > 250);
+            cairo_surface_destroy(surface);
+            artwork_finish(&drawn);
+        }
+    }
+}
+
+static void figures_are_asked_for_by_id(void **state)
+{
+    (void)state;
+    fault f = {0};
+    assert_null(thesis_figure_find("3.99"));
+    assert_ptr_equal(thesis_figure_find("t4.1"), thesis_figure_find("T4.1"));
+    assert_ptr_equal(thesis_figure_find("fig-3-4"), thesis_figure_find("3.4"));
+    assert_int_equal(figure_draw("3.99", folder, "png", &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "3.99"));
+    assert_int_equal(figure_draw("3.4", folder, "png,gif", &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "gif"));
+    assert_int_equal(figure_draw("3.4", path_of("a/b/c"), "png", &f), STATUS_CANNOT_WRITE);
+}
+
+// ---- the report
+// ----------------------------------------------------------------------------------
+
+static void the_report_stands_alone(void **state)
+{
+    (void)state;
+    fault f = {0};
+    size_t length;
+    if (report_write(path_of("report"), &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    char *html = read_file(path_of("report/report.html"), &length);
+    assert_null(strstr(html, "src="));
+    assert_null(strstr(html, "href=\"http"));
+    assert_null(strstr(html, "@import"));
+    for (int i = 0; i < thesis_figure_count; i++) {
+        char again[64];
+        snprintf(again, sizeof again, "<code>impactlab figures %s</code>", thesis_figures[i].id);
+        if (strstr(html, again) == NULL) {
+            fail_msg("%s is not in the report", thesis_figures[i].id);
+        }
+    }
+    assert_non_null(strstr(html, "82.92"));
+    assert_non_null(strstr(html, "motor.torque_constant"));
+    // glyphs of different figures have names of their own
+    const char *first = strstr(html, " id=\"i0-");
+    assert_non_null(first);
+    assert_non_null(strstr(html, " id=\"i1-"));
+    free(html);
+    char *pdf = read_file(path_of("report/report.pdf"), &length);
+    assert_non_null(memmem(pdf, length, "%PDF-", 5));
+    assert_null(memmem(pdf, length, "/Type3", 6));
+    free(pdf);
+}
+
+static void a_report_without_a_folder_is_complained_about(void **state)
+{
+    (void)state;
+    fault f = {0};
+    assert_int_equal(report_write("/proc/nowhere", &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "/proc/nowhere"));
+}
+
+// ---------------------------------------------------------------------------------------------------
+
+static int make_work_folder(void **state)
+{
+    (void)state;
+    snprintf(folder, sizeof folder, "/tmp/impactlab-figures-XXXXXX");
+    return mkdtemp(folder) == NULL;
+}
+
+static int remove_work_folder(void **state)
+{
+    (void)state;
+    char command[128];
+    text_release();
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
+    return system(command);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_figure_is_tidy),
+        cmocka_unit_test(figures_fit_a_column_of_85_mm),
+        cmocka_unit_test(figures_say_what_they_show),
+        cmocka_unit_test(recorded_signals_stand_beside_their_picture),
+        cmocka_unit_test(the_map_tells_good_pairs_from_bad),
+        cmocka_unit_test(table_cells_are_right),
+        cmocka_unit_test(a_second_run_writes_the_same_bytes),
+        cmocka_unit_test(fonts_are_embedded_as_outlines),
+        cmocka_unit_test(themes_change_the_page),
+        cmocka_unit_test(figures_are_asked_for_by_id),
+        cmocka_unit_test(the_report_stands_alone),
+        cmocka_unit_test(a_report_without_a_folder_is_complained_about),
+    };
+    return cmocka_run_group_tests_name("figures", tests, make_work_folder, remove_work_folder) != 0;
+}

@@ -1,0 +1,148 @@
+// No step, event or push asks for memory: whoever strides in real time, or a million times, relies
+// on it. The linker puts the counting functions below in the place of the allocator's
+// (-Wl,--wrap=malloc and so on, see meson.build).
+#include <stdlib.h>
+
+#include "src/predict/linearised.h"
+#include "src/solve/motion.h"
+#include "tests/arm_fixture.h"
+
+static long allocations;
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+
+void *__wrap_malloc(size_t size)
+{
+    allocations++;
+    return __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t count, size_t size)
+{
+    allocations++;
+    return __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *old, size_t size)
+{
+    allocations++;
+    return __real_realloc(old, size);
+}
+
+typedef struct passage {
+    long strides, allocations;
+    int events[MOTION_SLIP + 1];
+} passage;
+
+// Goes through a whole run of the arm, with a push half way, and counts.
+static passage go_through(const char *const *settings)
+{
+    parameters p = fixture_parameters(settings);
+    passage seen = {0};
+    arm a;
+    motion_report report;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    motion_start(&a, m, p.initial.angle, p.initial.velocity);
+    long before = allocations;
+    bool pushed = false;
+    while (m->state[SLOT_TIME] < p.run.duration) {
+        double until = pushed ? p.run.duration : 0.5 * p.run.duration;
+        assert_int_equal(motion_stride(&a, m, until, p.method.step, &report), STATUS_OK);
+        seen.strides++;
+        seen.events[report.event]++;
+        double middle = 0.5 * (m->trial[SLOT_TIME] + m->state[SLOT_TIME]);
+        assert_non_null(motion_between(&a, m, middle));
+        if (report.event != MOTION_REACHED) {
+            motion_apply(&a, m, &report);
+        }
+        if (!pushed && m->state[SLOT_TIME] >= until) {
+            pushed = true;
+            motion_push(&a, m, 0.01, &report);
+        }
+    }
+    seen.allocations = allocations - before;
+    motion_destroy(m);
+    return seen;
+}
+
+static void the_counter_counts(void **state)
+{
+    (void)state;
+    long before = allocations;
+    parameters p = fixture_parameters(NULL);
+    arm a;
+    arm_init(&a, &p);
+    motion_destroy(motion_create(&a, &p.method));
+    assert_true(allocations > before);
+}
+
+static void an_explicit_run_through_impacts_allocates_nothing(void **state)
+{
+    (void)state;
+    passage seen = go_through(NULL);
+    assert_int_equal(seen.allocations, 0);
+    assert_true(seen.events[MOTION_IMPACT] >= 2);
+    assert_true(seen.events[MOTION_RELEASE] >= 1);
+    assert_true(seen.events[MOTION_STICK] >= 1);
+    seen = go_through(SETTINGS("arm.links=5", "wall.kind=plane", "wall.restitution=0.5",
+                               "arm.damping_ratio=0.02"));
+    assert_int_equal(seen.allocations, 0);
+    assert_true(seen.events[MOTION_IMPACT] >= 5);
+}
+
+static void implicit_runs_through_impacts_allocate_nothing(void **state)
+{
+    (void)state;
+    passage seen = go_through(SETTINGS("method.name=newmark"));
+    assert_int_equal(seen.allocations, 0);
+    assert_true(seen.events[MOTION_IMPACT] >= 2);
+    seen = go_through(SETTINGS("method.name=generalized-alpha", "arm.links=6"));
+    assert_int_equal(seen.allocations, 0);
+    assert_true(seen.events[MOTION_IMPACT] >= 1);
+    // steps that do not resolve the chain
+    seen = go_through(SETTINGS("arm.links=64", "wall.kind=plane"));
+    assert_int_equal(seen.allocations, 0);
+    assert_true(seen.events[MOTION_IMPACT] >= 1);
+}
+
+static void a_hub_spring_allocates_nothing(void **state)
+{
+    (void)state;
+    passage seen = go_through(SETTINGS("arm.hub_joint=spring", "run.duration=0.4"));
+    assert_int_equal(seen.allocations, 0);
+    assert_true(seen.events[MOTION_IMPACT] >= 1);
+}
+
+// The predictor of two links is asked in free flight at every sample.
+static void a_prediction_allocates_nothing(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(NULL);
+    const double q[] = {0.1, 0.1}, w[] = {0.6, 0.9};
+    prediction out;
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    long before = allocations;
+    assert_int_equal(predict_linearised(&a, m, q, w, &out), STATUS_OK);
+    assert_int_equal(allocations - before, 0);
+    motion_destroy(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_counter_counts),
+        cmocka_unit_test(an_explicit_run_through_impacts_allocates_nothing),
+        cmocka_unit_test(implicit_runs_through_impacts_allocate_nothing),
+        cmocka_unit_test(a_hub_spring_allocates_nothing),
+        cmocka_unit_test(a_prediction_allocates_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

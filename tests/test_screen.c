@@ -1,0 +1,400 @@
+// The terminal lab without a terminal: the grid of cells, the panels, keys and commands.
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/lab/random.h"
+#include "ui/lab_state.h"
+
+static void fail_on_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static void open_lab(lab *l, const char *name)
+{
+    scenario s;
+    fault f = {0};
+    assert_int_equal(scenario_open(&s, name, fail_on_fault, NULL), STATUS_OK);
+    if (lab_init(l, &s, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+static void press(lab *l, const char *keys)
+{
+    fault f = {0};
+    if (!lab_keys(l, keys, &f)) {
+        fail_msg("%s", f.text);
+    }
+}
+
+// The screen as text, to be freed.
+static char *picture(lab *l, int width, int height, glyph_set set)
+{
+    screen s = {0};
+    char *text = NULL;
+    size_t size = 0;
+    assert_true(screen_resize(&s, width, height));
+    lab_draw(l, &s);
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    screen_dump(&s, set, stream);
+    fclose(stream);
+    screen_finish(&s);
+    return text;
+}
+
+static void assert_shows(lab *l, const char *wanted)
+{
+    char *text = picture(l, 120, 40, GLYPHS_BRAILLE);
+    if (strstr(text, wanted) == NULL) {
+        fail_msg("'%s' is not on the screen:\n%s", wanted, text);
+    }
+    free(text);
+}
+
+static void assert_hides(lab *l, const char *unwanted)
+{
+    char *text = picture(l, 120, 40, GLYPHS_BRAILLE);
+    if (strstr(text, unwanted) != NULL) {
+        fail_msg("'%s' is on the screen:\n%s", unwanted, text);
+    }
+    free(text);
+}
+
+static void test_text_is_cut_and_cleaned(void **state)
+{
+    (void)state;
+    screen s = {0};
+    char *text = NULL;
+    size_t size = 0;
+    assert_true(screen_resize(&s, 8, 2));
+    assert_int_equal(screen_text(&s, 0, 0, 4, INK_TEXT, "\u03b8\tabcdef"), 4);
+    screen_text(&s, 6, 1, 10, INK_TEXT, "\xff\x1b[2J");
+    screen_text(&s, -2, 1, 4, INK_TEXT, "wxyz");
+    screen_put(&s, 0, -1, 'x', INK_TEXT);
+    screen_put(&s, 8, 0, 'x', INK_TEXT);
+    FILE *stream = open_memstream(&text, &size);
+    screen_dump(&s, GLYPHS_BRAILLE, stream);
+    fclose(stream);
+    assert_string_equal(text, "\u03b8?ab\nyz    ??\n");
+    free(text);
+    screen_finish(&s);
+}
+
+static void test_lines_of_dots_stay_within_their_canvas(void **state)
+{
+    (void)state;
+    screen s = {0};
+    assert_true(screen_resize(&s, 6, 4));
+    canvas c = {&s, 1, 1, 4, 2};
+    canvas_line(&c, -1e12, 4, 1e12, 4, INK_ARM);
+    canvas_line(&c, (double)NAN, 0, 3, 3, INK_ARM);
+    canvas_line(&c, 1e300, 1e300, 1e301, 1e301, INK_ARM);
+    for (int y = 0; y < 4; y++) {
+        for (int x = 0; x < 6; x++) {
+            bool on_line = y == 2 && x >= 1 && x <= 4;
+            assert_int_equal(s.cells[y * 6 + x].glyph != ' ', on_line);
+        }
+    }
+    screen_finish(&s);
+}
+
+static void test_every_glyph_has_a_twin_in_ascii(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    static const char *const pages[] = {"<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab>m"};
+    for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
+        press(&l, pages[i]);
+        char *text = picture(&l, 150, 50, GLYPHS_ASCII);
+        for (const char *c = text; *c; c++) {
+            assert_true((*c >= ' ' && *c < 127) || *c == '\n');
+        }
+        free(text);
+    }
+    lab_finish(&l);
+}
+
+static void test_playing_shows_an_impact_within_seconds(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    assert_shows(&l, "free flight");
+    press(&l, "<Space>");
+    lab_advance(&l, 2);
+    assert_shows(&l, "impact 0.0443 N s");
+    assert_shows(&l, "in contact");
+    lab_advance(&l, 100);
+    assert_false(l.playing);
+    assert_shows(&l, "end of the run");
+    lab_finish(&l);
+}
+
+// A newcomer's way: watch, pause, go back to just before contact, lower the voltage, compare.
+static void test_a_lower_voltage_is_compared_with_the_run_before(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    press(&l, "<Space>");
+    lab_advance(&l, 3);
+    press(&l, "<Space>NNNN<Home>nN");
+    press(&l, ":seek 0.2<Enter>b<Enter>");
+    assert_shows(&l, ":set motor.voltage 1");
+    press(&l, "<Backspace>0.5<Enter>");
+    assert_shows(&l, "motor.voltage = 0.5 V from 0.2000 s on");
+    check_below(l.session.run.summary.peak_force_N, l.session.other.summary.peak_force_N);
+    press(&l, "c");
+    assert_shows(&l, "this run beside the old one");
+    assert_shows(&l, "first_pulse_peak_N                0.9416       1.337");
+    press(&l, "<Esc>u");
+    check_close(l.session.run.summary.peak_force_N, l.session.other.summary.peak_force_N, 0);
+    press(&l, "U");
+    check_below(l.session.run.summary.peak_force_N, l.session.other.summary.peak_force_N);
+    lab_finish(&l);
+}
+
+// The number of dots drawn in the column of cells that shows an instant.
+static int tallest_column(lab *l, int width)
+{
+    screen s = {0};
+    int tallest = 0;
+    assert_true(screen_resize(&s, width, 40));
+    lab_draw(l, &s);
+    for (int x = l->plot_x; x < l->plot_x + l->plot_width; x++) {
+        int cells = 0;
+        for (int y = l->plot_y + 1; y < l->plot_y + l->plot_height - 2; y++) {
+            uint32_t glyph = s.cells[(long)y * s.width + x].glyph;
+            cells += glyph > 0x2800 && glyph < 0x2900;
+        }
+        tallest = cells > tallest ? cells : tallest;
+    }
+    screen_finish(&s);
+    return tallest;
+}
+
+static void test_a_spike_of_one_row_is_drawn(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    press(&l, "134:extend 19<Enter><End>");
+    press(&l, ":trace impulse<Enter>");
+    // the impulse is one row of twenty thousand, and its line goes up the whole pane
+    assert_true(tallest_column(&l, 120) >= l.plot_height - 4);
+    lab_finish(&l);
+}
+
+static void test_values_show_the_difference_to_the_mark(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    press(&l, ":seek 0.2<Enter>m<Tab>:seek 0.25<Enter>");
+    assert_shows(&l, "values, minus mark");
+    assert_shows(&l, "from mark 0.05 s");
+    press(&l, "<Esc>");
+    assert_hides(&l, "from mark");
+    lab_finish(&l);
+}
+
+static void test_the_list_filters_and_opens(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    press(&l, "/three");
+    assert_shows(&l, "corrected/three-links");
+    press(&l, "<Enter><Enter>");
+    assert_string_equal(l.session.base.name, "corrected/three-links");
+    press(&l, ":open thesis/fig-3-4<Enter>");
+    assert_string_equal(l.session.base.name, "thesis/fig-3-4");
+    assert_shows(&l, "printed");
+    press(&l, ":open nowhere<Enter>");
+    assert_true(l.warning);
+    assert_string_equal(l.session.base.name, "thesis/fig-3-4");
+    press(&l, "[");
+    assert_string_not_equal(l.session.base.name, "thesis/fig-3-4");
+    lab_finish(&l);
+}
+
+static void test_what_is_typed_is_completed(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    press(&l, ":comp<Tab>");
+    assert_string_equal(l.prompt, "compare ");
+    press(&l, "<C-u>set motor.vol<Tab>");
+    assert_string_equal(l.prompt, "set motor.voltage");
+    assert_shows(&l, "motor.voltage_limit");
+    press(&l, "<Esc>:set motor.voltag 2<Enter>");
+    assert_shows(&l, "did you mean motor.voltage?");
+    press(&l, ":brunch<Enter>");
+    assert_shows(&l, "did you mean branch?");
+    lab_finish(&l);
+}
+
+static void test_help_lists_every_key(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    press(&l, "?");
+    assert_shows(&l, ":branch");
+    assert_shows(&l, "leave the lab");
+    press(&l, "<Esc>");
+    assert_hides(&l, "leave the lab");
+    assert_false(l.quit);
+    press(&l, "q");
+    assert_true(l.quit);
+    lab_finish(&l);
+}
+
+static void test_saved_scenario_and_screen(void **state)
+{
+    (void)state;
+    lab l;
+    char folder[] = "/tmp/impactlab-screen-XXXXXX", line[128], path[64];
+    assert_non_null(mkdtemp(folder));
+    open_lab(&l, "corrected/first-impact");
+    l.width = 100;
+    l.height = 30;
+    press(&l, ":seek 0.2<Enter>");
+    assert_true(lab_carry_out(&l, "set motor.voltage 0.5"));
+    static const char *const endings[] = {"csv", "yaml", "txt", "svg"};
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        snprintf(line, sizeof line, "save %s/run.%s", folder, endings[i]);
+        if (!lab_carry_out(&l, line)) {
+            fail_msg("%s: %s", line, l.message);
+        }
+    }
+    assert_false(lab_carry_out(&l, "save /nowhere/run.csv"));
+    assert_false(lab_carry_out(&l, "save run.doc"));
+    double peak = l.session.run.summary.peak_force_N;
+    snprintf(path, sizeof path, "%s/run.yaml", folder);
+    assert_true(lab_open(&l, path));
+    check_close(l.session.run.summary.peak_force_N, peak, 0);
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        snprintf(path, sizeof path, "%s/run.%s", folder, endings[i]);
+        assert_int_equal(unlink(path), 0);
+    }
+    assert_int_equal(rmdir(folder), 0);
+    lab_finish(&l);
+}
+
+static void test_a_click_moves_the_cursor(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    free(picture(&l, 120, 40, GLYPHS_BRAILLE));
+    lab_click(&l, l.plot_x + l.plot_width / 2, l.plot_y + 3);
+    check_close(l.session.now, 0.5, 0.02);
+    lab_click(&l, 119, 39);
+    lab_click(&l, -5, 1000);
+    check_close(l.session.now, 0.5, 0.02);
+    lab_finish(&l);
+}
+
+static void test_every_scenario_and_every_size_draws(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    static const int sizes[][2] = {{1, 1},   {300, 100}, {40, 12}, {41, 13}, {72, 20},
+                                   {99, 29}, {100, 30},  {39, 50}, {200, 5}};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        static const char *const pages[] = {"", "?", "<Esc>o", "<Esc>c", "<Esc>:set ", "<Esc><Tab>"};
+        for (size_t k = 0; k < sizeof pages / sizeof pages[0]; k++) {
+            press(&l, pages[k]);
+            free(picture(&l, sizes[i][0], sizes[i][1], GLYPHS_BLOCKS));
+        }
+    }
+    free(picture(&l, 20, 3, GLYPHS_ASCII));
+    for (int i = 0; i < l.name_count; i++) {
+        press(&l, "]");
+        session_seek(&l.session, 0.6 * session_end(&l.session));
+        assert_shows(&l, l.session.base.name);
+    }
+    lab_finish(&l);
+}
+
+static int random_below(random_stream *r, int limit)
+{
+    return (int)(random_uniform(r) * limit) % limit;
+}
+
+static void test_random_keys_do_no_harm(void **state)
+{
+    (void)state;
+    static const int keys[] = {KEY_CODE_LEFT, KEY_CODE_RIGHT,  KEY_CODE_UP,      KEY_CODE_DOWN,
+                               KEY_CODE_HOME, KEY_CODE_END,    KEY_CODE_PAGE_UP, KEY_CODE_PAGE_DOWN,
+                               KEY_CODE_TAB,  KEY_CODE_ESCAPE, KEY_CODE_ENTER,   KEY_CODE_BACKSPACE,
+                               KEY_CODE_F1,   KEY_CODE_DELETE, 0x3b8,            0};
+    random_stream r;
+    random_start(&r, 6);
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    for (int i = 0; i < 4000; i++) {
+        bool saving = l.prompting && strncmp(l.prompt, "sa", 2) == 0;
+        bool lengthens = l.session.effective.parameters.run.duration > 3;
+        int key = random_below(&r, 3) > 0 ? ' ' + random_below(&r, 95) : keys[random_below(&r, 16)];
+        key = saving || (lengthens && key == 'x') ? KEY_CODE_ESCAPE : key;
+        lab_key(&l, key);
+        l.quit = false;
+        if (i % 7 == 0) {
+            lab_advance(&l, random_uniform(&r));
+            lab_click(&l, random_below(&r, 130), random_below(&r, 45));
+            lab_wheel(&l, random_below(&r, 2) ? 1 : -1);
+            free(picture(&l, 1 + random_below(&r, 160), 1 + random_below(&r, 60),
+                         (glyph_set)random_below(&r, GLYPH_SETS)));
+        }
+    }
+    // what was done can be saved, and gives the same run
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    session_write_scenario(&l.session, stream);
+    fclose(stream);
+    scenario saved;
+    run_result again;
+    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
+                     STATUS_OK);
+    run_scenario(&saved, true, &again);
+    const trace *t = &l.session.run.trace;
+    assert_int_equal(again.trace.row_count, t->row_count);
+    assert_memory_equal(again.trace.rows, t->rows, t->row_count * sizeof *t->rows);
+    run_finish(&again);
+    scenario_finish(&saved);
+    free(text);
+    lab_finish(&l);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_text_is_cut_and_cleaned),
+        cmocka_unit_test(test_lines_of_dots_stay_within_their_canvas),
+        cmocka_unit_test(test_every_glyph_has_a_twin_in_ascii),
+        cmocka_unit_test(test_playing_shows_an_impact_within_seconds),
+        cmocka_unit_test(test_a_lower_voltage_is_compared_with_the_run_before),
+        cmocka_unit_test(test_a_spike_of_one_row_is_drawn),
+        cmocka_unit_test(test_values_show_the_difference_to_the_mark),
+        cmocka_unit_test(test_the_list_filters_and_opens),
+        cmocka_unit_test(test_what_is_typed_is_completed),
+        cmocka_unit_test(test_help_lists_every_key),
+        cmocka_unit_test(test_saved_scenario_and_screen),
+        cmocka_unit_test(test_a_click_moves_the_cursor),
+        cmocka_unit_test(test_every_scenario_and_every_size_draws),
+        cmocka_unit_test(test_random_keys_do_no_harm),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

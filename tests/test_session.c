@@ -1,0 +1,240 @@
+// The session of the terminal lab: cursor, changes, undo, branches, and files that reproduce a run.
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/lab/session.h"
+
+static void fail_on_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static void open_session(session *s, const char *name)
+{
+    scenario base;
+    fault f = {0};
+    assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(session_init(s, &base, &f), STATUS_OK);
+}
+
+static void change(session *s, const char *path, const char *value)
+{
+    fault f = {0};
+    if (session_change(s, parameter_find(path), value, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+static void assert_same_trace(const trace *a, const trace *b)
+{
+    assert_int_equal(a->row_count, b->row_count);
+    assert_int_equal(a->event_count, b->event_count);
+    assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
+    assert_memory_equal(a->angles, b->angles,
+                        a->row_count * (size_t)a->angle_count * sizeof *a->angles);
+}
+
+static void test_stepping_back_and_forth_gives_the_same_states(void **state)
+{
+    (void)state;
+    session s;
+    open_session(&s, "corrected/first-impact");
+    change(&s, "run.duration", "12");
+    session_seek(&s, 11.5);
+    sample before = *session_sample(&s);
+    for (int i = 0; i < 10000; i++) {
+        assert_true(session_step(&s, -1));
+    }
+    assert_true(session_sample(&s)->time < 2);
+    for (int i = 0; i < 10000; i++) {
+        assert_true(session_step(&s, 1));
+    }
+    assert_memory_equal(&before, session_sample(&s), sizeof before);
+    session_finish(&s);
+}
+
+static void test_the_cursor_stays_within_the_run(void **state)
+{
+    (void)state;
+    session s;
+    open_session(&s, "corrected/first-impact");
+    assert_false(session_step(&s, -1));
+    session_seek(&s, -5);
+    check_close(s.now, 0, 0);
+    session_seek(&s, 1e9);
+    check_close(s.now, 1, 1e-12);
+    assert_false(session_step(&s, 1));
+    session_seek(&s, (double)NAN);
+    check_close(s.now, 0, 0);
+    session_finish(&s);
+}
+
+static void test_events_are_found_in_both_directions(void **state)
+{
+    (void)state;
+    session s;
+    open_session(&s, "corrected/first-impact");
+    assert_true(session_step_event(&s, 1));
+    while (session_event(&s)->kind != EVENT_IMPACT) {
+        assert_true(session_step_event(&s, 1));
+    }
+    check_close(s.now, 0.293412296, 1e-6);
+    // the cursor is on the far side of the impact
+    check_close(session_sample(&s)->contact, 1, 0);
+    double impact = s.now;
+    while (session_step_event(&s, 1)) {
+        assert_true(s.now > impact);
+    }
+    while (session_step_event(&s, -1)) {
+        assert_true(s.now < 1);
+    }
+    assert_false(session_step_event(&s, -1));
+    session_finish(&s);
+}
+
+static void test_a_lower_voltage_before_contact_hits_less_hard(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    open_session(&s, "corrected/first-impact");
+    double hard = s.run.summary.first_pulse_peak_N;
+    session_seek(&s, 0.25);
+    sample before = *session_sample(&s);
+    assert_int_equal(session_branch(&s, &f), STATUS_OK);
+    change(&s, "motor.voltage", "0.5");
+    assert_int_equal(s.inputs[0].kind, INPUT_TIMED);
+    check_below(s.run.summary.first_pulse_peak_N, hard);
+    // what was before the change is what it was, and the run branched from is still there
+    check_close(session_sample(&s)->last_angle, before.last_angle, 1e-9);
+    assert_true(s.has_other);
+    check_close(s.other.summary.first_pulse_peak_N, hard, 0);
+    check_close(session_parameters_at(&s, 0.2).motor.voltage, 1, 0);
+    check_close(session_parameters_at(&s, 0.3).motor.voltage, 0.5, 0);
+    session_finish(&s);
+}
+
+static void test_undo_and_redo(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    open_session(&s, "corrected/first-impact");
+    double first = s.run.summary.peak_force_N;
+    assert_int_equal(session_undo(&s, &f), STATUS_BAD_ARGUMENT);
+    change(&s, "wall.angle", "0.2");
+    double second = s.run.summary.peak_force_N;
+    session_seek(&s, 0.1);
+    assert_int_equal(session_push(&s, 0.02, &f), STATUS_OK);
+    double third = s.run.summary.peak_force_N;
+    assert_true(first != second && second != third);
+    assert_int_equal(session_undo(&s, &f), STATUS_OK);
+    check_close(s.run.summary.peak_force_N, second, 0);
+    assert_int_equal(session_undo(&s, &f), STATUS_OK);
+    check_close(s.run.summary.peak_force_N, first, 0);
+    assert_int_equal(session_redo(&s, &f), STATUS_OK);
+    assert_int_equal(session_redo(&s, &f), STATUS_OK);
+    check_close(s.run.summary.peak_force_N, third, 0);
+    assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
+    // a new change forgets what was undone
+    assert_int_equal(session_undo(&s, &f), STATUS_OK);
+    change(&s, "arm.k2", "10");
+    assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
+    session_finish(&s);
+}
+
+static void test_a_refused_change_changes_nothing(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    open_session(&s, "corrected/first-impact");
+    unsigned version = s.version;
+    assert_int_not_equal(session_change(&s, parameter_find("motor.voltage"), "strong", &f), 0);
+    assert_non_null(strstr(f.text, "motor.voltage"));
+    assert_int_not_equal(session_change(&s, parameter_find("wall.angle"), "77", &f), 0);
+    assert_int_not_equal(session_change(&s, parameter_find("method.step"), "1e-7", &f), 0);
+    assert_non_null(strstr(f.text, "MiB"));
+    assert_int_not_equal(session_push(&s, (double)NAN, &f), 0);
+    change(&s, "motor.voltage", "2");
+    assert_int_equal(s.version, version + 1);
+    // a combination that is refused takes its input out again
+    assert_int_not_equal(session_change(&s, parameter_find("arm.link_inertia"), "-1", &f), 0);
+    assert_int_equal(s.input_count, 1);
+    session_finish(&s);
+}
+
+static void save_and_compare(const session *s)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    session_write_scenario(s, stream);
+    fclose(stream);
+    scenario saved;
+    run_result again;
+    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
+                     STATUS_OK);
+    run_scenario(&saved, true, &again);
+    assert_same_trace(&s->run.trace, &again.trace);
+    run_finish(&again);
+    scenario_finish(&saved);
+    free(text);
+}
+
+static void test_a_saved_scenario_reproduces_the_run(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"corrected/first-impact", "corrected/voltage-step",
+                                        "corrected/three-links"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        session s;
+        fault f = {0};
+        open_session(&s, names[i]);
+        session_seek(&s, 0.123);
+        change(&s, "motor.voltage", "0.7");
+        change(&s, "arm.k2", "6.1");
+        session_seek(&s, 0.3333);
+        assert_int_equal(session_push(&s, -0.01, &f), STATUS_OK);
+        change(&s, "wall.restitution", "0.3");
+        save_and_compare(&s);
+        session_finish(&s);
+    }
+    session printed;
+    open_session(&printed, "thesis/fig-3-4");
+    session_seek(&printed, 0.1);
+    change(&printed, "motor.voltage", "2");
+    save_and_compare(&printed);
+    session_finish(&printed);
+}
+
+static void test_the_model_can_be_exchanged(void **state)
+{
+    (void)state;
+    session s;
+    open_session(&s, "corrected/first-impact");
+    double corrected = s.run.summary.first_contact_s;
+    change(&s, "arm.model", "printed");
+    assert_int_equal(s.effective.parameters.arm.hub_joint, HUB_SPRING);
+    assert_true(s.run.summary.first_contact_s != corrected);
+    session_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_stepping_back_and_forth_gives_the_same_states),
+        cmocka_unit_test(test_the_cursor_stays_within_the_run),
+        cmocka_unit_test(test_events_are_found_in_both_directions),
+        cmocka_unit_test(test_a_lower_voltage_before_contact_hits_less_hard),
+        cmocka_unit_test(test_undo_and_redo),
+        cmocka_unit_test(test_a_refused_change_changes_nothing),
+        cmocka_unit_test(test_a_saved_scenario_reproduces_the_run),
+        cmocka_unit_test(test_the_model_can_be_exchanged),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,158 @@
+// Figures over logarithmic axes, judged by the pixels of an image.
+#include "render/study_plot.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "render/palette.h"
+#include "render/text.h"
+#include "tests/check.h"
+
+enum { SCALE = 2 };
+
+static cairo_surface_t *paint(const figure *fig)
+{
+    double width = fig->width * 72 / 25.4 * SCALE, height = fig->height * 72 / 25.4 * SCALE;
+    cairo_surface_t *image =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
+    cairo_t *cr = cairo_create(image);
+    fault f;
+    cairo_scale(cr, SCALE, SCALE);
+    if (study_plot_paint(cr, fig, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    cairo_destroy(cr);
+    cairo_surface_flush(image);
+    return image;
+}
+
+// Middle of the pixels of a series' colour between two columns; false if there is none.
+static bool middle_of(cairo_surface_t *image, int slot, int from, int to, double *x, double *y)
+{
+    const unsigned char *data = cairo_image_surface_get_data(image);
+    int stride = cairo_image_surface_get_stride(image), count = 0;
+    colour c = palette_series(THEME_COLOUR, slot, 0);
+    double wanted[3] = {c.blue, c.green, c.red};
+    *x = *y = 0;
+    for (int row = 0; row < cairo_image_surface_get_height(image); row++) {
+        for (int column = from; column < to; column++) {
+            double off = 0;
+            for (int k = 0; k < 3; k++) {
+                off += fabs(data[row * stride + 4 * column + k] / 255.0 - wanted[k]);
+            }
+            if (off < 0.02) {
+                *x += column;
+                *y += row;
+                count++;
+            }
+        }
+    }
+    *x /= count;
+    *y /= count;
+    return count > 0;
+}
+
+static figure figure_of(const figure_panel *panel)
+{
+    return (figure){.x_name = "n",
+                    .x_label = "number",
+                    .panels = panel,
+                    .panel_count = 1,
+                    .width = 100,
+                    .height = 80};
+}
+
+// Three markers at 1, 10, 100: evenly spaced, whatever the values between.
+static void decades_are_evenly_spaced(void **state)
+{
+    (void)state;
+    static const double x[] = {1, 10, 100}, y[] = {1e-6, 1e-4, 1e-2};
+    static const int slots[] = {0, 5, 2};
+    figure_series series[3];
+    double at_x[3], at_y[3];
+    for (int i = 0; i < 3; i++) {
+        series[i] = (figure_series){.name = "s",
+                                    .x = &x[i],
+                                    .y = &y[i],
+                                    .count = 1,
+                                    .colour = slots[i],
+                                    .marker = MARKER_CIRCLE,
+                                    .no_line = true};
+    }
+    const figure_panel panel = {.name = "p", .label = "p", .series = series, .series_count = 3};
+    figure fig = figure_of(&panel);
+    cairo_surface_t *image = paint(&fig);
+    for (int i = 0; i < 3; i++) {
+        assert_true(middle_of(image, slots[i], 0, cairo_image_surface_get_width(image), &at_x[i],
+                              &at_y[i]));
+    }
+    check_close(at_x[2] - at_x[1], at_x[1] - at_x[0], 1);
+    check_close(at_y[2] - at_y[1], at_y[1] - at_y[0], 1);
+    assert_true(at_x[1] - at_x[0] > 50);
+    assert_true(at_y[0] - at_y[1] > 50); // upwards
+    cairo_surface_destroy(image);
+}
+
+static void points_at_or_below_zero_are_left_out(void **state)
+{
+    (void)state;
+    static const double x[] = {1, 10, 100}, y[] = {1, 0, 3}, none[] = {0, -1, 0};
+    const figure_series some = {.name = "s", .x = x, .y = y, .count = 3};
+    const figure_series nothing = {.name = "s", .x = x, .y = none, .count = 3};
+    const figure_panel panel = {.name = "p", .series = &some, .series_count = 1};
+    const figure_panel empty = {.name = "empty", .series = &nothing, .series_count = 1};
+    figure fig = figure_of(&panel);
+    cairo_surface_destroy(paint(&fig));
+    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 300, 300);
+    cairo_t *cr = cairo_create(image);
+    fault f;
+    fig = figure_of(&empty);
+    assert_int_equal(study_plot_paint(cr, &fig, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "empty"));
+    cairo_destroy(cr);
+    cairo_surface_destroy(image);
+}
+
+static void file_and_data_are_written(void **state)
+{
+    (void)state;
+    static const double x[] = {2, 20}, y[] = {0.5, 0.25};
+    const figure_series s = {.name = "cost", .label = "cost", .x = x, .y = y, .count = 2};
+    const figure_panel panel = {.name = "step", .unit = "s", .series = &s, .series_count = 1};
+    const figure fig = figure_of(&panel);
+    char folder[] = "/tmp/impactlab-test-XXXXXX", path[64], csv[64], text[512] = "";
+    fault f;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.svg", folder);
+    snprintf(csv, sizeof csv, "%s/a.csv", folder);
+    assert_int_equal(study_plot_write(&fig, path, &f), STATUS_OK);
+    FILE *file = fopen(csv, "r");
+    assert_non_null(file);
+    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+    fclose(file);
+    assert_non_null(strstr(text, "cost"));
+    assert_non_null(strstr(text, "20,0.25"));
+    unlink(csv);
+    unlink(path);
+    rmdir(folder);
+    snprintf(path, sizeof path, "%s/a.txt", folder);
+    assert_int_equal(study_plot_write(&fig, path, &f), STATUS_BAD_ARGUMENT);
+}
+
+static int release(void **state)
+{
+    (void)state;
+    text_release();
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(decades_are_evenly_spaced),
+        cmocka_unit_test(points_at_or_below_zero_are_left_out),
+        cmocka_unit_test(file_and_data_are_written),
+    };
+    return cmocka_run_group_tests(tests, NULL, release) != 0;
+}

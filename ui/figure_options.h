@@ -1,0 +1,9 @@
+// The look of pictures as the command line asks for it.
+#pragma once
+
+#include "render/artwork.h"
+#include "ui/command.h"
+
+// Takes --mono, --dark, --width and --dpi. Returns EXIT_DONE, or complains and returns the exit
+// status.
+int read_figure_options(const arguments *a, figure_options *o);

@@ -1,0 +1,21 @@
+// Keys as the terminal lab knows them.
+#pragma once
+
+// Keys that are no characters; characters are their Unicode number.
+enum lab_key_code {
+    KEY_CODE_FIRST = 0x110000,
+    KEY_CODE_LEFT,
+    KEY_CODE_RIGHT,
+    KEY_CODE_UP,
+    KEY_CODE_DOWN,
+    KEY_CODE_HOME,
+    KEY_CODE_END,
+    KEY_CODE_PAGE_UP,
+    KEY_CODE_PAGE_DOWN,
+    KEY_CODE_BACKSPACE,
+    KEY_CODE_DELETE,
+    KEY_CODE_F1,
+    KEY_CODE_ENTER = '\r',
+    KEY_CODE_ESCAPE = 27,
+    KEY_CODE_TAB = '\t'
+};

@@ -1,0 +1,80 @@
+// What is on the terminal's screen, before any terminal: a grid of cells, each a glyph and what it
+// stands for. A thin layer flushes it to the terminal; without one it is printed as text.
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+// What a cell shows; the theme gives it a colour. SERIES_0 and the seven after it belong to curves.
+typedef enum ink {
+    INK_TEXT,
+    INK_DIM,
+    INK_FRAME,
+    INK_TITLE,
+    INK_SELECTED, // reversed
+    INK_ARM,
+    INK_HUB,
+    INK_WALL,
+    INK_FORCE,
+    INK_EVENT,
+    INK_CURSOR,
+    INK_WARNING,
+    INK_OTHER, // the run kept for comparison
+    INK_SERIES_0,
+    INK_COUNT = INK_SERIES_0 + 8
+} ink;
+
+// Which characters a terminal can show.
+typedef enum glyph_set { GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII, GLYPH_SETS } glyph_set;
+
+// What the inks look like on the terminal.
+typedef enum lab_theme { COLOURS_DARK, COLOURS_LIGHT, COLOURS_MONO, COLOUR_THEMES } lab_theme;
+
+typedef struct cell {
+    uint32_t glyph; // Unicode; dots are a braille pattern
+    ink ink;
+} cell;
+
+typedef struct screen {
+    int width, height;
+    cell *cells; // row after row
+} screen;
+
+// A screen of width x height cells, at least 1 x 1; false without memory, then it is as before.
+bool screen_resize(screen *s, int width, int height);
+void screen_finish(screen *s);
+void screen_clear(screen *s);
+
+// Everything beyond the edges is dropped by all of these.
+void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour);
+// Writes UTF-8 text of at most `room` cells and returns how many it took. Control characters and
+// bytes that are not UTF-8 become '?'.
+int screen_text(screen *s, int x, int y, int room, ink colour, const char *text);
+// The same, formatted.
+int screen_print(screen *s, int x, int y, int room, ink colour, const char *format, ...)
+    __attribute__((format(printf, 6, 7)));
+// A frame round a rectangle with a title in its upper edge, its inside cleared.
+void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title);
+// Gives the cells of a rectangle another ink.
+void screen_tint(screen *s, int x, int y, int width, int height, ink colour);
+
+// A rectangle of cells as a canvas of dots, two a cell across and four down; dots outside it are
+// dropped.
+typedef struct canvas {
+    screen *screen;
+    int x, y, width, height; // [cells]
+} canvas;
+
+void canvas_dot(const canvas *c, long across, long down, ink colour);
+// A line between two points [dots]; either may lie far outside. Points that are not finite draw
+// nothing.
+void canvas_line(const canvas *c, double x0, double y0, double x1, double y1, ink colour);
+
+// The glyph as the set can show it.
+uint32_t glyph_in_set(uint32_t glyph, glyph_set set);
+// Writes a glyph as UTF-8 with a zero at its end; text has 5 bytes.
+void glyph_encode(uint32_t glyph, char *text);
+
+// Prints the grid as lines of text without blanks at their ends.
+void screen_dump(const screen *s, glyph_set set, FILE *stream);

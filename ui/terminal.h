@@ -1,0 +1,42 @@
+// The terminal: shows a screen's cells, reads keys and the mouse, and is given back as it was on
+// every way out, crashes included.
+#pragma once
+
+#include "src/status.h"
+#include "ui/lab_keys.h"
+#include "ui/screen.h"
+
+typedef enum terminal_input_kind {
+    INPUT_NONE,   // the time is over
+    INPUT_KEY,    // code: the key
+    INPUT_CLICK,  // x, y: pressed or dragged there
+    INPUT_WHEEL,  // code: -1 up, 1 down
+    INPUT_RESIZE, // the size has changed, or the screen must be drawn anew
+    INPUT_LEAVE   // a signal asks to leave, or the terminal is gone
+} terminal_input_kind;
+
+typedef struct terminal_input {
+    terminal_input_kind kind;
+    int code;
+    int x, y;
+} terminal_input;
+
+// Whether standard input and output are a terminal that can place its cursor; f says why not.
+bool terminal_usable(fault *f);
+
+// Takes the terminal over. STATUS_BAD_ARGUMENT, with the reason in f, if it is not usable.
+status terminal_open(fault *f);
+
+// Gives it back. If a signal asked to leave, ends the program by that signal.
+void terminal_close(void);
+
+void terminal_size(int *width, int *height);
+
+// Waits for input: at most `seconds`, for ever if negative.
+terminal_input terminal_wait(double seconds);
+
+// Shows the cells; only what has changed is sent. `whole`: everything anew.
+void terminal_show(const screen *s, glyph_set glyphs, lab_theme theme, bool whole);
+
+// Mouse reports on or off (off lets the terminal select text).
+void terminal_mouse(bool on);
