@@ -8,8 +8,9 @@
 // How pictures are to look.
 typedef struct figure_options {
     figure_theme theme;
-    double width_mm; // of the page; 0: as designed
-    double dpi;      // of a PNG; 0: 200
+    double width_mm;     // of the page; 0: as designed
+    double dpi;          // of a PNG; 0: 200
+    const char *overlay; // CSV to draw over recorded signals (render/overlay.h), NULL for none
 } figure_options;
 
 typedef struct artwork {

@@ -157,9 +157,11 @@ static void draw_amplifier(sketch *s, double x, double y)
     sketch_text(s, x + 7, y + 10, 0.5, 0.5, "\u2212", SKETCH_LABEL);
 }
 
-static void draw_divider(sketch *s, double x, double y)
+static void draw_divider(sketch *s, const sensor_parameters *p, double x, double y)
 {
-    sketch_text(s, x, y, 0.5, 0, "<i>V</i><sub>+</sub> = 5\u2009V", SKETCH_SMALL);
+    char text[96];
+    snprintf(text, sizeof text, "<i>V</i><sub>+</sub> = %g\u2009V", p->fsr_supply);
+    sketch_text(s, x, y, 0.5, 0, text, SKETCH_SMALL);
     sketch_disc(s, x, y + 14, 1.8, SKETCH_INK, false);
     wire(s, x, y + 16, x, y + 20);
     sketch_resistor(s, x, y + 18, x, y + 62);
@@ -167,7 +169,8 @@ static void draw_divider(sketch *s, double x, double y)
     sketch_arrow(s, x - 34, y + 40, x - 8, y + 40, 5);
     sketch_text(s, x - 38, y + 40, 1, 0.5, "<i>f</i>", SKETCH_LABEL);
     sketch_resistor(s, x, y + 62, x, y + 116);
-    sketch_text(s, x - 9, y + 92, 1, 0.5, "<i>R</i><sub>M</sub>\n40\u2009kΩ", SKETCH_SMALL);
+    snprintf(text, sizeof text, "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
+    sketch_text(s, x - 9, y + 92, 1, 0.5, text, SKETCH_SMALL);
     draw_ground(s, x, y + 112);
     sketch_disc(s, x, y + 62, 1.7, SKETCH_INK, true);
 }
@@ -225,7 +228,7 @@ static void paint_part(sketch *s, const figure *fig, double x, double y)
 
 static void draw_sensor(sketch *s, const diagram *d)
 {
-    draw_divider(s, s->left + 74, s->top);
+    draw_divider(s, &d->p.sensor, s->left + 74, s->top);
     draw_stages(s, s->left + 74, s->top + 62);
     const figure_series curve = {
         .name = "output", .x = d->curve_x, .y = d->curve_y, .count = CURVE_POINTS, .colour = 5};

@@ -6,6 +6,7 @@
 #include "render/diagrams.h"
 #include "render/impact_figures.h"
 #include "render/opened_run.h"
+#include "render/overlay.h"
 #include "render/stability_map.h"
 #include "render/thesis_tables.h"
 
@@ -227,6 +228,7 @@ const thesis_figure *thesis_figure_find(const char *id)
 typedef struct signal_figure {
     opened_run runs[2];
     int run_count;
+    run_result overlay; // its trace alone
     trace_figure figure;
     char *title;
 } signal_figure;
@@ -238,6 +240,7 @@ static void release_signals(void *owner)
     for (int i = 0; i < s->run_count; i++) {
         run_end(&s->runs[i]);
     }
+    trace_finish(&s->overlay.trace);
     g_free(s->title);
     g_free(s);
 }
@@ -254,17 +257,40 @@ static status run_scenarios(signal_figure *s, const thesis_figure *which, fault 
     return code;
 }
 
+// The runs as the figure shows them, and the overlay as one more; returns their number.
+static int list_runs(const signal_figure *s, const figure_options *o, trace_run *runs)
+{
+    static const char *const names[] = {"printed", "corrected"};
+    int count = 0;
+    for (; count < s->run_count; count++) {
+        runs[count] = (trace_run){.scenario = &s->runs[count].scenario,
+                                  .result = &s->runs[count].result,
+                                  .name = names[count]};
+    }
+    if (o->overlay != NULL) {
+        const char *slash = strrchr(o->overlay, '/');
+        runs[count++] = (trace_run){.scenario = &s->runs[0].scenario,
+                                    .result = &s->overlay,
+                                    .name = slash != NULL ? slash + 1 : o->overlay,
+                                    .points = true};
+    }
+    return count;
+}
+
 static status open_signals(const thesis_figure *which, const char *title, const figure_options *o,
                            artwork *out, fault *f)
 {
     signal_figure *s = g_new0(signal_figure, 1);
     status code = run_scenarios(s, which, f);
+    if (code == STATUS_OK && o->overlay != NULL) {
+        code = overlay_read(&s->overlay.trace, o->overlay, f);
+    }
     if (code == STATUS_OK) {
-        const trace_run runs[] = {{&s->runs[0].scenario, &s->runs[0].result, "printed"},
-                                  {&s->runs[1].scenario, &s->runs[1].result, "corrected"}};
+        trace_run runs[TRACE_RUNS];
+        int run_count = list_runs(s, o, runs);
         s->title = g_strdup(title);
         code = trace_figure_init(&s->figure, s->title, which->panels, which->panel_count, runs,
-                                 s->run_count, f);
+                                 run_count, f);
     }
     if (code != STATUS_OK) {
         release_signals(s);
@@ -294,6 +320,11 @@ static char *title_of(const thesis_figure *which)
 
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f)
 {
+    if (which->open != NULL && o->overlay != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%s shows no recorded signals that %s could lie over", which->id,
+                         o->overlay);
+    }
     char *title = title_of(which);
     status code =
         which->open != NULL ? which->open(title, o, out, f) : open_signals(which, title, o, out, f);

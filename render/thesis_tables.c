@@ -304,7 +304,7 @@ static status open_predictions(const char *table, const char *title, const figur
         "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are from what "
         "the thesis prints. The printed model has the constants inferred from these tables "
         "(docs/physics.md, section 1); the corrected one has the mechanics derived anew and is not "
-        "meant to agree.",
+        "meant to agree. –: the arm swings away as it touches, there is no pulse.",
         4.92 * find_row(all, table, "printed", "max_force_energy")->k2_factor);
     t->parameters = g_strdup_printf("table=%s", table);
     *out = artwork_of_table(t);
@@ -337,8 +337,8 @@ status table_errors(const char *title, const figure_options *o, artwork *out, fa
     }
     table_page *t = new_table(title, o);
     table_add_column(t, "Row", 3, TEXT_LEFT);
-    table_add_column(t, "Printed model (%)", 1.3, TEXT_RIGHT);
-    table_add_column(t, "Corrected model (%)", 1.4, TEXT_RIGHT);
+    table_add_column(t, "Printed (%)", 1.2, TEXT_RIGHT);
+    table_add_column(t, "Corrected (%)", 1.2, TEXT_RIGHT);
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
         char *printed =
             cell_text("%.1f", 100 * tables_mean_error(all, "printed", quantities[q].quantity));
@@ -348,8 +348,8 @@ status table_errors(const char *title, const figure_options *o, artwork *out, fa
         g_free(printed);
         g_free(corrected);
     }
-    t->caption = g_strdup("Mean size of the difference from the thesis over the twelve cells of a "
-                          "row, three stiffnesses at four voltages.");
+    t->caption = g_strdup("Mean size of the difference from the thesis over the cells of a row that "
+                          "have a value, three stiffnesses at four voltages.");
     *out = artwork_of_table(t);
     return STATUS_OK;
 }

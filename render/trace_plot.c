@@ -7,6 +7,7 @@
 
 #include "render/figure_file.h"
 #include "render/opened_run.h"
+#include "render/overlay.h"
 #include "render/text.h"
 #include "src/lab/export.h"
 #include "src/rig/rig.h"
@@ -320,11 +321,12 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
 {
     figure_panel *panel = &t->panels[panel_index];
     const scenario *s = runs[run].scenario;
-    bool alone = from->signals[1] == NULL;
+    bool alone = from->signals[1] == NULL, named = false;
     for (int i = 0; i < TRACE_SIGNALS && from->signals[i] != NULL; i++) {
         int index = signal_find(from->signals[i]);
         bool twin = !alone && strncmp(from->signals[i], "first_", 6) == 0 && hub_is_first_link(s);
-        if (twin) {
+        bool points = run > 0 && runs[run].points;
+        if (twin || (points && !overlay_has(&runs[run].result->trace, index))) {
             continue;
         }
         figure_series *out = &t->series[panel_index][panel->series_count++];
@@ -338,7 +340,14 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->name = keep(texts, g_strconcat(out->name, " ", runs[run].name, NULL));
             out->colour = alone ? 6 : out->colour;
         }
-        if (alone && run_count > 1 && panel_index == 0) {
+        if (points) {
+            out->no_line = true;
+            out->secondary = false;
+            out->marker = MARKER_CIRCLE;
+            out->colour = 6;
+            out->label = named ? NULL : keep(texts, text_escape(runs[run].name));
+            named = true;
+        } else if (alone && run_count > 1 && panel_index == 0) {
             // the first panel's legend holds for all
             out->label = keep(texts, text_escape(runs[run].name));
         } else if (!alone && run == 0) {

@@ -24,6 +24,7 @@ typedef struct trace_run {
     const scenario *scenario;
     const run_result *result; // with its trace
     const char *name;         // "corrected"; only shown if there are several runs
+    bool points;              // further runs only: reference data, points where it has a number
 } trace_run;
 
 // A figure with everything it borrows, except for the runs.

@@ -115,7 +115,7 @@ const parameter_info parameter_table[] = {
      "simulated time"},
     {"control.law", "", CHOICE, AT(control.law), LAW_NONE, LAW_NONE, 0, LAW_PLUGIN,
      "none|open-loop|hybrid|force-pd|force-integral|reverse-torque|speed-limit|bang-bang|"
-     "discontinuous|recovering|optimal|plugin",
+     "discontinuous|recovering|optimal|predictive|plugin",
      NOT_TIMED, "control law on the rig, or none: the bare arm under motor.voltage"},
     {"control.plugin", "", TEXT, AT(control.plugin), 0, 0, 0, 1, NULL, NOT_TIMED,
      "shared object with a controller of one's own (control.law = plugin)"},
@@ -159,6 +159,8 @@ const parameter_info parameter_table[] = {
      "reverse-torque: how long the motor pulls back after contact"},
     {"control.switch_share", "", REAL, AT(control.switch_share), 0.5, 0.5, 0, 1, NULL, NOT_TIMED,
      "bang-bang: share of the way to the wall at which the command is reversed"},
+    {"control.force_limit", "N", REAL, AT(control.force_limit), 2, 2, 0, 1000, NULL, NOT_TIMED,
+     "predictive: force that an impact may not exceed wherever it happens"},
     {"sensor.ideal", "", BOOLEAN, AT(sensor.ideal), 0, 0, 0, 1, NULL, NOT_TIMED,
      "switches off every imperfection of sensors and converters"},
     {"sensor.encoder_counts", "", INTEGER, AT(sensor.encoder_counts), 8000, 8000, 0, 1000000000,
@@ -448,6 +450,12 @@ status parameters_resolve(parameters *p, fault *f)
     if (isnan(p->arm.link_inertia)) {
         double m = p->arm.mass / p->arm.links, l = p->arm.length / p->arm.links;
         p->arm.link_inertia = m * l * l / 12; // uniform rod (errata B3)
+    }
+    if (p->wall.kind != WALL_NONE && p->initial.angle > p->wall.angle) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "initial.angle = %g rad lies behind the wall, expected at most wall.angle = "
+                         "%g rad",
+                         p->initial.angle, p->wall.angle);
     }
     if (p->control.law == LAW_PLUGIN && p->control.plugin[0] == '\0') {
         return fault_set(f, STATUS_BAD_SCENARIO,

@@ -90,6 +90,7 @@ typedef enum control_law {
     LAW_DISCONTINUOUS,
     LAW_RECOVERING,
     LAW_OPTIMAL,
+    LAW_PREDICTIVE,
     LAW_PLUGIN
 } control_law;
 
@@ -114,6 +115,7 @@ typedef struct control_parameters {
     double integral_gain;              // of their integral [V/(N s)]
     double speed_limit;                // hub velocity of a limited approach [rad/s]
     double reverse_time;               // how long reverse-torque brakes [s]
+    double force_limit;                // that a predictive approach keeps to [N]
     double switch_share;               // where bang-bang switches, share of the way to the wall
 } control_parameters;
 

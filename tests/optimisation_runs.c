@@ -1,5 +1,6 @@
 // Runs of many kinds written as JSON and CSV to the standard output, without what depends on the
-// machine's speed; tests/optimisation_levels.sh compares it over the compiler's optimisation levels.
+// machine's speed; tests/optimisation_levels.sh compares it over the compiler's optimisation
+// levels.
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,6 +16,8 @@ static const char *const runs[] = {
     "method.name=newmark",
     "method.name=generalized-alpha arm.links=5",
     "arm.links=64 wall.kind=plane run.duration=0.5",
+    "control.law=hybrid wall.angle=0 initial.angle=-0.1",
+    "control.law=optimal control.force=2 wall.angle=0 initial.angle=-0.1",
     "arm.model=printed",
     "arm.model=printed motor.voltage=5 method.step=0.01",
 };

@@ -94,6 +94,27 @@ expect 2 figures 9.9 -o pictures
 says err "no figure '9.9'"
 expect 1 figures 3.4 -o /proc/pictures
 
+# the arm in space
+expect 0 run hit.yaml --quiet --scene arm.png --gl cairo --size 320x180
+expect 0 run hit.yaml --quiet --scene again-arm.png --gl cairo --size 320x180
+cmp -s arm.png again-arm.png || fail "two scenes of the same run differ"
+expect 0 run hit.yaml --quiet --scene auto.png --size 320x180 --at 0.1 --at 0.32
+expect 1 run hit.yaml --quiet --scene no/such/folder/arm.png
+expect 2 run hit.yaml --quiet --scene arm.gif
+expect 2 run hit.yaml --quiet --scene arm.png --at 9
+says err "0 to 0.5 s"
+expect 2 run hit.yaml --quiet --scene arm.png --camera above
+says err "three-quarter, top or side"
+expect 2 run hit.yaml --quiet --scene arm.png --gl mesa
+expect 2 run hit.yaml --quiet --scene arm.png --size 12
+expect 0 animate hit.yaml -o film --gl cairo --size 320x240 --seconds 0.3 --fps 10
+[ "$(find film -name 'frame-*.png' | wc -l)" = 3 ] || fail "the film does not have 3 frames"
+expect 1 animate hit.yaml -o film
+says err "not empty"
+expect 2 animate hit.yaml -o film.avi
+says err ".webm"
+expect 2 animate hit.yaml -o more --fps 0
+
 # --- list, show, check
 expect 0 list
 says out "thesis/fig-3-4"

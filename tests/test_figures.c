@@ -215,6 +215,46 @@ static void recorded_signals_stand_beside_their_picture(void **state)
     free(csv);
 }
 
+static status overlaid(const char *csv, const char *id, fault *f)
+{
+    FILE *stream = fopen(path_of("measured.csv"), "w");
+    assert_non_null(stream);
+    fputs(csv, stream);
+    fclose(stream);
+    char *path = strdup(path_of("measured.csv"));
+    const figure_options o = {.overlay = path};
+    status code = figure_draw_as(id, &o, path_of("overlaid"), "svg", f);
+    free(path);
+    return code;
+}
+
+static void reference_data_lie_over_signals(void **state)
+{
+    (void)state;
+    fault f = {0};
+    size_t length;
+    const char *good = "time[s],force [N],remark\n0.35,1.5,first\r\n0.4,,missing\n\n0.45,0.25,\n";
+    assert_int_equal(overlaid(good, "3.4", &f), STATUS_OK);
+    char *csv = read_file(path_of("overlaid/fig-3-4.csv"), &length);
+    assert_non_null(strstr(csv, ",force measured.csv,0.35,1.5\n"));
+    assert_non_null(strstr(csv, ",force measured.csv,0.45,0.25\n"));
+    free(csv);
+    // panels that the data do not speak of stay as they are
+    assert_int_equal(overlaid(good, "3.2", &f), STATUS_OK);
+    csv = read_file(path_of("overlaid/fig-3-2.csv"), &length);
+    assert_null(strstr(csv, "measured.csv"));
+    free(csv);
+    assert_int_equal(overlaid("time[s],force[N]\n0.3,x1\n", "3.4", &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "measured.csv:2: 'x1'"));
+    assert_int_equal(overlaid("force[N]\n1\n", "3.4", &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "time[s]"));
+    assert_int_equal(overlaid("", "3.4", &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(overlaid(good, "4.1", &f), STATUS_BAD_ARGUMENT);
+    const figure_options missing = {.overlay = "/nowhere/data.csv"};
+    assert_int_equal(figure_draw_as("3.4", &missing, folder, "svg", &f), STATUS_CANNOT_READ);
+    assert_non_null(strstr(f.text, "/nowhere/data.csv"));
+}
+
 // The error of one cell of the map; NaN where the run was stopped.
 static double map_error(const char *csv, const char *step, double beta, double gamma)
 {
@@ -428,6 +468,7 @@ int main(void)
         cmocka_unit_test(figures_fit_a_column_of_85_mm),
         cmocka_unit_test(figures_say_what_they_show),
         cmocka_unit_test(recorded_signals_stand_beside_their_picture),
+        cmocka_unit_test(reference_data_lie_over_signals),
         cmocka_unit_test(the_map_tells_good_pairs_from_bad),
         cmocka_unit_test(table_cells_are_right),
         cmocka_unit_test(a_second_run_writes_the_same_bytes),

@@ -306,7 +306,7 @@ static void compare_golden(size_t index, scene_renderer renderer, const char *na
     cairo_surface_t *golden = cairo_image_surface_create_from_png(path);
     assert_int_equal(cairo_surface_status(golden), CAIRO_STATUS_SUCCESS);
     int different = count_different(drawn, golden, 12);
-    if (different > WIDTH * HEIGHT / 200) {
+    if (different > WIDTH * HEIGHT / 500) {
         cairo_surface_write_to_png(drawn, in_folder(goldens[index].file));
         fail_msg("%s by %s: %d of %d pixels differ by more than 12 levels, the picture is %s",
                  goldens[index].file, name, different, WIDTH * HEIGHT,

@@ -38,6 +38,7 @@ static const option_info option_table[] = {
     {'M', false, "mono", NULL, "black and greys on white"},
     {'D', false, "dark", NULL, "on near black"},
     {'W', false, "width", "MM", "width of the page in millimetres"},
+    {'Y', false, "overlay", "FILE.csv", "points of reference data over recorded signals"},
     {'i', false, "dpi", "N", "resolution of a PNG (200)"},
     {'T', false, "at", "T", "draw the arm at this instant [s] (may be repeated)"},
     {'G', false, "gl", "osmesa|egl|cairo|auto", "what draws the arm (auto)"},
@@ -138,6 +139,8 @@ static bool take_option(arguments *a, int letter, char *value)
     case 'D':
         a->dark = true;
         return true;
+    case 'Y':
+        return take_text(&a->overlay, value);
     case 'W':
         return take_text(&a->width, value);
     case 'i':

@@ -23,7 +23,7 @@ typedef struct arguments {
     const char *json, *csv, *plot, *scene, *output, *format; // NULL if not given
     const char *sample, *runs, *seed, *jobs, *db, *quantity; // of sweep; NULL if not given
     const char *only, *baseline;                             // of bench; NULL if not given
-    const char *width, *dpi;                                 // of figures; NULL if not given
+    const char *width, *dpi, *overlay;                       // of figures; NULL if not given
     bool mono, dark;                                         // of figures
     const char *against, *tolerance; // of compare; NULL if not given
     const char *gl, *camera, *size;  // of scenes; NULL if not given

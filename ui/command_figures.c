@@ -27,7 +27,10 @@ static int read_number(const char *option, const char *text, double low, double 
 
 int read_figure_options(const arguments *a, figure_options *o)
 {
-    *o = (figure_options){.theme = a->mono ? THEME_MONO : a->dark ? THEME_DARK : THEME_COLOUR};
+    *o = (figure_options){.theme = a->mono   ? THEME_MONO
+                                   : a->dark ? THEME_DARK
+                                             : THEME_COLOUR,
+                          .overlay = a->overlay};
     if (a->mono && a->dark) {
         return complain("--mono and --dark cannot go together");
     }
@@ -78,12 +81,14 @@ static int figures(const arguments *a)
 const command figures_command = {
     .name = "figures",
     .operands = "[ID]...",
-    .options = "ofMDWiq",
+    .options = "ofYMDWiq",
     .summary = "Draw the figures and tables of the thesis",
     .help = "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a CSV of "
             "what is\ndrawn stands beside each.\n\n"
-            "IDs are the thesis's numbers: 2.1 to 2.3, 3.1 to 3.11, 4.1 to 4.6, T2.1, T3.1, T3.2, "
-            "T4.1 to T4.3;\nbeta-gamma is the map of Newmark's parameters.\n",
+            "IDs are the thesis's numbers: 2.1 to 2.6, 3.1 to 3.11, 4.1 to 4.6, 5.1 to 5.7, T2.1, "
+            "T3.1, T3.2,\nT4.1 to T4.3; errors: how near those come out; beta-gamma: the map of "
+            "Newmark's "
+            "parameters.\n",
     .most = 1 << 20,
     .run = figures,
 };

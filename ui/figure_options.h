@@ -4,6 +4,6 @@
 #include "render/artwork.h"
 #include "ui/command.h"
 
-// Takes --mono, --dark, --width and --dpi. Returns EXIT_DONE, or complains and returns the exit
+// Takes --mono, --dark, --width, --dpi and --overlay. Returns EXIT_DONE, or complains and returns the exit
 // status.
 int read_figure_options(const arguments *a, figure_options *o);

@@ -479,6 +479,10 @@ static bool set_mouse(lab *l, const char *argument)
     int value = l->mouse;
     bool done = take_choice(l, argument, words, 2, &value);
     l->mouse = value;
+    if (done) {
+        lab_say(l, false,
+                value ? "clicks move the cursor" : "the mouse is off: the terminal selects");
+    }
     return done;
 }
 

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <string.h>
 
+#include "src/lab/whole_file.h"
 #include "src/words.h"
 #include "ui/terminal.h"
 
@@ -142,6 +143,27 @@ static int close_output(int result)
     return EXIT_FAILED;
 }
 
+// A signal that ends the program leaves no half-written file behind.
+static void end_cleanly(int number)
+{
+    whole_file_remove_unfinished();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void catch_endings(void)
+{
+    static const int endings[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        struct sigaction before;
+        struct sigaction wanted = {.sa_handler = end_cleanly};
+        // nohup and shells' background jobs ask for a signal to be ignored
+        if (sigaction(endings[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+            sigaction(endings[i], &wanted, NULL);
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
     // numbers keep their decimal point: only the character set follows the locale
@@ -149,5 +171,6 @@ int main(int argc, char **argv)
     // a write that fails is reported where it is made, not by a signal
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
+    catch_endings();
     return close_output(dispatch(argc, argv));
 }

@@ -131,6 +131,23 @@ static void prepare(const char *text)
     }
 }
 
+// What terminals send for these keys whatever TERM says.
+static void define_common_keys(void)
+{
+    static const struct {
+        const char *sequence;
+        int key;
+    } keys[] = {
+        {"\033[A", KEY_UP},    {"\033[B", KEY_DOWN}, {"\033[C", KEY_RIGHT},  {"\033[D", KEY_LEFT},
+        {"\033OA", KEY_UP},    {"\033OB", KEY_DOWN}, {"\033OC", KEY_RIGHT},  {"\033OD", KEY_LEFT},
+        {"\033[H", KEY_HOME},  {"\033[F", KEY_END},  {"\033OH", KEY_HOME},   {"\033OF", KEY_END},
+        {"\033[1~", KEY_HOME}, {"\033[4~", KEY_END}, {"\033[5~", KEY_PPAGE}, {"\033[6~", KEY_NPAGE},
+        {"\033[3~", KEY_DC},   {"\033OP", KEY_F(1)}, {"\033[11~", KEY_F(1)}};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+        define_key(keys[i].sequence, keys[i].key);
+    }
+}
+
 status terminal_open(fault *f)
 {
     if (!terminal_usable(f)) {
@@ -158,6 +175,7 @@ status terminal_open(fault *f)
     noecho();
     nonl();
     keypad(stdscr, TRUE);
+    define_common_keys();
     nodelay(stdscr, TRUE);
     set_escdelay(25);
     typeahead(-1);
@@ -253,6 +271,23 @@ static terminal_input mouse_input(void)
     return in;
 }
 
+// Takes an unknown key's sequence off the input after its escape, so that its letters are not taken
+// for keys. Returns the key that is meant: the escape if it stood alone, 0 for a sequence.
+static int drop_sequence(void)
+{
+    wint_t key = 0;
+    if (get_wch(&key) != OK) {
+        return KEY_CODE_ESCAPE;
+    }
+    if (key != '[' && key != 'O') {
+        unget_wch((wchar_t)key);
+        return KEY_CODE_ESCAPE;
+    }
+    while (get_wch(&key) == OK && (key < 0x40 || key > 0x7e)) {
+    }
+    return 0;
+}
+
 // What ncurses has read already; INPUT_NONE if that is nothing.
 static terminal_input pending_input(void)
 {
@@ -266,6 +301,9 @@ static terminal_input pending_input(void)
     }
     if (kind == KEY_CODE_YES) {
         return (terminal_input){INPUT_KEY, key_of_curses((int)key), 0, 0};
+    }
+    if (kind == OK && key == KEY_CODE_ESCAPE) {
+        return (terminal_input){INPUT_KEY, drop_sequence(), 0, 0};
     }
     return kind == OK ? (terminal_input){INPUT_KEY, (int)key, 0, 0}
                       : (terminal_input){INPUT_NONE, 0, 0, 0};

@@ -95,7 +95,9 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
                &info);
     }
     for (int i = 0; i < columns && info == 0; i++) {
-        frequencies[i] = sqrt(fmax(values[i], 0));
+        // a rigid mode's zero comes out as rounding of the stiffest mode's square
+        double value = values[i] > 1e-13 * values[columns - 1] ? values[i] : 0;
+        frequencies[i] = sqrt(value);
         double largest = 0;
         for (int j = 0; j < n; j++) {
             double angle = 0;

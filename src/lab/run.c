@@ -370,6 +370,9 @@ static status act(recording *r, arm *a, motion *m, fault *f)
         status failed = record_row(r, a, m, m->state, 0);
         if (todo->kind == ACTION_SET) {
             failed = parameter_set_number(&r->now, todo->parameter, todo->value, f);
+            if (r->rig != NULL) {
+                r->now.motor.voltage = r->rig->applied; // the command is the controller's
+            }
             arm before = *a;
             arm_init(a, &r->now);
             motion_rebind(&before, a, m);

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -14,6 +15,41 @@ static status cannot_write(fault *f, const char *path, int reason)
     return fault_set(f, STATUS_CANNOT_WRITE, "%s%s%s cannot be written: %s",
                      standard_output ? "the standard output" : "'", standard_output ? "" : path,
                      standard_output ? "" : "'", strerror(reason));
+}
+
+// Names of temporaries that exist just now, for the signal handler; a few files at once are plenty,
+// and one without a place is merely not cleaned up after a signal.
+enum { MOST_UNFINISHED = 8 };
+static _Atomic(char *) unfinished[MOST_UNFINISHED];
+
+static void remember_unfinished(char *name)
+{
+    for (int i = 0; i < MOST_UNFINISHED; i++) {
+        char *none = NULL;
+        if (atomic_compare_exchange_strong(&unfinished[i], &none, name)) {
+            return;
+        }
+    }
+}
+
+static void forget_unfinished(char *name)
+{
+    for (int i = 0; i < MOST_UNFINISHED && name != NULL; i++) {
+        char *mine = name;
+        if (atomic_compare_exchange_strong(&unfinished[i], &mine, NULL)) {
+            return;
+        }
+    }
+}
+
+void whole_file_remove_unfinished(void)
+{
+    for (int i = 0; i < MOST_UNFINISHED; i++) {
+        char *name = atomic_load(&unfinished[i]);
+        if (name != NULL) {
+            unlink(name);
+        }
+    }
 }
 
 // Length of path's folder with its slash, 0 if it has none.
@@ -87,6 +123,7 @@ static int create_temporary(whole_file *w, mode_t mode)
         }
         int descriptor = open(w->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) {
+            remember_unfinished(w->temporary);
             if (mode != 0) {
                 // not owning the old file is no reason to write nothing
                 (void)!fchmod(descriptor, mode);
@@ -121,6 +158,7 @@ static int open_target(whole_file *w)
         close(descriptor);
         if (w->temporary != NULL) {
             unlink(w->temporary);
+            forget_unfinished(w->temporary);
         }
         return reason;
     }
@@ -196,6 +234,7 @@ status whole_file_commit(whole_file *w, fault *f)
         }
     }
     status result = reason == 0 ? STATUS_OK : cannot_write(f, w->path, reason);
+    forget_unfinished(w->temporary);
     free(w->path);
     free(w->temporary);
     memset(w, 0, sizeof *w);
@@ -209,6 +248,7 @@ void whole_file_abandon(whole_file *w)
     }
     if (w->temporary != NULL) {
         unlink(w->temporary);
+        forget_unfinished(w->temporary);
     }
     free(w->path);
     free(w->temporary);

@@ -21,12 +21,16 @@
 enum { APPROACH, PRESS, HOLD };
 static const char *const mode_names[] = {"approach", "press", "hold", NULL};
 
-enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, PARAMETERS };
-static const controller_parameter table[PARAMETERS] = {
-    {"force", "N", 1, 0, 1000, "commanded contact force"},
-    {"approach_voltage", "V", 1, -1000, 1000, "constant command of the approach"},
-    {"contact_threshold", "N", 0.05, 0, 1000, "force reading that means contact"},
-};
+enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, OWN };
+#define SHARED_PARAMETERS                                                                          \
+    {"force", "N", 1, 0, 1000, "commanded contact force"},                                         \
+        {"approach_voltage", "V", 1, -1000, 1000, "constant command of the approach"},             \
+    {                                                                                              \
+        "contact_threshold", "N", 0.05, 0, 1000, "force reading that means contact"                \
+    }
+static const controller_parameter shared[] = {SHARED_PARAMETERS};
+static const controller_parameter with_limit[] = {
+    SHARED_PARAMETERS, {"force_limit", "N", 2, 0, 1000, "force that an impact may not exceed"}};
 
 enum { FREE_FIRST, FREE_LAST, FREE_FIRST_RATE, FREE_LAST_RATE };    // states in free flight
 enum { PRESSED_ANGLE, PRESSED_RATE, PRESSED_WALL, PRESSED_TORQUE }; // states in contact
@@ -34,6 +38,8 @@ enum { PRESSED_ANGLE, PRESSED_RATE, PRESSED_WALL, PRESSED_TORQUE }; // states in
 typedef struct optimal_memory {
     controller_setup rig;
     double force, approach_voltage, threshold;
+    double force_limit; // HUGE_VAL if there is none [N]
+    double jump[2];     // rate of x after an impact, of both links' velocities before it
     int mode;
     bool started;
     int samples_in_contact;
@@ -53,11 +59,13 @@ typedef struct optimal_memory {
 // Standard deviations of what the models leave out, a sample each, and of the readings.
 static const double flight_noise[4] = {1e-8, 1e-8, 1e-5, 1e-5};
 static const double contact_noise[4] = {1e-8, 2e-4, 1e-8, 1e-5};
-#define ANGLE_VARIANCE 2e-7  // [rad2]
-#define RATE_VARIANCE  2e-4  // [rad2/s2]
-#define EFFORT         1e-3  // of a command in the cost [N2/V2]
-#define URGENCY        20.0  // errors die faster than exp(-URGENCY t) [1/s]
-#define AIM            0.985 // share of the wanted force that is aimed at: short, not beyond
+#define ANGLE_VARIANCE 2e-7   // [rad2]
+#define RATE_VARIANCE  2e-4   // [rad2/s2]
+#define K2_DOUBT       0.1    // share by which k2 may be wrong
+#define EFFORT         1e-3   // of a command in the cost [N2/V2]
+#define URGENCY        20.0   // errors die faster than exp(-URGENCY t) [1/s]
+#define SHORTFALL      0.0065 // of the aim, a share per newton, as the noise grows [1/N]
+#define MOST_SHORTFALL 0.05   // a share
 
 // Free flight of both links under a torque on the hub: M q'' = torque e1 - D q1' e1 - K q.
 static void model_flight(optimal_memory *m)
@@ -66,6 +74,8 @@ static void model_flight(optimal_memory *m)
     double ml2 = r->link_mass * r->link_length * r->link_length;
     double m11 = r->hub_inertia + r->link_inertia + 1.25 * ml2, m12 = 0.5 * ml2;
     double m22 = r->link_inertia + 0.25 * ml2, det = m11 * m22 - m12 * m12;
+    m->jump[0] = (m11 - m12) / m->inertia;
+    m->jump[1] = (m12 - m22) / m->inertia;
     double bend_first = r->k2 * (m22 + m12) / det, bend_last = -r->k2 * (m12 + m11) / det;
     double rate[4][4] = {
         [FREE_FIRST] = {[FREE_FIRST_RATE] = 1},
@@ -94,6 +104,7 @@ static const char *start(void *memory, const controller_setup *setup)
     m->force = setup->parameters[FORCE_WANTED];
     m->approach_voltage = setup->parameters[APPROACH_VOLTAGE];
     m->threshold = setup->parameters[THRESHOLD];
+    m->force_limit = HUGE_VAL;
     m->inertia = setup->hub_inertia + 2 * setup->link_inertia + 2 * quarter;
     m->stiffness = 4 * setup->k2;
     m->spring_force = 2 * setup->k2 / l;
@@ -119,6 +130,14 @@ static const char *start(void *memory, const controller_setup *setup)
         return "the Riccati equation of its gains has no stabilising solution";
     }
     return NULL;
+}
+
+static const char *start_with_limit(void *memory, const controller_setup *setup)
+{
+    optimal_memory *m = memory;
+    const char *refusal = start(memory, setup);
+    m->force_limit = setup->parameters[OWN];
+    return refusal;
 }
 
 // Coulomb friction at a velocity, taken as what holds where the hub is as good as at rest.
@@ -170,6 +189,40 @@ static void enter_contact(optimal_memory *m, const controller_input *in)
     m->mode = PRESS;
 }
 
+// Force to brake with where stopping takes at least `stopping` [N].
+static double braking_force(const optimal_memory *m, double stopping)
+{
+    return stopping + 0.2 * fmax(0, stopping - m->force) + 0.01;
+}
+
+// If the tip touched the wall now: the impact throws the links' velocities onto x' as (4.10)-(4.17)
+// have it, and stopping from there takes at least 4 k2 (x + x'/s), which grows until the controller
+// has noticed. The phase of the vibration is in x and in both velocities.
+static double force_of_touch(const optimal_memory *m)
+{
+    const double *z = m->e.z;
+    double x = (z[FREE_FIRST] - z[FREE_LAST]) / 2;
+    double rate = m->jump[0] * z[FREE_FIRST_RATE] + m->jump[1] * z[FREE_LAST_RATE];
+    double noticed = exp(m->divergence * (m->rig.period + m->rig.delay));
+    return braking_force(m, m->spring_force * (x + rate / m->divergence) * noticed);
+}
+
+// The command of the approach; with a limit on the force, as fast as it allows: the speed that
+// there is, kept up, and the rest in proportion to the force that is left.
+static double approach(const optimal_memory *m)
+{
+    if (m->force_limit == HUGE_VAL) {
+        return m->approach_voltage;
+    }
+    const double gain = 3;      // [V/N]
+    const double margin = 0.94; // share of the limit that is used, less 0.035 N for the noise
+    double speed = m->e.z[FREE_FIRST_RATE];
+    double keep = m->rig.hub_damping * speed + m->rig.stiction;
+    double command = keep / m->rig.torque_per_volt +
+                     gain * (margin * m->force_limit - 0.035 - force_of_touch(m));
+    return fmin(command, m->approach_voltage);
+}
+
 // --- in contact -----------------------------------------------------------------------------
 
 // Hub acceleration of a state in contact under a torque on the hub [rad/s2].
@@ -196,7 +249,11 @@ static void predict_contact(const optimal_memory *m, const sampled_model *model,
     double rest_angle = z[PRESSED_ANGLE];
     bool rests = fabs(z[PRESSED_RATE]) < 0.01 && fabs(torque) <= m->rig.stiction;
     double held = friction(m, z[PRESSED_RATE], torque);
-    estimator_predict(e, model, drive - held, contact_noise);
+    // a stiffness believed wrongly shows as a wall that moves with the hub
+    double noise[4], wandering = K2_DOUBT * z[PRESSED_RATE] * m->rig.period;
+    memcpy(noise, contact_noise, sizeof noise);
+    noise[PRESSED_WALL] += wandering * wandering;
+    estimator_predict(e, model, drive - held, noise);
     if (rests) {
         z[PRESSED_ANGLE] = rest_angle;
         z[PRESSED_RATE] = 0;
@@ -233,7 +290,7 @@ static double limit_command(optimal_memory *m, const double *z, double command)
     double stopping = m->spring_force * (x + z[PRESSED_RATE] / m->divergence);
     double excess = stopping - m->force, least = fmin(0.1 + 0.05 * m->force, 0.5 * m->force);
     if (excess > 0) {
-        m->ceiling = fmax(m->ceiling, stopping + 0.2 * excess + 0.01);
+        m->ceiling = fmax(m->ceiling, braking_force(m, stopping));
     }
     double per_volt = m->mass_force / m->inertia * m->rig.torque_per_volt;
     double force = contact_force(m, z, motor_torque(m, command));
@@ -264,7 +321,9 @@ static double press(optimal_memory *m, const controller_input *in)
         predict_contact(m, &m->during_delay, &ahead, motor_torque(m, in->applied));
     }
     const double *z = ahead.z;
-    double aim = AIM * m->force / m->spring_force, x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
+    double shortfall = fmin(SHORTFALL * m->force, MOST_SHORTFALL);
+    double aim = m->force * (1 - shortfall) / m->spring_force,
+           x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
     double error = aim - x, tolerance = 0.01 * m->force + 0.005; // [N]
     double velocity = z[PRESSED_RATE];
     bool rests = fabs(velocity) < 0.02;
@@ -293,9 +352,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
         predict_flight(m, in);
         observe_flight(m, in);
     }
-    out->command = m->mode == APPROACH ? m->approach_voltage
-                   : m->mode == HOLD   ? hold(m, in)
-                                       : press(m, in);
+    out->command = m->mode == APPROACH ? approach(m) : m->mode == HOLD ? hold(m, in) : press(m, in);
     out->mode = m->mode;
     if (m->mode != APPROACH) {
         out->desired_angle = m->e.z[PRESSED_WALL] + m->force / m->spring_force;
@@ -304,15 +361,16 @@ static void sample(void *memory, const controller_input *in, controller_output *
                                   ? m->held_force
                                   : contact_force(m, m->e.z, motor_torque(m, in->applied));
     } else {
-        out->force_estimate = 0;
+        out->force_estimate = m->force_limit == HUGE_VAL ? 0 : force_of_touch(m);
     }
 }
 
-const controller optimal_law = {.interface = CONTROLLER_INTERFACE,
-                                .name = "optimal",
-                                .modes = mode_names,
-                                .parameters = table,
-                                .parameter_count = PARAMETERS,
-                                .memory_size = sizeof(optimal_memory),
-                                .start = start,
-                                .sample = sample};
+#define LAW(law, table, starts)                                                                    \
+    {                                                                                              \
+        .interface = CONTROLLER_INTERFACE, .name = law, .modes = mode_names, .parameters = table,  \
+        .parameter_count = (int)(sizeof table / sizeof table[0]),                                  \
+        .memory_size = sizeof(optimal_memory), .start = starts, .sample = sample                   \
+    }
+
+const controller optimal_law = LAW("optimal", shared, start);
+const controller predictive_law = LAW("predictive", with_limit, start_with_limit);

@@ -21,6 +21,7 @@ const controller *controller_of(int law)
                                                  [LAW_DISCONTINUOUS] = &discontinuous_law,
                                                  [LAW_RECOVERING] = &recovering_law,
                                                  [LAW_OPTIMAL] = &optimal_law,
+                                                 [LAW_PREDICTIVE] = &predictive_law,
                                                  [LAW_PLUGIN] = NULL};
     return built_in[law];
 }
@@ -97,7 +98,9 @@ static status take_setting(rig *r, const char *word, size_t length, fault *f)
         r->values[i] = value;
         return STATUS_OK;
     }
-    nearest_word near = nearest_begin(word);
+    char written[PARAMETER_TEXT_SIZE] = "";
+    memcpy(written, word, name);
+    nearest_word near = nearest_begin(written);
     for (int i = 0; i < r->law->parameter_count; i++) {
         nearest_try(&near, r->law->parameters[i].name);
     }

@@ -1,0 +1,200 @@
+#!/bin/bash
+# The terminal lab in a real pseudo-terminal (tmux): it shows, acts, and gives the terminal back.
+# $1: the program
+set -u
+program=$(readlink -f "$1")
+export LC_ALL=C.UTF-8
+# a sanitizer's own handlers would end the program with another status
+export ASAN_OPTIONS=${ASAN_OPTIONS:-}:handle_segv=0:handle_sigbus=0:handle_sigill=0:handle_sigfpe=0:handle_abort=0
+folder=$(mktemp -d)
+socket=impactlab-$$
+failed=0
+
+if ! command -v tmux >/dev/null; then
+    echo "tmux is not here"
+    exit 77
+fi
+
+mux() {
+    tmux -L "$socket" -f /dev/null "$@"
+}
+
+# shellcheck disable=SC2317
+finish() {
+    mux kill-server 2>/dev/null
+    rm -rf "$folder"
+}
+trap finish EXIT
+
+picture() {
+    mux capture-pane -p
+}
+
+fail() {
+    echo "FAILED: $*"
+    picture
+    failed=1
+}
+
+# waits until the screen shows the text $1
+await() {
+    for _ in $(seq 200); do
+        picture | grep -qF -- "$1" && return 0
+        sleep 0.05
+    done
+    fail "'$1' does not appear"
+    return 1
+}
+
+# waits until a file exists and has a line
+await_file() {
+    for _ in $(seq 200); do
+        [ -s "$1" ] && return 0
+        sleep 0.05
+    done
+    fail "$1 is not written"
+    return 1
+}
+
+# starts the lab; afterwards its exit status and the terminal's settings go to files
+start() {
+    rm -f "$folder/after" "$folder/pid"
+    mux send-keys "clear; lab $*" Enter
+    await "Space run/pause"
+}
+
+# the terminal is as it was: settings, alternate screen, cursor, mouse
+check_given_back() {
+    await_file "$folder/after" || return
+    cmp -s "$folder/before" "$folder/after" || fail "$1: stty settings differ"
+    [ "$(mux display-message -p '#{alternate_on} #{cursor_flag} #{mouse_any_flag}')" = "0 1 0" ] ||
+        fail "$1: alternate screen, cursor or mouse are left over"
+}
+
+cat >"$folder/profile" <<PROFILE
+PS1='ready> '
+set +o history
+# a job of its own, so that signals reach it alone
+lab() {
+    (echo \$BASHPID >"$folder/pid"; exec "$program" "\$@")
+    echo "status \$?"
+    stty -g >"$folder/after"
+}
+stty -g >"$folder/before"
+PROFILE
+mux new-session -d -x 120 -y 40 "bash --noprofile --rcfile $folder/profile -i"
+await "ready>"
+
+start
+await "impact 0.0443 N s"
+mux send-keys q
+await "status 0"
+check_given_back q
+
+for name in TERM HUP SEGV ABRT FPE BUS ILL; do
+    start
+    kill -s "$name" "$(cat "$folder/pid")"
+    await "status $((128 + $(kill -l "$name")))"
+    check_given_back "$name"
+done
+
+# ^C ends it by SIGINT, which also ends what the shell was about to do
+start
+mux send-keys C-c
+await "ready>"
+mux send-keys "stty -g >$folder/after" Enter
+check_given_back INT
+
+# suspended and taken up again
+start
+mux send-keys C-z
+await "ready>"
+mux send-keys "clear; jobs" Enter
+await "Stopped"
+mux send-keys "fg" Enter
+await "Space run/pause"
+mux send-keys q
+await "ready>"
+
+# any size, at any moment
+start
+for size in "1 1" "10 3" "200 60" "30 8" "300 100" "41 12"; do
+    mux resize-window -x "${size% *}" -y "${size#* }"
+    sleep 0.1
+done
+mux resize-window -x 20 -y 8
+await "20 x 8: the lab ne"
+mux resize-window -x 120 -y 40
+await "Space run/pause"
+mux send-keys q
+await "status 0"
+check_given_back resize
+
+# the terminal goes away: the program ends too
+mux new-window "sh -c 'echo \$\$ >$folder/gone; exec $program'"
+await "Space run/pause"
+mux kill-window
+sleep 0.5
+kill -0 "$(cat "$folder/gone")" 2>/dev/null && fail "the lab outlives its terminal"
+
+# a click in the curves moves the cursor, unless the mouse is off
+mux send-keys "export TERM=xterm-256color" Enter
+start
+mux send-keys Space Home
+await "t 0.00000 s"
+mux send-keys -l $'\033[<0;45;30M\033[<0;45;30m'
+await "t 0.49286 s"
+mux send-keys ":mouse off" Enter
+await "the mouse is off"
+[ "$(mux display-message -p '#{mouse_any_flag}')" = 0 ] || fail "the mouse stays on"
+mux send-keys q
+await "status 0"
+check_given_back mouse
+mux send-keys "export TERM=screen" Enter
+
+# what was done is saved and can be run
+start
+mux send-keys Space ":seek 0.2" Enter Enter BSpace "0.5" Enter
+await "motor.voltage = 0.5 V from 0.2000 s on"
+mux send-keys ":save $folder/half.yaml" Enter
+await "saved $folder/half.yaml"
+mux send-keys q
+await "status 0"
+"$program" run "$folder/half.yaml" | grep -q "peak force  *0.94" || fail "the saved run differs"
+
+# other terminals, no colour, no UTF-8
+for setting in "TERM=xterm-256color" "TERM=vt100" "TERM=linux" "NO_COLOR=1" "LC_ALL=C" \
+    "TERM=screen"; do
+    mux send-keys "export $setting" Enter
+    start
+    mux send-keys q
+    await "status 0"
+    check_given_back "$setting"
+    mux send-keys "unset NO_COLOR; export LC_ALL=C.UTF-8 TERM=screen" Enter
+done
+for theme in dark light mono; do
+    for glyphs in braille blocks ascii; do
+        start lab --theme "$theme" --glyphs "$glyphs"
+        mux send-keys q
+        await "status 0"
+        check_given_back "$theme $glyphs"
+    done
+done
+for name in dumb nonsense ""; do
+    mux send-keys "clear; TERM='$name' lab lab" Enter
+    await "TERM is '$name'"
+    await "status 2"
+done
+
+# no terminal at all
+"$program" lab </dev/null >"$folder/out" 2>&1 && fail "a lab without a terminal"
+grep -q "needs a terminal" "$folder/out" || fail "no word about the terminal"
+"$program" </dev/null | grep -q "corrected/first-impact" || fail "no list without a terminal"
+printf 'seek 0.3\nset motor.voltage 2\nbranch\n' >"$folder/script"
+"$program" --script "$folder/script" --size 100x30 | grep -q "1 change" || fail "--script"
+printf 'seek 0.3\nsat motor.voltage 2\n' >"$folder/script"
+"$program" --script "$folder/script" --size 100x30 2>"$folder/out" && fail "a wrong script passes"
+grep -q "script:2: there is no command 'sat'" "$folder/out" || fail "the script's fault is not told"
+
+[ "$failed" = 0 ] && echo "all is well"
+exit "$failed"
