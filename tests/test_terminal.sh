@@ -6,6 +6,8 @@ program=$(readlink -f "$1")
 export LC_ALL=C.UTF-8
 # a sanitizer's own handlers would end the program with another status
 export ASAN_OPTIONS=${ASAN_OPTIONS:-}:handle_segv=0:handle_sigbus=0:handle_sigill=0:handle_sigfpe=0:handle_abort=0
+# the console's mouse library, which ncurses loads for TERM=linux, leaks a few bytes
+export NCURSES_GPM_TERMS=none
 folder=$(mktemp -d)
 socket=impactlab-$$
 failed=0
@@ -81,6 +83,7 @@ lab() {
     stty -g >"$folder/after"
 }
 stty -g >"$folder/before"
+export XDG_CONFIG_HOME="$folder/config"
 PROFILE
 mux new-session -d -x 120 -y 40 "bash --noprofile --rcfile $folder/profile -i"
 await "ready>"
@@ -161,6 +164,27 @@ await "saved $folder/half.yaml"
 mux send-keys q
 await "status 0"
 "$program" run "$folder/half.yaml" | grep -q "peak force  *0.94" || fail "the saved run differs"
+
+# settings are kept; a file with faults is told of and left alone
+start
+mux send-keys ":panes 27" Enter ":theme light" Enter ":remember" Enter
+await "settings kept"
+mux send-keys q
+await "status 0"
+start
+await "  Di "
+mux send-keys q
+await "status 0"
+echo "glyphs purple" >>"$folder/config/impactlab/lab"
+cp "$folder/config/impactlab/lab" "$folder/broken"
+mux send-keys "clear; lab" Enter
+await "is ignored: 'purple' is none of braille, blocks, ascii"
+mux send-keys ":remember" Enter
+await "left alone"
+mux send-keys q
+await "status 0"
+cmp -s "$folder/broken" "$folder/config/impactlab/lab" || fail "broken settings were overwritten"
+rm -r "$folder/config"
 
 # other terminals, no colour, no UTF-8
 for setting in "TERM=xterm-256color" "TERM=vt100" "TERM=linux" "NO_COLOR=1" "LC_ALL=C" \

@@ -166,6 +166,11 @@ static int open_lab(lab *l, const arguments *a)
     }
     char line[LAB_TEXT];
     l->glyphs = terminal_has_utf8() ? GLYPHS_BRAILLE : GLYPHS_ASCII;
+    bool live = a->keys == NULL && a->script == NULL && a->size == NULL;
+    if (live) {
+        lab_settings_load(l);
+        l->glyphs = terminal_has_utf8() ? l->glyphs : GLYPHS_ASCII;
+    }
     const char *const settings[2][2] = {{"glyphs", a->glyphs}, {"theme", a->theme}};
     for (int i = 0; i < 2; i++) {
         snprintf(line, sizeof line, "%s %s", settings[i][0], settings[i][1] ? settings[i][1] : "");

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/scene.h"
 #include "render/trace_plot.h"
 #include "src/lab/export.h"
 #include "src/lab/whole_file.h"
@@ -404,6 +405,25 @@ static bool trace_pane(lab *l, const char *argument)
     return true;
 }
 
+// Shows the panes of these numbers and no others.
+static bool show_panes(lab *l, const char *argument)
+{
+    if (argument[strspn(argument, "123456789")] != '\0') {
+        lab_say(l, true, "panes takes numbers from 1 to 9, such as 134");
+        return false;
+    }
+    for (int i = 0; i < LAB_PANES - 1; i++) {
+        l->panes[i].shown = l->panes[i].count > 0 && strchr(argument, '1' + i) != NULL;
+    }
+    return true;
+}
+
+static bool remember(lab *l, const char *argument)
+{
+    (void)argument;
+    return lab_settings_save(l);
+}
+
 static bool open_scenario_by(lab *l, const char *argument)
 {
     int at = -1;
@@ -559,6 +579,24 @@ static bool save(lab *l, const char *argument)
     return code == STATUS_OK;
 }
 
+// The arm in space at the cursor's instant.
+static bool save_scene(lab *l, const char *argument)
+{
+    const session *s = &l->session;
+    const scene_options options = {0};
+    fault f = {0};
+    if (argument[0] == '\0') {
+        l->prompting = true;
+        snprintf(l->prompt, sizeof l->prompt, "scene arm.png");
+        return true;
+    }
+    status code = scene_write(&s->effective, &s->run, &options, &s->now, 1, argument, &f);
+    if (complain_about(l, code, &f)) {
+        lab_say(l, false, "saved %s", argument);
+    }
+    return code == STATUS_OK;
+}
+
 // --- the table --------------------------------------------------------------------------------
 
 static const lab_action actions[] = {
@@ -586,9 +624,12 @@ static const lab_action actions[] = {
     {"trace", "1-9|SIGNAL...", "show or hide a pane of curves", trace_pane},
     {"open", "[NAME|+1|-1]", "another scenario, from a list", open_scenario_by},
     {"save", "FILE", ".png .pdf .svg .csv .yaml .txt", save},
+    {"scene", "FILE.png", "picture of the arm at this instant", save_scene},
     {"glyphs", "braille|blocks|ascii", "characters to draw with", set_glyphs},
     {"theme", "dark|light|mono", "colours", set_theme},
     {"mouse", "on|off", "off lets the terminal select text", set_mouse},
+    {"panes", "134", "these panes of curves and no others", show_panes},
+    {"remember", "", "keep theme, glyphs, mouse, speed, panes", remember},
     {"redraw", "", "draw the whole screen anew", redraw},
     {"wait", "SECONDS", "in a script: let time pass", wait_for},
     {"help", "", "this page", show_help},
@@ -650,6 +691,7 @@ static const lab_binding bindings[] = {
     {"]", "open +1"},
     {"[", "open -1"},
     {"s", "save"},
+    {"S", "scene"},
     {"C-l", "redraw"},
     {"?", "help"},
     {"F1", "help"},
@@ -661,16 +703,18 @@ enum { BINDINGS = sizeof bindings / sizeof bindings[0] };
 static const lab_action *find_action(const char *name)
 {
     const lab_action *found = NULL;
+    int matches = 0;
     for (int i = 0; i < ACTIONS; i++) {
         if (strcmp(actions[i].name, name) == 0) {
             return &actions[i];
         }
-        // an unambiguous beginning will do
         if (strncmp(actions[i].name, name, strlen(name)) == 0) {
-            found = found == NULL ? &actions[i] : NULL;
+            found = &actions[i];
+            matches++;
         }
     }
-    return found;
+    // an unambiguous beginning will do
+    return matches == 1 ? found : NULL;
 }
 
 bool lab_carry_out(lab *l, const char *line)
@@ -937,6 +981,10 @@ static void key_in_page(lab *l, int key)
         l->scroll += l->scroll + 1 < ACTIONS;
     } else if (key == KEY_CODE_UP || key == 'k' || key == KEY_CODE_PAGE_UP) {
         l->scroll -= l->scroll > 0;
+    } else if (key == KEY_CODE_END || key == 'G') {
+        l->scroll = ACTIONS;
+    } else if (key == KEY_CODE_HOME || key == 'g') {
+        l->scroll = 0;
     } else {
         l->overlay = OVERLAY_NONE;
     }

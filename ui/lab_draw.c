@@ -431,7 +431,8 @@ static void draw_pane(lab *l, screen *s, const lab_pane *pane, area a)
     }
     short_number(text, sizeof text, f.high);
     screen_print(s, a.x, a.y + 1, LABEL_WIDTH, INK_DIM, "%9s", text);
-    short_number(text, sizeof text, f.low);
+    // rounding beside the other end of the axis is shown as 0
+    short_number(text, sizeof text, fabs(f.low) < 1e-9 * f.high ? 0 : f.low);
     screen_print(s, a.x, a.y + a.height - 1, LABEL_WIDTH, INK_DIM, "%9s", text);
     for (int y = a.y + 1; y < a.y + a.height; y++) {
         screen_put(s, a.x + LABEL_WIDTH, y, 0x2502, INK_FRAME);
@@ -750,7 +751,9 @@ static void draw_help(lab *l, screen *s)
     int shown = a.height - 4;
     l->scroll = l->scroll > count - shown ? count - shown : l->scroll;
     l->scroll = l->scroll < 0 ? 0 : l->scroll;
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, "keys and commands (Esc closes)");
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
+                 shown < count ? "keys and commands (arrows scroll, Esc closes)"
+                               : "keys and commands (Esc closes)");
     screen_text(
         s, a.x + 2, a.y + 1, a.width - 4, INK_DIM,
         "/ filters the list of scenarios; : takes a command, Tab completes it; Esc goes back");

@@ -21,8 +21,8 @@ typedef struct lab_pane {
 // Smallest and largest values of blocks of rows, for signals that were drawn: keeps long runs
 // quick.
 typedef struct lab_extremes {
-    unsigned version;  // of the session; 0: nothing is known
-    size_t blocks;     // number of whole or begun blocks of EXTREMES_BLOCK rows
+    unsigned version;           // of the session; 0: nothing is known
+    size_t blocks;              // number of whole or begun blocks of EXTREMES_BLOCK rows
     double *pairs[LAB_SIGNALS]; // by signal: low, high of each block; NULL where not asked for yet
 } lab_extremes;
 
@@ -51,6 +51,7 @@ typedef struct lab {
     glyph_set glyphs;
     lab_theme theme;
     bool mouse;
+    bool settings_broken; // the settings file has faults
     bool quit, redraw;
     int width, height;                           // of the screen drawn last [cells]
     int plot_x, plot_width, plot_y, plot_height; // where the curves were drawn last [cells]
@@ -99,6 +100,12 @@ bool lab_applies(const lab *l, int parameter);
 
 // The lines of the help, NULL after the last.
 const char *lab_help_line(int index);
+
+// Carries out the settings file's commands, if there is one. Faults are told and ignored.
+void lab_settings_load(lab *l);
+// Writes it, whole or not at all; not over a file with faults. False, with the reason in
+// l->message, if it could not.
+bool lab_settings_save(lab *l);
 
 // Frees what drawing remembers.
 void lab_draw_finish(lab *l);

@@ -194,7 +194,9 @@ void terminal_close(void)
 {
     if (tty.curses != NULL) {
         terminal_mouse(false);
-        // on a terminal that is gone this must not wait
+        // where there is no alternate screen the prompt comes back to an empty one
+        erase();
+        refresh();
         curs_set(1);
         endwin();
         delscreen(tty.curses);
