@@ -1,5 +1,6 @@
 #include "ui/command.h"
 
+#include "render/picture_file.h"
 #include "render/trace_plot.h"
 
 #include <math.h>
@@ -147,6 +148,10 @@ static int write_results(const arguments *a, const scenario *s, const run_result
 // Whether what is asked for can be done at all, before anything is computed.
 static int check_request(const arguments *a)
 {
+    fault f = {0};
+    if (a->plot != NULL && picture_check_path(a->plot, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     int result = worse(check_output(a->json), worse(check_output(a->csv), check_output(a->plot)));
     return worse(result, check_scene(a));
 }
@@ -167,7 +172,10 @@ static int run_and_report(const arguments *a, scenario *s)
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
         exit_status = worse(exit_status, EXIT_FAILED);
-    } else if (run_check_expectations(s, &result, report_to_stderr, NULL) > 0) {
+    } else if (result.summary.message[0] != '\0') {
+        fprintf(stderr, "impactlab: note: %s\n", result.summary.message);
+    }
+    if (code == STATUS_OK && run_check_expectations(s, &result, report_to_stderr, NULL) > 0) {
         exit_status = worse(exit_status, EXIT_FAILED);
     }
     run_finish(&result);

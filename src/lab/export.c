@@ -226,6 +226,7 @@ json_t *export_run(const scenario *s, const run_result *result)
     json_object_set_new(object, "version", json_string(lab_version()));
     json_object_set_new(object, "status", json_string(m->status == STATUS_OK ? "ok" : "failed"));
     json_object_set_new(object, "message", json_text(m->message));
+    json_object_set_new(object, "method_used", json_text(m->method));
     json_object_set_new(object, "parameters", parameters_object(&s->parameters));
     for (int i = 0; i < summary_count; i++) {
         double value = (double)NAN;

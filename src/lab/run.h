@@ -9,7 +9,8 @@
 // The result of a run. A quantity that did not occur is NaN (null in JSON).
 typedef struct summary {
     status status;
-    char message[1024];             // "" if all went well
+    char message[1024];             // what stopped the run, or a remark; "" if there is none
+    char method[32];                // the method in fact used, "Runge-Kutta 8"
     double first_contact_s;
     double contact_impulse_Ns;      // impulse of the first impact
     double first_pulse_peak_N;      // largest force from first contact to first release

@@ -9,7 +9,8 @@ typedef enum event_kind {
     EVENT_CONTACT, // contact goes on after an impact, or begins without one
     EVENT_RELEASE, // the contact force reaches zero
     EVENT_STICK,   // the hub comes to rest and friction holds it
-    EVENT_SLIP,    // the hub breaks away or turns back
+    EVENT_REVERSAL, // the hub comes to rest and turns back at once
+    EVENT_SLIP,    // the hub breaks away
     EVENT_CHANGE,  // a scripted change of a parameter
     EVENT_PUSH,    // a scripted push
 } event_kind;

@@ -348,7 +348,12 @@ static void keep_balance(const arm *a, motion *m, const iterate *it)
     double *trial = m->trial, *q = state_angles(m, trial), *w = state_velocities(m, trial);
     double g, rate, power = 0;
     chain_penetration(a, q, w, &g, &rate);
+    // the impulse of an impact within the step is none of the force's
+    double impulsive = m->state[SLOT_IMPULSE] / (trial[SLOT_TIME] - m->state[SLOT_TIME]);
     trial[SLOT_FORCE] = it->contact ? it->force : 0;
+    if (it->contact && it->force > 0 && m->state[SLOT_IMPULSE] > 0) {
+        trial[SLOT_FORCE] = fmax(it->force - impulsive, 0);
+    }
     trial[SLOT_FRICTION_TORQUE] = it->stuck ? -it->excess : it->sliding;
     trial[SLOT_GAP] = -g;
     trial[SLOT_GAP_RATE] = -rate;

@@ -254,7 +254,7 @@ status motion_try_step(const arm *a, motion *m, double h)
     }
     memcpy(trial, m->state, SLOT_COUNT * sizeof(double));
     trial[SLOT_TIME] += h;
-    trial[SLOT_JUMPED] = 0;
+    trial[SLOT_JUMPED] = trial[SLOT_IMPULSE] = 0;
     status s = m->stepper->step(a, m, h);
     if (s != STATUS_OK) {
         return s;
@@ -376,14 +376,16 @@ static void impact(const arm *a, motion *m, motion_report *report)
     report->speed = result.speed;
     report->impulse = result.impulse;
     report->loss = result.loss;
-    m->state[SLOT_IMPACT_LOSS] += result.loss;
     if (motion_unresolved(a, m) && e == 0) {
+        // the impact happens within the next step, whose own damping takes the loss (after Moreau)
         m->state[SLOT_CONTACT] = 1;
-        m->state[SLOT_FORCE] = result.impulse / m->nominal_step;
+        m->state[SLOT_FORCE] = 0;
+        m->state[SLOT_IMPULSE] = result.impulse;
         m->state[SLOT_JUMPED] = 1;
         report->holds = true;
         return;
     }
+    m->state[SLOT_IMPACT_LOSS] += result.loss;
     for (int i = 0; i < m->dof; i++) {
         w[i] += increment[i];
     }

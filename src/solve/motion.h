@@ -30,6 +30,7 @@ enum motion_slot {
     SLOT_VISCOUS_POWER,    // at this state [W]
     SLOT_DAMPING_POWER,    // at this state [W]
     SLOT_JUMPED,           // 1 just after an event, before the first step
+    SLOT_IMPULSE,          // of an unresolved impact, which the next step is to deliver [N s]
     SLOT_COUNT
 };
 
