@@ -261,6 +261,7 @@ status rig_act(rig *r, double time, double angle, double velocity, double force,
                fault *f)
 {
     const double late = 1e-9 * r->period; // instants of another grid may miss ours by rounding
+    const int mode = r->output.mode;
     status s = STATUS_OK;
     *changed = false;
     if (r->effect_time <= time + late) {
@@ -272,5 +273,6 @@ status rig_act(rig *r, double time, double angle, double velocity, double force,
     if (s == STATUS_OK && r->effect_time <= time + late) {
         apply(r, changed);
     }
+    *changed = *changed || r->output.mode != mode;
     return s;
 }

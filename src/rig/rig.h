@@ -38,8 +38,9 @@ void rig_destroy(rig *r); // r may be NULL
 double rig_next_time(const rig *r);
 
 // What is due at `time` [s], with the hub at `angle` [rad] and `velocity` [rad/s] under the given
-// contact force [N]. *changed: another command took effect, r->applied. STATUS_NOT_FINITE, with a
-// sentence in f, if the controller answers with a command that is not finite.
+// contact force [N]. *changed: another command took effect, r->applied, or the controller went into
+// another mode. STATUS_NOT_FINITE, with a sentence in f, if the controller answers with a command
+// that is not finite.
 status rig_act(rig *r, double time, double angle, double velocity, double force, bool *changed,
                fault *f);
 
