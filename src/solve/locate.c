@@ -6,7 +6,7 @@
 #define TOUCH_TOLERANCE   1e-12 // penetration that counts as crossing the wall [m]
 #define TORQUE_TOLERANCE  1e-12 // excess that counts as breaking away [N m]
 #define UNRESOLVED_IMPACT 0.1 // share of a step that an impact takes where steps do not resolve it
-#define LOCATION_TIME     1e-13 // width to which the bracket of an event is narrowed [s]
+#define LOCATION_TIME     1e-15 // width to which the bracket of an event is narrowed [s]
 
 // Positive on the admissible side.
 static double watch_value(const arm *a, const motion *m, const double *state, watch w)
