@@ -1,5 +1,7 @@
 #include "ui/command.h"
 
+#include "src/lab/sweep.h"
+
 #include <langinfo.h>
 #include <stdarg.h>
 #include <string.h>
@@ -128,22 +130,7 @@ bool summary_wanted(const arguments *a)
 
 void key_label(const char *key, char *label, size_t size, const char **unit)
 {
-    static const struct {
-        const char *suffix, *unit;
-    } units[] = {{"_Ns", "N s"}, {"_percent", "%"}, {"_s", "s"},
-                 {"_N", "N"},    {"_J", "J"},       {"_m", "m"},
-                 {"_V", "V"}};
-    size_t length = strlen(key);
-    *unit = "";
-    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
-        size_t tail = strlen(units[i].suffix);
-        if (length > tail && strcmp(key + length - tail, units[i].suffix) == 0) {
-            length -= tail;
-            *unit = units[i].unit;
-            break;
-        }
-    }
-    snprintf(label, size, "%.*s", (int)length, key);
+    quantity_name(key, label, size, unit);
     for (char *c = label; *c != '\0'; c++) {
         *c = *c == '_' ? ' ' : *c;
     }

@@ -444,7 +444,8 @@ void quantity_name(const char *key, char *name, size_t size, const char **unit)
     static const struct {
         const char *suffix, *unit;
     } units[] = {{"_Ns", "N s"}, {"_percent", "%"}, {"_s", "s"},
-                 {"_N", "N"},    {"_J", "J"},       {"_m", "m"}};
+                 {"_N", "N"},    {"_J", "J"},       {"_m", "m"},
+                 {"_V", "V"}};
     size_t length = strlen(key);
     *unit = "";
     for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
