@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "src/lab/random.h"
-#include "ui/lab_state.h"
+#include "ui/lab/lab.h"
 
 static void fail_on_fault(void *context, const char *sentence)
 {

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "ui/lab_state.h"
+#include "ui/lab/lab.h"
 #include "ui/terminal.h"
 
 #define FRAME         (1.0 / 60) // shortest time between two pictures [s]

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "src/status.h"
-#include "ui/lab_keys.h"
+#include "ui/key_codes.h"
 #include "ui/screen.h"
 
 typedef enum terminal_input_kind {

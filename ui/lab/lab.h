@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/lab/session.h"
-#include "ui/lab_keys.h"
+#include "ui/key_codes.h"
 #include "ui/screen.h"
 
 enum { EXTREMES_BLOCK = 64, LAB_SIGNALS = 64 };
@@ -97,6 +97,12 @@ void lab_window(const lab *l, double *from, double *to);
 
 // Whether the parameter means anything for the run (printed.* only for the printed model...).
 bool lab_applies(const lab *l, int parameter);
+
+// The names of the commands, NULL after the last.
+const char *lab_command_name(int index);
+
+// The keys that carry a command out, blanks between them.
+void lab_keys_of(const char *command, char *text, size_t size);
 
 // The lines of the help, NULL after the last.
 const char *lab_help_line(int index);

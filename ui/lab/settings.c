@@ -1,6 +1,6 @@
 // What the terminal lab remembers between visits: a file of its own commands in the user's
 // configuration folder.
-#include "ui/lab_state.h"
+#include "ui/lab/lab.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
-#include "ui/lab_state.h"
+// Opening, closing and advancing the terminal lab.
+#include "ui/lab/lab.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
