@@ -258,13 +258,14 @@ const command bench_command = {
         "Medians of repeated measurements, in computing time of one processor\n(of the batch: by "
         "the clock).\n\n"
         "  arm_n2_us_per_ms            two links, 1 s of 1 V into the wall, nothing recorded\n"
+        "  rig_n2_us_per_ms            the same under the hybrid law with its noisy sensors, 200 Hz\n"
         "  arm_n128_free_us_per_ms     128 links in free flight, implicit steps of 1 ms\n"
         "  arm_n128_contact_us_per_ms  128 links pressing on the wall, the same steps\n"
         "  batch_n2_steps_per_s        steps of many runs of two links, on all processors\n"
         "  predict_us                  one prediction of the peak force, two links\n"
         "  tables_s                    Tables 4.1 to 4.3 of the thesis\n"
         "  figures_s                   the figures of the thesis as PNG\n\n"
-        "The first three are microseconds of computing per simulated millisecond. --baseline marks "
+        "The first four are microseconds of computing per simulated millisecond. --baseline marks "
         "as slower\nwhat takes 15 % longer than before and did so in every measurement. --plot "
         "then draws the time of a\nstep over the number of links, 2 to 1024.\n",
     .run = bench,

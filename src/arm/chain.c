@@ -125,7 +125,9 @@ double chain_kinetic_energy(const arm *a, const double *q, const double *w)
 {
     double l = a->link_length, vx = 0, vy = 0, twice = a->hub_inertia * w[0] * w[0];
     for (int k = a->first; k < a->dof; k++) {
-        double across_x = -l * sin(q[k]) * w[k], across_y = l * cos(q[k]) * w[k];
+        double s, c;
+        inline_sincos(q[k], &s, &c);
+        double across_x = -l * s * w[k], across_y = l * c * w[k];
         double cx = vx + across_x / 2, cy = vy + across_y / 2;
         twice += a->link_mass * (cx * cx + cy * cy) + a->link_inertia * w[k] * w[k];
         vx += across_x;

@@ -406,19 +406,6 @@ static status act(recording *r, arm *a, motion *m, fault *f)
     return STATUS_OK;
 }
 
-// Evaluates the state under the torque as it now is. Whether the mode that it is in still holds: an
-// arm that moves and, where it touches the wall, presses.
-static bool keeps_its_mode(const arm *a, motion *m)
-{
-    double *state = m->state;
-    motion_evaluate(a, m, state);
-    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
-           (size_t)m->dof * sizeof(double));
-    state[SLOT_JUMPED] = 1;
-    return state_velocities(m, state)[0] != 0 && state[SLOT_FRICTION] != HUB_STICK &&
-           (state[SLOT_CONTACT] == 0 || state[SLOT_FORCE] > 0);
-}
-
 // Lets another command take effect: the torque jumps, and with it accelerations and force.
 static status take_command(recording *r, arm *a, motion *m)
 {
@@ -426,13 +413,8 @@ static status take_command(recording *r, arm *a, motion *m)
     double now = m->state[SLOT_TIME];
     book_electrical_energy(r, now, state_angles(m, m->state)[0]);
     r->now.motor.voltage = r->rig->applied;
-    arm before = *a;
     arm_set_voltage(a, &r->now.motor, r->rig->applied);
-    // where steps do not resolve the fastest modes, an instant's accelerations say nothing: the
-    // next step finds out what the torque does
-    if (!motion_unresolved(a, m) && !keeps_its_mode(a, m)) {
-        motion_rebind(&before, a, m);
-    }
+    motion_retorque(a, m);
     status failed = STATUS_OK;
     if (contact && m->state[SLOT_CONTACT] == 0) {
         motion_report lost = {.event = MOTION_RELEASE};
@@ -511,7 +493,8 @@ static status book_stride(recording *r, const arm *a, motion *m, bool at_event)
     if (!isnan(r->result->summary.first_contact_s) && !r->separated) {
         r->separated = stride_separated(a, m);
     }
-    status s = audit(r, a, m);
+    // an arm held still has the energy it had
+    status s = motion_held_still(m) ? STATUS_OK : audit(r, a, m);
     // between stops that differ by rounding only, the integral's difference is all rounding
     double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
     double mean = length > SHORTEST_MEAN ? integral / length : ends;

@@ -462,6 +462,35 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
     }
 }
 
+// Whether an evaluated state keeps to its mode with certainty: an arm that moves or is held by
+// friction well within its limit and, where it touches the wall, presses.
+static bool mode_is_certain(const arm *a, const motion *m, double *state)
+{
+    contact_mode mode = state_mode(state);
+    bool hub = mode.friction == HUB_STICK
+                   ? fabs(state[SLOT_FRICTION_TORQUE]) < a->stiction * (1 - 1e-9)
+                   : state_velocities(m, state)[0] != 0;
+    return hub && (!mode.contact || state[SLOT_FORCE] > 0);
+}
+
+void motion_retorque(const arm *a, motion *m)
+{
+    if (motion_unresolved(a, m)) {
+        return; // an instant's accelerations say nothing: the next step finds out
+    }
+    double *state = m->state, *accelerations = state_accelerations(m, state);
+    motion_evaluate(a, m, state);
+    if (!mode_is_certain(a, m, state)) {
+        resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_REACHED);
+        return;
+    }
+    if (motion_held_still(m)) {
+        memset(accelerations, 0, (size_t)m->dof * sizeof(double));
+    }
+    memcpy(state_algorithmic(m, state), accelerations, (size_t)m->dof * sizeof(double));
+    state[SLOT_JUMPED] = 1;
+}
+
 void motion_rebind(const arm *before, const arm *after, motion *m)
 {
     const double *q = state_angles(m, m->state);

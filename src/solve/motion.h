@@ -169,6 +169,10 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 // change of strain energy is booked as external work and the mode found anew.
 void motion_rebind(const arm *before, const arm *after, motion *m);
 
+// To be called after nothing but the motor's torque changed: accelerations and reactions jump with
+// it, and the mode is found anew where it may have changed.
+void motion_retorque(const arm *a, motion *m);
+
 // Forgets the recorded peak: the next one counts from the present state.
 void motion_watch(motion *m);
 
