@@ -128,11 +128,21 @@ expect 2 check hit.yaml faults.yaml
 says err "faults.yaml:2:"
 says err "faults.yaml:3:"
 says err "did you mean 'voltage'?"
+# in the order of the lines, however the reader came upon them
+printf 'script: [{at: 99 s, set: {motor.voltage: 1}}]\nrun: {duration: -1}\nwall: {knd: 3}\n' >order.yaml
+expect 2 check order.yaml
+sed 's/^[^:]*:\([0-9]*\):.*/\1/' err | sort -nc || fail "faults are not told line by line"
 # every scenario that ships is sound
 mapfile -t shipped < <(find "$IMPACTLAB_SCENARIOS" -name '*.yaml')
 expect 0 check "${shipped[@]}"
 
 # --- run
+cp hit.yaml kept.yaml
+expect 2 run kept.yaml --json kept.yaml
+says err "the scenario itself"
+cmp -s hit.yaml kept.yaml || fail "results replaced their own scenario"
+expect 0 run hit.yaml --set motor.voltage=12
+says err "motor.voltage_limit"
 expect 0 run hit.yaml
 says out "first contact"
 says out "impact "

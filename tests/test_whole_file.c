@@ -134,6 +134,19 @@ static void a_link_stays_a_link(void **state)
     unlink("target");
 }
 
+static void a_link_to_nothing_leads_to_the_new_file(void **state)
+{
+    (void)state;
+    struct stat about;
+    assert_int_equal(symlink("later", "link"), 0);
+    write_new("link");
+    assert_int_equal(lstat("link", &about), 0);
+    assert_true(S_ISLNK(about.st_mode));
+    assert_holds("later", "new");
+    unlink("link");
+    unlink("later");
+}
+
 static void a_full_device_is_reported_and_stays_a_device(void **state)
 {
     (void)state;
@@ -192,6 +205,7 @@ int main(void)
         cmocka_unit_test(abandoning_leaves_the_target_and_nothing_else),
         cmocka_unit_test(mode_follows_the_umask_or_the_old_file),
         cmocka_unit_test(a_link_stays_a_link),
+        cmocka_unit_test(a_link_to_nothing_leads_to_the_new_file),
         cmocka_unit_test(a_full_device_is_reported_and_stays_a_device),
         cmocka_unit_test(what_cannot_be_written_is_said_beforehand),
         cmocka_unit_test(a_reader_that_left_is_told_from_a_full_disk),

@@ -5,6 +5,7 @@
 #include <langinfo.h>
 #include <stdarg.h>
 #include <string.h>
+#include <sys/stat.h>
 
 int complain(const char *format, ...)
 {
@@ -75,6 +76,26 @@ static void report_and_count(void *context, const char *sentence)
     report_to_stderr(NULL, sentence);
 }
 
+static bool is_same_file(const char *path, const char *other)
+{
+    struct stat a, b;
+    return path != NULL && stat(path, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
+// Results must not replace the scenario they come from.
+static int check_keeps_scenario(const scenario *s, const arguments *a)
+{
+    const char *const outputs[] = {a->json, a->csv, a->plot, a->scene, a->output};
+    for (size_t i = 0; i < sizeof outputs / sizeof outputs[0]; i++) {
+        if (is_same_file(outputs[i], s->file)) {
+            return complain("'%s' is the scenario itself, expected another file for the results",
+                            outputs[i]);
+        }
+    }
+    return EXIT_DONE;
+}
+
 int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
 {
     int reported = 0;
@@ -85,7 +106,10 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
         }
         return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
     }
-    int result = apply_sets(s, a);
+    int result = check_keeps_scenario(s, a);
+    if (result == EXIT_DONE) {
+        result = apply_sets(s, a);
+    }
     if (result != EXIT_DONE) {
         scenario_finish(s);
     }

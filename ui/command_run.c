@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "src/arm/arm.h"
 #include "src/parameters.h"
 #include "ui/scene_request.h"
 
@@ -156,6 +157,17 @@ static int check_request(const arguments *a)
     return worse(result, check_scene(a));
 }
 
+// What the amplifier makes of a voltage beyond its limit changes the run: say so.
+static void note_limited_voltage(const parameters *p)
+{
+    if (p->control.law == LAW_NONE && fabs(p->motor.voltage) > p->motor.voltage_limit) {
+        fprintf(stderr,
+                "impactlab: note: motor.voltage = %g V is beyond motor.voltage_limit: the "
+                "amplifier gets %g V\n",
+                p->motor.voltage, motor_limited_voltage(&p->motor));
+    }
+}
+
 static int run_and_report(const arguments *a, scenario *s)
 {
     run_result result;
@@ -175,6 +187,7 @@ static int run_and_report(const arguments *a, scenario *s)
     } else if (result.summary.message[0] != '\0') {
         fprintf(stderr, "impactlab: note: %s\n", result.summary.message);
     }
+    note_limited_voltage(&s->parameters);
     if (code == STATUS_OK && run_check_expectations(s, &result, report_to_stderr, NULL) > 0) {
         exit_status = worse(exit_status, EXIT_FAILED);
     }

@@ -15,11 +15,17 @@ typedef struct place {
     int line, column; // 0 where the file does not mention it
 } place;
 
+// A fault found, with its place in the file and among the others.
+typedef struct found_fault {
+    place at;
+    int number;
+    char *sentence;
+} found_fault;
+
 // What the functions below share while one file is read.
 typedef struct reader {
     const char *path;
-    fault_handler report;
-    void *context;
+    found_fault *found; // faults of them
     int faults;
     bool no_memory;
     scenario *s;
@@ -52,19 +58,48 @@ __attribute__((format(printf, 4, 5))) static void report_at(reader *r, int line,
                                                             const char *format, ...)
 {
     char what[1280];
-    char *sentence;
+    found_fault found = {{line, column}, r->faults, NULL};
     va_list args;
     va_start(args, format);
     vsnprintf(what, sizeof what, format, args);
     va_end(args);
-    r->faults++;
-    if (asprintf(&sentence, "%s:%d:%d: %s", r->path, line, column, what) < 0) {
+    found_fault *grown = realloc(r->found, (size_t)(r->faults + 1) * sizeof *grown);
+    if (grown != NULL) {
+        r->found = grown;
+    }
+    if (grown == NULL ||
+        asprintf(&found.sentence, "%s:%d:%d: %s", r->path, line, column, what) < 0) {
         r->no_memory = true;
         return;
     }
-    make_printable(sentence);
-    r->report(r->context, sentence);
-    free(sentence);
+    make_printable(found.sentence);
+    r->found[r->faults++] = found;
+}
+
+// By the place in the file; equal places in the order found.
+static int compare_places(const void *a, const void *b)
+{
+    const found_fault *x = a, *y = b;
+    int order = (x->at.line > y->at.line) - (x->at.line < y->at.line);
+    order = order ? order : (x->at.column > y->at.column) - (x->at.column < y->at.column);
+    return order ? order : (x->number > y->number) - (x->number < y->number);
+}
+
+// Passes all faults on as somebody who goes through the file meets them, and forgets them.
+static void report_all(reader *r, fault_handler report, void *context)
+{
+    if (r->faults > 0) {
+        qsort(r->found, (size_t)r->faults, sizeof *r->found, compare_places);
+    }
+    for (int i = 0; i < r->faults; i++) {
+        report(context, r->found[i].sentence);
+        free(r->found[i].sentence);
+    }
+    free(r->found);
+    r->found = NULL;
+    if (r->no_memory) {
+        report(context, status_text(STATUS_NO_MEMORY));
+    }
 }
 
 // printf-like, at a node or its key.
@@ -686,24 +721,22 @@ status scenario_parse(scenario *s, const char *text, size_t length, const char *
                       const char *name, fault_handler report, void *context)
 {
     tree_fault f;
-    reader r = {.path = path, .report = report, .context = context, .s = s};
+    reader r = {.path = path, .s = s};
     *s = (scenario){0};
     parameters_defaults(&s->parameters, ARM_CORRECTED);
     tree_node *root = tree_parse(text, length, &f);
     if (root == NULL) {
         r.no_memory = f.no_memory;
         report_at(&r, f.line, f.column, "%s", f.text);
-        return r.no_memory ? STATUS_NO_MEMORY : STATUS_BAD_SCENARIO;
+    } else {
+        read_root(&r, root);
+        tree_free(root);
     }
-    read_root(&r, root);
-    tree_free(root);
-    if (r.faults == 0) {
+    if (r.faults == 0 && !r.no_memory) {
         complete(&r, name);
     }
-    if (r.no_memory) {
-        report_at(&r, 1, 1, "out of memory");
-    }
-    if (r.faults > 0) {
+    report_all(&r, report, context);
+    if (r.no_memory || r.faults > 0) {
         scenario_finish(s);
         return r.no_memory ? STATUS_NO_MEMORY : STATUS_BAD_SCENARIO;
     }

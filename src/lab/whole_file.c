@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -16,6 +17,8 @@ static status cannot_write(fault *f, const char *path, int reason)
                      standard_output ? "the standard output" : "'", standard_output ? "" : path,
                      standard_output ? "" : "'", strerror(reason));
 }
+
+enum { MOST_LINKS = 40 }; // followed one after the other, as the kernel does
 
 // Names of temporaries that exist just now, for the signal handler; a few files at once are plenty,
 // and one without a place is merely not cleaned up after a signal.
@@ -64,6 +67,29 @@ static char *folder_of(const char *path)
 {
     size_t length = folder_length(path);
     return length ? strndup(path, length) : strdup(".");
+}
+
+// Where a path leads, be it there or not: a link stays a link, its target is what gets written. NULL
+// without memory.
+static char *target_of(const char *path)
+{
+    char *target = strdup(path);
+    for (int links = 0; target != NULL && links < MOST_LINKS; links++) {
+        char link[PATH_MAX];
+        ssize_t length = readlink(target, link, sizeof link - 1);
+        if (length < 0) {
+            break;
+        }
+        link[length] = '\0';
+        char *next;
+        int folder = link[0] == '/' ? 0 : (int)folder_length(target);
+        if (asprintf(&next, "%.*s%s", folder, target, link) < 0) {
+            next = NULL;
+        }
+        free(target);
+        target = next;
+    }
+    return target;
 }
 
 // 0 if target can be replaced or created, else the reason.
@@ -173,11 +199,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
         w->path = strdup(path);
         return w->path ? STATUS_OK : cannot_write(f, path, ENOMEM);
     }
-    // a link stays a link: its target is what gets replaced
-    w->path = realpath(path, NULL);
-    if (w->path == NULL) {
-        w->path = strdup(path);
-    }
+    w->path = target_of(path);
     int reason = w->path ? open_target(w) : ENOMEM;
     if (reason != 0) {
         free(w->path);
