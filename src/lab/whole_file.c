@@ -69,8 +69,8 @@ static char *folder_of(const char *path)
     return length ? strndup(path, length) : strdup(".");
 }
 
-// Where a path leads, be it there or not: a link stays a link, its target is what gets written. NULL
-// without memory.
+// Where a path leads, be it there or not: a link stays a link and its target is what gets written.
+// NULL without memory.
 static char *target_of(const char *path)
 {
     char *target = strdup(path);
