@@ -91,6 +91,7 @@ typedef enum control_law {
     LAW_RECOVERING,
     LAW_OPTIMAL,
     LAW_PREDICTIVE,
+    LAW_INVERSE_DYNAMICS,
     LAW_PLUGIN
 } control_law;
 
@@ -117,6 +118,8 @@ typedef struct control_parameters {
     double reverse_time;               // how long reverse-torque brakes [s]
     double force_limit;                // that a predictive approach keeps to [N]
     double switch_share;               // where bang-bang switches, share of the way to the wall
+    double travel_time;                // of the tip to the wall under inverse-dynamics [s]
+    double arrival_speed;              // of the tip at the wall under inverse-dynamics [m/s]
 } control_parameters;
 
 typedef struct sensor_parameters {

@@ -6,4 +6,4 @@
 
 extern const controller open_loop_law, hybrid_law, force_pd_law, force_integral_law,
     reverse_torque_law, speed_limit_law, bang_bang_law, discontinuous_law, recovering_law,
-    optimal_law, predictive_law;
+    optimal_law, predictive_law, inverse_dynamics_law;

@@ -22,6 +22,7 @@ const controller *controller_of(int law)
                                                  [LAW_RECOVERING] = &recovering_law,
                                                  [LAW_OPTIMAL] = &optimal_law,
                                                  [LAW_PREDICTIVE] = &predictive_law,
+                                                 [LAW_INVERSE_DYNAMICS] = &inverse_dynamics_law,
                                                  [LAW_PLUGIN] = NULL};
     return built_in[law];
 }

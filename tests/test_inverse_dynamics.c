@@ -1,0 +1,312 @@
+// The law inverse-dynamics: against an inverse computed with nothing but sums over frequencies, and
+// on the arm: the tip goes as planned, rests afterwards, meets the wall as fast as planned, and the
+// force follows its plan.
+#include <complex.h>
+#include <stdlib.h>
+
+#include "src/rig/laws.h"
+#include "tests/rig_fixture.h"
+
+#define PI          3.14159265358979323846
+#define TRAVEL_TIME 0.25 // [s]
+#define WAY         0.1  // from the start to the wall of the fixture [rad]
+
+static const double complex i_ = CMPLX(0, 1);
+
+// --- the plan itself ------------------------------------------------------------------------
+
+enum { FORCE, ARRIVAL_SPEED, TRAVEL, TRANSITION, THRESHOLD };
+
+// The default arm without stiction, sampled continuously; parameters in the law's order.
+static controller_setup default_setup(const double *values)
+{
+    return (controller_setup){.voltage_limit = 10,
+                              .torque_per_volt = 0.44,
+                              .hub_damping = 0.18,
+                              .hub_inertia = 5.2e-3,
+                              .link_mass = 0.2,
+                              .link_length = 0.5,
+                              .link_inertia = 0.2 * 0.25 / 12,
+                              .k2 = 4.92,
+                              .wall_angle = WAY,
+                              .parameters = values};
+}
+
+// When the tip of the default arm departs: the law takes 8/s for what the hub does before.
+static double departure(const controller_setup *r)
+{
+    double ml2 = r->link_mass * r->link_length * r->link_length;
+    return 8 / sqrt(2 * r->k2 / (0.25 * ml2 - r->link_inertia));
+}
+
+// Planned angle of the tip since its departure, without arrival speed [rad].
+static double planned_tip(double time)
+{
+    double share = fmax(0, fmin(time / TRAVEL_TIME, 1));
+    return WAY * (share - sin(2 * PI * share) / (2 * PI));
+}
+
+// Torque at w of a unit tip acceleration, from (K + iwC - w^2 M) q = (1, 0) torque.
+static double complex torque_per_acceleration(const controller_setup *r, double w)
+{
+    double ml2 = r->link_mass * r->link_length * r->link_length, k2 = r->k2;
+    double complex a =
+        k2 + i_ * w * r->hub_damping - w * w * (r->hub_inertia + r->link_inertia + 1.25 * ml2);
+    double complex b = -k2 - w * w * 0.5 * ml2;
+    double complex d = k2 - w * w * (r->link_inertia + 0.25 * ml2);
+    double complex det = a * d - b * b, tip = (d - b) / 2 / det;
+    return 1 / (-w * w * tip);
+}
+
+// A window of two seconds in 1024 instants, the tip departing in its middle: transform, divide,
+// transform back. At w = 0 the arm is a rigid body; its acceleration has no mean, its damping has.
+static void plan_is_the_inverse_of_every_frequency(void **state)
+{
+    (void)state;
+    enum { COUNT = 1024 };
+    const double window = 2, step = window / COUNT;
+    const double values[] = {
+        [FORCE] = 0, [TRAVEL] = TRAVEL_TIME, [TRANSITION] = 0.35, [THRESHOLD] = 1};
+    const controller_setup setup = default_setup(values);
+    double torque[COUNT] = {0};
+    for (int n = 0; n < COUNT / 2; n++) {
+        double w = 2 * PI * n / window;
+        double complex acceleration = 0;
+        for (int k = 0; k < COUNT; k++) {
+            double t = k * step - window / 2;
+            double there = t > 0 && t < TRAVEL_TIME ? sin(2 * PI * t / TRAVEL_TIME) : 0;
+            acceleration += there * 2 * PI * WAY / (TRAVEL_TIME * TRAVEL_TIME) *
+                            cexp(-i_ * w * k * step) / COUNT;
+        }
+        double complex part = n == 0 ? setup.hub_damping * WAY / window
+                                     : 2 * torque_per_acceleration(&setup, w) * acceleration;
+        for (int k = 0; k < COUNT; k++) {
+            torque[k] += creal(part * cexp(i_ * w * k * step));
+        }
+    }
+    void *memory = calloc(1, inverse_dynamics_law.memory_size);
+    assert_non_null(memory);
+    assert_null(inverse_dynamics_law.start(memory, &setup));
+    double largest = 0, wrong = 0, ahead = 0;
+    for (int k = 0; k < COUNT; k++) {
+        controller_output out;
+        // the plan counts from the first sample
+        double time = k * step - window / 2 + departure(&setup);
+        if (time < 0) {
+            continue;
+        }
+        if (largest == 0) {
+            inverse_dynamics_law.sample(memory, &(controller_input){.time = 0}, &out);
+        }
+        inverse_dynamics_law.sample(memory, &(controller_input){.time = time}, &out);
+        double planned = out.command * setup.torque_per_volt;
+        largest = fmax(largest, fabs(planned));
+        wrong = fmax(wrong, fabs(planned - torque[k]));
+        ahead = time < departure(&setup) ? fmax(ahead, planned) : ahead;
+    }
+    free(memory);
+    check_below(wrong, 1e-3 * largest);
+    // it is not causal: before the tip departs the torque is a good part of its largest
+    check_below(0.1 * largest, ahead);
+}
+
+static void plan_needs_an_arm_that_it_can_invert(void **state)
+{
+    (void)state;
+    const double values[] = {1, 0, TRAVEL_TIME, 0.35, 0.05};
+    controller_setup heavy = default_setup(values), loose = heavy;
+    void *memory = calloc(1, inverse_dynamics_law.memory_size);
+    assert_non_null(memory);
+    heavy.link_inertia = 0.2 * 0.25 / 4;
+    assert_non_null(strstr(inverse_dynamics_law.start(memory, &heavy), "link inertia"));
+    loose.torque_per_volt = 0;
+    assert_non_null(strstr(inverse_dynamics_law.start(memory, &loose), "motor"));
+    free(memory);
+}
+
+// --- on the arm, in free motion -------------------------------------------------------------
+
+typedef struct travelled {
+    double tip_error;   // root mean square over the whole run, share of the way
+    double hub_ahead;   // hub angle when the tip departs, share of the way
+    double tip_ahead;   // the same of the tip
+    double left_moving; // span of the tip's angle after its arrival, share of the way
+} travelled;
+
+static travelled travel(const char *const *settings)
+{
+    const char *all[16] = {"control.law=inverse-dynamics", "control.force=0", "wall.kind=none",
+                           "control.travel_time=0.25", "sensor.ideal=true"};
+    for (int i = 5; *settings != NULL; i++) {
+        all[i] = *settings++;
+    }
+    parameters p = rig_parameters(all);
+    controller_setup believed = {.link_mass = p.arm.mass / 2,
+                                 .link_length = p.arm.length / 2,
+                                 .link_inertia = p.arm.link_inertia,
+                                 .k2 = p.arm.k2 * p.control.k2_factor};
+    double departs = departure(&believed), arrives = departs + TRAVEL_TIME;
+    run_result r = rig_run(all, true);
+    travelled result = {0};
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (size_t i = 0; i < r.trace.row_count; i++) {
+        const sample *row = &r.trace.rows[i];
+        double tip = (row->first_angle + row->last_angle) / 2 + WAY;
+        double error = (tip - planned_tip(row->time - departs)) / WAY;
+        result.tip_error += error * error / (double)r.trace.row_count;
+        if (row->time <= departs) {
+            result.hub_ahead = (row->hub_angle + WAY) / WAY;
+            result.tip_ahead = tip / WAY;
+        }
+        if (row->time > arrives + 0.25) { // what the hub does after the tip's arrival has died away
+            low = fmin(low, tip);
+            high = fmax(high, tip);
+        }
+    }
+    result.tip_error = sqrt(result.tip_error);
+    result.left_moving = (high - low) / WAY;
+    run_finish(&r);
+    return result;
+}
+
+static void tip_follows_its_plan_and_rests(void **state)
+{
+    (void)state;
+    travelled ideal = travel(SETTINGS("motor.stiction=0"));
+    check_below(ideal.tip_error, 1e-3);
+    check_below(ideal.left_moving, 1e-3);
+    // the hub starts before the tip
+    check_below(0.1, ideal.hub_ahead);
+    check_close(ideal.tip_ahead, 0, 1e-3);
+    // friction that is known costs little
+    travelled rough = travel(SETTINGS("motor.stiction=0.045"));
+    check_below(rough.tip_error, 0.01);
+    check_below(rough.left_moving, 0.01);
+}
+
+// The same law that believes in an arm a hundred times stiffer is the computed torque of a rigid
+// body.
+static void rigid_body_torque_leaves_vibration(void **state)
+{
+    (void)state;
+    travelled rigid = travel(SETTINGS("motor.stiction=0", "control.k2_factor=100"));
+    travelled flexible = travel(SETTINGS("motor.stiction=0"));
+    check_below(0.2, rigid.left_moving);
+    check_below(100 * flexible.left_moving, rigid.left_moving);
+    check_below(30 * flexible.tip_error, rigid.tip_error);
+}
+
+// Open-loop: what it believes of the stiffness is what it gets.
+static void wrong_stiffness_costs(void **state)
+{
+    (void)state;
+    const char *const factors[] = {"control.k2_factor=0.8", "control.k2_factor=1.2"};
+    for (int i = 0; i < 2; i++) {
+        travelled wrong = travel(SETTINGS("motor.stiction=0", factors[i]));
+        check_below(0.02, wrong.left_moving);
+        check_below(0.01, wrong.tip_error);
+        check_below(wrong.tip_error, 0.1);
+    }
+}
+
+// --- at the wall ----------------------------------------------------------------------------
+
+static const event *first_impact(const run_result *r)
+{
+    for (size_t i = 0; i < r->trace.event_count; i++) {
+        if (r->trace.events[i].kind == EVENT_IMPACT) {
+            return &r->trace.events[i];
+        }
+    }
+    fail_msg("no impact");
+    return NULL;
+}
+
+static void tip_meets_the_wall_as_fast_as_planned(void **state)
+{
+    (void)state;
+    const double speeds[] = {0.1, 0.2, 0.4, 0.8};
+    for (int i = 0; i < 4; i++) {
+        for (int seed = 1; seed <= 5; seed++) {
+            char speed[48], random[32];
+            snprintf(speed, sizeof speed, "control.arrival_speed=%g", speeds[i]);
+            snprintf(random, sizeof random, "control.seed=%d", seed);
+            run_result r = rig_run(SETTINGS("control.law=inverse-dynamics", speed, random), false);
+            check_relative(first_impact(&r)->speed, speeds[i], 0.03);
+            check_close(first_impact(&r)->time, 0.583, 0.006);
+            check_close(r.summary.steady_force_N, 1, 0.03);
+            run_finish(&r);
+        }
+    }
+}
+
+// Sampled fast and without friction the force is the planned one through the impact and after it.
+static void force_follows_its_plan(void **state)
+{
+    (void)state;
+    const char *const speeds[] = {"control.arrival_speed=0", "control.arrival_speed=0.3"};
+    for (int i = 0; i < 2; i++) {
+        run_result r = rig_run(SETTINGS("control.law=inverse-dynamics", "sensor.ideal=true",
+                                        "motor.stiction=0", "control.rate=5000",
+                                        "control.transition_time=0.1", speeds[i]),
+                               true);
+        for (size_t k = 0; k < r.trace.row_count; k++) {
+            const sample *row = &r.trace.rows[k];
+            // a touch without speed comes when the force is above what the tip is off its plan
+            check_close(row->force, row->calculated_force, row->time < 0.62 ? 0.15 : 0.01);
+        }
+        check_close(first_impact(&r)->time, 0.583, 0.01);
+        check_close(r.summary.steady_force_N, 1, 2e-3);
+        run_finish(&r);
+    }
+}
+
+// On the noisy default rig, and with the wall found 0.02 rad before or behind its believed place.
+static void press_ends_near_its_force(void **state)
+{
+    (void)state;
+    const char *const errors[] = {"control.wall_error=0", "control.wall_error=0.02",
+                                  "control.wall_error=-0.02"};
+    const double peaks[] = {1.05, 1.3, 1.5};
+    for (int i = 0; i < 3; i++) {
+        for (int seed = 1; seed <= 5; seed++) {
+            char random[32];
+            snprintf(random, sizeof random, "control.seed=%d", seed);
+            summary s = rig_summary(SETTINGS("control.law=inverse-dynamics", errors[i], random));
+            check_close(s.steady_force_N, 1, 0.05);
+            check_below(s.peak_force_N, peaks[i]);
+        }
+    }
+}
+
+static void early_touch_moves_the_plan_on(void **state)
+{
+    (void)state;
+    run_result r =
+        rig_run(SETTINGS("control.law=inverse-dynamics", "control.wall_error=0.02"), true);
+    double touch = first_impact(&r)->time;
+    check_below(touch, 0.5);
+    for (size_t i = 0; i < r.trace.row_count; i++) {
+        const sample *row = &r.trace.rows[i];
+        if (row->time < touch || row->time > touch + 0.0101) {
+            check_close(row->controller_mode, row->time < touch ? 0 : 1, 0);
+        }
+    }
+    run_finish(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plan_is_the_inverse_of_every_frequency),
+        cmocka_unit_test(plan_needs_an_arm_that_it_can_invert),
+        cmocka_unit_test(tip_follows_its_plan_and_rests),
+        cmocka_unit_test(rigid_body_torque_leaves_vibration),
+        cmocka_unit_test(wrong_stiffness_costs),
+        cmocka_unit_test(tip_meets_the_wall_as_fast_as_planned),
+        cmocka_unit_test(force_follows_its_plan),
+        cmocka_unit_test(press_ends_near_its_force),
+        cmocka_unit_test(early_touch_moves_the_plan_on),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
