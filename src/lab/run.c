@@ -413,8 +413,9 @@ static status take_command(recording *r, arm *a, motion *m)
     double now = m->state[SLOT_TIME];
     book_electrical_energy(r, now, state_angles(m, m->state)[0]);
     r->now.motor.voltage = r->rig->applied;
+    double before = a->motor_torque;
     arm_set_voltage(a, &r->now.motor, r->rig->applied);
-    motion_retorque(a, m);
+    motion_retorque(a, m, before);
     status failed = STATUS_OK;
     if (contact && m->state[SLOT_CONTACT] == 0) {
         motion_report lost = {.event = MOTION_RELEASE};
@@ -440,13 +441,16 @@ static status control(recording *r, arm *a, motion *m, fault *f)
 static status record_grid(recording *r, const arm *a, motion *m, bool at_event)
 {
     const double step = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
+    if (!r->keep_trace) {
+        return STATUS_OK;
+    }
     for (;; r->grid_row++) {
         double time = (double)r->grid_row * step;
         bool at_end = fabs(time - now) <= 1e-9 * step;
         if (time > now && !at_end) {
             return STATUS_OK;
         }
-        if (!r->keep_trace || (at_end && at_event)) {
+        if (at_end && at_event) {
             continue; // an event records its own rows
         }
         double *state = at_end ? m->state : motion_between(a, m, time);

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "src/arm/sincos.h"
+
 // 10 % to 90 % of a first-order lag takes ln 9 time constants.
 #define RISE_OVER_TIME_CONSTANT 2.1972245773362196
 
@@ -119,7 +121,9 @@ sensor_reading sensors_read(sensors *s, double angle, double velocity, double fo
 {
     const sensor_parameters *p = &s->p;
     double felt = s->fsr_time_constant > 0 ? s->felt_force : force;
-    double ripple = 1 + p->tachometer_ripple * sin(p->tachometer_ripple_count * angle);
+    double wave, unused;
+    inline_sincos(p->tachometer_ripple_count * angle, &wave, &unused);
+    double ripple = 1 + p->tachometer_ripple * wave;
     double tachometer = convert(s, p->tachometer_gain * velocity * ripple, p->tachometer_noise);
     double fsr = convert(s, fsr_volts(p, felt), p->fsr_noise);
     return (sensor_reading){.angle = read_encoder(s, angle),

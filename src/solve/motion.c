@@ -14,6 +14,9 @@
 // Strides over several time steps, which slow arms take, may go this far: they are few, and what
 // they lose in a second is less than the short ones of fast arms do.
 #define STRIDE_LIMIT 0.45
+// Strides that are cut short and stay below this take the explicit method's brief form, and with
+// them all that is located within.
+#define BRIEF_LIMIT 0.2
 // The event method steps implicitly where the explicit one would need more substeps than this.
 #define MOST_SUBSTEPS 90
 // The explicit method takes at most this many time steps in one stride.
@@ -281,9 +284,10 @@ static void accept(motion *m, double step)
 
 // --- the machine ----------------------------------------------------------------------------
 
-// How long the next stride may be.
-static double stride_length(const arm *a, const motion *m, double remaining, double step)
+// How long the next stride may be, and by which form of the explicit method.
+static double stride_length(const arm *a, motion *m, double remaining, double step)
 {
+    m->brief = false;
     if (motion_held_still(m)) {
         return remaining;
     }
@@ -293,6 +297,8 @@ static double stride_length(const arm *a, const motion *m, double remaining, dou
         longest = steps >= 2 ? fmin(steps, LONGEST_STRIDE) * step
                              : step / ceil(step * a->fastest_rate / EXPLICIT_LIMIT);
     }
+    // a stride that something cuts to half or less, such as the next sample of a controller
+    m->brief = remaining < 0.5 * longest && remaining * a->fastest_rate <= BRIEF_LIMIT;
     return remaining < longest * (1 + 1e-9) ? remaining : longest;
 }
 
@@ -462,32 +468,26 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
     }
 }
 
-// Whether an evaluated state keeps to its mode with certainty: an arm that moves or is held by
-// friction well within its limit and, where it touches the wall, presses.
-static bool mode_is_certain(const arm *a, const motion *m, double *state)
-{
-    contact_mode mode = state_mode(state);
-    bool hub = mode.friction == HUB_STICK
-                   ? fabs(state[SLOT_FRICTION_TORQUE]) < a->stiction * (1 - 1e-9)
-                   : state_velocities(m, state)[0] != 0;
-    return hub && (!mode.contact || state[SLOT_FORCE] > 0);
-}
-
-void motion_retorque(const arm *a, motion *m)
+void motion_retorque(const arm *a, motion *m, double before)
 {
     if (motion_unresolved(a, m)) {
         return; // an instant's accelerations say nothing: the next step finds out
     }
-    double *state = m->state, *accelerations = state_accelerations(m, state);
+    double *state = m->state;
+    const bool sticks = state_mode(state).friction == HUB_STICK;
+    double friction = state[SLOT_FRICTION_TORQUE] - (a->motor_torque - before);
+    if (sticks && m->dof > 1 && fabs(friction) < a->stiction * (1 - 1e-9)) {
+        state[SLOT_FRICTION_TORQUE] = friction; // takes up what the motor does, the rest stays
+        return;
+    }
     motion_evaluate(a, m, state);
-    if (!mode_is_certain(a, m, state)) {
+    bool moves = !sticks && state_velocities(m, state)[0] != 0;
+    if (!moves || (state[SLOT_CONTACT] != 0 && state[SLOT_FORCE] <= 0)) {
         resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_REACHED);
         return;
     }
-    if (motion_held_still(m)) {
-        memset(accelerations, 0, (size_t)m->dof * sizeof(double));
-    }
-    memcpy(state_algorithmic(m, state), accelerations, (size_t)m->dof * sizeof(double));
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
     state[SLOT_JUMPED] = 1;
 }
 

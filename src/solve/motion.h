@@ -53,6 +53,7 @@ typedef struct motion {
     // how the smooth motion is advanced
     const struct stepper *stepper;
     double nominal_step;                  // method.step [s]
+    bool brief;                           // explicit: the stride takes the method of order 6
     double alpha_m, alpha_f, beta, gamma; // implicit steppers' coefficients [-]
 
     // scratch, nothing of it outlives a step
@@ -79,7 +80,7 @@ typedef struct stepper {
     int scratch_vectors; // how many vectors of the state's smooth length it wants in stages
 } stepper;
 
-extern const stepper explicit_stepper; // Dormand and Prince's 8th-order Runge-Kutta
+extern const stepper explicit_stepper; // Runge-Kutta of order 8, of order 6 in brief strides
 extern const stepper newmark_stepper;
 extern const stepper generalized_alpha_stepper; // the same step with other coefficients
 
@@ -169,9 +170,9 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 // change of strain energy is booked as external work and the mode found anew.
 void motion_rebind(const arm *before, const arm *after, motion *m);
 
-// To be called after nothing but the motor's torque changed: accelerations and reactions jump with
-// it, and the mode is found anew where it may have changed.
-void motion_retorque(const arm *a, motion *m);
+// To be called after nothing but the motor's torque changed from `before` [N m]: accelerations and
+// reactions jump with it, and the mode is found anew where it may have changed.
+void motion_retorque(const arm *a, motion *m, double before);
 
 // Forgets the recorded peak: the next one counts from the present state.
 void motion_watch(motion *m);
