@@ -6,6 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "src/k2_table.h"
 #include "src/words.h"
 
 #define AT(field)  offsetof(parameters, field)
@@ -125,6 +126,8 @@ const parameter_info parameter_table[] = {
      "samples a second"},
     {"control.delay", "s", REAL, AT(control.delay), 0, 0, 0, 1, NULL, NOT_TIMED,
      "from a sample to the instant its command takes effect, at most one period"},
+    {"control.delay_periods", "", REAL, AT(control.delay_periods), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "the same in sampling periods, on top of it; 1: a command goes out with the next sample"},
     {"control.jitter", "s", REAL, AT(control.jitter), 0, 0, 0, 1, NULL, NOT_TIMED,
      "width over which the sampling instants scatter, at most half a period"},
     {"control.seed", "", INTEGER, AT(control.seed), 1, 1, 0, 2147483647, NULL, NOT_TIMED,
@@ -147,7 +150,9 @@ const parameter_info parameter_table[] = {
     {"control.contact_threshold", "N", REAL, AT(control.contact_threshold), 0.05, 0.05, 0, 1000,
      NULL, NOT_TIMED, "force reading that a controller takes for contact"},
     {"control.k2_factor", "", REAL, AT(control.k2_factor), 1, 1, 0.01, 100, NULL, NOT_TIMED,
-     "k2 that the controller believes in, divided by the arm's"},
+     "k2 that the controller believes in, divided by the arm's (by that of control.k2_table)"},
+    {"control.k2_table", "", TEXT, AT(control.k2_table), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "k2 by commanded force as calibrate measures it, written FORCE:K2 and separated by spaces"},
     {"control.wall_error", "rad", REAL, AT(control.wall_error), 0, 0, -3, 3, NULL, NOT_TIMED,
      "wall angle that the controller believes in, minus the wall's"},
     {"control.force_gain", "V/N", REAL, AT(control.force_gain), 1, 1, -1000, 1000, NULL, NOT_TIMED,
@@ -470,6 +475,16 @@ status parameters_resolve(parameters *p, fault *f)
         return fault_set(f, STATUS_BAD_SCENARIO,
                          "control.delay = %g s is longer than the period of %g s (control.rate)",
                          p->control.delay, 1 / p->control.rate);
+    }
+    if (p->control.delay * p->control.rate + p->control.delay_periods > 1) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.delay_periods = %g and control.delay = %g s are together longer "
+                         "than the period of %g s (control.rate)",
+                         p->control.delay_periods, p->control.delay, 1 / p->control.rate);
+    }
+    k2_table table;
+    if (k2_table_read(&table, p->control.k2_table, f) != STATUS_OK) {
+        return STATUS_BAD_SCENARIO;
     }
     if (p->control.jitter * p->control.rate > 0.5) {
         return fault_set(f, STATUS_BAD_SCENARIO,

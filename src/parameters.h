@@ -101,6 +101,7 @@ typedef struct control_parameters {
     char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
     double rate;                       // samples a second [Hz]
     double delay;                      // from sampling to the command's effect [s]
+    double delay_periods;              // the same in sampling periods, on top of it
     double jitter;                     // of the sampling instants, whole width [s]
     int seed;                          // of every random number of the rig
     double force;                      // commanded force [N]
@@ -111,6 +112,7 @@ typedef struct control_parameters {
     double transition_time;            // t_f [s]
     double contact_threshold;          // force reading that means contact [N]
     double k2_factor;                  // k2 that the controller believes in, over the arm's
+    char k2_table[PARAMETER_TEXT_SIZE]; // "FORCE:K2 ...", takes the place of the arm's k2 there
     double wall_error;                 // wall angle that it believes in, minus the wall's [rad]
     double force_gain;                 // of force errors [V/N]
     double integral_gain;              // of their integral [V/(N s)]

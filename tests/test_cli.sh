@@ -57,7 +57,7 @@ says out corrected/first-impact
 expect 0 --version
 says out "impactlab "
 expect 0 --help
-for command in list show check run tables figures animate predict modes sweep compare bench converge study; do
+for command in list show check run tables figures animate predict modes sweep compare calibrate bench converge study; do
     grep -q "^  $command " out || fail "--help does not name $command"
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
@@ -243,6 +243,40 @@ grep -q '"name": "arm_n2_us_per_ms"' bench.json || fail "bench names no figure"
 sed 's/"median": [0-9.e+-]*/"median": 1e-9/' bench.json >fast.json
 expect 0 bench --only arm_n2_us_per_ms --baseline fast.json
 says out "slower"
+# controllers: the table of (5.26), several runs in one table
+cat >press.yaml <<'END'
+title: Four links under the hybrid law
+arm: {links: 4}
+wall: {angle: 0 rad}
+initial: {angle: -0.1 rad}
+control: {law: hybrid}
+run: {duration: 1.5 s}
+END
+expect 0 calibrate press.yaml --vary control.approach_voltage=2,4 -o table.yaml --csv table.csv --json table.json
+says out "control.k2_table="
+grep -q "^  k2_table: \"" table.yaml || fail "calibrate wrote no table"
+[ "$(wc -l <table.csv)" = 3 ] || fail "calibrate --csv has not a row for each command"
+expect 0 check table.yaml
+expect 0 calibrate press.yaml --vary control.approach_voltage=2,4 -o -
+says out "title: "
+expect 2 calibrate press.yaml --vary control.kp=1,2
+says err "nothing else"
+expect 2 calibrate press.yaml --vary control.approach_voltage=0.01,2
+says err "does not press"
+expect 2 calibrate press.yaml --set wall.kind=none
+expect 1 calibrate press.yaml -o no/such/folder/table.yaml
+expect 2 run press.yaml --set "control.k2_table=1:0"
+says err "expected FORCE:K2"
+expect 0 compare press.yaml table.yaml --against press.yaml --vary control.force=1,2 \
+    --columns peak_force_N,steady_error_N --markdown page.md
+says out "force/N"
+says out "* differs"
+[ "$(wc -l <page.md)" = 6 ] || fail "compare --markdown has not a row for each run"
+expect 2 compare press.yaml --columns peak
+says err "no column 'peak'"
+expect 2 compare press.yaml --vary control.settings=a,b
+says err "is a text"
+
 expect 2 bench --only predict_su
 says err "did you mean 'predict_us'?"
 expect 2 bench --baseline hit.yaml

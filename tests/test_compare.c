@@ -24,9 +24,19 @@ static compare_row row_of(scenario *s, const char *name, const char *law)
     run_result r;
     *s = (scenario){.name = (char *)name, .parameters = rig_parameters(SETTINGS(law))};
     assert_int_equal(run_scenario(s, false, &r), STATUS_OK);
-    compare_row row = compare_row_of(s, &r.summary);
+    compare_row row = compare_row_of(s, &r);
     run_finish(&r);
     return row;
+}
+
+// What a function writes about a table into *text, which the caller frees.
+static void keep(char **text, const compare_table *t,
+                 void (*write)(FILE *stream, const compare_table *t))
+{
+    size_t size;
+    FILE *stream = open_memstream(text, &size);
+    write(stream, t);
+    fclose(stream);
 }
 
 static void rows_reach_every_form(void **state)
@@ -37,21 +47,18 @@ static void rows_reach_every_form(void **state)
                            row_of(&b, "bare", "control.law=none")};
     assert_string_equal(rows[0].law, "hybrid");
     assert_string_equal(rows[1].law, "none");
-    char *text = NULL, *csv = NULL;
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    compare_text(stream, rows, 2, &rows[0], 0.05);
-    fclose(stream);
-    stream = open_memstream(&csv, &size);
-    compare_csv(stream, rows, 2);
-    fclose(stream);
+    char *text, *csv;
+    compare_table table = {
+        .rows = rows, .count = 2, .against = rows, .group = 2, .tolerance = 0.05};
+    keep(&text, &table, compare_text);
+    keep(&csv, &table, compare_csv);
     // the reference differs from itself in nothing, the bare arm in its peak
     char *second = strchr(text, '\n') + 1, *third = strchr(second, '\n') + 1;
     assert_null(memchr(second, '*', (size_t)(third - second)));
     assert_non_null(strchr(third, '*'));
     assert_non_null(strstr(csv, "\n\"a \"\"b\"\"\",hybrid,ok,"));
     assert_non_null(strstr(csv, ",,,\n")); // no error, command and energy without a rig
-    json_t *whole = compare_json(rows, 2, &rows[0], 0.05), *runs = json_object_get(whole, "runs");
+    json_t *whole = compare_json(&table), *runs = json_object_get(whole, "runs");
     assert_int_equal(json_array_size(runs), 2);
     assert_int_equal(json_array_size(json_object_get(json_array_get(runs, 0), "differs")), 0);
     assert_true(json_is_null(json_object_get(json_array_get(runs, 1), "steady_error_N")));
@@ -62,11 +69,95 @@ static void rows_reach_every_form(void **state)
     free(csv);
 }
 
+// Two scenarios at two forces, each pair held against the reference of its own force.
+static void varied_values_have_columns(void **state)
+{
+    (void)state;
+    fault f;
+    const int varied[] = {parameter_find("control.force"), parameter_find("control.gains")};
+    compare_row rows[4], references[2];
+    for (int i = 0; i < 4; i++) {
+        rows[i] = (compare_row){.scenario = i % 2 ? "b" : "a",
+                                .law = "hybrid",
+                                .ok = true,
+                                .varied = {i / 2 ? 2 : 0.5, 1},
+                                .values = {1.5 + i / 2}};
+        references[i / 2] = rows[i];
+    }
+    rows[3].values[0] = 9;
+    compare_table t = {.rows = rows,
+                       .count = 4,
+                       .varied = varied,
+                       .varied_count = 2,
+                       .against = references,
+                       .group = 2,
+                       .tolerance = 0.05};
+    assert_int_equal(compare_choose(&t, "peak_force_N,impacts", &f), STATUS_OK);
+    char *page, *text, *csv;
+    keep(&page, &t, compare_markdown);
+    keep(&text, &t, compare_text);
+    keep(&csv, &t, compare_csv);
+    assert_non_null(strstr(page, "| scenario | law | force [N] | gains | peak [N] | impacts |\n"
+                                 "|---|---|---|---|---|---|\n"
+                                 "| a | hybrid | 0.5 | volts | 1.5 | 0 |\n"));
+    assert_null(strstr(text, "error"));
+    assert_non_null(strstr(text, "9*"));
+    assert_null(strstr(text, "1.5*"));
+    assert_non_null(strstr(csv, "scenario,law,control.force,control.gains,status,peak_force_N,"));
+    json_t *whole = compare_json(&t), *run = json_array_get(json_object_get(whole, "runs"), 2);
+    json_t *values = json_object_get(run, "varied");
+    check_close(json_number_value(json_object_get(values, "control.force")), 2, 0);
+    assert_string_equal(json_string_value(json_object_get(values, "control.gains")), "volts");
+    assert_int_equal(compare_choose(&t, "peak_force_N,impact", &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "did you mean 'impacts'?"));
+    json_decref(whole);
+    free(page);
+    free(text);
+    free(csv);
+}
+
+// Full knowledge of the state bounds every law, and only where its model holds.
+static void nothing_beats_the_best(void **state)
+{
+    (void)state;
+    const char *const laws[] = {"control.law=hybrid", "control.law=optimal",
+                                "control.law=predictive", "control.law=force-pd"};
+    for (int i = 0; i < 4; i++) {
+        for (int k = 1; k <= 8; k++) {
+            char force[32];
+            run_result r;
+            snprintf(force, sizeof force, "control.force=%g", 0.5 * k);
+            scenario s = {.name = (char *)"it",
+                          .parameters = rig_parameters(SETTINGS(laws[i], force))};
+            assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+            compare_row row = compare_row_of(&s, &r);
+            check_below(row.values[1], row.values[0]);
+            check_below(row.values[4], row.values[3]);
+            check_below(0.3, row.values[1]);
+            run_finish(&r);
+        }
+    }
+    scenario s;
+    const char *const beyond[] = {"arm.links=3", "arm.hub_joint=spring", "wall.restitution=0.5",
+                                  "arm.model=printed", "arm.damping_ratio=0.01"};
+    for (int i = 0; i < 5; i++) {
+        run_result r;
+        s = (scenario){.name = (char *)"it",
+                       .parameters = rig_parameters(SETTINGS("control.law=hybrid", beyond[i]))};
+        run_scenario(&s, false, &r);
+        compare_row row = compare_row_of(&s, &r);
+        assert_true(isnan(row.values[1]) && isnan(row.values[4]));
+        run_finish(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(differences_are_shares_of_the_larger_value),
         cmocka_unit_test(rows_reach_every_form),
+        cmocka_unit_test(varied_values_have_columns),
+        cmocka_unit_test(nothing_beats_the_best),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

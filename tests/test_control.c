@@ -76,6 +76,69 @@ static void gains_have_both_readings(void **state)
     check_close(printed.peak_force_N, torque.peak_force_N, 1e-9);
 }
 
+// --- the sampling rate ----------------------------------------------------------------------
+
+// The impact of compare/sampling-rate with settings, met at five instants between two samples.
+// Returns how many of the five runs fail: bounce more than once, or never settle.
+static int failures_of(const char *const *settings)
+{
+    int failures = 0;
+    for (int phase = 0; phase < 5; phase++) {
+        char angle[48];
+        const char *all[16] = {"arm.hub_joint=spring", "arm.k1=90", "control.law=hybrid",
+                               "control.delay_periods=1", angle};
+        int count = 5;
+        snprintf(angle, sizeof angle, "initial.angle=%.17g", -0.1 - 0.007 * phase);
+        for (int i = 0; settings[i] != NULL; i++) {
+            all[count++] = settings[i];
+        }
+        summary s = rig_summary(all);
+        failures += s.separations > 1 || isnan(s.settling_time_s);
+    }
+    return failures;
+}
+
+static void the_thesis_needs_its_200_hertz(void **state)
+{
+    (void)state;
+    // a hub of its own before the beam, a computer a period late: 100 Hz fails, 200 Hz does not
+    assert_int_equal(failures_of(SETTINGS("control.rate=100")), 5);
+    assert_int_equal(failures_of(SETTINGS("control.rate=150")), 5);
+    assert_int_equal(failures_of(SETTINGS("control.rate=200")), 0);
+    assert_int_equal(failures_of(SETTINGS("control.rate=500")), 0);
+    assert_int_equal(failures_of(SETTINGS("control.rate=2000")), 0);
+    // as printed, arm and law, on its own grid of 1 ms
+    assert_int_equal(failures_of(SETTINGS("control.rate=100", "arm.model=printed",
+                                          "control.coefficients=printed")),
+                     5);
+    assert_int_equal(failures_of(SETTINGS("control.rate=200", "arm.model=printed",
+                                          "control.coefficients=printed")),
+                     0);
+    // without the delay 50 Hz fails and 100 Hz does; gains in volts are weaker, and so do not
+    assert_int_equal(failures_of(SETTINGS("control.rate=50", "control.delay_periods=0")), 5);
+    assert_int_equal(failures_of(SETTINGS("control.rate=100", "control.delay_periods=0")), 0);
+    assert_int_equal(failures_of(SETTINGS("control.rate=100", "control.gains=volts")), 0);
+    // hub and beam as one body: no rate that a computer of the time had is too low
+    assert_int_equal(failures_of(SETTINGS("control.rate=50", "arm.hub_joint=rigid")), 0);
+    assert_int_equal(failures_of(SETTINGS("control.rate=20", "arm.hub_joint=rigid")), 5);
+}
+
+// What fails is the velocity gain on the hub alone: held for a period T and a period late,
+// w' = -(kv/I1) w becomes w(k + 1) = w(k) - (kv T/I1) w(k - 1), stable below kv = I1/T.
+static void the_rate_limits_the_velocity_gain(void **state)
+{
+    (void)state;
+    const double rates[] = {100, 150, 200, 300, 500};
+    for (int i = 0; i < 5; i++) {
+        char rate[32], low[32], high[32];
+        snprintf(rate, sizeof rate, "control.rate=%g", rates[i]);
+        snprintf(low, sizeof low, "control.kv=%g", 0.55 * 5.2e-3 * rates[i]);
+        snprintf(high, sizeof high, "control.kv=%g", 1.6 * 5.2e-3 * rates[i]);
+        assert_int_equal(failures_of(SETTINGS(rate, low)), 0);
+        assert_true(failures_of(SETTINGS(rate, high)) >= 4);
+    }
+}
+
 // --- the optimal law ------------------------------------------------------------------------
 
 static void gain_makes_the_cost_least(void **state)
@@ -280,6 +343,8 @@ int main(void)
         cmocka_unit_test(hybrid_force_follows_its_coefficients),
         cmocka_unit_test(quintic_joins_contact_and_rest),
         cmocka_unit_test(gains_have_both_readings),
+        cmocka_unit_test(the_thesis_needs_its_200_hertz),
+        cmocka_unit_test(the_rate_limits_the_velocity_gain),
         cmocka_unit_test(gain_makes_the_cost_least),
         cmocka_unit_test(estimator_finds_a_constant),
         cmocka_unit_test(optimal_law_beats_the_hybrid),

@@ -193,6 +193,46 @@ static void delay_shifts_the_command(void **state)
     run_finish(&r);
 }
 
+// A program that takes a whole period to compute: its command goes out with the next sample, also
+// where jitter brings that one early.
+static void a_command_a_period_late_goes_out_with_the_next_sample(void **state)
+{
+    (void)state;
+    const char *const jitters[] = {"control.jitter=0", "control.jitter=0.002"};
+    for (int k = 0; k < 2; k++) {
+        rig *r;
+        fault f;
+        bool changed;
+        double latest = 0;
+        parameters p = rig_parameters(SETTINGS("control.law=force-pd", "control.delay_periods=1",
+                                               jitters[k], "sensor.ideal=true"));
+        assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+        for (int i = 0; i < 300; i++) {
+            // forces that never repeat, so that every command is another one
+            double force = 0.5 + 0.003 * i;
+            long samples = r->samples;
+            assert_int_equal(rig_act(r, rig_next_time(r), 0, 0, force, &changed, &f), STATUS_OK);
+            if (r->samples == samples) {
+                continue; // only a command took effect
+            }
+            assert_true(r->applied == latest || samples == 0);
+            assert_true(r->pending != r->applied);
+            latest = r->pending;
+        }
+        rig_destroy(r);
+    }
+}
+
+static void a_delay_is_at_most_a_period(void **state)
+{
+    (void)state;
+    fault f;
+    scenario s = {.parameters = rig_parameters(SETTINGS("control.delay=0.003"))};
+    assert_int_equal(scenario_override(&s, "control.delay_periods=0.4", &f), STATUS_OK);
+    assert_int_equal(scenario_override(&s, "control.delay_periods=0.5", &f), STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(f.text, "together longer than the period of 0.005 s"));
+}
+
 static void jitter_stays_within_its_width(void **state)
 {
     (void)state;
@@ -342,6 +382,8 @@ int main(int count, char **arguments)
         cmocka_unit_test(ideal_sensors_tell_the_truth),
         cmocka_unit_test(command_holds_between_samples),
         cmocka_unit_test(delay_shifts_the_command),
+        cmocka_unit_test(a_command_a_period_late_goes_out_with_the_next_sample),
+        cmocka_unit_test(a_delay_is_at_most_a_period),
         cmocka_unit_test(jitter_stays_within_its_width),
         cmocka_unit_test(rig_changes_the_bare_arm_only_by_its_converter),
         cmocka_unit_test(same_seed_same_bytes),

@@ -729,6 +729,56 @@ static void decimals(void **state)
     }
 }
 
+// Everything but the expectations comes back from what scenario_write writes.
+static void check_written(const scenario *s)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    scenario_write(stream, s);
+    fclose(stream);
+    scenario back = good(text);
+    assert_string_equal(back.title, s->title);
+    assert_string_equal(back.description, s->description);
+    assert_int_equal(back.action_count, s->action_count);
+    for (int i = 0; i < s->action_count; i++) {
+        const action *a = &s->actions[i], *b = &back.actions[i];
+        assert_true(a->time == b->time && a->kind == b->kind && a->value == b->value);
+        assert_true(a->kind == ACTION_PUSH || a->parameter == b->parameter);
+    }
+    for (int i = 0; i < parameter_count; i++) {
+        char one[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
+        parameter_format(&s->parameters, i, one, sizeof one);
+        parameter_format(&back.parameters, i, other, sizeof other);
+        assert_string_equal(one, other);
+        assert_int_equal(s->parameters.set[i], back.parameters.set[i]);
+    }
+    scenario_finish(&back);
+    free(text);
+}
+
+static void written_scenarios_read_back(void **state)
+{
+    (void)state;
+    char **names;
+    int count;
+    assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        scenario s;
+        assert_int_equal(scenario_open(&s, names[i], NULL, NULL), STATUS_OK);
+        check_written(&s);
+        scenario_finish(&s);
+        free(names[i]);
+    }
+    free(names);
+    scenario odd = good("title: '\"a\\b\" # no comment: {'\ndescription: \"one\\ntwo\\t'\"\n"
+                        "control: {plugin: \"a b: 'c'\"}\n"
+                        "script: [{at: 0.1 s, push: -0.02 N s}, {at: 0.2, set: {wall.restitution: "
+                        "0.5}}]\n");
+    check_written(&odd);
+    scenario_finish(&odd);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -767,6 +817,7 @@ int main(void)
         cmocka_unit_test(an_endless_override_is_refused),
         cmocka_unit_test(distances_of_words),
         cmocka_unit_test(decimals),
+        cmocka_unit_test(written_scenarios_read_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -35,6 +35,8 @@ static const option_info option_table[] = {
     {'B', false, "baseline", "FILE", "compare with what --json wrote before"},
     {'A', false, "against", "SCENARIO", "a run to hold the others against"},
     {'t', false, "tolerance", "PERCENT", "differences beyond it are marked (5)"},
+    {'X', false, "markdown", "FILE|-", "write the table as one of a Markdown page"},
+    {'H', false, "columns", "KEY,KEY...", "show only these quantities, by their keys of --json"},
     {'M', false, "mono", NULL, "black and greys on white"},
     {'D', false, "dark", NULL, "on near black"},
     {'W', false, "width", "MM", "width of the page in millimetres"},
@@ -133,6 +135,10 @@ static bool take_option(arguments *a, int letter, char *value)
         return take_text(&a->against, value);
     case 't':
         return take_text(&a->tolerance, value);
+    case 'X':
+        return take_text(&a->markdown, value);
+    case 'H':
+        return take_text(&a->columns, value);
     case 'M':
         a->mono = true;
         return true;
@@ -235,8 +241,8 @@ static const char *option_name(int letter)
 // Two results must not end in one place.
 static int check_places(const arguments *a)
 {
-    const char *places[] = {a->json, a->csv, a->plot, a->scene, a->db};
-    for (size_t i = 0; i < 5; i++) {
+    const char *places[] = {a->json, a->csv, a->plot, a->scene, a->db, a->markdown, a->output};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         for (size_t j = 0; j < i; j++) {
             if (places[i] != NULL && places[j] != NULL && strcmp(places[i], places[j]) == 0) {
                 return complain("two results cannot both be written to %s",

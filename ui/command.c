@@ -149,7 +149,8 @@ static bool is_standard_output(const char *path)
 
 bool summary_wanted(const arguments *a)
 {
-    return !a->quiet && !is_standard_output(a->json) && !is_standard_output(a->csv);
+    return !a->quiet && !is_standard_output(a->json) && !is_standard_output(a->csv) &&
+           !is_standard_output(a->markdown) && !is_standard_output(a->output);
 }
 
 void key_label(const char *key, char *label, size_t size, const char **unit)

@@ -26,6 +26,7 @@ typedef struct arguments {
     const char *width, *dpi, *overlay;                       // of figures; NULL if not given
     bool mono, dark;                                         // of figures
     const char *against, *tolerance; // of compare; NULL if not given
+    const char *markdown, *columns;  // of compare; NULL if not given
     const char *gl, *camera, *size;  // of scenes; NULL if not given
     const char *fps, *seconds, *slow; // of films; NULL if not given
     const char *keys, *script, *glyphs, *theme; // of the terminal lab; NULL if not given
@@ -44,7 +45,7 @@ typedef struct command {
 
 extern const command list_command, show_command, check_command, run_command, tables_command,
     figures_command, animate_command, predict_command, modes_command, sweep_command, bench_command,
-    compare_command, lab_command,
+    compare_command, lab_command, calibrate_command,
     converge_command, study_command, report_command;
 
 // Prints "impactlab: " and the sentence to stderr. Returns EXIT_BAD_ARGUMENTS.
@@ -77,8 +78,7 @@ int write_json(const char *path, json_t *value);
 // Complains and returns the exit status if path (may be NULL) could not be written; EXIT_DONE else.
 int check_output(const char *path);
 
-// True unless --quiet was given or the JSON or CSV goes to the standard output, where it stays
-// alone.
+// True unless --quiet was given or a result goes to the standard output, where it stays alone.
 bool summary_wanted(const arguments *a);
 
 // Label and unit of a summary's key: "first_contact_s" gives "first contact" and "s".

@@ -3,68 +3,133 @@
 #include <stdlib.h>
 
 #include "src/lab/compare.h"
+#include "src/lab/sweep.h"
 #include "src/words.h"
 
-enum { MOST_SCENARIOS = 1000 };
+enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
 
-// The scenarios named on the command line, and then the one that they are held against.
+// The scenarios named on the command line, and then the one that they are held against. Each runs
+// once for each combination of varied values; rows lie by combination, in it by scenario.
 typedef struct comparison {
     scenario *scenarios;
-    compare_row *rows;
-    int opened, done;
+    sweep *sweeps; // of each, where something is varied
+    int opened, swept, operands;
+    int combinations;
+    compare_row *rows;    // operands of each combination
+    compare_row *against; // one of each combination
+    int varied[COMPARE_MOST_VARIED];
     bool failed;
 } comparison;
 
 static void finish(comparison *c)
 {
+    for (int i = 0; i < c->swept; i++) {
+        sweep_finish(&c->sweeps[i]);
+    }
     for (int i = 0; i < c->opened; i++) {
         scenario_finish(&c->scenarios[i]);
     }
+    free(c->sweeps);
     free(c->scenarios);
     free(c->rows);
+    free(c->against);
 }
 
-static int open_all(comparison *c, const arguments *a, int count)
+// The grid of a scenario's combinations.
+static int open_sweep(comparison *c, const arguments *a, int i)
 {
-    c->scenarios = calloc((size_t)count, sizeof *c->scenarios);
-    c->rows = calloc((size_t)count, sizeof *c->rows);
-    if (c->scenarios == NULL || c->rows == NULL) {
-        complain("out of memory");
-        return EXIT_FAILED;
+    fault f = {0};
+    sweep_request request = {.vary = a->varies, .vary_count = a->vary_count};
+    if (sweep_init(&c->sweeps[i], &c->scenarios[i], &request, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
-    for (int i = 0; i < count; i++) {
-        const char *name = i < a->operand_count ? a->operands[i] : a->against;
-        int result = open_scenario(&c->scenarios[i], name, a);
-        if (result != EXIT_DONE) {
-            return result;
-        }
-        c->opened++;
+    c->swept++;
+    size_t rows = c->sweeps[i].run_count * (size_t)c->operands;
+    if (rows > MOST_ROWS) {
+        return complain("%zu rows are too many for a table, expected at most %d", rows, MOST_ROWS);
+    }
+    c->combinations = (int)c->sweeps[i].run_count;
+    for (int k = 0; k < c->sweeps[i].axis_count; k++) {
+        c->varied[k] = c->sweeps[i].axes[k].parameter;
     }
     return EXIT_DONE;
 }
 
-// Runs them one after the other. One that fails keeps its row and is complained about.
+static int open_all(comparison *c, const arguments *a)
+{
+    int count = a->operand_count + (a->against != NULL), result = EXIT_DONE;
+    c->operands = a->operand_count;
+    c->combinations = 1;
+    c->scenarios = calloc((size_t)count, sizeof *c->scenarios);
+    c->sweeps = calloc((size_t)count, sizeof *c->sweeps);
+    if (c->scenarios == NULL || c->sweeps == NULL) {
+        complain("out of memory");
+        return EXIT_FAILED;
+    }
+    for (int i = 0; i < count && result == EXIT_DONE; i++) {
+        const char *name = i < a->operand_count ? a->operands[i] : a->against;
+        result = open_scenario(&c->scenarios[i], name, a);
+        c->opened += result == EXIT_DONE;
+        if (result == EXIT_DONE && a->vary_count > 0) {
+            result = open_sweep(c, a, i);
+        }
+    }
+    if (result == EXIT_DONE) {
+        size_t combinations = c->swept > 0 ? c->sweeps[0].run_count : 1;
+        c->rows = calloc(combinations * (size_t)a->operand_count, sizeof *c->rows);
+        c->against = calloc(combinations, sizeof *c->against);
+        if (c->rows == NULL || c->against == NULL) {
+            complain("out of memory");
+            result = EXIT_FAILED;
+        }
+    }
+    return result;
+}
+
+// The row of scenario i under one combination. A run that fails keeps its row and is complained
+// about.
+static compare_row run_one(comparison *c, int i, int combination)
+{
+    run_result result;
+    fault f = {0};
+    scenario s = c->scenarios[i];
+    compare_row row = {0};
+    if (c->swept > 0 && sweep_scenario(&c->sweeps[i], (size_t)combination, &s, &f) != STATUS_OK) {
+        complain_fault(&f); // values that do not go together were refused before
+        c->failed = true;
+    }
+    if (run_scenario(&s, false, &result) != STATUS_OK) {
+        complain("%s failed: %s", s.name, result.summary.message);
+        c->failed = true;
+    }
+    row = compare_row_of(&s, &result);
+    for (int k = 0; c->swept > 0 && k < c->sweeps[i].axis_count; k++) {
+        row.varied[k] = sweep_value(&c->sweeps[i], (size_t)combination, k);
+    }
+    run_finish(&result);
+    return row;
+}
+
 static void run_all(comparison *c)
 {
-    for (int i = 0; i < c->opened; i++) {
-        run_result result;
-        scenario *s = &c->scenarios[i];
-        if (run_scenario(s, false, &result) != STATUS_OK) {
-            complain("%s failed: %s", s->name, result.summary.message);
-            c->failed = true;
+    for (int combination = 0; combination < c->combinations; combination++) {
+        for (int i = 0; i < c->operands; i++) {
+            c->rows[combination * c->operands + i] = run_one(c, i, combination);
         }
-        c->rows[i] = compare_row_of(s, &result.summary);
-        run_finish(&result);
+        if (c->opened > c->operands) {
+            c->against[combination] = run_one(c, c->operands, combination);
+        }
     }
 }
 
-static int write_csv(const char *path, const compare_row *rows, int count)
+static int write_table(const char *path, const compare_table *t,
+                       void (*write)(FILE *stream, const compare_table *t))
 {
     whole_file file;
     fault f = {0};
     status code = whole_file_open(&file, path, &f);
     if (code == STATUS_OK) {
-        compare_csv(file.stream, rows, count);
+        write(file.stream, t);
         code = whole_file_commit(&file, &f);
     }
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
@@ -82,21 +147,29 @@ static bool read_tolerance(const char *text, double *share)
     return true;
 }
 
-static int write_results(const arguments *a, const comparison *c, double tolerance)
+static int write_results(const arguments *a, const comparison *c, compare_table *t)
 {
-    const compare_row *against = a->against != NULL ? &c->rows[a->operand_count] : NULL;
     int result = c->failed ? EXIT_FAILED : EXIT_DONE;
-    if (a->json != NULL && write_json(a->json, compare_json(c->rows, a->operand_count, against,
-                                                            tolerance)) != EXIT_DONE) {
+    t->rows = c->rows;
+    t->count = c->combinations * c->operands;
+    t->group = c->operands;
+    t->varied = c->varied;
+    t->varied_count = a->vary_count;
+    t->against = a->against != NULL ? c->against : NULL;
+    if (a->json != NULL && write_json(a->json, compare_json(t)) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
-    if (a->csv != NULL && write_csv(a->csv, c->rows, a->operand_count) != EXIT_DONE) {
+    if (a->csv != NULL && write_table(a->csv, t, compare_csv) != EXIT_DONE) {
+        result = EXIT_FAILED;
+    }
+    if (a->markdown != NULL && write_table(a->markdown, t, compare_markdown) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
     if (summary_wanted(a)) {
-        compare_text(stdout, c->rows, a->operand_count, against, tolerance);
-        if (against != NULL) {
-            printf("\n* differs from %s by more than %g %%\n", against->scenario, 100 * tolerance);
+        compare_text(stdout, t);
+        if (t->against != NULL) {
+            printf("\n* differs from %s by more than %g %%\n", t->against->scenario,
+                   100 * t->tolerance);
         }
     }
     return result;
@@ -105,19 +178,22 @@ static int write_results(const arguments *a, const comparison *c, double toleran
 static int compare(const arguments *a)
 {
     comparison c = {0};
-    double tolerance;
-    if (!read_tolerance(a->tolerance, &tolerance)) {
+    compare_table table = {0};
+    fault f = {0};
+    if (!read_tolerance(a->tolerance, &table.tolerance)) {
         return complain("--tolerance %s is wrong, expected a number of percent from 0",
                         a->tolerance);
     }
+    if (a->columns != NULL && compare_choose(&table, a->columns, &f) != STATUS_OK) {
+        return complain("--columns %s: %s", a->columns, f.text);
+    }
     int result = check_output(a->json);
     result = result == EXIT_DONE ? check_output(a->csv) : result;
-    if (result == EXIT_DONE) {
-        result = open_all(&c, a, a->operand_count + (a->against != NULL));
-    }
+    result = result == EXIT_DONE ? check_output(a->markdown) : result;
+    result = result == EXIT_DONE ? open_all(&c, a) : result;
     if (result == EXIT_DONE) {
         run_all(&c);
-        result = write_results(a, &c, tolerance);
+        result = write_results(a, &c, &table);
     }
     finish(&c);
     return result;
@@ -126,11 +202,13 @@ static int compare(const arguments *a)
 const command compare_command = {
     .name = "compare",
     .operands = "SCENARIO...",
-    .options = "sjCAtq",
+    .options = "svjCXHAtq",
     .summary = "Several scenarios in one table",
     .help = "One row a run: peak force, its overshoot over the commanded force, settling time, "
-            "impacts,\nseparations, steady error, largest command and electrical energy. --set "
-            "holds for all of them.\n",
+            "impacts,\nseparations, steady error, largest command and electrical energy. Best peak "
+            "and best time are\nwhat a controller could have made of the first impact if it knew "
+            "the whole state, pressing no\nharder than the run did. --set holds for all of them; "
+            "--vary, as sweep takes it, runs each of\nthem for every combination of values.\n",
     .least = 1,
     .most = MOST_SCENARIOS,
     .run = compare,

@@ -16,6 +16,7 @@ static const command *const command_table[] = {
     &tables_command, &figures_command, &animate_command, &predict_command,
     &modes_command,  &sweep_command,  &compare_command,   &bench_command,
     &converge_command, &study_command, &report_command,
+    &calibrate_command,
 };
 enum { COMMANDS = sizeof command_table / sizeof command_table[0] };
 
@@ -25,7 +26,7 @@ static void print_commands(void)
            "usage: impactlab COMMAND [ARGUMENT]...\n\nCommands:\n",
            lab_version());
     for (int i = 0; i < COMMANDS; i++) {
-        printf("  %-8s  %s\n", command_table[i]->name, command_table[i]->summary);
+        printf("  %-9s  %s\n", command_table[i]->name, command_table[i]->summary);
     }
     printf("\nimpactlab COMMAND --help tells more about a command.\n"
            "Exit status: 0 done; 1 the run failed or a file could not be written; 2 bad arguments "

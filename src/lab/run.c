@@ -49,7 +49,6 @@ bool summary_get(const summary *s, const char *key, double *value)
 
 #define SEPARATION_GAP      1e-6 // a smaller gap is no separation [m]
 #define STEADY_WINDOW       0.1  // steady force: mean over the last of the run [s]
-#define SETTLED_BAND        0.05 // of the steady force
 #define SHORTEST_MEAN       1e-9 // a stride shorter than this has the mean of its ends [s]
 #define TINY_ENERGY         1e-9 // below it nothing is called unstable [J]
 #define TINY_TURN           1e-2 // nor below what the motor does in this turn [rad]

@@ -6,6 +6,8 @@
 #include "src/lab/scenario.h"
 #include "src/lab/trace.h"
 
+#define SETTLED_BAND 0.05 // a force has settled within this share of the steady force
+
 // The result of a run. A quantity that did not occur is NaN (null in JSON).
 typedef struct summary {
     status status;

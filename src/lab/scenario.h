@@ -50,6 +50,10 @@ status scenario_parse(scenario *s, const char *text, size_t length, const char *
 
 void scenario_finish(scenario *s);
 
+// Writes a file that reads back with the same title, description, parameters and script. What it
+// expects is not written: with other parameters it would not hold. Errors stay in the stream.
+void scenario_write(FILE *stream, const scenario *s);
+
 // Applies "PATH=VALUE" (--set) and resolves the parameters anew. If that fails nothing changes and
 // f says why, beginning with "--set PATH=VALUE: ". A run.duration that ends before an action of the
 // script is allowed; the action then does not happen.

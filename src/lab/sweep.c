@@ -213,6 +213,10 @@ static status find_parameter(const sweep *s, sweep_axis *axis, const char *path,
         return fault_set(f, STATUS_BAD_ARGUMENT, "there is no parameter '%.60s'%s%s%s", path,
                          near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
     }
+    if (axis_info(axis)->type == PARAMETER_TEXT) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "%s is a text, only numbers and words are varied",
+                         path);
+    }
     for (int i = 0; i < s->axis_count; i++) {
         if (s->axes[i].parameter == axis->parameter) {
             return fault_set(f, STATUS_BAD_ARGUMENT, "%s is varied twice", path);
@@ -443,9 +447,8 @@ void quantity_name(const char *key, char *name, size_t size, const char **unit)
 {
     static const struct {
         const char *suffix, *unit;
-    } units[] = {{"_Ns", "N s"}, {"_percent", "%"}, {"_s", "s"},
-                 {"_N", "N"},    {"_J", "J"},       {"_m", "m"},
-                 {"_V", "V"}};
+    } units[] = {{"_Ns", "N s"}, {"_percent", "%"}, {"_s", "s"}, {"_N", "N"},
+                 {"_J", "J"},    {"_m", "m"},       {"_V", "V"}};
     size_t length = strlen(key);
     *unit = "";
     for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {

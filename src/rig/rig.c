@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/arm/arm.h"
+#include "src/k2_table.h"
 #include "src/rig/laws.h"
 #include "src/words.h"
 
@@ -125,7 +126,11 @@ static status take_settings(rig *r, const char *settings, fault *f)
 static controller_setup make_setup(const rig *r, const parameters *p)
 {
     // controllers work on the two-link beam, whatever the arm is
-    double m = p->arm.mass / 2, l = p->arm.length / 2;
+    double m = p->arm.mass / 2, l = p->arm.length / 2, k2 = p->arm.k2;
+    k2_table measured;
+    if (k2_table_read(&measured, p->control.k2_table, NULL) == STATUS_OK && measured.count > 0) {
+        k2 = k2_table_at(&measured, p->control.force);
+    }
     return (controller_setup){
         .period = r->period,
         .delay = r->delay,
@@ -137,7 +142,7 @@ static controller_setup make_setup(const rig *r, const parameters *p)
         .link_mass = m,
         .link_length = l,
         .link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12,
-        .k2 = p->arm.k2 * p->control.k2_factor,
+        .k2 = k2 * p->control.k2_factor,
         .wall_angle = p->wall.angle + p->control.wall_error,
         .parameters = r->values,
     };
@@ -180,7 +185,7 @@ status rig_create(rig **created, const parameters *p, fault *f)
         return fault_set(f, STATUS_NO_MEMORY, "no memory for the rig");
     }
     r->period = 1 / p->control.rate;
-    r->delay = p->control.delay;
+    r->delay = p->control.delay + p->control.delay_periods * r->period;
     r->jitter = p->control.jitter;
     r->voltage_limit = p->motor.voltage_limit;
     r->effect_time = HUGE_VAL;
@@ -265,10 +270,12 @@ status rig_act(rig *r, double time, double angle, double velocity, double force,
     const int mode = r->output.mode;
     status s = STATUS_OK;
     *changed = false;
-    if (r->effect_time <= time + late) {
+    const bool samples = r->sample_time <= time + late;
+    // with jitter the next sample may come before a late command: it goes out then
+    if (r->effect_time <= time + late || (samples && r->effect_time < HUGE_VAL)) {
         apply(r, changed);
     }
-    if (r->sample_time <= time + late) {
+    if (samples) {
         s = take_sample(r, time, angle, velocity, force, f);
     }
     if (s == STATUS_OK && r->effect_time <= time + late) {

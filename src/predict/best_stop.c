@@ -1,0 +1,254 @@
+// With the force as the input the arm on the wall reads x'' = s^2 (x - f/K), K = 2 k2/l, s^2 =
+// K/mu. Its modes are xi = x + x'/s and zeta = x - x'/s:
+//
+//     xi' = s (xi - f/K),      zeta' = -s (zeta - f/K).
+//
+// zeta follows f/K by itself. xi runs away from it: at rest K xi = f, and whatever f does from now
+// on,
+//
+//     K xi(t) = s times the integral of f(t + r) exp(-s r) over r from 0 on
+//
+// if xi is not to run away, a weighted mean of all forces to come. Hence two bounds.
+//
+// Peak: the mean is not above the largest: no peak is below K xi. f = K xi all along attains it: xi
+// stays, x goes to xi, the arm comes to rest. Where the torque does not reach K xi at once, xi
+// grows until it does; then the least peak P is that for which the hardest braking that P and the
+// motor allow just brings the arm to rest, found by bisection (more braking now leaves a smaller
+// xi).
+//
+// Settling: a force that stays within [a, b] has K xi within [a, b]; and where it is there, f = K
+// xi keeps it there. So settling takes as long as it takes to bring K xi into [a, b], and since xi'
+// falls with f, the largest force is the fastest way down and the smallest the fastest way up:
+//
+//     ln((P - b)/(P - K xi))/s from above,     ln(a/(K xi))/s from below.
+//
+// It is this only while the motor gives every force from 0 to P. It does not always, so the ways
+// are integrated with the force that it gives; and inside the band it must be able to stay, which
+// is tried out. A weak motor may have to go about it otherwise: coast on beyond the near edge,
+// since it presses the harder the further the beam is bent, or stop braking early, since it cannot
+// catch the arm that comes back. So the least time is looked for over all ways that go to one
+// extreme for a while and then to the other. (Within the tenths of a second that this takes a
+// torque that raises xi' now raises xi at the end too, the arm's own vibration taking 0.28 s.)
+#include "src/predict/best_stop.h"
+
+#include <math.h>
+
+#include "src/arm/arm.h"
+#include "src/predict/two_link.h"
+
+#define STEP        1e-4 // of the way to the band; fourth order [s]
+#define COARSE_STEP 5e-4 // of the other ways [s]
+#define INSIDE      1e-6 // beyond the band's edge, so that rounding does not lead out again [s]
+#define HORIZON     1.0  // ways longer than this are given up [s]
+#define HOLDING     0.3  // time for which staying in the band is tried out [s]
+
+bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
+{
+    double l = p->arm.length / 2, quarter = p->arm.mass / 2 * l * l / 4;
+    *m = (pressed_arm_model){
+        .inertia = p->arm.hub_inertia + 2 * p->arm.link_inertia + 2 * quarter,
+        .stiffness = 4 * p->arm.k2,
+        .damping = motor_damping(&p->motor),
+        .stiction = p->motor.stiction,
+        .torque_limit = motor_torque_per_volt(&p->motor) * p->motor.voltage_limit,
+        .spring_force = 2 * p->arm.k2 / l,
+        .mass_force = (quarter - p->arm.link_inertia) / l,
+    };
+    return p->arm.model == ARM_CORRECTED && p->arm.links == 2 && p->arm.hub_joint == HUB_RIGID &&
+           p->arm.damping_ratio == 0 && p->wall.kind != WALL_NONE && m->mass_force > 0;
+}
+
+bool pressed_after_impact(const parameters *p, const three_body_state *before, pressed_state *after)
+{
+    two_link t;
+    double velocity[3], impulse;
+    two_link_at(&t, p, FORM_CORRECTED, before->angle[1], before->angle[2]);
+    if (two_link_velocity_jump(&t, before, velocity, &impulse, NULL) != STATUS_OK) {
+        return false;
+    }
+    *after = (pressed_state){before->angle[1] - p->wall.angle, velocity[1]};
+    return true;
+}
+
+// The force under a torque of the motor [N].
+static double force_under(const pressed_arm_model *m, pressed_state s, double torque)
+{
+    double friction = s.velocity > 0 ? m->stiction : s.velocity < 0 ? -m->stiction : 0;
+    double sum = torque - m->damping * s.velocity - friction - m->stiffness * s.x;
+    return m->spring_force * s.x - m->mass_force * sum / m->inertia;
+}
+
+// What a way wants of the force: as large as `highest` allows, as small as `lowest` does, or K xi
+// as far as it lies between them. The motor has the last word.
+typedef enum press_rule { PRESS_HARD, PRESS_SOFT, PRESS_KEEP } press_rule;
+typedef struct way {
+    press_rule rule;
+    double lowest, highest; // [N]
+} way;
+
+// K xi [N].
+static double runaway(const pressed_arm_model *m, pressed_state s)
+{
+    return m->spring_force * (s.x + s.velocity / sqrt(m->spring_force / m->mass_force));
+}
+
+static double force_on(const pressed_arm_model *m, const way *w, pressed_state s)
+{
+    double wanted = w->rule == PRESS_HARD   ? w->highest
+                    : w->rule == PRESS_SOFT ? w->lowest
+                                            : fmin(fmax(runaway(m, s), w->lowest), w->highest);
+    double least = force_under(m, s, m->torque_limit), most = force_under(m, s, -m->torque_limit);
+    return fmin(fmax(wanted, least), most);
+}
+
+static pressed_state rate(const pressed_arm_model *m, const way *w, pressed_state s)
+{
+    double acceleration = (m->spring_force * s.x - force_on(m, w, s)) / m->mass_force;
+    return (pressed_state){s.velocity, acceleration};
+}
+
+static pressed_state ahead(pressed_state s, pressed_state r, double h)
+{
+    return (pressed_state){s.x + h * r.x, s.velocity + h * r.velocity};
+}
+
+// One step of the classical Runge-Kutta method.
+static pressed_state advance(const pressed_arm_model *m, const way *w, pressed_state s, double h)
+{
+    pressed_state a = rate(m, w, s), b = rate(m, w, ahead(s, a, h / 2));
+    pressed_state c = rate(m, w, ahead(s, b, h / 2)), d = rate(m, w, ahead(s, c, h));
+    return (pressed_state){s.x + h / 6 * (a.x + 2 * b.x + 2 * c.x + d.x),
+                           s.velocity +
+                               h / 6 * (a.velocity + 2 * b.velocity + 2 * c.velocity + d.velocity)};
+}
+
+// Whether braking with at most `peak` brings the arm to rest.
+static bool stops(const pressed_arm_model *m, pressed_state s, double peak)
+{
+    const way brake = {PRESS_HARD, 0, peak};
+    for (double t = 0; t < HORIZON && s.velocity > 0; t += COARSE_STEP) {
+        // a force that never again exceeds K x only speeds the arm up
+        if (m->spring_force * s.x > peak || force_on(m, &brake, s) > peak * (1 + 1e-9)) {
+            return false;
+        }
+        s = advance(m, &brake, s, COARSE_STEP);
+    }
+    return s.velocity <= 0;
+}
+
+double best_peak(const pressed_arm_model *m, pressed_state s)
+{
+    double low = runaway(m, s), high = low;
+    if (!(s.velocity > 0 && low > 0)) {
+        return (double)NAN;
+    }
+    // bracket, then halve; on the edge itself the arm takes for ever to stop. However weak the
+    // motor, some force stops it: the beam's own
+    while (!stops(m, s, high) && isfinite(high)) {
+        high = 1.5 * high + 1e-3;
+    }
+    while (high - low > 1e-5 * high) {
+        double middle = (low + high) / 2;
+        *(stops(m, s, middle) ? &high : &low) = middle;
+    }
+    return high;
+}
+
+// Whether the force is in the band and can stay there.
+static bool stays(const pressed_arm_model *m, const way *band, pressed_state s)
+{
+    for (double t = 0; t < HOLDING; t += COARSE_STEP) {
+        double force = force_on(m, band, s), slack = 1e-9 * band->highest;
+        if (force < band->lowest - slack || force > band->highest + slack) {
+            return false;
+        }
+        s = advance(m, band, s, COARSE_STEP);
+    }
+    double xi = runaway(m, s), slack = 1e-6 * band->highest;
+    return xi > band->lowest - slack && xi < band->highest + slack;
+}
+
+// The state at which K xi comes to `edge` within the step from `s` to `next`, a little beyond it;
+// *share: where in the step, -1 if it does not.
+static pressed_state crossing(const pressed_arm_model *m, const way *on, pressed_state s,
+                              pressed_state next, double edge, double *share)
+{
+    double before = runaway(m, s) - edge, after = runaway(m, next) - edge;
+    *share = (before < 0) != (after < 0) ? before / (before - after) : -1;
+    return *share < 0 ? next : advance(m, on, s, *share * STEP + INSIDE);
+}
+
+// The edge of the band that a way comes to: hard pressing from above, soft from below.
+static double near_edge(const way *on, const way *band)
+{
+    return on->rule == PRESS_HARD ? band->highest : band->lowest;
+}
+
+// Whether a way leads nowhere from K xi = `xi` on: away from the wall, away under any force up to
+// the peak, or out of the band on its far side.
+static bool is_lost(const way *on, const way *band, double xi, double force)
+{
+    bool hard = on->rule == PRESS_HARD;
+    bool leaves = hard ? xi < band->lowest && force >= xi : xi > band->highest && force <= xi;
+    return xi <= 0 || (xi > band->highest && xi >= on->highest) || leaves;
+}
+
+// Time on a way until the force can stay in the band; NaN if it is not below `limit`.
+static double time_on(const pressed_arm_model *m, const way *on, const way *band, pressed_state s,
+                      double limit)
+{
+    for (double t = 0; t < limit; t += STEP) {
+        double xi = runaway(m, s), share;
+        if (is_lost(on, band, xi, force_on(m, on, s))) {
+            break;
+        }
+        if (xi >= band->lowest && xi <= band->highest && stays(m, band, s)) {
+            return t;
+        }
+        pressed_state next = advance(m, on, s, STEP);
+        pressed_state edge = crossing(m, on, s, next, near_edge(on, band), &share);
+        if (share >= 0 && stays(m, band, edge)) {
+            return t + share * STEP;
+        }
+        s = next;
+    }
+    return (double)NAN;
+}
+
+// The least time on one way for a while and then on another, over all whiles; `best` if it is not
+// below that.
+static double time_on_both(const pressed_arm_model *m, const way *first, const way *second,
+                           const way *band, pressed_state s, double best)
+{
+    for (double t = 0; t < best; t += STEP) {
+        double more = time_on(m, second, band, s, best - t), share;
+        best = t + more < best ? t + more : best;
+        if (is_lost(first, band, runaway(m, s), force_on(m, first, s))) {
+            break;
+        }
+        pressed_state next = advance(m, first, s, STEP);
+        pressed_state edge = crossing(m, first, s, next, near_edge(first, band), &share);
+        if (share >= 0) {
+            double at = t + share * STEP;
+            more = time_on(m, second, band, edge, best - at);
+            best = at + more < best ? at + more : best;
+        }
+        s = next;
+    }
+    return best;
+}
+
+double best_settling(const pressed_arm_model *m, pressed_state s, double force, double band,
+                     double peak)
+{
+    const way settled = {PRESS_KEEP, force * (1 - band), force * (1 + band)};
+    const double most = fmax(peak, settled.highest);
+    const way hard = {PRESS_HARD, 0, most}, soft = {PRESS_SOFT, 0, most};
+    double holding = m->stiffness * force / m->spring_force - m->stiction;
+    if (!(force > 0) || holding > m->torque_limit) {
+        return (double)NAN;
+    }
+    double best = time_on_both(m, &soft, &hard, &settled, s, HORIZON);
+    best = time_on_both(m, &hard, &soft, &settled, s, best);
+    return best < HORIZON ? best : (double)NAN;
+}

@@ -1,0 +1,191 @@
+// The best that could be done after an impact: closed forms, and controllers tried at random.
+#include "src/lab/random.h"
+#include "src/predict/best_stop.h"
+#include "tests/arm_fixture.h"
+
+static pressed_arm_model model_of(const char *const *settings)
+{
+    pressed_arm_model m;
+    parameters p = fixture_parameters(settings);
+    assert_true(pressed_arm_model_of(&p, &m));
+    return m;
+}
+
+static double divergence(const pressed_arm_model *m)
+{
+    return sqrt(m->spring_force / m->mass_force);
+}
+
+static void the_model_has_the_numbers_of_the_arm(void **state)
+{
+    (void)state;
+    pressed_arm_model m = model_of(NULL);
+    check_close(m.inertia, 0.0386, 1e-4);
+    check_close(m.stiffness, 19.68, 1e-9);
+    check_close(m.spring_force, 19.68, 1e-9);
+    check_close(m.mass_force, 0.0167, 1e-4);
+    check_close(m.torque_limit, 4.377, 1e-3);
+    const char *const beyond[] = {"arm.links=1", "arm.hub_joint=spring", "arm.damping_ratio=0.1",
+                                  "wall.kind=none", "arm.model=printed"};
+    for (int i = 0; i < 5; i++) {
+        parameters p = fixture_parameters(SETTINGS(beyond[i]));
+        assert_false(pressed_arm_model_of(&p, &m));
+    }
+}
+
+// Docs: x' = ((M11 - M12) w2 + (M12 - M22) w3)/M.
+static void an_impact_throws_both_links_onto_one_motion(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(SETTINGS("wall.angle=0"));
+    pressed_arm_model m;
+    pressed_state after;
+    assert_true(pressed_arm_model_of(&p, &m));
+    double ml2 = 0.20054 * 0.25, i = p.arm.link_inertia, m11 = 5.2e-3 + i + 1.25 * ml2,
+           m12 = 0.5 * ml2, m22 = i + 0.25 * ml2;
+    three_body_state before = {{0.001, 0.001, -0.001}, {0.5, 0.5, 0.9}};
+    assert_true(pressed_after_impact(&p, &before, &after));
+    check_relative(after.velocity, ((m11 - m12) * 0.5 + (m12 - m22) * 0.9) / m.inertia, 1e-4);
+    check_close(after.x, 0.001, 1e-15);
+}
+
+// With a motor that gives every force only the runaway mode counts, in closed form.
+static void a_strong_motor_leaves_the_closed_forms(void **state)
+{
+    (void)state;
+    pressed_arm_model m = model_of(SETTINGS("motor.voltage_limit=1000"));
+    double s = divergence(&m), k = m.spring_force;
+    const double velocities[] = {0.4, 1.37, 4};
+    for (int i = 0; i < 3; i++) {
+        pressed_state at = {0.003, velocities[i]};
+        double xi = k * (at.x + at.velocity / s);
+        check_relative(best_peak(&m, at), xi, 1e-4);
+        const double peak = 1.4 * xi, low = 0.6 * xi, high = 1.9 * xi;
+        check_close(best_settling(&m, at, low, 0.05, peak),
+                    log((peak - 1.05 * low) / (peak - xi)) / s, 3e-6);
+        check_close(best_settling(&m, at, high, 0.05, 1.05 * high), log(0.95 * high / xi) / s,
+                    3e-6);
+        check_close(best_settling(&m, at, xi, 0.05, peak), 0, 0);
+    }
+}
+
+static void what_cannot_be_is_said(void **state)
+{
+    (void)state;
+    pressed_arm_model m = model_of(NULL);
+    assert_true(isnan(best_peak(&m, (pressed_state){0.01, -0.1})));
+    assert_true(isnan(best_peak(&m, (pressed_state){-0.05, 1}))); // thrown back by its own bend
+    assert_true(isnan(best_settling(&m, (pressed_state){0, -1}, 1, 0.05, 2))); // it leaves the wall
+    assert_true(
+        isnan(best_settling(&m, (pressed_state){0, 1}, 6, 0.05, 9))); // the motor is too weak
+    // 0.58 N are needed to stop, so no less can lead down
+    assert_true(isnan(best_settling(&m, (pressed_state){0, 1}, 0.4, 0.05, 0.5)));
+    pressed_arm_model weak = model_of(SETTINGS("motor.voltage_limit=1.5"));
+    check_below(1.02 * best_peak(&m, (pressed_state){0, 1.37}),
+                best_peak(&weak, (pressed_state){0, 1.37}));
+}
+
+// --- controllers tried at random --------------------------------------------------------------
+
+// A way of its own through the equation of motion: torques on a grid of times, small steps of the
+// midpoint rule. After the pieces the force is kept at that of the runaway mode, within the band.
+enum { PIECES = 18 };
+#define PIECE     4e-3 // [s]
+#define FINE_STEP 5e-5 // [s]
+
+static double force_of(const pressed_arm_model *m, pressed_state s, double torque, double *rate)
+{
+    double friction = s.velocity > 0 ? m->stiction : s.velocity < 0 ? -m->stiction : 0;
+    *rate = (torque - m->damping * s.velocity - friction - m->stiffness * s.x) / m->inertia;
+    return m->spring_force * s.x - m->mass_force * *rate;
+}
+
+// Torque under which the force is `wanted`, as far as the motor gives it.
+static double torque_for(const pressed_arm_model *m, pressed_state s, double wanted)
+{
+    double none, at_zero = force_of(m, s, 0, &none);
+    double torque = (at_zero - wanted) * m->inertia / m->mass_force;
+    return fmax(-m->torque_limit, fmin(torque, m->torque_limit));
+}
+
+// When the force of a try is in the band for good; HUGE_VAL where it is not, leaves the wall or
+// exceeds the peak. *largest: the largest force.
+static double try_out(const pressed_arm_model *m, pressed_state s, const double *pieces, int count,
+                      double force, double peak, double *largest)
+{
+    double settled = HUGE_VAL, xi_factor = m->spring_force / divergence(m);
+    *largest = 0;
+    for (int i = 0; i * FINE_STEP < count * PIECE + 0.25; i++) {
+        int piece = (int)(i * FINE_STEP / PIECE);
+        double keep = m->spring_force * s.x + xi_factor * s.velocity;
+        keep = fmax(0.95 * force, fmin(keep, 1.05 * force));
+        double torque = torque_for(m, s, piece < count ? pieces[piece] : keep), rate, half_rate;
+        double f = force_of(m, s, torque, &rate);
+        pressed_state half = {s.x + FINE_STEP / 2 * s.velocity, s.velocity + FINE_STEP / 2 * rate};
+        force_of(m, half, torque, &half_rate);
+        if (f < -1e-9 || f > peak * 1.0001) {
+            return HUGE_VAL;
+        }
+        *largest = fmax(*largest, f);
+        bool inside = fabs(f - force) <= 0.0502 * force;
+        settled = !inside ? HUGE_VAL : fmin(settled, i * FINE_STEP);
+        s.x += FINE_STEP * half.velocity;
+        s.velocity += FINE_STEP * half_rate;
+    }
+    return settled;
+}
+
+static void no_controller_tried_is_better(void **state)
+{
+    (void)state;
+    const struct {
+        double velocity, force, peak, limit;
+    } cases[] = {{1.37, 0.5, 1, 10},  {1.37, 0.5, 1.6, 10}, {1.37, 1, 1.05, 10}, {1.37, 2, 2.1, 10},
+                 {1.37, 3, 3.15, 10}, {1.37, 4, 4.2, 10},   {3, 1, 3, 10},       {3, 2, 2.6, 6},
+                 {1.37, 1.5, 1.6, 4}, {0.8, 2, 2.1, 5},     {4, 1, 3.5, 5},      {3, 1.9, 2.2, 8}};
+    random_generator g;
+    random_seed(&g, 7);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char limit[48];
+        snprintf(limit, sizeof limit, "motor.voltage_limit=%g", cases[i].limit);
+        pressed_arm_model m = model_of(SETTINGS(limit));
+        pressed_state start = {0.002, cases[i].velocity};
+        double best = best_settling(&m, start, cases[i].force, 0.05, cases[i].peak);
+        double least = best_peak(&m, start), tried = HUGE_VAL;
+        assert_true(isfinite(best) && isfinite(least));
+        for (int n = 0; n < 4000; n++) {
+            // forces at either end for the most part, with a few in between
+            double pieces[PIECES], largest;
+            int count = 1 + (int)(random_uniform(&g) * PIECES),
+                turn = (int)fmin(random_uniform(&g) * 2 * (count + 1), count);
+            double first = random_uniform(&g) < 0.5 ? 0 : cases[i].peak;
+            for (int k = 0; k < count; k++) {
+                double odd = random_uniform(&g);
+                pieces[k] = odd < 0.05 ? random_uniform(&g) * cases[i].peak
+                            : k < turn ? first
+                                       : cases[i].peak - first;
+            }
+            double settled =
+                try_out(&m, start, pieces, count, cases[i].force, cases[i].peak, &largest);
+            tried = fmin(tried, settled);
+            if (settled < HUGE_VAL) {
+                check_below(0.999 * least, largest);
+            }
+        }
+        // nothing beats it, and it is no idle bound: the grid of times comes near
+        check_below(best - 2e-4, tried);
+        check_below(tried, best + 2 * PIECE);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_model_has_the_numbers_of_the_arm),
+        cmocka_unit_test(an_impact_throws_both_links_onto_one_motion),
+        cmocka_unit_test(a_strong_motor_leaves_the_closed_forms),
+        cmocka_unit_test(what_cannot_be_is_said),
+        cmocka_unit_test(no_controller_tried_is_better),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
