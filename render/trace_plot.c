@@ -477,6 +477,12 @@ void trace_figure_finish(trace_figure *t)
 
 status plot_run(const scenario *s, const run_result *result, const char *path, fault *f)
 {
+    return plot_run_beside(s, result, NULL, path, f);
+}
+
+status plot_run_beside(const scenario *s, const run_result *result, const run_result *old,
+                       const char *path, fault *f)
+{
     static const trace_panel panels[] = {
         {.signals = {"force"}, .with_zero = true, .impulses = true, .inset = true, .weight = 1.2},
         {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
@@ -484,9 +490,10 @@ status plot_run(const scenario *s, const run_result *result, const char *path, f
          .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
         {.label = "Voltage <i>v</i>", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
     };
-    const trace_run run = {s, result, NULL};
+    const trace_run runs[] = {{s, result, "this run"}, {s, old, "old run"}};
     trace_figure t;
-    status code = trace_figure_init(&t, NULL, panels, (int)G_N_ELEMENTS(panels), &run, 1, f);
+    status code = trace_figure_init(&t, NULL, panels, (int)G_N_ELEMENTS(panels), runs,
+                                    old != NULL ? 2 : 1, f);
     if (code == STATUS_OK) {
         code = figure_write(&t.figure, path, f);
         trace_figure_finish(&t);

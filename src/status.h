@@ -16,7 +16,8 @@
     X(STATUS_NO_MEMORY, "out of memory")                                                           \
     X(STATUS_CANNOT_WRITE, "a file could not be written")                                          \
     X(STATUS_CANNOT_READ, "a file could not be read")                                              \
-    X(STATUS_EXPECTATION_FAILED, "an expected value was not met")
+    X(STATUS_EXPECTATION_FAILED, "an expected value was not met")                                  \
+    X(STATUS_STOPPED, "stopped before its end")
 
 typedef enum status {
 #define STATUS_ENUM(code, text) code,

@@ -1,70 +1,9 @@
 // The terminal lab without a terminal: the grid of cells, the panels, keys and commands.
-#include "tests/check.h"
+#include "tests/lab_on_screen.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "src/lab/random.h"
-#include "ui/lab/lab.h"
-
-static void fail_on_fault(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
-
-static void open_lab(lab *l, const char *name)
-{
-    scenario s;
-    fault f = {0};
-    assert_int_equal(scenario_open(&s, name, fail_on_fault, NULL), STATUS_OK);
-    if (lab_init(l, &s, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
-}
-
-static void press(lab *l, const char *keys)
-{
-    fault f = {0};
-    if (!lab_keys(l, keys, &f)) {
-        fail_msg("%s", f.text);
-    }
-}
-
-// The screen as text, to be freed.
-static char *picture(lab *l, int width, int height, glyph_set set)
-{
-    screen s = {0};
-    char *text = NULL;
-    size_t size = 0;
-    assert_true(screen_resize(&s, width, height));
-    lab_draw(l, &s);
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    screen_dump(&s, set, stream);
-    fclose(stream);
-    screen_finish(&s);
-    return text;
-}
-
-static void assert_shows(lab *l, const char *wanted)
-{
-    char *text = picture(l, 120, 40, GLYPHS_BRAILLE);
-    if (strstr(text, wanted) == NULL) {
-        fail_msg("'%s' is not on the screen:\n%s", wanted, text);
-    }
-    free(text);
-}
-
-static void assert_hides(lab *l, const char *unwanted)
-{
-    char *text = picture(l, 120, 40, GLYPHS_BRAILLE);
-    if (strstr(text, unwanted) != NULL) {
-        fail_msg("'%s' is on the screen:\n%s", unwanted, text);
-    }
-    free(text);
-}
 
 static void test_text_is_cut_and_cleaned(void **state)
 {
@@ -215,6 +154,8 @@ static void test_the_list_filters_and_opens(void **state)
     open_lab(&l, "corrected/first-impact");
     press(&l, "/three");
     assert_shows(&l, "corrected/three-links");
+    assert_shows(&l, "Three links against a flat wall");
+    assert_hides(&l, "five-links");
     press(&l, "<Enter><Enter>");
     assert_string_equal(l.session.base.name, "corrected/three-links");
     press(&l, ":open thesis/fig-3-4<Enter>");
@@ -259,6 +200,21 @@ static void test_help_lists_every_key(void **state)
     assert_false(l.quit);
     press(&l, "q");
     assert_true(l.quit);
+    lab_finish(&l);
+}
+
+static void test_pages_scroll_to_their_ends(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    press(&l, "?GGjj");
+    assert_shows(&l, ":quit");
+    press(&l, "gkk");
+    assert_shows(&l, ":play");
+    // nothing is drawn between these, which would keep the line within the page
+    press(&l, "<Esc>cGjjjgk");
+    assert_shows(&l, "this run");
     lab_finish(&l);
 }
 
@@ -396,6 +352,57 @@ static void test_random_keys_do_no_harm(void **state)
     lab_finish(&l);
 }
 
+// The lab draws and takes keys while a long run is computed; what it shows in the end is what a
+// lab that waits for its runs shows.
+static void test_a_long_run_is_drawn_while_it_is_computed(void **state)
+{
+    (void)state;
+    lab l, patient;
+    scenario s;
+    fault f = {0};
+    assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(scenario_override(&s, "run.duration=20", &f), STATUS_OK);
+    assert_int_equal(lab_open_patiently(&l, &s, 0, &f), STATUS_OK);
+    assert_shows(&l, "computing");
+    assert_shows(&l, "of 20 s (Esc stops)");
+    press(&l, ":save never-written.csv<Enter>");
+    assert_shows(&l, "wait for its end, or stop it with Esc");
+    press(&l, "b");
+    assert_shows(&l, "the run is still being computed");
+    press(&l, "<Esc>");
+    assert_null(l.session.computing);
+    assert_shows(&l, "stopped at");
+    assert_hides(&l, "computing");
+    // Space at the end of what there is goes on with it
+    press(&l, "<End><Space>");
+    assert_true(l.playing);
+    assert_shows(&l, "computing");
+    press(&l, ":set run.duration 3<Enter>:stop<Enter>:set run.duration 4<Enter>");
+    while (l.session.computing != NULL) {
+        lab_advance(&l, 0.01);
+        lab_follow(&l);
+        free(picture(&l, 120, 40, GLYPHS_BRAILLE));
+    }
+    open_lab(&patient, "corrected/twenty-links");
+    press(&patient,
+          ":set run.duration 20<Enter>:set run.duration 3<Enter>:set run.duration 4<Enter>");
+    patient.playing = l.playing = false;
+    patient.speed = l.speed;
+    press(&l, ":seek 2<Enter>");
+    press(&patient, ":seek end<Enter>:seek 2<Enter>");
+    l.session.seen = patient.session.seen;
+    l.session.base.parameters = patient.session.base.parameters;
+    l.session.input_count = patient.session.input_count;
+    char *one = picture(&l, 150, 50, GLYPHS_BRAILLE);
+    char *other = picture(&patient, 150, 50, GLYPHS_BRAILLE);
+    assert_string_equal(one, other);
+    free(one);
+    free(other);
+    l.session.input_count = 0;
+    lab_finish(&l);
+    lab_finish(&patient);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -409,9 +416,11 @@ int main(void)
         cmocka_unit_test(test_the_list_filters_and_opens),
         cmocka_unit_test(test_what_is_typed_is_completed),
         cmocka_unit_test(test_help_lists_every_key),
+        cmocka_unit_test(test_pages_scroll_to_their_ends),
         cmocka_unit_test(test_saved_scenario_and_screen),
         cmocka_unit_test(test_a_click_moves_the_cursor),
         cmocka_unit_test(test_every_scenario_and_every_size_draws),
+        cmocka_unit_test(test_a_long_run_is_drawn_while_it_is_computed),
         cmocka_unit_test(test_random_keys_do_no_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/lab/random.h"
 #include "src/lab/session.h"
 
 static void fail_on_fault(void *context, const char *sentence)
@@ -117,6 +118,59 @@ static void test_a_lower_voltage_before_contact_hits_less_hard(void **state)
     session_finish(&s);
 }
 
+// Rows and events before an instant are the same to the last bit.
+static void assert_same_before(const trace *a, const trace *b, double time)
+{
+    size_t rows = 0, events = 0;
+    while (rows < a->row_count && a->rows[rows].time < time) {
+        rows++;
+    }
+    while (events < a->event_count && a->events[events].time < time) {
+        events++;
+    }
+    assert_true(rows <= b->row_count && events <= b->event_count);
+    for (size_t i = 0; i < rows; i++) {
+        if (memcmp(&a->rows[i], &b->rows[i], sizeof a->rows[i]) != 0) {
+            fail_msg("row %zu at %.17g s (or %.17g s) differs before %.17g s", i, a->rows[i].time,
+                     b->rows[i].time, time);
+        }
+    }
+    assert_memory_equal(a->angles, b->angles, rows * (size_t)a->angle_count * sizeof *a->angles);
+    assert_memory_equal(a->events, b->events, events * sizeof *a->events);
+    assert_true(rows == b->row_count || b->rows[rows].time >= time);
+}
+
+static void test_what_is_before_a_change_stays_to_the_last_bit(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"corrected/first-impact", "corrected/generalized-alpha",
+                                        "corrected/newmark",      "corrected/five-links",
+                                        "corrected/restitution",  "corrected/stuck-hub",
+                                        "compare/hybrid",         "thesis/fig-3-4",
+                                        "corrected/spring-hub"};
+    random_generator random;
+    random_seed(&random, 6);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        session s;
+        fault f = {0};
+        open_session(&s, names[i]);
+        for (int k = 0; k < 24; k++) {
+            session_seek(&s, random_uniform(&random) * session_end(&s));
+            // most changes are right behind an event, where a stride is likely to span both
+            if (k % 4 != 0 && session_step_event(&s, 1)) {
+                session_seek(&s, s.now + (k % 4 == 1 ? 3e-6 : 3e-4) * random_uniform(&random));
+            } else if (k % 8 == 0) {
+                session_step(&s, 1);
+            }
+            assert_int_equal(session_branch(&s, &f), STATUS_OK);
+            change(&s, "arm.k2", k % 2 ? "7.5" : "6.5");
+            assert_same_before(&s.other.trace, &s.run.trace, s.now);
+            assert_int_equal(session_undo(&s, &f), STATUS_OK);
+        }
+        session_finish(&s);
+    }
+}
+
 static void test_undo_and_redo(void **state)
 {
     (void)state;
@@ -204,6 +258,12 @@ static void test_a_saved_scenario_reproduces_the_run(void **state)
         save_and_compare(&s);
         session_finish(&s);
     }
+    // a run that ends before an action of its script
+    session shorter;
+    open_session(&shorter, "corrected/voltage-step");
+    change(&shorter, "run.duration", "0.7");
+    save_and_compare(&shorter);
+    session_finish(&shorter);
     session printed;
     open_session(&printed, "thesis/fig-3-4");
     session_seek(&printed, 0.1);
@@ -231,6 +291,7 @@ int main(void)
         cmocka_unit_test(test_the_cursor_stays_within_the_run),
         cmocka_unit_test(test_events_are_found_in_both_directions),
         cmocka_unit_test(test_a_lower_voltage_before_contact_hits_less_hard),
+        cmocka_unit_test(test_what_is_before_a_change_stays_to_the_last_bit),
         cmocka_unit_test(test_undo_and_redo),
         cmocka_unit_test(test_a_refused_change_changes_nothing),
         cmocka_unit_test(test_a_saved_scenario_reproduces_the_run),

@@ -126,7 +126,7 @@ for size in "1 1" "10 3" "200 60" "30 8" "300 100" "41 12"; do
     sleep 0.1
 done
 mux resize-window -x 20 -y 8
-await "20 x 8: the lab ne"
+await "12 characters, here"
 mux resize-window -x 120 -y 40
 await "Space run/pause"
 mux send-keys q
@@ -153,6 +153,22 @@ await "the mouse is off"
 mux send-keys q
 await "status 0"
 check_given_back mouse
+
+# a drag in the curves scrubs, the wheel zooms, Shift and an arrow pans
+start
+mux send-keys Space Home
+await "t 0.00000 s"
+mux send-keys -l $'\033[<0;45;30M'
+mux send-keys -l $'\033[<32;60;30M'
+mux send-keys -l $'\033[<0;60;30m'
+await "t 0.70"
+mux send-keys -l $'\033[<64;60;30M'
+await "0.8 s"
+mux send-keys -l $'\033[1;2D'
+await "f follows the cursor again"
+mux send-keys q
+await "status 0"
+check_given_back "mouse wheel"
 mux send-keys "export TERM=screen" Enter
 
 # what was done is saved and can be run
@@ -165,6 +181,70 @@ mux send-keys q
 await "status 0"
 "$program" run "$folder/half.yaml" | grep -q "peak force  *0.94" || fail "the saved run differs"
 
+# as many colours as the terminal has, or is said to have
+# $1: settings of the environment, $2: options, $3: what the screen has, $4: what it has not
+colours() {
+    mux send-keys "clear; env $1 $program lab $2; stty -g >$folder/after" Enter
+    await "Space run/pause"
+    mux send-keys ":seek 0.35" Enter
+    await "t 0.35000 s"
+    mux capture-pane -e -p >"$folder/cells"
+    grep -q "$3" "$folder/cells" || fail "$1 $2: no $3"
+    if [ -n "$4" ] && grep -q "$4" "$folder/cells"; then
+        fail "$1 $2: $4"
+    fi
+    mux send-keys q
+    await "changes, peak force"
+    check_given_back "$1 $2"
+}
+mux set-option -g default-terminal tmux-256color
+mux new-window "bash --noprofile --rcfile $folder/profile -i"
+await "ready>"
+colours "COLORTERM=truecolor" "" "38;2;255;150;40m" "38;5;"
+colours "COLORTERM=24bit" "--theme light" "38;2;175;70;0m" "38;5;"
+colours "COLORTERM=" "" "38;5;" "38;2;"
+colours "COLORTERM=" "--colours true" "38;2;255;150;40m" "38;5;"
+colours "COLORTERM=truecolor" "--colours 256" "38;5;" "38;2;"
+colours "COLORTERM=truecolor" "--colours 16" "\[9[0-7]m" "38;[25];"
+colours "COLORTERM=truecolor" "--colours mono" "\[1m" "38;[25];"
+colours "COLORTERM=truecolor" "--theme mono" "\[1m" "38;[25];"
+colours "COLORTERM=truecolor NO_COLOR=1" "" "\[1m" "38;[25];"
+colours "COLORTERM=truecolor NO_COLOR=" "" "38;2;" ""
+colours "COLORTERM=truecolor NO_COLOR=1" "--colours true" "38;2;" ""
+colours "COLORTERM=truecolor TERM=vt100" "" "\[1m" "38;[25];"
+colours "COLORTERM=truecolor TERM=linux" "" "\[3[1-7]m" "38;[25];"
+colours "-u TMUX COLORTERM=truecolor TERM=screen" "" "\[3[1-7]m" "38;[25];"
+colours "COLORTERM=truecolor TERM=xterm" "" "38;2;" "38;5;"
+colours "COLORTERM=truecolor COLORFGBG=\"0;15\"" "" "38;2;175;70;0m" "38;2;255;150;40m"
+# resized, suspended and taken up again in such colours: the picture is whole
+mux send-keys "export COLORTERM=truecolor; clear; lab" Enter
+await "Space run/pause"
+mux resize-window -x 90 -y 30
+await "? help"
+mux send-keys Escape
+mux send-keys C-z
+await "ready>"
+mux send-keys "clear; fg" Enter
+await "impactlab  corrected/first-impact"
+await "motor.voltage"
+mux resize-window -x 120 -y 40
+mux send-keys ":colours 256" Enter
+sleep 0.2
+mux send-keys ":colours mono" Enter
+sleep 0.2
+mux send-keys ":colours true" Enter
+await "impactlab  corrected/first-impact"
+mux send-keys q
+await "ready>"
+for name in SEGV TERM; do
+    start
+    kill -s "$name" "$(cat "$folder/pid")"
+    await "status $((128 + $(kill -l "$name")))"
+    check_given_back "true colour $name"
+done
+mux kill-window
+mux set-option -g default-terminal screen
+
 # settings are kept; a file with faults is told of and left alone
 start
 mux send-keys ":panes 27" Enter ":theme light" Enter ":remember" Enter
@@ -172,13 +252,13 @@ await "settings kept"
 mux send-keys q
 await "status 0"
 start
-await "  Di "
+await " Di "
 mux send-keys q
 await "status 0"
 echo "glyphs purple" >>"$folder/config/impactlab/lab"
 cp "$folder/config/impactlab/lab" "$folder/broken"
 mux send-keys "clear; lab" Enter
-await "is ignored: 'purple' is none of braille, blocks, ascii"
+await ":8 is ignored: 'purple' is none of"
 mux send-keys ":remember" Enter
 await "left alone"
 mux send-keys q

@@ -53,7 +53,8 @@ static const option_info option_table[] = {
     {'r', false, "script", "FILE|-", "carry out commands, one a line, as : takes them"},
     {'z', false, "size", "WIDTHxHEIGHT", "print a screen of this size in characters (120x40)"},
     {'g', false, "glyphs", "braille|blocks|ascii", "characters to draw with"},
-    {'E', false, "theme", "dark|light|mono", "colours"},
+    {'E', false, "theme", "dark|light|mono", "colours for that ground"},
+    {'I', false, "colours", "auto|true|256|16|mono", "how many of them the terminal has"},
     {'o', true, "output", "PATH", "file or folder to write to"},
     {'f', false, "format", "png,pdf,svg", "which kinds of files to write"},
     {'q', true, "quiet", NULL, "print no summary"},
@@ -174,6 +175,8 @@ static bool take_option(arguments *a, int letter, char *value)
         return take_text(&a->size, value);
     case 'g':
         return take_text(&a->glyphs, value);
+    case 'I':
+        return take_text(&a->colours, value);
     case 'E':
         return take_text(&a->theme, value);
     case 'o':

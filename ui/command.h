@@ -29,7 +29,7 @@ typedef struct arguments {
     const char *markdown, *columns;  // of compare; NULL if not given
     const char *gl, *camera, *size;  // of scenes; NULL if not given
     const char *fps, *seconds, *slow; // of films; NULL if not given
-    const char *keys, *script, *glyphs, *theme; // of the terminal lab; NULL if not given
+    const char *keys, *script, *glyphs, *theme, *colours; // of the terminal lab; NULL if not given
     bool quiet;
 } arguments;
 

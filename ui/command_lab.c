@@ -1,6 +1,7 @@
 #include "ui/command.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -9,6 +10,7 @@
 #include "ui/terminal.h"
 
 #define FRAME         (1.0 / 60) // shortest time between two pictures [s]
+#define PATIENCE      0.01       // a run that takes longer is computed meanwhile [s]
 #define LONGEST_FRAME 0.25       // a longer pause (suspended, dragged about) counts as this [s]
 
 static const char first_scenario[] = "corrected/first-impact";
@@ -95,10 +97,14 @@ static void take_input(lab *l, terminal_input in)
 {
     if (in.kind == INPUT_KEY) {
         lab_key(l, in.code);
-    } else if (in.kind == INPUT_CLICK) {
-        lab_click(l, in.x, in.y);
-    } else if (in.kind == INPUT_WHEEL) {
-        lab_wheel(l, in.code);
+    } else if (in.kind == INPUT_MOUSE) {
+        static const pointer_kind kinds[] = {
+            [MOUSE_PRESS] = POINTER_PRESS,           [MOUSE_DRAG] = POINTER_DRAG,
+            [MOUSE_RELEASE] = POINTER_RELEASE,       [MOUSE_WHEEL_UP] = POINTER_WHEEL_UP,
+            [MOUSE_WHEEL_DOWN] = POINTER_WHEEL_DOWN,
+        };
+        const mouse_report *m = &in.mouse;
+        lab_point(l, (lab_pointer){kinds[m->kind], m->x, m->y, m->shift, m->control});
     } else if (in.kind == INPUT_RESIZE) {
         l->redraw = true;
     }
@@ -114,7 +120,7 @@ static void show(lab *l, screen *s)
     }
     terminal_mouse(l->mouse);
     lab_draw(l, s);
-    terminal_show(s, l->glyphs, l->theme, l->redraw);
+    terminal_show(s, l->glyphs, l->theme, l->depth, l->redraw);
     l->redraw = false;
 }
 
@@ -130,9 +136,12 @@ static void run_on_terminal(lab *l)
             drawn = now;
             dirty = false;
         }
-        bool waits = dirty || l->playing;
-        terminal_input in = terminal_wait(waits ? FRAME - (seconds_now() - drawn) : -1);
+        bool waits = dirty || l->playing || l->session.computing != NULL;
+        // a picture that took longer than a frame leaves nothing to wait for
+        double left = fmax(0, dirty ? FRAME - (seconds_now() - drawn) : FRAME);
+        terminal_input in = terminal_wait(waits ? left : -1);
         now = seconds_now();
+        dirty |= lab_follow(l);
         if (l->playing) {
             lab_advance(l, now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
             dirty = true;
@@ -161,18 +170,20 @@ static int open_lab(lab *l, const arguments *a)
     if (code != EXIT_DONE) {
         return code;
     }
-    if (lab_init(l, &s, &f) != STATUS_OK) {
+    bool live = a->keys == NULL && a->script == NULL && a->size == NULL;
+    if (lab_open_patiently(l, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     char line[LAB_TEXT];
     l->glyphs = terminal_has_utf8() ? GLYPHS_BRAILLE : GLYPHS_ASCII;
-    bool live = a->keys == NULL && a->script == NULL && a->size == NULL;
     if (live) {
+        l->theme = terminal_is_light() ? COLOURS_LIGHT : COLOURS_DARK;
         lab_settings_load(l);
         l->glyphs = terminal_has_utf8() ? l->glyphs : GLYPHS_ASCII;
     }
-    const char *const settings[2][2] = {{"glyphs", a->glyphs}, {"theme", a->theme}};
-    for (int i = 0; i < 2; i++) {
+    const char *const settings[3][2] = {
+        {"glyphs", a->glyphs}, {"theme", a->theme}, {"colours", a->colours}};
+    for (int i = 0; i < 3; i++) {
         snprintf(line, sizeof line, "%s %s", settings[i][0], settings[i][1] ? settings[i][1] : "");
         if (settings[i][1] != NULL && !lab_carry_out(l, line)) {
             code = complain("--%s: %s", settings[i][0], l->message);
@@ -213,7 +224,7 @@ static int run(const arguments *a)
 const command lab_command = {
     .name = "lab",
     .operands = "[SCENARIO]",
-    .options = "skrzgEq",
+    .options = "skrzgEIq",
     .summary = "Explore a run on the terminal",
     .help = "Opens corrected/first-impact if no scenario is named; ? lists the keys. With --keys, "
             "--script or\n--size nothing is shown live: the keys are pressed, then the script's "

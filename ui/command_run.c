@@ -7,6 +7,7 @@
 
 #include "src/arm/arm.h"
 #include "src/parameters.h"
+#include "ui/run_progress.h"
 #include "ui/scene_request.h"
 
 enum { EVENTS_SHOWN = 16 };
@@ -172,7 +173,7 @@ static int run_and_report(const arguments *a, scenario *s)
 {
     run_result result;
     bool keep_trace = a->csv != NULL || a->plot != NULL || a->scene != NULL;
-    status code = run_scenario(s, keep_trace, &result);
+    status code = run_with_progress(s, keep_trace, &result);
     int exit_status = write_results(a, s, &result);
     if (summary_wanted(a)) {
         print_heading(s);
@@ -192,6 +193,9 @@ static int run_and_report(const arguments *a, scenario *s)
         exit_status = worse(exit_status, EXIT_FAILED);
     }
     run_finish(&result);
+    if (code == STATUS_STOPPED) {
+        run_progress_leave();
+    }
     return exit_status;
 }
 

@@ -48,8 +48,7 @@ void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour)
     }
 }
 
-// Takes one character off UTF-8 text; '?' for a byte that is none.
-static uint32_t decode(const char **text)
+uint32_t glyph_decode(const char **text)
 {
     const unsigned char *t = (const unsigned char *)*text;
     int more = t[0] >= 0xf0 ? 3 : t[0] >= 0xe0 ? 2 : t[0] >= 0xc0 ? 1 : 0;
@@ -71,7 +70,7 @@ int screen_text(screen *s, int x, int y, int room, ink colour, const char *text)
 {
     int taken = 0;
     while (*text != '\0' && taken < room) {
-        screen_put(s, x + taken, y, decode(&text), colour);
+        screen_put(s, x + taken, y, glyph_decode(&text), colour);
         taken++;
     }
     return taken;
@@ -85,6 +84,31 @@ int screen_print(screen *s, int x, int y, int room, ink colour, const char *form
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     return screen_text(s, x, y, room, colour, text);
+}
+
+int text_wrap(const char *text, int width, text_line *lines, int most, bool *split)
+{
+    int count = 0;
+    bool broken = false;
+    text += strspn(text, " ");
+    while (*text != '\0' && count < most) {
+        const char *at = text, *end = text;
+        // up to the last word that is not beyond the width
+        for (int cells = 0; *at != '\0' && cells < width; cells++) {
+            bool blank = glyph_decode(&at) == ' ';
+            end = !blank && (*at == ' ' || *at == '\0') ? at : end;
+        }
+        if (end == text) {
+            end = at;
+            broken = true;
+        }
+        lines[count++] = (text_line){text, (int)(end - text)};
+        text = end + strspn(end, " ");
+    }
+    if (split != NULL) {
+        *split = broken || *text != '\0';
+    }
+    return count;
 }
 
 void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title)
@@ -203,7 +227,8 @@ static uint32_t ascii_glyph(uint32_t glyph)
     } twins[] = {{0x2500, '-'}, {0x2502, '|'}, {0x250c, '+'}, {0x2510, '+'}, {0x2514, '+'},
                  {0x2518, '+'}, {0x25b6, '>'}, {0x25c0, '<'}, {0x25b2, '^'}, {0x25bc, 'v'},
                  {0x25cf, 'o'}, {0x25c6, '*'}, {0x2592, '%'}, {0x0394, 'd'}, {0x2016, '='},
-                 {0x00d7, 'x'}, {0x2025, '~'}, {0x25b8, '>'}, {0x2506, ':'}};
+                 {0x00d7, 'x'}, {0x2025, '~'}, {0x25b8, '>'}, {0x2506, ':'}, {0x2524, '+'},
+                 {0x252c, '+'}, {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'}};
     for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++) {
         if (twins[i].glyph == glyph) {
             return (uint32_t)twins[i].ascii;

@@ -31,6 +31,16 @@ typedef enum glyph_set { GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII, GLYPH_SETS
 // What the inks look like on the terminal.
 typedef enum lab_theme { COLOURS_DARK, COLOURS_LIGHT, COLOURS_MONO, COLOUR_THEMES } lab_theme;
 
+// How many colours the terminal is taken to have.
+typedef enum colour_depth {
+    DEPTH_AUTO, // as many as it says
+    DEPTH_TRUE, // red, green and blue
+    DEPTH_256,
+    DEPTH_16,
+    DEPTH_MONO,
+    COLOUR_DEPTHS
+} colour_depth;
+
 typedef struct cell {
     uint32_t glyph; // Unicode; dots are a braille pattern
     ink ink;
@@ -71,8 +81,21 @@ void canvas_dot(const canvas *c, long across, long down, ink colour);
 // nothing.
 void canvas_line(const canvas *c, double x0, double y0, double x1, double y1, ink colour);
 
+// A part of a text that is one line.
+typedef struct text_line {
+    const char *start;
+    int bytes;
+} text_line;
+
+// Breaks UTF-8 text at its blanks into lines of at most `width` cells, at most `most` of them, and
+// returns how many. A word that is wider is split; *split (may be NULL) says whether one was or
+// whether text is left over.
+int text_wrap(const char *text, int width, text_line *lines, int most, bool *split);
+
 // The glyph as the set can show it.
 uint32_t glyph_in_set(uint32_t glyph, glyph_set set);
+// Takes one character off UTF-8 text; '?' for a byte that is none and for control characters.
+uint32_t glyph_decode(const char **text);
 // Writes a glyph as UTF-8 with a zero at its end; text has 5 bytes.
 void glyph_encode(uint32_t glyph, char *text);
 

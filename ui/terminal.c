@@ -8,12 +8,17 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <termios.h>
+#include <time.h>
 #include <unistd.h>
 #include <wchar.h>
 
 #define NCURSES_WIDECHAR 1
 #include <curses.h>
 #include <term.h>
+
+#include "ui/escape_sequence.h"
+#include "ui/ink_colours.h"
+#include "ui/terminal_paint.h"
 
 // One terminal a program has; the signal handlers need it too.
 static struct {
@@ -22,10 +27,17 @@ static struct {
     int wake[2];          // signals write here
     screen shown;         // what the terminal has
     lab_theme theme;      // whose colours are set
-    bool colours, themed, mouse;
-    char restore[256]; // what a crash sends
+    colour_depth depth;
+    bool bright[INK_COUNT]; // inks that are bold for want of bright colours
+    bool colours, themed, mouse, has_mouse;
+    bool painted;             // what is shown was not shown by ncurses
+    escape_sequence sequence; // that has begun on the input
+    double sequence_time;     // of its last character [s]
+    char restore[256];        // what a crash sends
     size_t restore_length;
 } tty = {.wake = {-1, -1}};
+
+#define SEQUENCE_TIME 0.25 // after such a pause what is missing of a sequence does not come [s]
 
 static volatile sig_atomic_t leaving; // the signal that asks to leave
 
@@ -137,12 +149,14 @@ static void define_common_keys(void)
     static const struct {
         const char *sequence;
         int key;
-    } keys[] = {
-        {"\033[A", KEY_UP},    {"\033[B", KEY_DOWN}, {"\033[C", KEY_RIGHT},  {"\033[D", KEY_LEFT},
-        {"\033OA", KEY_UP},    {"\033OB", KEY_DOWN}, {"\033OC", KEY_RIGHT},  {"\033OD", KEY_LEFT},
-        {"\033[H", KEY_HOME},  {"\033[F", KEY_END},  {"\033OH", KEY_HOME},   {"\033OF", KEY_END},
-        {"\033[1~", KEY_HOME}, {"\033[4~", KEY_END}, {"\033[5~", KEY_PPAGE}, {"\033[6~", KEY_NPAGE},
-        {"\033[3~", KEY_DC},   {"\033OP", KEY_F(1)}, {"\033[11~", KEY_F(1)}};
+    } keys[] = {{"\033[A", KEY_UP},     {"\033[B", KEY_DOWN},     {"\033[C", KEY_RIGHT},
+                {"\033[D", KEY_LEFT},   {"\033OA", KEY_UP},       {"\033OB", KEY_DOWN},
+                {"\033OC", KEY_RIGHT},  {"\033OD", KEY_LEFT},     {"\033[H", KEY_HOME},
+                {"\033[F", KEY_END},    {"\033OH", KEY_HOME},     {"\033OF", KEY_END},
+                {"\033[1~", KEY_HOME},  {"\033[4~", KEY_END},     {"\033[5~", KEY_PPAGE},
+                {"\033[6~", KEY_NPAGE}, {"\033[3~", KEY_DC},      {"\033OP", KEY_F(1)},
+                {"\033[11~", KEY_F(1)}, {"\033[1;2D", KEY_SLEFT}, {"\033[1;2C", KEY_SRIGHT},
+                {"\033[1;2A", KEY_SR},  {"\033[1;2B", KEY_SF}};
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         define_key(keys[i].sequence, keys[i].key);
     }
@@ -176,12 +190,15 @@ status terminal_open(fault *f)
     nonl();
     keypad(stdscr, TRUE);
     define_common_keys();
+    const char *reports = tigetstr("kmous");
+    tty.has_mouse = reports != NULL && reports != (const char *)-1;
+    keyok(KEY_MOUSE, FALSE);
+    tty.sequence.state = SEQUENCE_NONE;
     nodelay(stdscr, TRUE);
     set_escdelay(25);
     typeahead(-1);
     curs_set(0);
-    const char *no_colour = getenv("NO_COLOR");
-    tty.colours = has_colors() && (no_colour == NULL || no_colour[0] == '\0');
+    tty.colours = has_colors();
     if (tty.colours) {
         start_color();
         use_default_colors();
@@ -195,6 +212,9 @@ void terminal_close(void)
     if (tty.curses != NULL) {
         terminal_mouse(false);
         // where there is no alternate screen the prompt comes back to an empty one
+        if (tty.painted) {
+            clearok(stdscr, TRUE);
+        }
         erase();
         refresh();
         curs_set(1);
@@ -223,15 +243,11 @@ void terminal_size(int *width, int *height)
 
 void terminal_mouse(bool on)
 {
-    if (on != tty.mouse) {
-        mousemask(on ? BUTTON1_PRESSED | BUTTON1_CLICKED | BUTTON4_PRESSED | BUTTON5_PRESSED |
-                           REPORT_MOUSE_POSITION
-                     : 0,
-                  NULL);
-        mouseinterval(0);
-        // ncurses asks for presses only; dragging needs the motion between them
-        const char *motion = on ? "\033[?1002h" : "\033[?1002l";
-        ssize_t ignored = write(STDOUT_FILENO, motion, strlen(motion));
+    if (on != tty.mouse && tty.has_mouse) {
+        // ncurses has to wait for the end of a report that it has begun to read, so it is not asked
+        const char *reports =
+            on ? "\033[?1000h\033[?1002h\033[?1006h" : "\033[?1006l\033[?1002l\033[?1000l";
+        ssize_t ignored = write(STDOUT_FILENO, reports, strlen(reports));
         (void)ignored;
         tty.mouse = on;
     }
@@ -244,12 +260,22 @@ static int key_of_curses(int key)
     static const struct {
         int curses, ours;
     } keys[] = {
-        {KEY_LEFT, KEY_CODE_LEFT},     {KEY_RIGHT, KEY_CODE_RIGHT},
-        {KEY_UP, KEY_CODE_UP},         {KEY_DOWN, KEY_CODE_DOWN},
-        {KEY_HOME, KEY_CODE_HOME},     {KEY_END, KEY_CODE_END},
-        {KEY_PPAGE, KEY_CODE_PAGE_UP}, {KEY_NPAGE, KEY_CODE_PAGE_DOWN},
-        {KEY_DC, KEY_CODE_DELETE},     {KEY_BACKSPACE, KEY_CODE_BACKSPACE},
-        {KEY_F(1), KEY_CODE_F1},       {KEY_ENTER, KEY_CODE_ENTER},
+        {KEY_LEFT, KEY_CODE_LEFT},
+        {KEY_RIGHT, KEY_CODE_RIGHT},
+        {KEY_UP, KEY_CODE_UP},
+        {KEY_DOWN, KEY_CODE_DOWN},
+        {KEY_HOME, KEY_CODE_HOME},
+        {KEY_END, KEY_CODE_END},
+        {KEY_PPAGE, KEY_CODE_PAGE_UP},
+        {KEY_NPAGE, KEY_CODE_PAGE_DOWN},
+        {KEY_DC, KEY_CODE_DELETE},
+        {KEY_BACKSPACE, KEY_CODE_BACKSPACE},
+        {KEY_F(1), KEY_CODE_F1},
+        {KEY_ENTER, KEY_CODE_ENTER},
+        {KEY_SLEFT, KEY_CODE_SHIFT_LEFT},
+        {KEY_SRIGHT, KEY_CODE_SHIFT_RIGHT},
+        {KEY_SR, KEY_CODE_SHIFT_UP},
+        {KEY_SF, KEY_CODE_SHIFT_DOWN},
     };
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         if (keys[i].curses == key) {
@@ -259,56 +285,71 @@ static int key_of_curses(int key)
     return 0;
 }
 
-static terminal_input mouse_input(void)
+static double seconds_now(void)
 {
-    MEVENT m;
-    terminal_input in = {INPUT_NONE, 0, 0, 0};
-    if (getmouse(&m) == OK) {
-        bool wheel = m.bstate & (BUTTON4_PRESSED | BUTTON5_PRESSED);
-        in.kind = wheel ? INPUT_WHEEL : INPUT_CLICK;
-        in.code = m.bstate & BUTTON4_PRESSED ? -1 : 1;
-        in.x = m.x;
-        in.y = m.y;
-    }
-    return in;
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-// Takes an unknown key's sequence off the input after its escape, so that its letters are not taken
-// for keys. Returns the key that is meant: the escape if it stood alone, 0 for a sequence.
-static int drop_sequence(void)
+// Goes on with a sequence by the next character. False if that is a key of its own; *in is then the
+// escape before it, if that stood alone.
+static bool take_sequence(wint_t key, int kind, terminal_input *in)
 {
-    wint_t key = 0;
-    if (get_wch(&key) != OK) {
-        return KEY_CODE_ESCAPE;
+    bool escaped = tty.sequence.state == SEQUENCE_ESCAPED;
+    sequence_result result = SEQUENCE_OTHER_KEY;
+    if (kind == OK && (escaped || seconds_now() - tty.sequence_time < SEQUENCE_TIME)) {
+        result = escape_sequence_take(&tty.sequence, (int)key, &in->mouse);
     }
-    if (key != '[' && key != 'O') {
-        unget_wch((wchar_t)key);
-        return KEY_CODE_ESCAPE;
+    tty.sequence_time = seconds_now();
+    if (result == SEQUENCE_OTHER_KEY) {
+        tty.sequence.state = SEQUENCE_NONE;
+        *in = (terminal_input){.kind = escaped ? INPUT_KEY : INPUT_NONE, .code = KEY_CODE_ESCAPE};
+        return false;
     }
-    while (get_wch(&key) == OK && (key < 0x40 || key > 0x7e)) {
-    }
-    return 0;
+    in->kind = result == SEQUENCE_MOUSE ? INPUT_MOUSE : INPUT_NONE;
+    return true;
 }
 
-// What ncurses has read already; INPUT_NONE if that is nothing.
+// What has come already; INPUT_NONE if that is nothing, or not yet all of a sequence.
 static terminal_input pending_input(void)
 {
+    terminal_input in = {.kind = INPUT_NONE};
     wint_t key = 0;
-    int kind = get_wch(&key);
-    if (kind == KEY_CODE_YES && key == KEY_RESIZE) {
-        return (terminal_input){INPUT_RESIZE, 0, 0, 0};
+    int kind;
+    while ((kind = get_wch(&key)) != ERR) {
+        if (tty.sequence.state != SEQUENCE_NONE) {
+            if (take_sequence(key, kind, &in)) {
+                if (in.kind != INPUT_NONE) {
+                    return in;
+                }
+                continue;
+            }
+            if (in.kind != INPUT_NONE) {
+                // the key after the escape is the next one
+                if (kind == KEY_CODE_YES) {
+                    ungetch((int)key);
+                } else {
+                    unget_wch((wchar_t)key);
+                }
+                return in;
+            }
+        }
+        if (kind == KEY_CODE_YES) {
+            return key == KEY_RESIZE
+                       ? (terminal_input){.kind = INPUT_RESIZE}
+                       : (terminal_input){.kind = INPUT_KEY, .code = key_of_curses((int)key)};
+        }
+        if (key != KEY_CODE_ESCAPE) {
+            return (terminal_input){.kind = INPUT_KEY, .code = (int)key};
+        }
+        tty.sequence.state = SEQUENCE_ESCAPED;
     }
-    if (kind == KEY_CODE_YES && key == KEY_MOUSE) {
-        return mouse_input();
+    if (tty.sequence.state == SEQUENCE_ESCAPED) {
+        tty.sequence.state = SEQUENCE_NONE;
+        return (terminal_input){.kind = INPUT_KEY, .code = KEY_CODE_ESCAPE};
     }
-    if (kind == KEY_CODE_YES) {
-        return (terminal_input){INPUT_KEY, key_of_curses((int)key), 0, 0};
-    }
-    if (kind == OK && key == KEY_CODE_ESCAPE) {
-        return (terminal_input){INPUT_KEY, drop_sequence(), 0, 0};
-    }
-    return kind == OK ? (terminal_input){INPUT_KEY, (int)key, 0, 0}
-                      : (terminal_input){INPUT_NONE, 0, 0, 0};
+    return (terminal_input){.kind = INPUT_NONE};
 }
 
 // Takes the bytes that signals left, and the terminal's new size.
@@ -319,12 +360,12 @@ static terminal_input after_signal(void)
     while (read(tty.wake[0], bytes, sizeof bytes) > 0) {
     }
     if (leaving != 0) {
-        return (terminal_input){INPUT_LEAVE, 0, 0, 0};
+        return (terminal_input){.kind = INPUT_LEAVE};
     }
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
         resizeterm(size.ws_row, size.ws_col);
     }
-    return (terminal_input){INPUT_RESIZE, 0, 0, 0};
+    return (terminal_input){.kind = INPUT_RESIZE};
 }
 
 terminal_input terminal_wait(double seconds)
@@ -355,42 +396,43 @@ terminal_input terminal_wait(double seconds)
 
 // --- output -----------------------------------------------------------------------------------
 
-// Colours of the inks: with 256 of them on dark and on light ground, and with eight.
-static const short palette[3][INK_COUNT] = {
-    {-1, 245, 240, -1,  -1,  117, 223, 250, 208, 220, 87, 203, 141, //
-     75, 214, 43,  175, 227, 208, 117, 250},
-    {-1, 243, 248, -1,  -1, 25,  94, 240, 160, 130, 30, 160, 91, //
-     25, 166, 29,  132, 94, 160, 31, 240},
-    {-1,
-     -1,
-     -1,
-     -1,
-     -1,
-     COLOR_CYAN,
-     COLOR_YELLOW,
-     -1,
-     COLOR_RED,
-     COLOR_YELLOW,
-     COLOR_CYAN,
-     COLOR_RED,
-     COLOR_MAGENTA, //
-     COLOR_CYAN,
-     COLOR_YELLOW,
-     COLOR_GREEN,
-     COLOR_MAGENTA,
-     COLOR_YELLOW,
-     COLOR_RED,
-     COLOR_CYAN,
-     -1},
-};
-
-static void set_colours(lab_theme theme)
+colour_depth terminal_depth(void)
 {
-    int row = COLORS >= 256 ? (theme == COLOURS_LIGHT ? 1 : 0) : 2;
+    const char *none = getenv("NO_COLOR"), *claim = getenv("COLORTERM"), *name = getenv("TERM");
+    const char *direct = tigetstr("RGB");
+    if (!tty.colours || (none != NULL && none[0] != '\0')) {
+        return DEPTH_MONO;
+    }
+    bool described = tigetflag("RGB") == 1 || tigetnum("RGB") > 0 || tigetflag("Tc") == 1 ||
+                     (direct != NULL && direct != (const char *)-1) || COLORS > 256;
+    bool claimed =
+        claim != NULL && (strcmp(claim, "truecolor") == 0 || strcmp(claim, "24bit") == 0);
+    // GNU screen and the console hand the claim of the terminal they were started from on
+    bool hearsay = name != NULL && (strcmp(name, "linux") == 0 ||
+                                    (strncmp(name, "screen", 6) == 0 && getenv("TMUX") == NULL));
+    if (described || (claimed && !hearsay)) {
+        return DEPTH_TRUE;
+    }
+    return COLORS >= 256 ? DEPTH_256 : DEPTH_16;
+}
+
+bool terminal_is_light(void)
+{
+    // "foreground;background", with the background's number among the 16 colours at the end
+    const char *claim = getenv("COLORFGBG"), *last = claim ? strrchr(claim, ';') : NULL;
+    return last != NULL && (strcmp(last, ";7") == 0 || strcmp(last, ";15") == 0);
+}
+
+static void set_colours(lab_theme theme, colour_depth depth)
+{
     for (int i = 0; i < INK_COUNT && tty.colours; i++) {
-        init_pair((short)(i + 1), palette[row][i], -1);
+        int index = depth == DEPTH_256 ? ink_256(theme, (ink)i) : ink_16(theme, (ink)i);
+        // eight colours are bright where they are bold
+        tty.bright[i] = index >= COLORS;
+        init_pair((short)(i + 1), (short)(tty.bright[i] ? index & 7 : index), -1);
     }
     tty.theme = theme;
+    tty.depth = depth;
     tty.themed = true;
 }
 
@@ -422,30 +464,27 @@ static void show_cell(int x, int y, cell c, glyph_set glyphs, bool coloured)
     if (wcwidth(text[0]) != 1) {
         text[0] = '?';
     }
-    setcchar(&out, text, attributes_of(c.ink, coloured), coloured ? (short)(c.ink + 1) : 0, NULL);
+    attr_t attributes = attributes_of(c.ink, coloured);
+    rgb ignored;
+    if (coloured && tty.bright[c.ink]) {
+        attributes |= A_BOLD;
+    } else if (coloured && tty.theme == COLOURS_LIGHT && tty.depth == DEPTH_16 &&
+               ink_rgb(tty.theme, c.ink, &ignored)) {
+        // many terminals show bold dark colours as bright ones: unreadable on light ground
+        attributes &= ~(attr_t)A_BOLD;
+    }
+    setcchar(&out, text, attributes, coloured ? (short)(c.ink + 1) : 0, NULL);
     mvadd_wch(y, x, &out);
 }
 
-void terminal_show(const screen *s, glyph_set glyphs, lab_theme theme, bool whole)
+// Shows the cells through ncurses.
+static void show_by_curses(const screen *s, glyph_set glyphs, bool coloured, bool whole)
 {
-    bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;
-    bool coloured = tty.colours && theme != COLOURS_MONO;
-    if (!tty.themed || tty.theme != theme) {
-        set_colours(theme);
-        whole = true;
-    }
-    if (!same_size && !screen_resize(&tty.shown, s->width, s->height)) {
-        return;
-    }
-    if (whole || !same_size) {
-        clearok(stdscr, TRUE);
-        erase();
-    }
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++) {
             long i = (long)y * s->width + x;
             cell c = s->cells[i], old = tty.shown.cells[i];
-            if (whole || !same_size || c.glyph != old.glyph || c.ink != old.ink) {
+            if (whole || c.glyph != old.glyph || c.ink != old.ink) {
                 show_cell(x, y, c, glyphs, coloured);
                 tty.shown.cells[i] = c;
             }
@@ -456,4 +495,35 @@ void terminal_show(const screen *s, glyph_set glyphs, lab_theme theme, bool whol
     refresh();
     ignored += write(STDOUT_FILENO, "\033[?2026l", 8);
     (void)ignored;
+}
+
+void terminal_show(const screen *s, glyph_set glyphs, lab_theme theme, colour_depth depth,
+                   bool whole)
+{
+    bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;
+    depth = depth == DEPTH_AUTO ? terminal_depth() : depth;
+    if (!tty.themed || tty.theme != theme || tty.depth != depth) {
+        set_colours(theme, depth);
+        whole = true;
+    }
+    if (!same_size && !screen_resize(&tty.shown, s->width, s->height)) {
+        return;
+    }
+    whole = whole || !same_size;
+    // ncurses has numbers for the colours that the terminal's description has, no others
+    bool coloured = theme != COLOURS_MONO && depth != DEPTH_MONO;
+    bool numbered =
+        tty.colours && COLORS <= 256 && depth != DEPTH_TRUE && (depth == DEPTH_16 || COLORS == 256);
+    tty.painted = coloured && !numbered;
+    if (whole) {
+        clearok(stdscr, TRUE);
+        erase();
+    }
+    if (tty.painted) {
+        // so that it finds nothing to do by itself later
+        refresh();
+        paint_cells(s, &tty.shown, glyphs, theme, depth, whole);
+    } else {
+        show_by_curses(s, glyphs, coloured, whole);
+    }
 }

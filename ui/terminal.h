@@ -3,14 +3,14 @@
 #pragma once
 
 #include "src/status.h"
+#include "ui/escape_sequence.h"
 #include "ui/key_codes.h"
 #include "ui/screen.h"
 
 typedef enum terminal_input_kind {
     INPUT_NONE,   // the time is over
     INPUT_KEY,    // code: the key
-    INPUT_CLICK,  // x, y: pressed or dragged there
-    INPUT_WHEEL,  // code: -1 up, 1 down
+    INPUT_MOUSE,  // mouse: what it did
     INPUT_RESIZE, // the size has changed, or the screen must be drawn anew
     INPUT_LEAVE   // a signal asks to leave, or the terminal is gone
 } terminal_input_kind;
@@ -18,7 +18,7 @@ typedef enum terminal_input_kind {
 typedef struct terminal_input {
     terminal_input_kind kind;
     int code;
-    int x, y;
+    mouse_report mouse;
 } terminal_input;
 
 // Whether standard input and output are a terminal that can place its cursor; f says why not.
@@ -36,7 +36,15 @@ void terminal_size(int *width, int *height);
 terminal_input terminal_wait(double seconds);
 
 // Shows the cells; only what has changed is sent. `whole`: everything anew.
-void terminal_show(const screen *s, glyph_set glyphs, lab_theme theme, bool whole);
+void terminal_show(const screen *s, glyph_set glyphs, lab_theme theme, colour_depth depth,
+                   bool whole);
+
+// How many colours the terminal has by what its description and the environment say: never
+// DEPTH_AUTO. DEPTH_MONO with NO_COLOR.
+colour_depth terminal_depth(void);
+
+// Whether the terminal says (in COLORFGBG, as some do) that its ground is light.
+bool terminal_is_light(void);
 
 // Mouse reports on or off (off lets the terminal select text).
 void terminal_mouse(bool on);

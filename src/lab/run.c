@@ -4,6 +4,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "src/lab/run_snapshot.h"
 #include "src/rig/rig.h"
 #include "src/solve/motion.h"
 #include "src/solve/printed_algorithm.h"
@@ -48,32 +49,31 @@ bool summary_get(const summary *s, const char *key, double *value)
 }
 
 #define SEPARATION_GAP      1e-6 // a smaller gap is no separation [m]
-#define STEADY_WINDOW       0.1  // steady force: mean over the last of the run [s]
 #define SHORTEST_MEAN       1e-9 // a stride shorter than this has the mean of its ends [s]
 #define TINY_ENERGY         1e-9 // below it nothing is called unstable [J]
 #define TINY_TURN           1e-2 // nor below what the motor does in this turn [rad]
 #define WRONG_ENERGY        0.1  // share of the energy turned over that may not be unaccounted for
 #define MOST_EVENTS_AT_ONCE 100  // events without time passing before the run is given up
 
-// The force over a stride: at its ends, and its mean.
-typedef struct force_stride {
-    double start, end;        // [s]
-    double first, last, mean; // [N]
-} force_stride;
+enum { SNAPSHOT_ROWS = 512 }; // rows from one snapshot to the next
 
 // What a run in progress remembers besides the rows.
 typedef struct recording {
     const scenario *scenario;
     run_result *result;
+    run_options options;
     bool keep_trace;
-    parameters now; // parameters as changed by the script so far
+    bool keeps_history; // and not only what is needed until the end
+    parameters now;     // parameters as changed by the script so far
     int next_action;
-    force_stride *strides; // the force all along
+    long_array own_strides; // where the next lies unless it is in the history
+    force_stride *strides;  // the force all along
     size_t count, capacity;
-    long grid_row;                      // number of the next row of the grid
-    bool separated;                     // gap above SEPARATION_GAP in the present flight
-    bool pulse_open;                    // the first pulse has not ended
-    rig *rig;                           // NULL for the bare arm
+    double integral_at_window; // of the force, where the steady force's window begins [N s]
+    long grid_row;             // number of the next row of the grid
+    bool separated;            // gap above SEPARATION_GAP in the present flight
+    bool pulse_open;           // the first pulse has not ended
+    rig *rig;                  // NULL for the bare arm
     double command_time, command_angle; // when and where the present command took effect [s], [rad]
     double hub_angle, hub_velocity, force; // printed model: after the last step [rad], [rad/s], [N]
     fault *rig_fault;                      // printed model: where the rig's fault goes
@@ -94,16 +94,55 @@ static void summary_clear(summary *s)
 static status remember_stride(recording *r, force_stride stride)
 {
     if (r->count == r->capacity) {
-        size_t capacity = r->capacity ? 2 * r->capacity : 256;
-        force_stride *strides = realloc(r->strides, capacity * sizeof *strides);
-        if (strides == NULL) {
+        long_array *c = r->keeps_history ? &r->result->history.strides : &r->own_strides;
+        if (!long_array_grow(c, r->count + 1)) {
             return STATUS_NO_MEMORY;
         }
-        r->strides = strides;
-        r->capacity = capacity;
+        r->strides = c->base;
+        r->capacity = c->capacity;
     }
     r->strides[r->count++] = stride;
+    r->result->history.stride_count = r->keeps_history ? r->count : 0;
     return STATUS_OK;
+}
+
+static bool asked_to_stop(const recording *r)
+{
+    const run_monitor *m = r->options.monitor;
+    return m != NULL && atomic_load_explicit(&m->stop, memory_order_relaxed);
+}
+
+// Tells those who look on how far the run is: what they count is complete.
+static void publish(const recording *r, double time)
+{
+    run_monitor *m = r->options.monitor;
+    if (m != NULL) {
+        const trace *t = &r->result->trace;
+        atomic_store_explicit(&m->time, time, memory_order_relaxed);
+        atomic_store_explicit(&m->events, t->event_count, memory_order_release);
+        atomic_store_explicit(&m->rows, t->row_count, memory_order_release);
+    }
+}
+
+// Adds a row and lets it be seen.
+static status add_row(recording *r, const sample *row, const double *angles)
+{
+    status s = trace_add_row(&r->result->trace, row, angles);
+    publish(r, row->time);
+    return s;
+}
+
+// An empty trace of the kind that is asked for.
+static status open_trace(recording *r, int angle_count, fault *f)
+{
+    size_t expected = r->options.rows_expected;
+    if (expected == 0) {
+        trace_init(&r->result->trace, angle_count);
+        return STATUS_OK;
+    }
+    size_t most = rows_at_most(expected);
+    status s = trace_reserve(&r->result->trace, angle_count, expected, most);
+    return s == STATUS_OK ? s : fault_set(f, s, "no address space for %zu rows", expected);
 }
 
 // The last instant within a stride at which the force is `edge`, as a share of it; -1 if none.
@@ -203,8 +242,8 @@ static void finish_summary(recording *r, double force_integral)
 {
     summary *s = &r->result->summary;
     double duration = r->scenario->parameters.run.duration;
-    s->steady_force_N = isnan(s->first_contact_s) ? (double)NAN
-                                                  : force_integral / fmin(STEADY_WINDOW, duration);
+    s->steady_force_N =
+        isnan(s->first_contact_s) ? (double)NAN : force_integral / fmin(STEADY_WINDOW, duration);
     if (isnan(s->first_contact_s)) {
         return;
     }
@@ -273,7 +312,7 @@ static status record_row(recording *r, const arm *a, motion *m, double *state, d
         .energy_residual = motion_energy_residual(a, m, state),
     };
     add_rig_signals(r, &row);
-    return trace_add_row(&r->result->trace, &row, q);
+    return add_row(r, &row, q);
 }
 
 static status record_event(recording *r, double time, event_kind kind, const motion_report *report)
@@ -349,6 +388,7 @@ static status pass_event(recording *r, const arm *a, motion *m, motion_report *r
             return STATUS_NO_MEMORY;
         }
         memcpy(r->result->touch, state_angles(m, m->state), size);
+        r->result->touch_size = size;
     }
     motion_apply(a, m, report);
     if (r->rig != NULL && report->event == MOTION_IMPACT && !motion_unresolved(a, m)) {
@@ -454,6 +494,7 @@ static status record_grid(recording *r, const arm *a, motion *m, bool at_event)
         }
         double *state = at_end ? m->state : motion_between(a, m, time);
         status failed = state ? record_row(r, a, m, state, 0) : STATUS_NOT_FINITE;
+        failed = failed == STATUS_OK && asked_to_stop(r) ? STATUS_STOPPED : failed;
         if (failed != STATUS_OK) {
             return failed;
         }
@@ -511,13 +552,100 @@ static status book_stride(recording *r, const arm *a, motion *m, bool at_event)
     return s == STATUS_OK ? record_grid(r, a, m, at_event) : s;
 }
 
-// Advances to `until`, passing all events on the way and recording rows on the grid.
+// Snapshots: where a run can be taken up again.
+
+// Prepares the history of a run that keeps one.
+static status open_history(recording *r, const motion *m, fault *f)
+{
+    run_history *h = &r->result->history;
+    size_t expected = r->options.rows_expected, most = rows_at_most(expected);
+    size_t size = sizeof(run_snapshot) + (size_t)m->size * sizeof(double);
+    r->keeps_history = expected > 0 && r->rig == NULL;
+    if (!r->keeps_history || h->strides.reserved > 0) {
+        return STATUS_OK;
+    }
+    bool reserved = long_array_reserve(&h->strides, sizeof(force_stride), expected, most) &&
+                    long_array_reserve(&h->snapshots, size, expected / 64, most);
+    return reserved ? STATUS_OK
+                    : fault_set(f, STATUS_NO_MEMORY, "no address space for %zu rows", expected);
+}
+
+// Keeps the state at the beginning of a stride, if the last time is some rows ago. Not right after
+// an event: how many come at once is not part of a snapshot.
+static bool take_snapshot(recording *r, const motion *m, double last_event)
+{
+    run_history *h = &r->result->history;
+    const trace *t = &r->result->trace;
+    double now = m->state[SLOT_TIME];
+    if (!r->keeps_history || now - last_event < 1e-12) {
+        return true;
+    }
+    size_t before = h->snapshot_count > 0 ? run_snapshot_at(h, h->snapshot_count - 1)->rows : 0;
+    if (t->row_count < before + SNAPSHOT_ROWS) {
+        return true;
+    }
+    if (!long_array_grow(&h->snapshots, h->snapshot_count + 1)) {
+        return false;
+    }
+    run_snapshot *kept = run_snapshot_at(h, h->snapshot_count++);
+    *kept = (run_snapshot){.time = now,
+                           .rows = t->row_count,
+                           .events = t->event_count,
+                           .strides = r->count,
+                           .next_action = r->next_action,
+                           .grid_row = r->grid_row,
+                           .separated = r->separated,
+                           .pulse_open = r->pulse_open,
+                           .touched = r->result->touch != NULL,
+                           .integral_at_window = r->integral_at_window,
+                           .summary = r->result->summary,
+                           .steps = m->steps,
+                           .start_energy = m->start_energy,
+                           .pulse_peak = m->pulse_peak,
+                           .pulse_peak_time = m->pulse_peak_time,
+                           .largest_penetration = m->largest_penetration};
+    memcpy(kept->state, m->state, (size_t)m->size * sizeof(double));
+    return true;
+}
+
+// Goes back to the last snapshot of a result that run_take_up has prepared.
+static void take_up(recording *r, arm *a, motion *m)
+{
+    const run_history *h = &r->result->history;
+    const run_snapshot *kept = run_snapshot_at(h, h->snapshot_count - 1);
+    r->count = kept->strides;
+    r->strides = h->strides.base;
+    r->capacity = h->strides.capacity;
+    r->grid_row = kept->grid_row;
+    r->separated = kept->separated;
+    r->pulse_open = kept->pulse_open;
+    r->integral_at_window = kept->integral_at_window;
+    for (; r->next_action < kept->next_action; r->next_action++) {
+        const action *done = &r->scenario->actions[r->next_action];
+        if (done->kind == ACTION_SET) {
+            parameter_set_number(&r->now, done->parameter, done->value, NULL);
+        }
+    }
+    arm_init(a, &r->now);
+    memcpy(m->state, kept->state, (size_t)m->size * sizeof(double));
+    m->steps = kept->steps;
+    m->start_energy = kept->start_energy;
+    m->pulse_peak = kept->pulse_peak;
+    m->pulse_peak_time = kept->pulse_peak_time;
+    m->largest_penetration = kept->largest_penetration;
+    publish(r, kept->time);
+}
+
+// Advances to `until` or the cut, passing all events on the way and recording rows on the grid.
 static status travel(recording *r, const arm *a, motion *m, double until, fault *f)
 {
     double last_event = -1;
     int at_once = 0;
-    while (m->state[SLOT_TIME] < until) {
+    while (m->state[SLOT_TIME] < fmin(until, m->cut)) {
         motion_report report;
+        if (!take_snapshot(r, m, last_event)) {
+            return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        }
         status s = motion_stride(a, m, until, r->now.method.step, &report);
         if (s != STATUS_OK) {
             return fault_set(
@@ -534,6 +662,10 @@ static status travel(recording *r, const arm *a, motion *m, double until, fault 
         if (s == STATUS_OK && at_once > MOST_EVENTS_AT_ONCE) {
             s = STATUS_NO_PROGRESS;
         }
+        if (s == STATUS_OK && asked_to_stop(r)) {
+            s = STATUS_STOPPED;
+        }
+        publish(r, m->state[SLOT_TIME]);
         if (s == STATUS_UNSTABLE) {
             return fault_set(f, s,
                              "at t = %.9g s: %s (residual %.3g J); the method was %s, a "
@@ -548,19 +680,43 @@ static status travel(recording *r, const arm *a, motion *m, double until, fault 
     return STATUS_OK;
 }
 
-// The next instant at which the run has something to do: an action, the start of the window over
-// which the steady force is taken, the end.
-static double next_stop(const recording *r, double window, double now)
+// The next instant that strides are made for: the rig's, or the end.
+static double next_stop(const recording *r)
+{
+    double stop = r->scenario->parameters.run.duration;
+    return r->rig != NULL ? fmin(stop, rig_next_time(r->rig)) : stop;
+}
+
+// The next instant at which strides are cut without being made for it: an action, the start of the
+// window over which the steady force is taken. What comes before does not depend on it.
+static double next_cut(const recording *r, double window, double now)
 {
     const scenario *s = r->scenario;
-    double stop = s->parameters.run.duration;
-    if (r->rig != NULL) {
-        stop = fmin(stop, rig_next_time(r->rig));
+    double cut = r->next_action < s->action_count ? s->actions[r->next_action].time : HUGE_VAL;
+    return window > now ? fmin(window, cut) : cut;
+}
+
+// Puts the arm where it starts, and records the row of that instant.
+static status begin_corrected(recording *r, arm *a, motion *m, fault *f)
+{
+    const parameters *p = &r->scenario->parameters;
+    summary *s = &r->result->summary;
+    snprintf(s->method, sizeof s->method, "%s", m->stepper->name);
+    if (motion_unresolved(a, m)) {
+        snprintf(s->message, sizeof s->message,
+                 "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): the "
+                 "method was %s, what happens within a few steps of an impact is rough; a shorter "
+                 "method.step resolves it",
+                 p->method.step, a->links, a->highest_frequency, m->stepper->name);
     }
-    if (r->next_action < s->action_count) {
-        stop = fmin(stop, s->actions[r->next_action].time);
+    status failed = open_trace(r, a->dof, f);
+    if (failed != STATUS_OK) {
+        return failed;
     }
-    return window > now ? fmin(window, stop) : stop;
+    motion_start(a, m, p->initial.angle, p->initial.velocity);
+    failed = control(r, a, m, f);
+    r->grid_row = 1;
+    return failed == STATUS_OK ? record_row(r, a, m, m->state, 0) : failed;
 }
 
 static status run_corrected(recording *r, fault *f)
@@ -573,33 +729,24 @@ static status run_corrected(recording *r, fault *f)
         return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links);
     }
     summary *s = &r->result->summary;
-    snprintf(s->method, sizeof s->method, "%s", m->stepper->name);
-    if (motion_unresolved(&a, m)) {
-        snprintf(s->message, sizeof s->message,
-                 "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): the "
-                 "method was %s, what happens within a few steps of an impact is rough; a shorter "
-                 "method.step resolves it",
-                 p->method.step, a.links, a.highest_frequency, m->stepper->name);
-    }
-    trace_init(&r->result->trace, a.dof);
-    motion_start(&a, m, p->initial.angle, p->initial.velocity);
     double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
-    double integral_at_window = 0;
-    status failed = control(r, &a, m, f);
-    if (failed == STATUS_OK) {
-        failed = record_row(r, &a, m, m->state, 0);
+    status failed = open_history(r, m, f);
+    if (failed == STATUS_OK && r->options.take_up) {
+        take_up(r, &a, m);
+    } else if (failed == STATUS_OK) {
+        failed = begin_corrected(r, &a, m, f);
     }
-    r->grid_row = 1;
     while (failed == STATUS_OK && m->state[SLOT_TIME] < duration) {
         if (m->state[SLOT_TIME] == window) {
-            integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+            r->integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         }
         failed = act(r, &a, m, f);
         if (failed == STATUS_OK) {
             failed = control(r, &a, m, f);
         }
         if (failed == STATUS_OK) {
-            failed = travel(r, &a, m, next_stop(r, window, m->state[SLOT_TIME]), f);
+            m->cut = next_cut(r, window, m->state[SLOT_TIME]);
+            failed = travel(r, &a, m, next_stop(r), f);
         }
     }
     if (failed == STATUS_OK &&
@@ -621,7 +768,7 @@ static status run_corrected(recording *r, fault *f)
         }
     }
     if (failed == STATUS_OK) {
-        finish_summary(r, state_quadratures(m, m->state)[QUADRATURE_FORCE] - integral_at_window);
+        finish_summary(r, state_quadratures(m, m->state)[QUADRATURE_FORCE] - r->integral_at_window);
         finish_rig_summary(r, state_angles(m, m->state)[0]);
     }
     motion_destroy(m);
@@ -712,8 +859,12 @@ static bool observe_printed(void *context, const printed_row *row)
         r->hub_velocity = row->velocity[0];
         r->force = row->force;
     }
+    if (r->rig_status == STATUS_OK && asked_to_stop(r)) {
+        r->rig_status = fault_set(r->rig_fault, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
+                                  status_text(STATUS_STOPPED));
+    }
     return r->rig_status == STATUS_OK && remember_stride(r, stride) == STATUS_OK &&
-           (!r->keep_trace || trace_add_row(&r->result->trace, &sampled, row->angle) == STATUS_OK);
+           (!r->keep_trace || add_row(r, &sampled, row->angle) == STATUS_OK);
 }
 
 // Scripted changes take effect at the next step; the printed model knows no pushes.
@@ -767,7 +918,10 @@ static void refine_sampled_peak(const recording *r, double *force, double *since
 static status run_printed(recording *r, fault *f)
 {
     const parameters *p = &r->scenario->parameters;
-    trace_init(&r->result->trace, 3);
+    status opened = open_trace(r, 3, f);
+    if (opened != STATUS_OK) {
+        return opened;
+    }
     for (int i = 0; i < r->scenario->action_count; i++) {
         if (r->scenario->actions[i].kind == ACTION_PUSH) {
             return fault_set(
@@ -813,11 +967,24 @@ static double computing_time(void)
 
 status run_scenario(const scenario *s, bool keep_trace, run_result *result)
 {
-    recording r = {.scenario = s, .result = result, .keep_trace = keep_trace, .now = s->parameters};
+    const run_options options = {.keep_trace = keep_trace};
+    return run_scenario_with(s, &options, result);
+}
+
+status run_scenario_with(const scenario *s, const run_options *options, run_result *result)
+{
+    recording r = {.scenario = s,
+                   .result = result,
+                   .options = *options,
+                   .keep_trace = options->keep_trace,
+                   .now = s->parameters};
     fault f = {STATUS_OK, ""};
     double start = computing_time();
-    memset(result, 0, sizeof *result);
-    summary_clear(&result->summary);
+    long_array_init(&r.own_strides, sizeof(force_stride));
+    if (!options->take_up) {
+        memset(result, 0, sizeof *result);
+        summary_clear(&result->summary);
+    }
     status code = start_rig(&r, &f);
     if (code == STATUS_OK) {
         code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
@@ -831,13 +998,15 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
         snprintf(result->summary.message, sizeof result->summary.message, "%s", f.text);
     }
     result->summary.wall_time_s = computing_time() - start;
-    free(r.strides);
+    long_array_finish(&r.own_strides);
     return code;
 }
 
 void run_finish(run_result *result)
 {
     trace_finish(&result->trace);
+    long_array_finish(&result->history.strides);
+    long_array_finish(&result->history.snapshots);
     free(result->touch);
     result->touch = NULL;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <math.h>
+#include <stdatomic.h>
 
 #include "src/lab/scenario.h"
 #include "src/lab/trace.h"
@@ -50,18 +51,65 @@ extern const int summary_count;
 // A summary's number by key; false if there is no such key.
 bool summary_get(const summary *s, const char *key, double *value);
 
+// What a run that can be taken up again keeps besides its rows, see run_take_up.
+typedef struct run_history {
+    long_array strides;   // the force all along
+    long_array snapshots; // of the motion, every few hundred rows
+    size_t stride_count, snapshot_count;
+} run_history;
+
 typedef struct run_result {
     summary summary;
-    trace trace; // rows at every step and on both sides of every event; empty if not asked for
+    trace trace;   // rows at every step and on both sides of every event; empty if not asked for
     double *touch; // corrected model: angles[dof], then velocities[dof], at the instant before the
                    // first impact [rad], [rad/s]; NULL if there was none
+    size_t touch_size;   // [bytes]
+    run_history history; // empty unless asked for
 } run_result;
+
+// What another thread may know about a run, and tell it. All zero at the start.
+typedef struct run_monitor {
+    atomic_bool stop;     // set from outside: the run ends as soon as it sees that
+    atomic_size_t rows;   // of the trace that can be read
+    atomic_size_t events; // the same
+    _Atomic double time;  // how far the run has come [s]
+} run_monitor;
+
+typedef struct run_options {
+    bool keep_trace;      // false keeps no rows (events and summary only)
+    run_monitor *monitor; // NULL: nobody looks on
+    size_t rows_expected; // if not 0, rows and events stay where they are and can be shared, and
+                          // the result has a history; needs keep_trace
+    bool take_up; // *result was prepared by run_take_up: go on from there
+} run_options;
 
 // Simulates the scenario. Returns STATUS_OK, or what stopped the run: then summary.message says
 // what, when and where, and everything computed until then is kept. run_finish in either case.
 // keep_trace = false keeps no rows (events and summary only).
 status run_scenario(const scenario *s, bool keep_trace, run_result *result);
+// The same with options. STATUS_STOPPED if the monitor asked for it.
+status run_scenario_with(const scenario *s, const run_options *options, run_result *result);
 void run_finish(run_result *result);
+
+// Lets `result` begin with what `from`, a run of the scenario `old`, has in common with a run of
+// `s`, up to its last snapshot before they differ: without a copy and to the last bit. False if
+// there is nothing in common or no memory; then `result` is empty and the run is one from the
+// start. Only runs of the corrected model without a controller have snapshots.
+bool run_take_up(const run_result *from, const scenario *old, const scenario *s,
+                 size_t rows_expected, run_result *result);
+
+// A second result of the same run that shares all rows. STATUS_NO_MEMORY if there is no room.
+status run_share(const run_result *from, size_t rows_expected, run_result *result);
+
+// Numbers of chunks (src/lab/long_array.h) that the rows, angles, events and strides of two results
+// both begin with.
+typedef struct run_likeness {
+    size_t rows, angles, events, strides;
+} run_likeness;
+
+// Compares two shared results; result takes the chunks of `like` instead of its own equal ones.
+run_likeness run_compare_rows(const run_result *result, const run_result *like);
+void run_merge(run_result *result, const run_result *like, const run_likeness *same);
 
 // Compares the summary with the scenario's expectations. Returns the number of those not met and
 // reports each as "file:line:column: quantity is ..., expected ...".

@@ -3,10 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/export.h"
+#include "src/lab/computation.h"
 
 #define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
 #define ROW_SPARE     1.5                   // rows of events beside those of the grid
+#define SHORT_WAIT    0.001                 // for the first row of a run that takes long [s]
+
+enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
 
 size_t trace_row_at(const trace *t, double time)
 {
@@ -71,9 +74,14 @@ static status build_effective(const session *s, scenario *to, fault *f)
     return code == STATUS_OK ? parameters_resolve(&to->parameters, f) : code;
 }
 
+static double expected_rows(const parameters *p)
+{
+    return p->run.duration / p->method.step * ROW_SPARE;
+}
+
 static status check_memory(const parameters *p, fault *f)
 {
-    double rows = p->run.duration / p->method.step * ROW_SPARE;
+    double rows = expected_rows(p);
     double bytes = rows * (double)(sizeof(sample) + sizeof(double) * (size_t)(p->arm.links + 1));
     if (bytes > MEMORY_BUDGET) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -85,41 +93,163 @@ static status check_memory(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
+// A summary of what is known of an incomplete run: nothing yet.
+static void clear_summary(summary *m)
+{
+    memset(m, 0, sizeof *m);
+    for (int i = 0; i < summary_count; i++) {
+        double none = (double)NAN;
+        memcpy((char *)m + summary_table[i].offset, &none, sizeof none);
+    }
+}
+
+// The largest force so far, which the run's summary has at the end only.
+static void survey_force(session *s)
+{
+    const trace *t = &s->run.trace;
+    size_t end = s->surveyed + ROWS_SURVEYED;
+    for (; s->surveyed < t->row_count && s->surveyed < end; s->surveyed++) {
+        s->run.summary.peak_force_N = fmax(s->run.summary.peak_force_N, t->rows[s->surveyed].force);
+    }
+}
+
+// Takes over the run that was being computed, as far as it went. The cursor may be beyond its end.
+static void take_over(session *s)
+{
+    s->run = computation_finish(s->computing);
+    s->computing = NULL;
+}
+
+// Ends what is being computed; false if there is nothing, or it was just over.
+static bool end_computing(session *s)
+{
+    if (s->computing == NULL) {
+        return false;
+    }
+    computation_stop(s->computing);
+    take_over(s);
+    return s->run.summary.status == STATUS_STOPPED;
+}
+
+// Computes the run of a scenario, and takes it up where the present one can be gone on from. A run
+// that is not there within the session's patience is left to its thread. On failure the present run
+// stays.
+static status start_run(session *s, const scenario *effective, fault *f)
+{
+    run_result run;
+    size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
+    bool take_up = run_take_up(&s->run, &s->effective, effective, rows, &run);
+    computation *c = computation_start(effective, rows, take_up, &run,
+                                       s->has_other ? &s->other : NULL, isinf(s->patience));
+    if (c == NULL) {
+        run_finish(&run);
+        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+    bool over = computation_wait(c, fmin(s->patience, 1e6));
+    while (!over && computation_look(c, &run) == 0) {
+        over = computation_wait(c, SHORT_WAIT);
+    }
+    if (over) {
+        run = computation_finish(c);
+        c = NULL;
+    } else {
+        run.touch = NULL; // the computation's
+        clear_summary(&run.summary);
+        run.history = (run_history){0};
+    }
+    // a run that diverges is worth looking at; one without a single row is not
+    if (run.trace.row_count == 0) {
+        status code = run.summary.status == STATUS_OK ? STATUS_NO_MEMORY : run.summary.status;
+        fault_set(f, code, "%s", run.summary.message);
+        run_finish(&run);
+        return code;
+    }
+    run_finish(&s->run);
+    s->run = run;
+    s->computing = c;
+    s->surveyed = 0;
+    return STATUS_OK;
+}
+
 // Computes the run with the inputs in effect. On failure the present run stays.
 static status compute(session *s, fault *f)
 {
     scenario effective;
-    run_result run;
     status code = build_effective(s, &effective, f);
     if (code == STATUS_OK) {
         code = check_memory(&effective.parameters, f);
     }
+    bool unfinished = end_computing(s);
+    if (code == STATUS_OK) {
+        code = start_run(s, &effective, f);
+    }
+    if (code != STATUS_OK && s->run.trace.row_count == 0) {
+        free(effective.actions);
+        return code; // there is no session yet
+    }
     if (code != STATUS_OK) {
         free(effective.actions);
+        if (unfinished && start_run(s, &s->effective, NULL) == STATUS_OK) {
+            s->version++;
+        }
+        session_follow(s);
+        session_seek(s, s->now);
         return code;
     }
-    // a run that diverges is worth looking at; one without a single row is not
-    run_scenario(&effective, true, &run);
-    if (run.trace.row_count == 0) {
-        fault_set(f, run.summary.status, "%s", run.summary.message);
-        run_finish(&run);
-        free(effective.actions);
-        return run.summary.status == STATUS_OK ? STATUS_NO_MEMORY : run.summary.status;
-    }
-    run_finish(&s->run);
     free(s->effective.actions);
-    s->run = run;
     s->effective = effective;
     s->version++;
+    session_follow(s);
     session_seek(s, s->now);
     s->seen = s->now;
     return STATUS_OK;
 }
 
-status session_init(session *s, scenario *base, fault *f)
+bool session_follow(session *s)
+{
+    if (s->computing == NULL) {
+        return false;
+    }
+    if (computation_wait(s->computing, 0)) {
+        take_over(s);
+        session_seek(s, s->now);
+        return true;
+    }
+    size_t before = s->run.trace.row_count;
+    bool more = computation_look(s->computing, &s->run) > before;
+    survey_force(s);
+    s->row = trace_row_at(&s->run.trace, s->now);
+    return more;
+}
+
+bool session_stop(session *s)
+{
+    bool stopped = end_computing(s);
+    if (s->run.trace.row_count > 0) {
+        session_seek(s, s->now);
+    }
+    return stopped;
+}
+
+status session_go_on(session *s, fault *f)
+{
+    if (s->computing != NULL || s->run.summary.status != STATUS_STOPPED) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the run was not stopped");
+    }
+    double seen = s->seen;
+    status code = start_run(s, &s->effective, f);
+    s->version += code == STATUS_OK;
+    session_follow(s);
+    session_seek(s, s->now);
+    s->seen = fmax(seen, s->now);
+    return code;
+}
+
+status session_open(session *s, scenario *base, double patience, fault *f)
 {
     memset(s, 0, sizeof *s);
     s->base = *base;
+    s->patience = patience;
     status code = compute(s, f);
     if (code != STATUS_OK) {
         session_finish(s);
@@ -127,8 +257,14 @@ status session_init(session *s, scenario *base, fault *f)
     return code;
 }
 
+status session_init(session *s, scenario *base, fault *f)
+{
+    return session_open(s, base, HUGE_VAL, f);
+}
+
 void session_finish(session *s)
 {
+    end_computing(s);
     session_forget_other(s);
     run_finish(&s->run);
     free(s->effective.actions);
@@ -152,8 +288,15 @@ double session_end(const session *s)
 void session_seek(session *s, double time)
 {
     double end = session_end(s);
+    // rows to come may be waited for at an instant the cursor is at already
+    end = s->computing != NULL && s->now > end ? s->now : end;
     s->now = time > end ? end : time > 0 ? time : 0;
     s->row = trace_row_at(&s->run.trace, s->now);
+    // an instant beside a row's by rounding is the row's: a change there cuts no stride anew
+    double near = s->run.trace.rows[s->row + (s->row + 1 < s->run.trace.row_count)].time;
+    if (near - s->now < 1e-12 * fmax(1, s->now) && near > s->now) {
+        session_seek(s, near);
+    }
     s->seen = s->now > s->seen ? s->now : s->seen;
 }
 
@@ -291,18 +434,20 @@ status session_redo(session *s, fault *f)
 
 status session_branch(session *s, fault *f)
 {
-    run_result kept = s->run;
-    memset(&s->run, 0, sizeof s->run);
-    double seen = s->seen;
-    status code = compute(s, f);
+    run_result kept;
+    if (s->computing != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "the run is still being computed: wait for its end, or stop it with Esc");
+    }
+    size_t rows = (size_t)expected_rows(&s->effective.parameters) + 1;
+    status code = run_share(&s->run, rows, &kept);
     if (code != STATUS_OK) {
-        s->run = kept;
-        return code;
+        return fault_set(f, code, "%s", status_text(code));
     }
     session_forget_other(s);
     s->other = kept;
     s->has_other = true;
-    s->seen = seen;
+    s->version++;
     return STATUS_OK;
 }
 
@@ -311,89 +456,5 @@ void session_forget_other(session *s)
     if (s->has_other) {
         run_finish(&s->other);
         s->has_other = false;
-    }
-}
-
-// --- saving -----------------------------------------------------------------------------------
-
-// A text between double quotes, as YAML reads it back.
-static void write_quoted(FILE *stream, const char *text)
-{
-    fputc('"', stream);
-    for (; *text; text++) {
-        unsigned char c = (unsigned char)*text;
-        if (c == '"' || c == '\\') {
-            fprintf(stream, "\\%c", c);
-        } else if (c == '\n') {
-            fputs("\\n", stream);
-        } else if (c < ' ') {
-            fputc(' ', stream);
-        } else {
-            fputc(c, stream);
-        }
-    }
-    fputc('"', stream);
-}
-
-static void write_value(FILE *stream, const parameters *p, int index)
-{
-    char text[256];
-    parameter_format(p, index, text, sizeof text);
-    if (parameter_table[index].type == PARAMETER_TEXT) {
-        write_quoted(stream, text);
-    } else {
-        fputs(text, stream);
-    }
-}
-
-// The parameters that were given, group by group.
-static void write_parameters(const parameters *p, FILE *stream)
-{
-    const char *group = "";
-    for (int i = 0; i < parameter_count; i++) {
-        const char *path = parameter_table[i].path;
-        size_t length = strcspn(path, ".");
-        if (!p->set[i]) {
-            continue;
-        }
-        if (strncmp(group, path, length + 1) != 0) {
-            fprintf(stream, "%.*s:\n", (int)length, path);
-            group = path;
-        }
-        fprintf(stream, "  %s: ", path + length + 1);
-        write_value(stream, p, i);
-        fputc('\n', stream);
-    }
-}
-
-void session_write_scenario(const session *s, FILE *stream)
-{
-    const scenario *e = &s->effective;
-    char number[NUMBER_TEXT];
-    fputs("title: ", stream);
-    write_quoted(stream, e->title ? e->title : "");
-    if (e->description != NULL && e->description[0] != '\0') {
-        fputs("\ndescription: ", stream);
-        write_quoted(stream, e->description);
-    }
-    fputc('\n', stream);
-    write_parameters(&e->parameters, stream);
-    if (e->action_count > 0) {
-        fputs("script:\n", stream);
-    }
-    for (int i = 0; i < e->action_count; i++) {
-        const action *a = &e->actions[i];
-        number_format(number, a->time);
-        fprintf(stream, "  - at: %s\n", number);
-        if (a->kind == ACTION_PUSH) {
-            number_format(number, a->value);
-            fprintf(stream, "    push: %s\n", number);
-            continue;
-        }
-        parameters p = e->parameters;
-        parameter_set_number(&p, a->parameter, a->value, NULL);
-        fprintf(stream, "    set: {%s: ", parameter_table[a->parameter].path);
-        write_value(stream, &p, a->parameter);
-        fputs("}\n", stream);
     }
 }

@@ -1,16 +1,22 @@
 // A session with one scenario: a run that is looked at from any instant, and changed on the way.
 //
-// The whole run is computed at once and kept as rows; "running" moves a cursor over them. What the
-// user does (a changed parameter, a push) is an input with its instant, and the run is computed
-// anew from the scenario and all inputs. So a saved scenario gives the same run by construction,
-// stepping back and forth changes nothing, undo is a shorter list of inputs, and a branch keeps the
-// old run beside the new one without a copy.
+// The whole run is computed and kept as rows; "running" moves a cursor over them. What the user
+// does (a changed parameter, a push) is an input with its instant, and the run is that of the
+// scenario and all inputs. So a saved scenario gives the same run by construction, stepping back
+// and forth changes nothing, undo is a shorter list of inputs, and a branch keeps the old run
+// beside the new one; rows that both have are kept once.
 //
-// After a change the rows before it are those of the unchanged run to the integrator's accuracy,
-// not to the last bit: a stride that ended beyond the change now ends at it.
+// A run that takes longer than the session's patience is computed by a thread of its own. Until it
+// is over `run` shows the rows there are, session_follow brings more, and `computing` is not NULL.
+// The cursor may then stand at an instant that has no row yet: `row` is the last one there is.
+//
+// Rows before a change are those of the unchanged run to the last bit: no stride is chosen for an
+// input, one that goes beyond it is cut.
 #pragma once
 
 #include "src/lab/run.h"
+
+struct computation;
 
 enum { SESSION_INPUT_TEXT = 160 };
 
@@ -40,13 +46,26 @@ typedef struct session {
     size_t row;       // the last row whose time is not after `now`
     double seen;      // the latest instant the cursor has been at since the last change [s]
     unsigned version; // counts the computed runs
+    struct computation *computing; // the run, if it is not complete
+    double patience;               // for how long a change waits for its run [s]
+    size_t surveyed;               // rows whose force is in the summary of an incomplete run
 } session;
 
 // Takes over the scenario (also on failure) and computes its run. A run that fails numerically is
 // kept as far as it went, session.run.summary says why. STATUS_BAD_ARGUMENT if the rows would not
 // fit into the memory budget (512 MiB), STATUS_NO_MEMORY; then there is no session.
+// session_init always waits for a run's end; session_open not longer than `patience` [s].
 status session_init(session *s, scenario *base, fault *f);
+status session_open(session *s, scenario *base, double patience, fault *f);
 void session_finish(session *s);
+
+// Takes note of what has been computed since the last call. True if anything has.
+bool session_follow(session *s);
+// Ends a run that is being computed; its rows so far stay, its status is STATUS_STOPPED. False if
+// there was none, or it was just over.
+bool session_stop(session *s);
+// Computes what is missing of a run that was stopped.
+status session_go_on(session *s, fault *f);
 
 // The row at the cursor, never NULL.
 const sample *session_sample(const session *s);
@@ -77,6 +96,7 @@ status session_undo(session *s, fault *f);
 status session_redo(session *s, fault *f);
 
 // Keeps the present run for comparison; changes then make another one beside it.
+// STATUS_BAD_ARGUMENT while it is being computed.
 status session_branch(session *s, fault *f);
 // Forgets the run kept for comparison.
 void session_forget_other(session *s);

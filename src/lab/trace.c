@@ -1,6 +1,5 @@
 #include "src/lab/trace.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 const char *event_name(event_kind kind)
@@ -10,36 +9,79 @@ const char *event_name(event_kind kind)
     return names[kind];
 }
 
+static size_t angles_size(int angle_count)
+{
+    return (angle_count > 0 ? (size_t)angle_count : 1) * sizeof(double);
+}
+
+static void find_places(trace *t)
+{
+    t->rows = t->row_array.base;
+    t->angles = t->angle_array.base;
+    t->events = t->event_array.base;
+}
+
 void trace_init(trace *t, int angle_count)
 {
     memset(t, 0, sizeof *t);
     t->angle_count = angle_count;
+    long_array_init(&t->row_array, sizeof(sample));
+    long_array_init(&t->angle_array, angles_size(angle_count));
+    long_array_init(&t->event_array, sizeof(event));
+}
+
+status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
+{
+    memset(t, 0, sizeof *t);
+    t->angle_count = angle_count;
+    bool reserved = long_array_reserve(&t->row_array, sizeof(sample), least, most) &&
+                    long_array_reserve(&t->angle_array, angles_size(angle_count), least, most) &&
+                    long_array_reserve(&t->event_array, sizeof(event), least, most);
+    if (!reserved) {
+        trace_finish(t);
+        return STATUS_NO_MEMORY;
+    }
+    find_places(t);
+    return STATUS_OK;
 }
 
 void trace_finish(trace *t)
 {
-    free(t->rows);
-    free(t->angles);
-    free(t->events);
+    long_array_finish(&t->row_array);
+    long_array_finish(&t->angle_array);
+    long_array_finish(&t->event_array);
     memset(t, 0, sizeof *t);
+}
+
+status trace_share(trace *t, const trace *from, size_t rows, size_t events)
+{
+    if (!long_array_share(&t->row_array, &from->row_array, rows) ||
+        !long_array_share(&t->angle_array, &from->angle_array, rows) ||
+        !long_array_share(&t->event_array, &from->event_array, events)) {
+        return STATUS_NO_MEMORY;
+    }
+    t->row_count = rows;
+    t->event_count = events;
+    return STATUS_OK;
+}
+
+// Room for one more row; the places of plain arrays may change.
+static bool make_room(trace *t)
+{
+    bool grown = long_array_grow(&t->row_array, t->row_count + 1) &&
+                 long_array_grow(&t->angle_array, t->row_count + 1);
+    if (t->row_array.reserved == 0) {
+        find_places(t);
+    }
+    return grown;
 }
 
 status trace_add_row(trace *t, const sample *row, const double *angles)
 {
     size_t n = (size_t)t->angle_count;
-    if (t->row_count == t->row_capacity) {
-        size_t capacity = t->row_capacity ? 2 * t->row_capacity : 1024;
-        sample *rows = realloc(t->rows, capacity * sizeof *rows);
-        if (rows == NULL) {
-            return STATUS_NO_MEMORY;
-        }
-        t->rows = rows;
-        double *more = realloc(t->angles, (capacity * n + 1) * sizeof *more);
-        if (more == NULL) {
-            return STATUS_NO_MEMORY;
-        }
-        t->angles = more;
-        t->row_capacity = capacity;
+    bool full = t->row_count >= t->row_array.capacity || t->row_count >= t->angle_array.capacity;
+    if (full && !make_room(t)) {
+        return STATUS_NO_MEMORY;
     }
     t->rows[t->row_count] = *row;
     memcpy(t->angles + t->row_count * n, angles, n * sizeof *angles);
@@ -49,14 +91,13 @@ status trace_add_row(trace *t, const sample *row, const double *angles)
 
 status trace_add_event(trace *t, event e)
 {
-    if (t->event_count == t->event_capacity) {
-        size_t capacity = t->event_capacity ? 2 * t->event_capacity : 64;
-        event *events = realloc(t->events, capacity * sizeof *events);
-        if (events == NULL) {
+    if (t->event_count >= t->event_array.capacity) {
+        if (!long_array_grow(&t->event_array, t->event_count + 1)) {
             return STATUS_NO_MEMORY;
         }
-        t->events = events;
-        t->event_capacity = capacity;
+        if (t->event_array.reserved == 0) {
+            find_places(t);
+        }
     }
     t->events[t->event_count++] = e;
     return STATUS_OK;

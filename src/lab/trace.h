@@ -1,6 +1,7 @@
 // A recorded run: rows of samples, the link angles at each, and the events between them.
 #pragma once
 
+#include "src/lab/long_array.h"
 #include "src/lab/signals.h"
 #include "src/status.h"
 
@@ -31,14 +32,20 @@ typedef struct trace {
     sample *rows;
     double *angles;  // row r: angles[r * angle_count ...], hub first if it has an angle of its own [rad]
     event *events;
-    size_t row_count, row_capacity;
-    size_t event_count, event_capacity;
+    size_t row_count, event_count;
     int angle_count;
+    long_array row_array, angle_array, event_array; // where the three above lie
 } trace;
 
 // An empty trace for angle_count link angles a row.
 void trace_init(trace *t, int angle_count);
+// The same in shared arrays (src/lab/long_array.h): for `least` rows and, if there is room, `most`.
+status trace_reserve(trace *t, int angle_count, size_t least, size_t most);
 void trace_finish(trace *t);
+
+// Lets a reserved trace, still empty, begin with the first rows and events of another one, without
+// a copy. STATUS_NO_MEMORY if there is no room.
+status trace_share(trace *t, const trace *from, size_t rows, size_t events);
 
 // Append a row (angles: angle_count values) or an event; STATUS_NO_MEMORY if there is no room.
 status trace_add_row(trace *t, const sample *row, const double *angles);

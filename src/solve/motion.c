@@ -24,6 +24,7 @@
 
 #define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
 #define MOST_HALVINGS   8     // of a step that does not converge or makes energy
+#define LEAST_AFTER_CUT 1e-9  // share of a step; what is left of a stride before a cut is longer
 #define PROJECTION_GAP  1e-14 // drift that is projected away in contact [m]
 #define PROJECTION_RATE 1e-13 // [m/s]
 
@@ -60,6 +61,7 @@ motion *motion_create(const arm *a, const method_parameters *method)
     }
     m->dof = a->dof;
     m->nominal_step = method->step;
+    m->cut = HUGE_VAL;
     m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT;
     choose_stepper(a, m, method);
     size_t size = (size_t)m->size, n = (size_t)a->dof, links = (size_t)a->links;
@@ -317,20 +319,43 @@ static motion_event event_of(const motion *m, watch w)
     return MOTION_REACHED;
 }
 
+// Tries a stride of *h, shorter if need be; *h and m->trial end at the first event, if there is
+// one.
+static status try_stride(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    status s = motion_try_step(a, m, *h);
+    for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
+        *h /= 2;
+        s = motion_try_step(a, m, *h);
+    }
+    return s == STATUS_OK ? locate_first_event(a, m, h, first, any) : s;
+}
+
+// Ends a stride of the `wanted` length that was just tried at m->cut if it goes beyond, or ends
+// within rounding of it.
+static status cut_stride(const arm *a, motion *m, double step, status tried, double wanted,
+                         double *h, watch *first, bool *any)
+{
+    double left = m->cut - m->state[SLOT_TIME];
+    double reached = tried == STATUS_OK ? *h : wanted;
+    double spare = tried == STATUS_OK && *any ? 0 : LEAST_AFTER_CUT * step;
+    if (reached <= left - spare) {
+        return tried;
+    }
+    *h = left;
+    *any = false;
+    status s = tried == STATUS_OK ? motion_try_step(a, m, left) : tried;
+    return s == STATUS_OK ? s : try_stride(a, m, h, first, any);
+}
+
 status motion_stride(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     *report = (motion_report){.event = MOTION_REACHED};
-    double h = stride_length(a, m, until - m->state[SLOT_TIME], step);
-    status s = motion_try_step(a, m, h);
-    for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
-        h /= 2;
-        s = motion_try_step(a, m, h);
-    }
-    watch first;
+    double wanted = stride_length(a, m, until - m->state[SLOT_TIME], step), h = wanted;
+    watch first = WATCH_GAP;
     bool any = false;
-    if (s == STATUS_OK) {
-        s = locate_first_event(a, m, &h, &first, &any);
-    }
+    status s = try_stride(a, m, &h, &first, &any);
+    s = cut_stride(a, m, step, s, wanted, &h, &first, &any);
     if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
         s = locate_peak(a, m, h);
     }
@@ -342,8 +367,9 @@ status motion_stride(const arm *a, motion *m, double until, double step, motion_
     if (any) {
         report->event = event_of(m, first);
     }
-    if (until - m->state[SLOT_TIME] <= 1e-12 * fmax(1, until)) {
-        m->state[SLOT_TIME] = until;
+    double stop = fmin(until, m->cut);
+    if (stop - m->state[SLOT_TIME] <= 1e-12 * fmax(1, stop)) {
+        m->state[SLOT_TIME] = stop;
     }
     return STATUS_OK;
 }

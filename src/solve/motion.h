@@ -54,6 +54,7 @@ typedef struct motion {
     const struct stepper *stepper;
     double nominal_step;                  // method.step [s]
     bool brief;                           // explicit: the stride takes the method of order 6
+    double cut; // an instant at which a stride ends without being made for it [s]; HUGE_VAL: none
     double alpha_m, alpha_f, beta, gamma; // implicit steppers' coefficients [-]
 
     // scratch, nothing of it outlives a step
@@ -147,8 +148,12 @@ typedef struct motion_report {
 // stride by `step`, the event method by as many steps as its accuracy allows (a fraction of one, if
 // need be); an arm that contact and friction hold still strides to `until` at once. At an event the
 // state is on the event's far side, before its jump: let the caller look at it, then call
-// motion_apply. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the state is
-// then the last good one.
+// motion_apply.
+//
+// A stride that would go beyond m->cut is first tried as if the cut were not there, and ends at the
+// cut only if no event comes before it. So what happens before the cut, to the last bit, is what
+// happens without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
+// state is then the last good one.
 status motion_stride(const arm *a, motion *m, double until, double step, motion_report *report);
 
 // Strides until `until` or the first event.

@@ -24,6 +24,8 @@ bool act_open_scenario_by(lab *l, const char *argument)
     if (argument[0] == '\0') {
         l->overlay = OVERLAY_OPEN;
         l->scroll = at < 0 ? 0 : at;
+        l->list_first = -1;
+        lab_load_titles(l);
         return true;
     }
     bool next = strcmp(argument, "+1") == 0;
@@ -32,6 +34,15 @@ bool act_open_scenario_by(lab *l, const char *argument)
         return lab_open(l, l->names[at]);
     }
     return lab_open(l, argument);
+}
+
+// The list with its filter open.
+bool act_find_scenario(lab *l, const char *argument)
+{
+    act_open_scenario_by(l, "");
+    snprintf(l->filter, sizeof l->filter, "%s", argument);
+    l->filtering = true;
+    return true;
 }
 
 static bool ends_with(const char *text, const char *end)
@@ -65,8 +76,13 @@ bool act_save(lab *l, const char *argument)
                 "gives this run; .txt: the screen");
         return true;
     }
+    bool needs_all = !ends_with(argument, ".yaml") && !ends_with(argument, ".txt");
+    if (needs_all && !lab_has_whole_run(l)) {
+        return false;
+    }
     if (ends_with(argument, ".png") || ends_with(argument, ".pdf") || ends_with(argument, ".svg")) {
-        code = plot_run(&s->effective, &s->run, argument, &f);
+        code =
+            plot_run_beside(&s->effective, &s->run, s->has_other ? &s->other : NULL, argument, &f);
     } else if (!ends_with(argument, ".csv") && !ends_with(argument, ".yaml") &&
                !ends_with(argument, ".txt")) {
         code = fault_set(&f, STATUS_BAD_ARGUMENT,
@@ -101,6 +117,9 @@ bool act_save_scene(lab *l, const char *argument)
         l->prompting = true;
         snprintf(l->prompt, sizeof l->prompt, "scene arm.png");
         return true;
+    }
+    if (!lab_has_whole_run(l)) {
+        return false;
     }
     status code = scene_write(&s->effective, &s->run, &options, &s->now, 1, argument, &f);
     if (lab_complain(l, code, &f)) {

@@ -9,7 +9,12 @@ bool act_play(lab *l, const char *argument)
     (void)argument;
     l->playing = !l->playing;
     l->message[0] = '\0';
-    if (l->playing && l->session.now >= session_end(&l->session)) {
+    if (l->playing && l->session.now >= session_end(&l->session) &&
+        session_go_on(&l->session, NULL) == STATUS_OK) {
+        return true; // it was stopped there
+    }
+    bool at_end = l->session.now >= session_end(&l->session);
+    if (l->playing && at_end && l->session.computing == NULL) {
         session_seek(&l->session, 0);
     }
     return true;
@@ -49,6 +54,39 @@ bool act_step_event(lab *l, const char *argument)
         return false;
     }
     tell_event(l);
+    return true;
+}
+
+// To the last row before a touch, where a prediction can be compared with what comes.
+bool act_step_touch(lab *l, const char *argument)
+{
+    bool back = argument[0] == '-';
+    const session *s = &l->session;
+    const trace *t = &s->run.trace;
+    size_t row = s->row, found = row;
+    l->playing = false;
+    for (size_t i = 0; i < t->event_count; i++) {
+        const event *e = &t->events[i];
+        if (e->kind != EVENT_IMPACT && e->kind != EVENT_CONTACT) {
+            continue;
+        }
+        size_t before = trace_row_at(t, e->time);
+        while (before > 0 && (t->rows[before].time >= e->time) && t->rows[before].contact != 0) {
+            before--;
+        }
+        if (t->rows[before].contact == 0 && (back ? before < row : before > row)) {
+            found = before;
+            if (!back) {
+                break;
+            }
+        }
+    }
+    if (found == row) {
+        lab_say(l, true, "no %s touch", back ? "earlier" : "later");
+        return false;
+    }
+    session_step(&l->session, (long)found - (long)row);
+    lab_say(l, false, "just before a touch: what would come of it is predicted beside what came");
     return true;
 }
 

@@ -29,26 +29,14 @@ bool act_set_mark(lab *l, const char *argument)
 bool act_other_side(lab *l, const char *argument)
 {
     (void)argument;
-    l->side = (l->side + 1) % SIDES;
-    return true;
-}
-
-bool act_zoom(lab *l, const char *argument)
-{
-    double from, to, end = l->session.effective.parameters.run.duration;
-    lab_window(l, &from, &to);
-    if (strcmp(argument, "all") == 0) {
-        l->from = l->to = 0;
-        return true;
+    bool narrow = l->width > 0 && l->width < SIDE_WIDTH;
+    if (narrow && (!l->side_in_front || l->side + 1 == SIDES)) {
+        // curves, each side, curves again
+        l->side_in_front = !l->side_in_front;
+        l->side = 0;
+    } else {
+        l->side = (l->side + 1) % SIDES;
     }
-    double width = (to - from) * (strcmp(argument, "out") == 0 ? 2 : 0.5);
-    if (width >= end) {
-        l->from = l->to = 0;
-        return true;
-    }
-    width = fmax(width, 1e-6);
-    l->from = fmax(0, fmin(end - width, l->session.now - width / 2));
-    l->to = l->from + width;
     return true;
 }
 
@@ -63,9 +51,11 @@ bool act_trace_pane(lab *l, const char *argument)
             return false;
         }
         pane->shown = !pane->shown;
+        l->panes_chosen = true;
+        l->focus = pane->shown ? index : l->focus;
         return true;
     }
-    lab_pane own = {.shown = true};
+    lab_pane own = {.shown = true, .grown_low = (double)INFINITY, .grown_high = (double)-INFINITY};
     char words[LAB_TEXT], *rest = words;
     snprintf(words, sizeof words, "%s", argument);
     for (char *word; (word = strtok_r(rest, " ,", &rest)) != NULL && own.count < PANE_SIGNALS;) {
@@ -81,6 +71,7 @@ bool act_trace_pane(lab *l, const char *argument)
         return false;
     }
     l->panes[LAB_PANES - 1] = own;
+    l->focus = LAB_PANES - 1;
     return true;
 }
 
@@ -94,6 +85,7 @@ bool act_show_panes(lab *l, const char *argument)
     for (int i = 0; i < LAB_PANES - 1; i++) {
         l->panes[i].shown = l->panes[i].count > 0 && strchr(argument, '1' + i) != NULL;
     }
+    l->panes_chosen = true;
     return true;
 }
 
@@ -109,6 +101,7 @@ bool act_compare(lab *l, const char *argument)
 {
     (void)argument;
     l->overlay = l->overlay == OVERLAY_COMPARE ? OVERLAY_NONE : OVERLAY_COMPARE;
+    l->scroll = 0;
     return true;
 }
 
@@ -123,8 +116,12 @@ static bool take_choice(lab *l, const char *argument, const char *const *words, 
             return true;
         }
     }
-    lab_say(l, true, "'%s' is none of %s, %s%s%s", argument, words[0], words[1],
-            count > 2 ? ", " : "", count > 2 ? words[2] : "");
+    char all[128] = "";
+    for (int i = 0; i < count; i++) {
+        size_t used = strlen(all);
+        snprintf(all + used, sizeof all - used, "%s%s", i > 0 ? ", " : "", words[i]);
+    }
+    lab_say(l, true, "'%s' is none of %s", argument, all);
     return false;
 }
 
@@ -143,6 +140,15 @@ bool act_set_theme(lab *l, const char *argument)
     int value = (int)l->theme;
     bool done = take_choice(l, argument, words, COLOUR_THEMES, &value);
     l->theme = (lab_theme)value;
+    return done;
+}
+
+bool act_set_colours(lab *l, const char *argument)
+{
+    static const char *const words[] = {"auto", "true", "256", "16", "mono"};
+    int value = (int)l->depth;
+    bool done = take_choice(l, argument, words, COLOUR_DEPTHS, &value);
+    l->depth = (colour_depth)value;
     return done;
 }
 

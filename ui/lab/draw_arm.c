@@ -37,12 +37,18 @@ static void find_extent(lab *l)
     const session *s = &l->session;
     const trace *t = &s->run.trace;
     const arm_parameters *beam = &s->effective.parameters.arm;
-    if (l->extent.version == s->version) {
+    // while a run grows, what was known is widened; when it is complete, all of it is looked at
+    const bool grows = s->computing != NULL;
+    const size_t known = l->extent.rows;
+    if (l->extent.version == s->version && known == t->row_count && l->extent.whole == !grows) {
         return;
     }
-    double low = 0, high = 0, most = 0;
-    size_t stride = t->row_count / 2000 + 1;
-    for (size_t r = 0; r < t->row_count; r += stride) {
+    const bool anew = !grows || known > t->row_count;
+    const size_t first = anew ? 0 : known, samples = grows ? 100 : 2000;
+    double low = anew ? 0 : l->extent.lowest, high = anew ? 0 : l->extent.highest;
+    double most = anew ? 0 : l->extent.most_angle;
+    size_t stride = (t->row_count - first) / samples + 1;
+    for (size_t r = first; r < t->row_count; r += stride) {
         double y = 0;
         for (int i = 0; i < beam->links; i++) {
             double angle = link_angle(t, beam->links, r, i);
@@ -53,6 +59,8 @@ static void find_extent(lab *l)
         }
     }
     l->extent.version = s->version;
+    l->extent.rows = t->row_count;
+    l->extent.whole = !grows;
     l->extent.lowest = low;
     l->extent.highest = high;
     l->extent.most_angle = most;

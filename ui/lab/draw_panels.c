@@ -60,12 +60,16 @@ void draw_values(lab *l, screen *s, area a)
     char title[64];
     snprintf(title, sizeof title, "values%s", against);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
-    for (int i = 0; i < signal_count && i < a.height - 2; i++) {
+    int height = a.height - 2, last = signal_count > height ? signal_count - height : 0;
+    l->value_scroll = l->value_scroll > last ? last : l->value_scroll < 0 ? 0 : l->value_scroll;
+    draw_spot(l, PART_VALUES, a, 0);
+    for (int line = 0; line + l->value_scroll < signal_count && line < height; line++) {
+        int i = line + l->value_scroll;
         double value = signal_value(row, i), other = beside ? signal_value(beside, i) : 0;
         double difference = value - other, size = fmax(fabs(value), fabs(other));
         bool differs = beside != NULL && fabs(difference) > 1e-6 * size;
         char text[32];
-        int y = a.y + 1 + i;
+        int y = a.y + 1 + line;
         screen_text(s, a.x + 2, y, 16, INK_TEXT, signal_table[i].name);
         draw_number(text, sizeof text, value);
         screen_print(s, a.x + 18, y, a.width - 20, INK_TITLE, "%9s", text);
@@ -146,6 +150,9 @@ static void predictor_line(screen *s, area a, int line, const char *label, const
         screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, "-");
     } else if (!p->holds) {
         screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, "would not hold");
+    } else if (isfinite(p->delay) && a.width < 36) {
+        screen_print(s, a.x + 18, y, a.width - 20, INK_FORCE, "%.2f N, %.0f ms", p->force,
+                     1e3 * p->delay);
     } else if (isfinite(p->delay)) {
         screen_print(s, a.x + 18, y, a.width - 20, INK_FORCE, "%.3f N in %.0f ms", p->force,
                      1e3 * p->delay);
@@ -199,7 +206,12 @@ void draw_log(lab *l, screen *s, area a)
     for (size_t i = 0; i < seen; i++) {
         current = t->events[i].time <= e->now ? (int)i : current;
     }
-    int first = draw_first_line(current, (int)seen, height);
+    int still = draw_first_line(current, (int)seen, height), last = (int)seen - height;
+    int first = still + l->log_scroll;
+    first = first > last ? last : first;
+    first = first < 0 ? 0 : first;
+    l->log_scroll = first - still;
+    draw_spot(l, PART_LOG, (area){a.x + 1, a.y + 1, a.width - 2, height}, first);
     for (int i = first; i < (int)seen && i < first + height; i++) {
         const event *v = &t->events[i];
         int y = a.y + 1 + i - first;

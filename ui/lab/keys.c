@@ -5,132 +5,16 @@
 
 #include "ui/lab/lab.h"
 
-typedef struct lab_binding {
-    const char *key; // a character, or a name as lab_keys takes it without brackets
-    const char *line;
-} lab_binding;
-
-static const lab_binding bindings[] = {
-    {"Space", "play"},
-    {"Right", "step 1"},
-    {"l", "step 1"},
-    {"Left", "step -1"},
-    {"h", "step -1"},
-    {"PgDn", "step 20"},
-    {"PgUp", "step -20"},
-    {"n", "event"},
-    {"N", "event -1"},
-    {"Home", "seek 0"},
-    {"g", "seek 0"},
-    {"End", "seek end"},
-    {"G", "seek end"},
-    {"+", "speed up"},
-    {"=", "speed up"},
-    {"-", "speed down"},
-    {"Backspace", "restart"},
-    {"r", "restart"},
-    {"Down", "select"},
-    {"j", "select"},
-    {"Up", "select -1"},
-    {"k", "select -1"},
-    {"Enter", "edit"},
-    {">", "nudge"},
-    {"<", "nudge -1"},
-    {"p", "push 0.01"},
-    {"P", "push -0.01"},
-    {"t", "model"},
-    {"x", "extend"},
-    {"b", "branch"},
-    {"B", "forget"},
-    {"c", "compare"},
-    {"u", "undo"},
-    {"U", "redo"},
-    {"C-r", "redo"},
-    {"m", "mark"},
-    {"Tab", "side"},
-    {"z", "zoom in"},
-    {"Z", "zoom out"},
-    {"0", "zoom all"},
-    {"1", "trace 1"},
-    {"2", "trace 2"},
-    {"3", "trace 3"},
-    {"4", "trace 4"},
-    {"5", "trace 5"},
-    {"6", "trace 6"},
-    {"7", "trace 7"},
-    {"8", "trace 8"},
-    {"9", "trace 9"},
-    {"o", "open"},
-    {"]", "open +1"},
-    {"[", "open -1"},
-    {"s", "save"},
-    {"S", "scene"},
-    {"C-l", "redraw"},
-    {"?", "help"},
-    {"F1", "help"},
-    {"q", "quit"},
-    {"C-c", "quit"},
-};
-enum { KEYS_SHOWN = 24 }; // cells of the help
-enum { BINDINGS = sizeof bindings / sizeof bindings[0] };
-
-static const struct {
-    const char *name;
-    int key;
-} key_names[] = {
-    {"Space", ' '},
-    {"Enter", KEY_CODE_ENTER},
-    {"Esc", KEY_CODE_ESCAPE},
-    {"Tab", KEY_CODE_TAB},
-    {"Left", KEY_CODE_LEFT},
-    {"Right", KEY_CODE_RIGHT},
-    {"Up", KEY_CODE_UP},
-    {"Down", KEY_CODE_DOWN},
-    {"Home", KEY_CODE_HOME},
-    {"End", KEY_CODE_END},
-    {"PgUp", KEY_CODE_PAGE_UP},
-    {"PgDn", KEY_CODE_PAGE_DOWN},
-    {"Backspace", KEY_CODE_BACKSPACE},
-    {"Delete", KEY_CODE_DELETE},
-    {"F1", KEY_CODE_F1},
-    {"lt", '<'},
-};
-
-void lab_keys_of(const char *command, char *text, size_t size)
-{
-    size_t used = 0, length = strlen(command);
-    text[0] = '\0';
-    for (int i = 0; i < BINDINGS && used < KEYS_SHOWN; i++) {
-        const lab_binding *b = &bindings[i];
-        if (strncmp(b->line, command, length) == 0 && strchr(" ", b->line[length]) != NULL) {
-            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", b->key);
-        }
-    }
-}
-
-// The key of a name, 0 if there is none.
-static int key_of(const char *name, size_t length)
-{
-    for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++) {
-        if (strlen(key_names[i].name) == length && strncmp(key_names[i].name, name, length) == 0) {
-            return key_names[i].key;
-        }
-    }
-    if (length == 3 && name[0] == 'C' && name[1] == '-') {
-        return name[2] & 0x1f;
-    }
-    return length == 1 ? (unsigned char)name[0] : 0;
-}
-
 bool lab_keys(lab *l, const char *text, fault *f)
 {
     while (*text != '\0' && !l->quit) {
         const char *close = *text == '<' ? strchr(text, '>') : NULL;
         if (close == NULL) {
-            lab_key(l, (unsigned char)*text++);
+            bool plain = (unsigned char)*text < 0x80;
+            lab_key(l, plain ? *text++ : (int)glyph_decode(&text));
             continue;
         }
-        int key = key_of(text + 1, (size_t)(close - text - 1));
+        int key = lab_key_of(text + 1, (size_t)(close - text - 1));
         if (key == 0) {
             fault_set(f, STATUS_BAD_ARGUMENT, "there is no key '%.*s'", (int)(close - text + 1),
                       text);
@@ -247,7 +131,7 @@ static void key_in_prompt(lab *l, int key)
 static void move_in_list(lab *l, int direction)
 {
     for (int i = l->scroll + direction; i >= 0 && i < l->name_count; i += direction) {
-        if (lab_listed(l, l->names[i])) {
+        if (lab_listed(l, i)) {
             l->scroll = i;
             return;
         }
@@ -261,7 +145,7 @@ static void key_in_filter(lab *l, int key)
     } else {
         type(l->filter, key);
     }
-    if (l->scroll < l->name_count && !lab_listed(l, l->names[l->scroll])) {
+    if (l->scroll < l->name_count && !lab_listed(l, l->scroll)) {
         l->scroll = -1;
         move_in_list(l, 1);
         l->scroll = l->scroll < 0 ? 0 : l->scroll;
@@ -285,7 +169,7 @@ static void key_in_list(lab *l, int key)
         }
     } else if (key == KEY_CODE_ENTER || key == '\n') {
         l->overlay = OVERLAY_NONE;
-        if (l->scroll < l->name_count && lab_listed(l, l->names[l->scroll])) {
+        if (l->scroll < l->name_count && lab_listed(l, l->scroll)) {
             lab_open(l, l->names[l->scroll]);
         }
     } else if (key == KEY_CODE_ESCAPE || key == 'q' || key == 'o') {
@@ -296,12 +180,17 @@ static void key_in_list(lab *l, int key)
 // In help and comparison: scrolling and leaving.
 static void key_in_page(lab *l, int key)
 {
-    if (key == KEY_CODE_DOWN || key == 'j' || key == KEY_CODE_PAGE_DOWN) {
-        l->scroll += lab_help_line(l->scroll + 1) != NULL;
-    } else if (key == KEY_CODE_UP || key == 'k' || key == KEY_CODE_PAGE_UP) {
+    // drawing keeps it within the page
+    if (key == KEY_CODE_DOWN || key == 'j') {
+        l->scroll++;
+    } else if (key == KEY_CODE_UP || key == 'k') {
         l->scroll -= l->scroll > 0;
+    } else if (key == KEY_CODE_PAGE_DOWN || key == ' ') {
+        l->scroll += l->page_lines;
+    } else if (key == KEY_CODE_PAGE_UP) {
+        l->scroll = l->scroll > l->page_lines ? l->scroll - l->page_lines : 0;
     } else if (key == KEY_CODE_END || key == 'G') {
-        l->scroll = INT_MAX;
+        l->scroll = INT_MAX / 2;
     } else if (key == KEY_CODE_HOME || key == 'g') {
         l->scroll = 0;
     } else {
@@ -312,18 +201,22 @@ static void key_in_page(lab *l, int key)
 static void key_by_table(lab *l, int key)
 {
     key = key == '\n' ? KEY_CODE_ENTER : key == 127 || key == 8 ? KEY_CODE_BACKSPACE : key;
-    for (int i = 0; i < BINDINGS; i++) {
-        if (key_of(bindings[i].key, strlen(bindings[i].key)) == key) {
-            l->message[0] = '\0';
-            lab_carry_out(l, bindings[i].line);
-            return;
-        }
-    }
-    if (key == KEY_CODE_ESCAPE) {
+    const char *bound = lab_bound_line(l, key);
+    if (bound != NULL) {
+        // a copy: the command may be one that binds keys
+        char line[LAB_TEXT];
+        snprintf(line, sizeof line, "%s", bound);
+        l->message[0] = '\0';
+        lab_carry_out(l, line);
+    } else if (key == KEY_CODE_ESCAPE && l->session.computing != NULL) {
+        lab_carry_out(l, "stop");
+    } else if (key == KEY_CODE_ESCAPE) {
         l->message[0] = '\0';
         l->has_mark = false;
-    } else if (key > ' ' && key < 127) {
-        lab_say(l, true, "'%c' does nothing here, ? lists the keys", key);
+    } else if (key > ' ' && key < KEY_CODE_FIRST && key != 127) {
+        char name[8];
+        glyph_encode((uint32_t)key, name);
+        lab_say(l, true, "'%s' does nothing here, ? lists the keys", name);
     }
 }
 
@@ -339,9 +232,6 @@ void lab_key(lab *l, int key)
         key_in_list(l, key);
     } else if (l->overlay != OVERLAY_NONE && key != ('c' & 0x1f)) {
         key_in_page(l, key);
-    } else if (key == '/') {
-        lab_carry_out(l, "open");
-        l->filtering = true;
     } else {
         key_by_table(l, key);
     }

@@ -5,18 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const pane_signals[LAB_PANES][PANE_SIGNALS] = {
-    {"force"},
-    {"hub_angle", "first_angle", "last_angle"},
-    {"hub_velocity", "first_velocity", "last_velocity"},
-    {"gap"},
-    {"voltage"},
-    {"kinetic_energy", "strain_energy", "motor_work"},
-    {"viscous_loss", "friction_loss", "impact_loss"},
-    {"energy_residual"},
-    {"motor_torque", "friction_torque"},
-};
-
 void lab_say(lab *l, bool warning, const char *format, ...)
 {
     va_list list;
@@ -26,25 +14,14 @@ void lab_say(lab *l, bool warning, const char *format, ...)
     l->warning = warning;
 }
 
-static void define_panes(lab *l)
-{
-    for (int i = 0; i < LAB_PANES; i++) {
-        for (int j = 0; j < PANE_SIGNALS && pane_signals[i][j] != NULL; j++) {
-            int signal = signal_find(pane_signals[i][j]);
-            if (signal >= 0) {
-                l->panes[i].signals[l->panes[i].count++] = signal;
-            }
-        }
-    }
-    l->panes[0].shown = l->panes[2].shown = l->panes[3].shown = true;
-}
-
 // What a fresh session looks like.
 static void look_afresh(lab *l)
 {
     l->has_mark = false;
     l->from = l->to = 0;
+    l->adrift = false;
     l->extent.version = 0;
+    lab_define_panes(l);
     lab_draw_finish(l);
     const summary *m = &l->session.run.summary;
     if (m->status != STATUS_OK) {
@@ -54,15 +31,19 @@ static void look_afresh(lab *l)
 
 status lab_init(lab *l, scenario *s, fault *f)
 {
+    return lab_open_patiently(l, s, HUGE_VAL, f);
+}
+
+status lab_open_patiently(lab *l, scenario *s, double patience, fault *f)
+{
     memset(l, 0, sizeof *l);
-    status code = session_init(&l->session, s, f);
+    status code = session_open(&l->session, s, patience, f);
     if (code != STATUS_OK) {
         return code;
     }
     l->speed = 0.2;
     l->mouse = true;
     l->parameter = parameter_find("motor.voltage");
-    define_panes(l);
     look_afresh(l);
     fault ignored;
     if (scenario_list(&l->names, &l->name_count, &ignored) != STATUS_OK) {
@@ -74,6 +55,7 @@ status lab_init(lab *l, scenario *s, fault *f)
 void lab_finish(lab *l)
 {
     lab_draw_finish(l);
+    lab_forget_titles(l);
     session_finish(&l->session);
     for (int i = 0; i < l->name_count; i++) {
         free(l->names[i]);
@@ -98,7 +80,7 @@ bool lab_open(lab *l, const char *name)
     fault f = {0};
     status code = scenario_open(&s, name, keep_first_fault, &f);
     if (code == STATUS_OK) {
-        code = session_init(&fresh, &s, &f);
+        code = session_open(&fresh, &s, l->session.patience, &f);
     }
     if (code != STATUS_OK) {
         lab_say(l, true, "%s", f.text[0] ? f.text : status_text(code));
@@ -123,7 +105,7 @@ void lab_advance(lab *l, double seconds)
     session_seek(s, before + seconds * l->speed);
     double factor = (s->now - before) / seconds;
     l->measured = l->measured > 0 ? 0.9 * l->measured + 0.1 * factor : factor;
-    if (s->now >= session_end(s)) {
+    if (s->now >= session_end(s) && s->computing == NULL) {
         l->playing = false;
         if (s->run.summary.status != STATUS_OK) {
             lab_say(l, true, "the run stops: %s", s->run.summary.message);
@@ -133,13 +115,6 @@ void lab_advance(lab *l, double seconds)
                     "n and N visit its events");
         }
     }
-}
-
-void lab_window(const lab *l, double *from, double *to)
-{
-    double end = l->session.effective.parameters.run.duration;
-    *from = l->to > l->from ? l->from : 0;
-    *to = l->to > l->from ? l->to : end;
 }
 
 void lab_click(lab *l, int x, int y)
@@ -157,11 +132,6 @@ void lab_click(lab *l, int x, int y)
 void lab_wheel(lab *l, int direction)
 {
     lab_key(l, direction < 0 ? KEY_CODE_UP : KEY_CODE_DOWN);
-}
-
-bool lab_listed(const lab *l, const char *name)
-{
-    return strstr(name, l->filter) != NULL;
 }
 
 bool lab_applies(const lab *l, int parameter)

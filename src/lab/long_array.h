@@ -1,0 +1,50 @@
+// A growing array of equal elements, in one of two kinds.
+//
+// A plain one lies on the heap and moves as it grows. A shared one keeps its place: address space
+// is reserved for all it may ever hold, and memory is put behind it in chunks as it grows. So
+// another thread can read what has been published to it while the owner appends, and a second
+// array can have the same chunks for its beginning instead of a copy. Chunks are counted and go
+// when the last array that has them does; elements once appended must not be changed.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { ARRAY_CHUNK = 128 * 1024 }; // [bytes]
+
+typedef struct long_array {
+    void *base;      // of the elements
+    size_t size;     // of one element [bytes]
+    size_t capacity; // elements that there is memory for
+    size_t reserved; // address space of a shared array [bytes]; 0: a plain one
+    uint32_t *chunks;
+    size_t chunk_count, chunk_capacity;
+} long_array;
+
+// An empty plain array of elements of `size` bytes.
+void long_array_init(long_array *c, size_t size);
+
+// An empty shared array for `least` elements, and up to `most` if there is that much address
+// space. False if it cannot be had; then there is nothing to be freed.
+bool long_array_reserve(long_array *c, size_t size, size_t least, size_t most);
+
+// Makes room for `count` elements; false without memory, then the array is as before.
+bool long_array_grow(long_array *c, size_t count);
+
+// Lets a shared array, still empty, begin with the first `count` elements of another: all chunks
+// that these fill are shared, the rest is copied. False without memory.
+bool long_array_share(long_array *c, const long_array *from, size_t count);
+
+// How many chunks two shared arrays begin with have the same bytes, of those that their first
+// `count` elements fill.
+size_t long_array_same_chunks(const long_array *a, const long_array *b, size_t count);
+
+// Lets an array have that many of another one's chunks instead of its own, which have the same
+// bytes. Nobody else may be reading it.
+void long_array_merge(long_array *c, const long_array *with, size_t chunks);
+
+void long_array_finish(long_array *c); // one of zeroes is allowed
+
+// Memory behind all shared arrays of the program, chunks that several have counted once [bytes].
+size_t long_array_memory(void);

@@ -1,0 +1,503 @@
+// The terminal lab in a pseudo-terminal under random keys, mouse reports, commands and sizes. It
+// must answer all along; at the end what it saves must reproduce its run, and the terminal must be
+// as it was. One session after the other until the time is over, each with a seed of its own.
+//
+// soak_terminal PROGRAM SECONDS [FIRST-SEED]
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "src/lab/random.h"
+
+#define SESSION_TIME  20.0 // [s]
+#define ANSWER_TIME   10.0 // longest until an answer, sanitizers and a busy machine included [s]
+#define COMPUTE_TIME  60.0 // longest until the last run is complete [s]
+#define ESCAPE_PAUSE  0.08 // after an escape that stands alone [s]
+#define LAST_DURATION "0.7"
+
+enum { PRIVATE_MODES = 3000, TAIL = 4000, MOST_PROBES = 100000 };
+
+// What the terminal makes of the bytes it gets.
+typedef struct tracker {
+    enum { PLAIN, ESCAPED, SEQUENCE } state;
+    char sequence[64];
+    size_t length;
+    bool mode[PRIVATE_MODES]; // set by CSI ? NUMBER h
+    long cleared;             // how often the whole screen was
+    char tail[TAIL];          // the last bytes, a ring
+    size_t bytes;
+} tracker;
+
+typedef struct soak {
+    const char *program;
+    uint64_t seed;
+    random_generator random;
+    int master, slave;
+    int width, height; // of the terminal
+    pid_t child;
+    tracker seen;
+    struct termios before;
+    char folder[64];
+    double *answers; // times that probes took [s]
+    size_t answer_count, keys;
+    char last_keys[400]; // what was sent lately
+    size_t sent;
+} soak;
+
+static double seconds_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int chance(soak *s, int bound)
+{
+    return (int)random_below(&s->random, (uint64_t)bound);
+}
+
+// --- the terminal's side ----------------------------------------------------------------------
+
+static void end_sequence(tracker *t, char last)
+{
+    t->sequence[t->length] = '\0';
+    if (t->sequence[0] == '?' && (last == 'h' || last == 'l')) {
+        for (char *word = strtok(t->sequence + 1, ";"); word != NULL; word = strtok(NULL, ";")) {
+            long mode = strtol(word, NULL, 10);
+            if (mode >= 0 && mode < PRIVATE_MODES) {
+                t->mode[mode] = last == 'h';
+            }
+        }
+    } else if (last == 'J' && (t->length == 0 || strcmp(t->sequence, "2") == 0)) {
+        t->cleared++;
+    }
+}
+
+static void track(tracker *t, char c)
+{
+    t->tail[t->bytes++ % TAIL] = c;
+    if (c == '\033') {
+        t->state = ESCAPED;
+    } else if (t->state == ESCAPED) {
+        t->state = c == '[' ? SEQUENCE : PLAIN;
+        t->length = 0;
+    } else if (t->state == SEQUENCE && c >= 0x40 && c <= 0x7e) {
+        end_sequence(t, c);
+        t->state = PLAIN;
+    } else if (t->state == SEQUENCE && t->length + 1 < sizeof t->sequence) {
+        t->sequence[t->length++] = c;
+    }
+}
+
+// Ends the test with what is wrong, how to get there again and what was seen last.
+static void __attribute__((format(printf, 2, 3), noreturn)) fail(soak *s, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    fprintf(stderr, "\nFAILED with seed %llu: ", (unsigned long long)s->seed);
+    vfprintf(stderr, format, list);
+    va_end(list);
+    fprintf(stderr, "\nsent last: ");
+    for (size_t i = s->sent > sizeof s->last_keys ? s->sent - sizeof s->last_keys : 0; i < s->sent;
+         i++) {
+        unsigned char c = (unsigned char)s->last_keys[i % sizeof s->last_keys];
+        fprintf(stderr, c >= ' ' && c < 127 ? "%c" : "\\x%02x", c);
+    }
+    fprintf(stderr, "\nseen last: ");
+    for (size_t i = s->seen.bytes > TAIL ? s->seen.bytes - TAIL : 0; i < s->seen.bytes; i++) {
+        char c = s->seen.tail[i % TAIL];
+        fputc(c == '\033' ? '~' : c, stderr);
+    }
+    fprintf(stderr, "\nfiles in %s\n", s->folder);
+    if (s->child > 0) {
+        kill(s->child, SIGABRT);
+    }
+    exit(1);
+}
+
+// Takes what the program shows for some time, 0: what is there.
+static void watch(soak *s, double seconds)
+{
+    double until = seconds_now() + seconds;
+    do {
+        struct pollfd p = {s->master, POLLIN, 0};
+        double left = until - seconds_now();
+        char bytes[4096];
+        if (poll(&p, 1, left > 0 ? (int)(1e3 * left + 0.999) : 0) <= 0) {
+            continue;
+        }
+        ssize_t count = read(s->master, bytes, sizeof bytes);
+        for (ssize_t i = 0; i < count; i++) {
+            track(&s->seen, bytes[i]);
+        }
+    } while (seconds_now() < until);
+}
+
+static void send_bytes(soak *s, const char *bytes, size_t count)
+{
+    double until = seconds_now() + ANSWER_TIME;
+    for (size_t i = 0; i < count; i++) {
+        s->last_keys[s->sent++ % sizeof s->last_keys] = bytes[i];
+    }
+    while (count > 0) {
+        ssize_t done = write(s->master, bytes, count);
+        if (done > 0) {
+            bytes += done;
+            count -= (size_t)done;
+        } else if (seconds_now() > until) {
+            fail(s, "takes no input for %g s", ANSWER_TIME);
+        }
+        watch(s, done > 0 ? 0 : 0.01);
+    }
+    s->keys++;
+}
+
+static void send_text(soak *s, const char *text)
+{
+    send_bytes(s, text, strlen(text));
+}
+
+static void resize(soak *s, int width, int height)
+{
+    struct winsize size = {.ws_col = (unsigned short)width, .ws_row = (unsigned short)height};
+    ioctl(s->master, TIOCSWINSZ, &size);
+    s->width = width;
+    s->height = height;
+}
+
+static bool has_ended(soak *s, int *status)
+{
+    pid_t ended = s->child > 0 ? waitpid(s->child, status, WNOHANG) : 0;
+    s->child = ended > 0 ? 0 : s->child;
+    return ended > 0;
+}
+
+// A new size lets the lab clear the screen whatever it is doing: how long does that take?
+static void probe(soak *s)
+{
+    int status;
+    double start = seconds_now();
+    long cleared = s->seen.cleared;
+    // the same size again would be no news
+    resize(s, 60 + chance(s, 100), s->height == 20 ? 21 : 20);
+    while (s->seen.cleared == cleared) {
+        watch(s, 0.002);
+        if (has_ended(s, &status)) {
+            fail(s, "ended by itself with status %d", status);
+        }
+        if (seconds_now() - start > ANSWER_TIME) {
+            fail(s, "no answer within %g s", ANSWER_TIME);
+        }
+    }
+    if (s->answer_count < MOST_PROBES) {
+        s->answers[s->answer_count++] = seconds_now() - start;
+    }
+}
+
+// --- the user's side --------------------------------------------------------------------------
+
+static void press_something(soak *s)
+{
+    // all keys but those that end or suspend the lab, or hold the terminal's output
+    static const char *const keys[] = {
+        " ",       " ",      "h",      "l",       "n",       "N",       "g",        "G",
+        "+",       "-",      "\177",   "r",       "j",       "k",       "\r",       ">",
+        "<",       "p",      "P",      "t",       "x",       "b",       "B",        "c",
+        "u",       "U",      "\022",   "m",       "\t",      "z",       "Z",        "0",
+        "1",       "5",      "9",      "o",       "]",       "[",       "s",        "\014",
+        "?",       "/",      ":",      "\033[A",  "\033[B",  "\033[C",  "\033[D",   "\033[H",
+        "\033[F",  "\033OA", "\033OP", "\033[5~", "\033[6~", "\033[3~", "\025",     "\b",
+        "\033[1~", "\033[Z", "=",      "2",       "3",       "8",       "\033[M !!"};
+    send_text(s, keys[chance(s, sizeof keys / sizeof keys[0])]);
+}
+
+static void give_command(soak *s)
+{
+    static const char *const commands[] = {
+        "set motor.voltage %d.5", "set run.duration %d", "set arm.links %d",
+        "open corrected/twenty-links", "open compare/hybrid", "open thesis/fig-3-4",
+        "open corrected/first-impact", "open compare/optimal", "seek 0.%d", "seek end", "speed %d",
+        "push 0.0%d", "push -0.%d", "set method.step 0.000%d", "set arm.k2 %d",
+        "set wall.angle 0.0%d", "zoom in", "zoom out", "trace force gap", "panes 1%d",
+        "glyphs ascii", "glyphs braille", "glyphs blocks", "theme mono", "theme light", "mouse off",
+        "mouse on", "save a.csv", "save a.yaml", "save a.txt", "stop", "undo", "redo", "branch",
+        "forget", "compare", "remember", "wait 0.%d", "set method.name newmark", "extend %d",
+        "restart", "model",
+        // none of these can be done
+        "frobnicate %d", "set arm.k2 NaN", "set arm.links -%d", "open nothing/such", "set",
+        "set motor.voltage", "seek", "save", "save a.doc", "save /proc/none/a.csv", "speed 0",
+        "zoom sideways", "set run.duration 1e9", "set method.step 1e-9", "trace nonsense",
+        "glyphs %d", "push 1e999", "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80", "\xff\xfe broken"};
+    char line[200];
+    const char *form = commands[chance(s, sizeof commands / sizeof commands[0])];
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+    snprintf(line, sizeof line, form, 1 + chance(s, chance(s, 4) ? 6 : 25));
+#pragma GCC diagnostic pop
+    send_text(s, ":");
+    send_text(s, line);
+    send_text(s, chance(s, 10) ? "\r" : "\t");
+}
+
+static void use_mouse(soak *s)
+{
+    static const int buttons[] = {0, 0, 0, 32, 32, 64, 65, 1, 2, 35, 67, 128};
+    char report[64];
+    int x = chance(s, 8) ? 1 + chance(s, 120) : chance(s, 100000);
+    int y = chance(s, 8) ? 1 + chance(s, 40) : chance(s, 100000);
+    snprintf(report, sizeof report, "\033[<%d;%d;%d%c", buttons[chance(s, 12)], x, y,
+             chance(s, 3) ? 'M' : 'm');
+    send_text(s, report);
+}
+
+// Sequences in pieces, halves of characters, keys nobody knows.
+static void send_oddities(soak *s)
+{
+    static const char *const oddities[] = {"\033[1;5C",
+                                           "\033[200~pasted\033[201~",
+                                           "\xc3\xa4",
+                                           "\xe2\x82\xac",
+                                           "\xf0\x9f\x98\x80",
+                                           "\033[<0;12",
+                                           "\033O",
+                                           "\033[",
+                                           "\033[?1;2c",
+                                           "\033]0;t\007",
+                                           "\033[99;99;99~",
+                                           "\xc3",
+                                           "\x80\x81"};
+    const char *odd = oddities[chance(s, sizeof oddities / sizeof oddities[0])];
+    for (const char *c = odd; *c; c++) {
+        send_bytes(s, c, 1);
+        watch(s, chance(s, 4) ? 0 : 0.001 * chance(s, 40));
+    }
+}
+
+static void do_something(soak *s)
+{
+    int what = chance(s, 100);
+    if (what < 55) {
+        press_something(s);
+    } else if (what < 72) {
+        give_command(s);
+    } else if (what < 84) {
+        use_mouse(s);
+    } else if (what < 90) {
+        send_oddities(s);
+    } else if (what < 94) {
+        resize(s, 1 + chance(s, chance(s, 3) ? 160 : 300), 1 + chance(s, chance(s, 3) ? 50 : 100));
+    } else if (what < 97) {
+        send_text(s, "\033");
+        watch(s, ESCAPE_PAUSE);
+    } else {
+        watch(s, 0.001 * chance(s, 200));
+    }
+    watch(s, chance(s, 5) ? 0 : 0.001 * chance(s, 20));
+    if (chance(s, 12) == 0) {
+        probe(s);
+    }
+}
+
+// --- a session --------------------------------------------------------------------------------
+
+static void start(soak *s)
+{
+    s->master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (s->master < 0 || grantpt(s->master) != 0 || unlockpt(s->master) != 0) {
+        perror("no pseudo-terminal");
+        exit(77);
+    }
+    s->slave = open(ptsname(s->master), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    tcgetattr(s->slave, &s->before);
+    resize(s, 120, 40);
+    snprintf(s->folder, sizeof s->folder, "/tmp/soak-XXXXXX");
+    if (s->slave < 0 || mkdtemp(s->folder) == NULL) {
+        perror("no terminal or no folder");
+        exit(77);
+    }
+    s->child = fork();
+    if (s->child == 0) {
+        setsid();
+        ioctl(s->slave, TIOCSCTTY, 0);
+        for (int i = 0; i < 3; i++) {
+            dup2(s->slave, i);
+        }
+        setenv("TERM", "xterm-256color", 1);
+        setenv("LC_ALL", "C.UTF-8", 1);
+        setenv("XDG_CONFIG_HOME", s->folder, 1);
+        unsetenv("LINES");
+        unsetenv("COLUMNS");
+        if (chdir(s->folder) == 0) {
+            execl(s->program, s->program, "lab", (char *)NULL);
+        }
+        _exit(127);
+    }
+    fcntl(s->master, F_SETFL, fcntl(s->master, F_GETFL) | O_NONBLOCK);
+}
+
+// Back to the panels from wherever the keys led, with a short run.
+static void come_back(soak *s)
+{
+    resize(s, 120, 40);
+    send_text(s, "\030"); // ends a sequence that stopped halfway
+    for (int i = 0; i < 5; i++) {
+        watch(s, ESCAPE_PAUSE);
+        send_text(s, "\033");
+    }
+    watch(s, ESCAPE_PAUSE);
+    send_text(s, ":set run.duration " LAST_DURATION "\r");
+}
+
+static bool file_exists(const soak *s, const char *name)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", s->folder, name);
+    return access(path, F_OK) == 0;
+}
+
+static void save(soak *s, const char *name)
+{
+    char line[128];
+    double until = seconds_now() + COMPUTE_TIME;
+    snprintf(line, sizeof line, ":save %s\r", name);
+    while (!file_exists(s, name)) {
+        int status;
+        send_text(s, line);
+        watch(s, 0.2);
+        if (has_ended(s, &status)) {
+            fail(s, "ended by itself with status %d", status);
+        }
+        if (seconds_now() > until) {
+            fail(s, "%s is not saved", name);
+        }
+    }
+}
+
+// The saved scenario gives the rows that were saved.
+static void check_record(soak *s)
+{
+    char line[600];
+    snprintf(line, sizeof line,
+             "cd %s && { '%s' run last.yaml --csv again.csv --quiet >run.out 2>&1; "
+             "cmp last.csv again.csv; }",
+             s->folder, s->program);
+    if (system(line) != 0) {
+        fail(s, "the saved scenario gives other rows");
+    }
+}
+
+static void check_terminal(soak *s)
+{
+    static const int off[] = {1, 1000, 1002, 1003, 1006, 1015, 1047, 1049, 2026};
+    struct termios after;
+    tcgetattr(s->slave, &after);
+    bool same = after.c_iflag == s->before.c_iflag && after.c_oflag == s->before.c_oflag &&
+                after.c_cflag == s->before.c_cflag && after.c_lflag == s->before.c_lflag &&
+                memcmp(after.c_cc, s->before.c_cc, sizeof after.c_cc) == 0;
+    if (!same) {
+        fail(s, "the terminal's settings are not those from before");
+    }
+    for (size_t i = 0; i < sizeof off / sizeof off[0]; i++) {
+        if (s->seen.mode[off[i]]) {
+            fail(s, "the terminal is left with private mode %d", off[i]);
+        }
+    }
+    if (!s->seen.mode[25]) {
+        fail(s, "the cursor is left hidden");
+    }
+}
+
+static void leave(soak *s)
+{
+    int status = 0;
+    double until = seconds_now() + ANSWER_TIME;
+    send_text(s, ":quit\r");
+    while (!has_ended(s, &status)) {
+        watch(s, 0.01);
+        if (seconds_now() > until) {
+            fail(s, "does not end within %g s", ANSWER_TIME);
+        }
+    }
+    watch(s, 0.02);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        fail(s, "ends with status %d", status);
+    }
+}
+
+static void finish(soak *s)
+{
+    char line[128];
+    close(s->master);
+    close(s->slave);
+    snprintf(line, sizeof line, "rm -rf '%s'", s->folder);
+    if (system(line) != 0) {
+        fprintf(stderr, "%s is left over\n", s->folder);
+    }
+}
+
+static void run_session(soak *s, uint64_t seed, double seconds)
+{
+    s->seed = seed;
+    s->seen = (tracker){0};
+    s->sent = 0;
+    random_seed(&s->random, seed);
+    start(s);
+    double until = seconds_now() + ANSWER_TIME;
+    while (!s->seen.mode[1049] && seconds_now() < until) {
+        watch(s, 0.01); // keys that come before would be echoed
+    }
+    until = seconds_now() + seconds;
+    while (seconds_now() < until) {
+        do_something(s);
+    }
+    come_back(s);
+    probe(s);
+    save(s, "last.csv");
+    save(s, "last.yaml");
+    leave(s);
+    check_terminal(s);
+    check_record(s);
+    finish(s);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+int main(int count, char **arguments)
+{
+    static double answers[MOST_PROBES];
+    static soak s;
+    if (count < 3) {
+        fprintf(stderr, "soak_terminal PROGRAM SECONDS [FIRST-SEED]\n");
+        return 2;
+    }
+    double seconds = strtod(arguments[2], NULL), until = seconds_now() + seconds;
+    uint64_t seed = count > 3 ? strtoull(arguments[3], NULL, 10) : 1, first = seed;
+    s.program = realpath(arguments[1], NULL);
+    s.answers = answers;
+    do {
+        double left = until - seconds_now();
+        run_session(&s, seed++, left < SESSION_TIME ? left : SESSION_TIME);
+    } while (seconds_now() < until - 1);
+    qsort(answers, s.answer_count, sizeof answers[0], by_size);
+    printf("seeds %llu to %llu, %zu keys, %zu answers: median %.1f ms, 99 %% within %.1f ms, all "
+           "within %.1f ms\n",
+           (unsigned long long)first, (unsigned long long)seed - 1, s.keys, s.answer_count,
+           1e3 * answers[s.answer_count / 2], 1e3 * answers[s.answer_count * 99 / 100],
+           1e3 * answers[s.answer_count - 1]);
+    return 0;
+}

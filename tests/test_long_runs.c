@@ -1,0 +1,266 @@
+// Runs that take long: computed beside the session, stopped, gone on with, taken up from another
+// run's rows, which are then kept once.
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "src/lab/random.h"
+#include "src/lab/session.h"
+
+static void fail_on_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static void open_session(session *s, const char *name, const char *duration, double patience)
+{
+    scenario base;
+    fault f = {0};
+    char assignment[64];
+    snprintf(assignment, sizeof assignment, "run.duration=%s", duration);
+    assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(scenario_override(&base, assignment, &f), STATUS_OK);
+    assert_int_equal(session_open(s, &base, patience, &f), STATUS_OK);
+}
+
+static void change(session *s, const char *path, const char *value)
+{
+    fault f = {0};
+    if (session_change(s, parameter_find(path), value, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+static double seconds_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// Follows a run until it is over and reads what there is meanwhile, as drawing does.
+static int wait_for_run(session *s)
+{
+    int looks = 0;
+    while (s->computing != NULL) {
+        const trace *t = &s->run.trace;
+        size_t before = t->row_count;
+        double sum = t->rows[before - 1].force + t->angles[before * (size_t)t->angle_count - 1];
+        assert_true(isfinite(sum));
+        for (size_t i = 1; i < t->event_count; i++) {
+            assert_true(t->events[i].time >= t->events[i - 1].time);
+        }
+        nanosleep(&(struct timespec){.tv_nsec = 500000}, NULL);
+        session_follow(s);
+        assert_true(s->run.trace.row_count >= before);
+        looks++;
+    }
+    return looks;
+}
+
+// The session's run is that of its scenario from the start, to the last bit.
+static void assert_as_from_the_start(const session *s)
+{
+    run_result whole;
+    run_scenario(&s->effective, true, &whole);
+    const trace *a = &s->run.trace, *b = &whole.trace;
+    assert_null(s->computing);
+    assert_int_equal(a->row_count, b->row_count);
+    assert_int_equal(a->event_count, b->event_count);
+    assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
+    assert_memory_equal(a->angles, b->angles,
+                        a->row_count * (size_t)a->angle_count * sizeof *a->angles);
+    assert_memory_equal(a->events, b->events, a->event_count * sizeof *a->events);
+    for (int i = 0; i < summary_count; i++) {
+        double one, other;
+        summary_get(&s->run.summary, summary_table[i].key, &one);
+        summary_get(&whole.summary, summary_table[i].key, &other);
+        if (!summary_table[i].timing && memcmp(&one, &other, sizeof one) != 0) {
+            fail_msg("%s is %.17g, from the start %.17g", summary_table[i].key, one, other);
+        }
+    }
+    assert_string_equal(s->run.summary.message, whole.summary.message);
+    assert_int_equal(s->run.summary.status, whole.summary.status);
+    assert_true((s->run.touch == NULL) == (whole.touch == NULL));
+    if (whole.touch != NULL) {
+        assert_int_equal(s->run.touch_size, whole.touch_size);
+        assert_memory_equal(s->run.touch, whole.touch, whole.touch_size);
+    }
+    run_finish(&whole);
+}
+
+static void test_a_run_taken_up_is_the_run_from_the_start(void **state)
+{
+    (void)state;
+    static const char *const names[] = {
+        "corrected/first-impact", "corrected/newmark",   "corrected/restitution",
+        "corrected/spring-hub",   "corrected/stuck-hub", "corrected/five-links",
+        "corrected/pull-away",    "compare/hybrid",      "thesis/fig-3-4"};
+    random_generator random;
+    random_seed(&random, 7);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        session s;
+        fault f = {0};
+        open_session(&s, names[i], "3", HUGE_VAL);
+        for (int k = 0; k < 8; k++) {
+            session_seek(&s, session_end(&s) * random_uniform(&random));
+            if (k % 3 == 0 && session_step_event(&s, 1)) {
+                session_seek(&s, s.now + 3e-4 * random_uniform(&random));
+            }
+            if (k % 4 == 1 && s.run.summary.status == STATUS_OK &&
+                session_push(&s, 0.02 * (random_uniform(&random) - 0.5), &f) != STATUS_OK) {
+                assert_non_null(strstr(f.text, "knows no pushes"));
+            } else if (k % 4 == 2) {
+                change(&s, "run.duration", k < 6 ? "3.5" : "2.8");
+            } else if (k % 4 == 3) {
+                assert_int_equal(session_undo(&s, &f), STATUS_OK);
+            } else {
+                change(&s, "motor.voltage", k % 8 ? "0.7" : "1.3");
+            }
+            assert_as_from_the_start(&s);
+        }
+        session_finish(&s);
+    }
+}
+
+static void test_a_long_run_is_looked_at_while_it_is_computed(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    double before = seconds_now();
+    open_session(&s, "corrected/twenty-links", "4", 0);
+    check_below(seconds_now() - before, 1);
+    assert_non_null(s.computing);
+    assert_int_equal(session_branch(&s, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "still being computed"));
+    assert_true(wait_for_run(&s) > 1);
+    assert_as_from_the_start(&s);
+    session_finish(&s);
+}
+
+static void test_a_change_supersedes_a_run_being_computed(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    open_session(&s, "corrected/twenty-links", "4", 0);
+    session_seek(&s, 1e-3);
+    for (int i = 0; i < 20; i++) {
+        change(&s, "motor.voltage", i % 2 ? "0.8" : "1.2");
+        session_follow(&s);
+        if (i % 3 == 0) {
+            assert_int_equal(session_undo(&s, &f), STATUS_OK);
+        }
+        // a change that is refused lets the run go on
+        assert_int_not_equal(session_change(&s, parameter_find("arm.link_inertia"), "-1", &f), 0);
+    }
+    wait_for_run(&s);
+    assert_as_from_the_start(&s);
+    session_finish(&s);
+}
+
+static void test_a_run_is_stopped_and_gone_on_with(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    open_session(&s, "corrected/twenty-links", "4", 0);
+    assert_int_equal(session_go_on(&s, &f), STATUS_BAD_ARGUMENT);
+    while (s.run.trace.row_count < 1000 && s.computing != NULL) {
+        session_follow(&s);
+    }
+    assert_true(session_stop(&s));
+    assert_false(session_stop(&s));
+    assert_int_equal(s.run.summary.status, STATUS_STOPPED);
+    assert_non_null(strstr(s.run.summary.message, "stopped"));
+    size_t rows = s.run.trace.row_count;
+    assert_true(rows >= 1000 && session_end(&s) < 4);
+    assert_int_equal(session_go_on(&s, &f), STATUS_OK);
+    wait_for_run(&s);
+    assert_true(s.run.trace.row_count > rows);
+    assert_as_from_the_start(&s);
+    session_finish(&s);
+}
+
+static void test_the_cursor_waits_for_rows_to_come(void **state)
+{
+    (void)state;
+    session s;
+    open_session(&s, "corrected/twenty-links", "4", 0);
+    wait_for_run(&s);
+    session_seek(&s, 3.5);
+    change(&s, "arm.k2", "9");
+    change(&s, "arm.mass", "0.3");
+    check_close(s.now, 3.5, 0);
+    session_seek(&s, 3.6);
+    check_close(s.now, 3.5, 0);
+    assert_true(session_sample(&s)->time <= 3.5);
+    wait_for_run(&s);
+    check_close(s.now, 3.5, 0);
+    check_close(session_sample(&s)->time, 3.5, 2e-3);
+    // and is taken back where none came
+    change(&s, "run.duration", "2");
+    wait_for_run(&s);
+    check_close(s.now, 2, 1e-12);
+    session_finish(&s);
+}
+
+static void test_runs_end_with_their_session(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 10; i++) {
+        session s;
+        open_session(&s, "corrected/twenty-links", "30", 1e-3 * i);
+        double before = seconds_now();
+        session_finish(&s);
+        check_below(seconds_now() - before, 1);
+    }
+    assert_int_equal(long_array_memory(), 0);
+}
+
+static void check_shared_rows(const char *name)
+{
+    session s;
+    fault f = {0};
+    open_session(&s, name, "60", HUGE_VAL);
+    size_t alone = long_array_memory(), chunk = ARRAY_CHUNK, arrays = 5;
+    assert_true(s.run.trace.row_count >= 60000);
+    for (int i = 0; i < 8; i++) {
+        session_seek(&s, 59 + 0.1 * i);
+        assert_int_equal(session_branch(&s, &f), STATUS_OK);
+        change(&s, "arm.k2", i % 2 ? "7.5" : "6.5");
+        // two runs with the same rows but for the last second and chunks that are not full
+        assert_true(long_array_memory() < alone + alone / 60 + 2 * arrays * chunk);
+    }
+    assert_as_from_the_start(&s);
+    session_finish(&s);
+    assert_int_equal(long_array_memory(), 0);
+}
+
+static void test_branches_share_the_rows_before_them(void **state)
+{
+    (void)state;
+    check_shared_rows("corrected/free-vibration");
+    // runs that are computed from the start, or in one stride while nothing moves
+    check_shared_rows("compare/open-loop");
+    check_shared_rows("thesis/fig-3-4");
+    check_shared_rows("corrected/first-impact");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_run_taken_up_is_the_run_from_the_start),
+        cmocka_unit_test(test_a_long_run_is_looked_at_while_it_is_computed),
+        cmocka_unit_test(test_a_change_supersedes_a_run_being_computed),
+        cmocka_unit_test(test_a_run_is_stopped_and_gone_on_with),
+        cmocka_unit_test(test_the_cursor_waits_for_rows_to_come),
+        cmocka_unit_test(test_runs_end_with_their_session),
+        cmocka_unit_test(test_branches_share_the_rows_before_them),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,150 @@
+// The colours of the terminal lab: readable on their grounds, told apart by everybody, and the same
+// choice with fewer of them.
+#include "tests/lab_on_screen.h"
+
+#include "ui/ink_colours.h"
+
+static void test_measures_agree_with_known_values(void **state)
+{
+    (void)state;
+    const rgb black = {0, 0, 0}, white = {255, 255, 255}, grey = {119, 119, 119};
+    check_close(rgb_contrast(black, white), 21, 1e-9);
+    check_close(rgb_contrast(white, white), 1, 1e-12);
+    check_close(rgb_contrast(grey, white), 4.48, 0.005);
+    check_close(rgb_distance(black, white), 1, 1e-6);
+    assert_int_equal(colour_256(16).red, 0);
+    assert_int_equal(colour_256(231).green, 255);
+    assert_int_equal(colour_256(208).green, 135);
+    assert_int_equal(colour_256(255).blue, 238);
+}
+
+static double least_contrast(lab_theme theme, rgb c)
+{
+    return fmin(rgb_contrast(c, theme_grounds(theme)[0]), rgb_contrast(c, theme_grounds(theme)[1]));
+}
+
+static void test_every_ink_can_be_read_on_its_ground(void **state)
+{
+    (void)state;
+    for (int theme = COLOURS_DARK; theme <= COLOURS_LIGHT; theme++) {
+        for (int i = 0; i < INK_COUNT; i++) {
+            rgb c;
+            double least = i == INK_FRAME ? 3 : 4.5;
+            if (!ink_rgb((lab_theme)theme, (ink)i, &c)) {
+                assert_int_equal(ink_256((lab_theme)theme, (ink)i), -1);
+                assert_int_equal(ink_16((lab_theme)theme, (ink)i), -1);
+                continue;
+            }
+            if (least_contrast((lab_theme)theme, c) < least) {
+                fail_msg("ink %d of theme %d: contrast %.2f", i, theme,
+                         least_contrast((lab_theme)theme, c));
+            }
+            int near = ink_256((lab_theme)theme, (ink)i), basic = ink_16((lab_theme)theme, (ink)i);
+            assert_in_range(near, 16, 255);
+            assert_true(least_contrast((lab_theme)theme, colour_256(near)) >= least);
+            check_below(rgb_distance(colour_256(near), c), 0.09);
+            assert_true(basic < 16);
+            assert_true(basic < 0 || rgb_contrast(colour_16(basic),
+                                                  theme_grounds((lab_theme)theme)[0]) >= least);
+        }
+    }
+}
+
+static unsigned char share(double linear)
+{
+    linear = fmax(0, fmin(1, linear));
+    double value = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+    return (unsigned char)lround(255 * value);
+}
+
+static double linear_of(unsigned char value)
+{
+    double v = value / 255.0;
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+// What somebody without the sensitivity sees, Machado, Oliveira, Fernandes 2009.
+static rgb seen_without(rgb c, const double m[3][3])
+{
+    double in[3] = {linear_of(c.red), linear_of(c.green), linear_of(c.blue)}, out[3];
+    for (int i = 0; i < 3; i++) {
+        out[i] = m[i][0] * in[0] + m[i][1] * in[1] + m[i][2] * in[2];
+    }
+    return (rgb){share(out[0]), share(out[1]), share(out[2])};
+}
+
+static void test_curves_are_told_apart_by_everybody(void **state)
+{
+    (void)state;
+    static const double eyes[3][3][3] = {
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+        {{0.152286, 1.052583, -0.204868},
+         {0.114503, 0.786281, 0.099216},
+         {-0.003882, -0.048116, 1.051998}}, // without red
+        {{0.367322, 0.860646, -0.227968},
+         {0.280085, 0.672501, 0.047413},
+         {-0.011820, 0.042940, 0.968881}}, // without green
+    };
+    for (int theme = COLOURS_DARK; theme <= COLOURS_LIGHT; theme++) {
+        for (int i = INK_SERIES_0; i < INK_COUNT; i++) {
+            for (int j = INK_SERIES_0; j < i; j++) {
+                rgb a, b;
+                ink_rgb((lab_theme)theme, (ink)i, &a);
+                ink_rgb((lab_theme)theme, (ink)j, &b);
+                for (int eye = 0; eye < 3; eye++) {
+                    double apart =
+                        rgb_distance(seen_without(a, eyes[eye]), seen_without(b, eyes[eye]));
+                    if (apart < 0.09) {
+                        fail_msg("curves %d and %d of theme %d, eye %d: %.3f apart",
+                                 i - INK_SERIES_0, j - INK_SERIES_0, theme, eye, apart);
+                    }
+                }
+                // with fewer colours they are at least not the same; on light ground 16 have only
+                // seven that can be read, text's own among them
+                assert_true(theme == COLOURS_LIGHT ||
+                            ink_16((lab_theme)theme, (ink)i) != ink_16((lab_theme)theme, (ink)j));
+                assert_int_not_equal(ink_256((lab_theme)theme, (ink)i),
+                                     ink_256((lab_theme)theme, (ink)j));
+            }
+        }
+    }
+}
+
+static void test_no_colour_in_mono(void **state)
+{
+    (void)state;
+    rgb c;
+    for (int i = 0; i < INK_COUNT; i++) {
+        assert_false(ink_rgb(COLOURS_MONO, (ink)i, &c));
+        assert_int_equal(ink_256(COLOURS_MONO, (ink)i), -1);
+        assert_int_equal(ink_16(COLOURS_MONO, (ink)i), -1);
+    }
+}
+
+static void test_the_number_of_colours_is_a_setting(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    assert_int_equal(l.depth, DEPTH_AUTO);
+    press(&l, ":colours true<Enter>");
+    assert_int_equal(l.depth, DEPTH_TRUE);
+    press(&l, ":colours 256<Enter>");
+    assert_int_equal(l.depth, DEPTH_256);
+    press(&l, ":colours 17<Enter>");
+    assert_int_equal(l.depth, DEPTH_256);
+    assert_shows(&l, "'17' is none of auto, true, 256, 16, mono");
+    lab_finish(&l);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_measures_agree_with_known_values),
+        cmocka_unit_test(test_every_ink_can_be_read_on_its_ground),
+        cmocka_unit_test(test_curves_are_told_apart_by_everybody),
+        cmocka_unit_test(test_no_colour_in_mono),
+        cmocka_unit_test(test_the_number_of_colours_is_a_setting),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
