@@ -43,8 +43,9 @@ static void find_extent(lab *l)
     if (l->extent.version == s->version && known == t->row_count && l->extent.whole == !grows) {
         return;
     }
-    const bool anew = !grows || known > t->row_count;
-    const size_t first = anew ? 0 : known, samples = grows ? 100 : 2000;
+    const bool anew = !grows || l->extent.rows == 0;
+    const bool goes_on = l->extent.version == s->version && known < t->row_count;
+    const size_t first = grows && goes_on ? known : 0, samples = grows ? 100 : 2000;
     double low = anew ? 0 : l->extent.lowest, high = anew ? 0 : l->extent.highest;
     double most = anew ? 0 : l->extent.most_angle;
     size_t stride = (t->row_count - first) / samples + 1;

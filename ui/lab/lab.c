@@ -20,7 +20,7 @@ static void look_afresh(lab *l)
     l->has_mark = false;
     l->from = l->to = 0;
     l->adrift = false;
-    l->extent.version = 0;
+    memset(&l->extent, 0, sizeof l->extent);
     lab_define_panes(l);
     lab_draw_finish(l);
     const summary *m = &l->session.run.summary;
