@@ -217,11 +217,12 @@ bool act_axis(lab *l, const char *argument)
     // limits are two words, everything else is one; a pane may follow
     bool limits = (strtod(words[0], &end), end != words[0]);
     int used = limits ? 2 : 1;
-    if (count < used || count > used + 1) {
-        lab_say(l, true,
-                limits ? "an axis has two limits, such as 0 2, and then a pane"
-                       : "what is '%s' for?",
-                words[count - 1]);
+    if (count < used) {
+        lab_say(l, true, "an axis has two limits, such as 0 2, and then a pane");
+        return false;
+    }
+    if (count > used + 1) {
+        lab_say(l, true, "what is '%s' for?", words[2]);
         return false;
     }
     if (count > used && !take_pane(l, words[used], &index)) {
