@@ -107,13 +107,3 @@ status overlay_read(trace *t, const char *path, fault *f)
     g_free(text);
     return code;
 }
-
-bool overlay_has(const trace *t, int signal)
-{
-    for (size_t i = 0; i < t->row_count; i++) {
-        if (isfinite(signal_value(&t->rows[i], signal))) {
-            return true;
-        }
-    }
-    return false;
-}

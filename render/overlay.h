@@ -10,6 +10,3 @@
 // trace_finish also on failure. STATUS_CANNOT_READ for the file, STATUS_BAD_ARGUMENT with path and
 // line for what is in it.
 status overlay_read(trace *t, const char *path, fault *f);
-
-// Whether the trace has any number of the signal.
-bool overlay_has(const trace *t, int signal);

@@ -326,7 +326,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         int index = signal_find(from->signals[i]);
         bool twin = !alone && strncmp(from->signals[i], "first_", 6) == 0 && hub_is_first_link(s);
         bool points = run > 0 && runs[run].points;
-        if (twin || (points && !overlay_has(&runs[run].result->trace, index))) {
+        if (twin || (points && !trace_has(&runs[run].result->trace, index))) {
             continue;
         }
         figure_series *out = &t->series[panel_index][panel->series_count++];

@@ -173,6 +173,8 @@ const parameter_info parameter_table[] = {
      NOT_TIMED, "inverse-dynamics: speed with which the tip is to meet the wall"},
     {"sensor.ideal", "", BOOLEAN, AT(sensor.ideal), 0, 0, 0, 1, NULL, NOT_TIMED,
      "switches off every imperfection of sensors and converters"},
+    {"sensor.force", "", CHOICE, AT(sensor.force), FORCE_BY_FSR, FORCE_BY_FSR, 0, 1, "fsr|piezo",
+     NOT_TIMED, "force sensor whose reading the controller gets as the force"},
     {"sensor.encoder_counts", "", INTEGER, AT(sensor.encoder_counts), 8000, 8000, 0, 1000000000,
      NULL, NOT_TIMED, "counts of the encoder per revolution, 0 for a continuous reading"},
     {"sensor.tachometer_gain", "V s/rad", REAL, AT(sensor.tachometer_gain), 2, 2, 1e-6, 1000, NULL,
@@ -199,6 +201,41 @@ const parameter_info parameter_table[] = {
      NOT_TIMED, "force beyond which the sensor's resistance falls no further"},
     {"sensor.fsr_noise", "V", REAL, AT(sensor.fsr_noise), 0.02, 0.02, 0, 10, NULL, NOT_TIMED,
      "standard deviation of the force channel's noise"},
+    {"sensor.piezo", "", BOOLEAN, AT(sensor.piezo), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "fits a piezoelectric force sensor at the tip (sensor.force = piezo fits it too)"},
+    {"sensor.piezo_gain", "V/N", REAL, AT(sensor.piezo_gain), 1, 1, 1e-6, 1e6, NULL, NOT_TIMED,
+     "volts of its charge amplifier per force"},
+    {"sensor.piezo_rise_time", "s", REAL, AT(sensor.piezo_rise_time), 5e-5, 5e-5, 0, 1, NULL,
+     NOT_TIMED,
+     "rise time of the piezoelectric force sensor from 10 % to 90 %, 0 for an instant one"},
+    {"sensor.piezo_leak_time", "s", REAL, AT(sensor.piezo_leak_time), 5, 5, 0, 1e6, NULL, NOT_TIMED,
+     "time constant with which its charge leaks away, 0 for a charge that stays"},
+    {"sensor.piezo_range", "N", REAL, AT(sensor.piezo_range), 10, 10, 0, 1e6, NULL, NOT_TIMED,
+     "force beyond which it is off scale either way, 0 for no such limit"},
+    {"sensor.piezo_noise", "V", REAL, AT(sensor.piezo_noise), 5e-3, 5e-3, 0, 10, NULL, NOT_TIMED,
+     "standard deviation of the piezoelectric force sensor's noise"},
+    {"sensor.film", "", BOOLEAN, AT(sensor.film), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "fits a piezo film along the beam that shows its bending, last link's angle minus the "
+     "first's"},
+    {"sensor.film_gain", "V/rad", REAL, AT(sensor.film_gain), 10, 10, 1e-6, 1e6, NULL, NOT_TIMED,
+     "volts of the film's amplifier per bending"},
+    {"sensor.film_leak_time", "s", REAL, AT(sensor.film_leak_time), 1, 1, 0, 1e6, NULL, NOT_TIMED,
+     "time constant with which the film's charge leaks away, 0 for a charge that stays"},
+    {"sensor.film_noise", "V", REAL, AT(sensor.film_noise), 0.01, 0.01, 0, 10, NULL, NOT_TIMED,
+     "standard deviation of the film's noise"},
+    {"sensor.accelerometer", "", BOOLEAN, AT(sensor.accelerometer), 0, 0, 0, 1, NULL, NOT_TIMED,
+     "fits a tangential accelerometer to the hub that shows its angular acceleration"},
+    {"sensor.accelerometer_gain", "V s2/rad", REAL, AT(sensor.accelerometer_gain), 0.02, 0.02, 1e-9,
+     1e6, NULL, NOT_TIMED, "volts of the accelerometer per angular acceleration of the hub"},
+    {"sensor.accelerometer_rise_time", "s", REAL, AT(sensor.accelerometer_rise_time), 3.5e-4,
+     3.5e-4, 0, 1, NULL, NOT_TIMED,
+     "rise time of the accelerometer from 10 % to 90 % (0.35 over its bandwidth), 0 for an instant "
+     "one"},
+    {"sensor.accelerometer_range", "rad/s2", REAL, AT(sensor.accelerometer_range), 500, 500, 0, 1e9,
+     NULL, NOT_TIMED,
+     "angular acceleration beyond which it is off scale either way, 0 for no such limit"},
+    {"sensor.accelerometer_noise", "V", REAL, AT(sensor.accelerometer_noise), 5e-3, 5e-3, 0, 10,
+     NULL, NOT_TIMED, "standard deviation of the accelerometer's noise"},
     {"sensor.adc_bits", "", INTEGER, AT(sensor.adc_bits), 12, 12, 0, 32, NULL, NOT_TIMED,
      "bits of the A/D converter, 0 for a continuous one"},
     {"sensor.dac_bits", "", INTEGER, AT(sensor.dac_bits), 12, 12, 0, 32, NULL, NOT_TIMED,
@@ -443,6 +480,28 @@ static bool is_set(const parameters *p, const char *path)
     return p->set[parameter_find(path)] != 0;
 }
 
+// A controller that is to get the piezoelectric sensor's force needs one that shows something.
+static status resolve_piezo(parameters *p, fault *f)
+{
+    if (p->sensor.force == FORCE_BY_PIEZO && !is_set(p, "sensor.piezo")) {
+        p->sensor.piezo = true;
+    }
+    if (p->sensor.force == FORCE_BY_PIEZO && !p->sensor.piezo) {
+        return fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "sensor.force = piezo needs the sensor that sensor.piezo = false leaves out");
+    }
+    double leak = p->sensor.piezo_leak_time;
+    if (leak > 0 && leak < p->sensor.piezo_rise_time) {
+        return fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "sensor.piezo_leak_time = %g s is shorter than sensor.piezo_rise_time = %g "
+            "s, expected a longer one or 0",
+            leak, p->sensor.piezo_rise_time);
+    }
+    return STATUS_OK;
+}
+
 status parameters_resolve(parameters *p, fault *f)
 {
     for (int i = 0; i < parameter_count; i++) {
@@ -490,6 +549,10 @@ status parameters_resolve(parameters *p, fault *f)
         return fault_set(f, STATUS_BAD_SCENARIO,
                          "control.jitter = %g s is more than half the period of %g s (control.rate)",
                          p->control.jitter, 1 / p->control.rate);
+    }
+    status sensible = resolve_piezo(p, f);
+    if (sensible != STATUS_OK) {
+        return sensible;
     }
     if (p->arm.model == ARM_PRINTED) {
         if (p->arm.links != 2) {

@@ -124,23 +124,42 @@ typedef struct control_parameters {
     double arrival_speed;              // of the tip at the wall under inverse-dynamics [m/s]
 } control_parameters;
 
+// In the order of the choices of sensor.force.
+typedef enum force_sensor { FORCE_BY_FSR, FORCE_BY_PIEZO } force_sensor;
+
 typedef struct sensor_parameters {
-    bool ideal;                   // all imperfections of sensors and converters are off
-    int encoder_counts;           // per revolution, 0: continuous
-    double tachometer_gain;       // [V s/rad]
-    double tachometer_ripple;     // amplitude as a share of the reading
-    int tachometer_ripple_count;  // ripples a revolution
-    double tachometer_noise;      // standard deviation [V]
-    double fsr_rise_time;         // 10 % to 90 % [s]
-    double fsr_resistance;        // at 1 N [ohm]
-    double fsr_exponent;          // of the power law
-    double fsr_divider;           // measuring resistor [ohm]
-    double fsr_supply;            // across the divider [V]
-    double fsr_gain;              // of the stage behind it
-    double fsr_saturation;        // force beyond which the resistance falls no further [N]
-    double fsr_noise;             // standard deviation [V]
-    int adc_bits, dac_bits;       // 0: continuous
-    double adc_range;             // either way [V]
+    bool ideal;                     // all imperfections of sensors and converters are off
+    int force;                      // force_sensor: whose reading a controller gets as the force
+    int encoder_counts;             // per revolution, 0: continuous
+    double tachometer_gain;         // [V s/rad]
+    double tachometer_ripple;       // amplitude as a share of the reading
+    int tachometer_ripple_count;    // ripples a revolution
+    double tachometer_noise;        // standard deviation [V]
+    double fsr_rise_time;           // 10 % to 90 % [s]
+    double fsr_resistance;          // at 1 N [ohm]
+    double fsr_exponent;            // of the power law
+    double fsr_divider;             // measuring resistor [ohm]
+    double fsr_supply;              // across the divider [V]
+    double fsr_gain;                // of the stage behind it
+    double fsr_saturation;          // force beyond which the resistance falls no further [N]
+    double fsr_noise;               // standard deviation [V]
+    bool piezo;                     // piezoelectric force sensor fitted
+    double piezo_gain;              // [V/N]
+    double piezo_rise_time;         // 10 % to 90 % [s]
+    double piezo_leak_time;         // time constant with which its charge leaks, 0: it stays [s]
+    double piezo_range;             // largest force it shows either way, 0: any [N]
+    double piezo_noise;             // standard deviation [V]
+    bool film;                      // piezo film along the beam fitted
+    double film_gain;               // [V/rad]
+    double film_leak_time;          // time constant with which its charge leaks, 0: it stays [s]
+    double film_noise;              // standard deviation [V]
+    bool accelerometer;             // on the hub, fitted
+    double accelerometer_gain;      // [V s2/rad]
+    double accelerometer_rise_time; // 10 % to 90 % [s]
+    double accelerometer_range;     // largest acceleration it shows either way, 0: any [rad/s2]
+    double accelerometer_noise;     // standard deviation [V]
+    int adc_bits, dac_bits;         // 0: continuous
+    double adc_range;               // either way [V]
 } sensor_parameters;
 
 typedef struct parameters {

@@ -155,14 +155,19 @@ static void object_holds_every_key(void **state)
 }
 
 // CSV of a trace of two rows with three angles each, on the heap.
-static char *csv_of(int links)
+// A run's CSV, with or without a value of a sensor that need not be there.
+static char *csv_of(int links, double film)
 {
     char *text = NULL;
     size_t length = 0;
     trace t;
     trace_init(&t, 3);
     for (int i = 0; i < 2; i++) {
-        sample row = {.time = 0.1 * i, .force = 2.5};
+        sample row = {.time = 0.1 * i,
+                      .force = 2.5,
+                      .piezo_force = (double)NAN,
+                      .film = film,
+                      .accelerometer = (double)NAN};
         double angles[] = {0.1, 0.2, 0.3};
         assert_int_equal(trace_add_row(&t, &row, angles), STATUS_OK);
     }
@@ -186,8 +191,11 @@ static void csv_has_one_header_and_a_column_for_each_value(void **state)
 {
     (void)state;
     for (int links = 2; links <= 3; links++) {
-        char *text = csv_of(links);
-        int columns = signal_count + (links > 2 ? 3 : 0);
+        char *text = csv_of(links, (double)NAN);
+        int columns = (links > 2 ? 3 : 0);
+        for (int i = 0; i < signal_count; i++) {
+            columns += !signal_table[i].optional; // the run has no such sensor
+        }
         assert_int_equal(strncmp(text, "time[s],hub_angle[rad],", 23), 0);
         assert_int_equal(strstr(text, ",angle_3[rad]\n") != NULL, links > 2);
         char *line = text;
@@ -200,6 +208,20 @@ static void csv_has_one_header_and_a_column_for_each_value(void **state)
     }
 }
 
+static void csv_has_columns_of_fitted_sensors_only(void **state)
+{
+    (void)state;
+    char *without = csv_of(2, (double)NAN), *with = csv_of(2, -0.125);
+    assert_null(strstr(without, "film[rad]"));
+    assert_non_null(strstr(with, ",film[rad],"));
+    assert_non_null(strstr(with, ",-0.125,"));
+    assert_null(strstr(with, "piezo_force"));
+    assert_null(strstr(with, "accelerometer"));
+    assert_int_equal(count_of(with, ','), count_of(without, ',') + 1);
+    free(without);
+    free(with);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -208,6 +230,7 @@ int main(void)
         cmocka_unit_test(text_without_utf8_is_made_readable),
         cmocka_unit_test(object_holds_every_key),
         cmocka_unit_test(csv_has_one_header_and_a_column_for_each_value),
+        cmocka_unit_test(csv_has_columns_of_fitted_sensors_only),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

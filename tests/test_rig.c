@@ -14,15 +14,26 @@ static sensors fresh_sensors(const char *const *settings, int seed)
     return s;
 }
 
+static sensor_reading read_hub(sensors *s, double angle, double velocity, double force)
+{
+    return sensors_read(s, &(sensed_motion){.angle = angle, .velocity = velocity, .force = force});
+}
+
+// A stride of the force alone.
+static void follow_force(sensors *s, double h, double first, double last, double mean)
+{
+    sensors_follow(s, h, &(sensed_motion){.force = first}, &(sensed_motion){.force = last}, mean);
+}
+
 static void encoder_steps_by_one_count(void **state)
 {
     (void)state;
     sensors s = fresh_sensors(SETTINGS("sensor.encoder_counts=500"), 1);
     const double count = 2 * PI / 500;
-    double last = sensors_read(&s, -0.1, 0, 0).angle;
+    double last = read_hub(&s, -0.1, 0, 0).angle;
     int steps = 0;
     for (double angle = -0.1; angle < 0.1; angle += count / 50) {
-        double read = sensors_read(&s, angle, 0, 0).angle;
+        double read = read_hub(&s, angle, 0, 0).angle;
         check_close(read, angle, count / 2 * (1 + 1e-9));
         check_close(read / count, round(read / count), 1e-9);
         if (read != last) {
@@ -53,8 +64,8 @@ static double rise_to(double level)
     sensors s = fresh_sensors(NULL, 1);
     const double h = 1e-6;
     double t = 0;
-    for (; s.felt_force < level && t < 1; t += h) {
-        sensors_follow(&s, h, 1, 1, 1);
+    for (; s.fsr.value < level && t < 1; t += h) {
+        follow_force(&s, h, 1, 1, 1);
     }
     return t;
 }
@@ -71,18 +82,18 @@ static void force_sensor_follows_a_stride_exactly(void **state)
     // f = 2 - 3 u + 5 u^2 over 4 ms, at once and in a thousand short strides
     const double h = 4e-3;
     sensors once = fresh_sensors(NULL, 1), often = once;
-    once.felt_force = often.felt_force = 0.7;
-    sensors_follow(&once, h, 2, 4, 2 - 1.5 + 5.0 / 3);
+    once.fsr.value = often.fsr.value = 0.7;
+    follow_force(&once, h, 2, 4, 2 - 1.5 + 5.0 / 3);
     for (int i = 0; i < 1000; i++) {
         double a = i / 1000.0, b = (i + 1) / 1000.0;
         double mean = 2 - 1.5 * (a + b) + 5.0 / 3 * (a * a + a * b + b * b);
-        sensors_follow(&often, h / 1000, 2 - 3 * a + 5 * a * a, 2 - 3 * b + 5 * b * b, mean);
+        follow_force(&often, h / 1000, 2 - 3 * a + 5 * a * a, 2 - 3 * b + 5 * b * b, mean);
     }
-    check_close(once.felt_force, often.felt_force, 1e-9);
+    check_close(once.fsr.value, often.fsr.value, 1e-9);
     // a stride of no length changes nothing
-    double before = once.felt_force;
-    sensors_follow(&once, 1e-17, 1, 3, 1e9);
-    check_close(once.felt_force, before, 1e-4);
+    double before = once.fsr.value;
+    follow_force(&once, 1e-17, 1, 3, 1e9);
+    check_close(once.fsr.value, before, 1e-4);
 }
 
 static void impulse_arrives_whole(void **state)
@@ -93,9 +104,9 @@ static void impulse_arrives_whole(void **state)
     const double h = 1e-6, impulse = 0.02;
     sensors_strike(&s, impulse);
     for (int i = 0; i < 20000; i++) {
-        double before = s.felt_force;
-        sensors_follow(&s, h, 0, 0, 0);
-        arrived += h * (before + s.felt_force) / 2;
+        double before = s.fsr.value;
+        follow_force(&s, h, 0, 0, 0);
+        arrived += h * (before + s.fsr.value) / 2;
     }
     check_relative(arrived, impulse, 1e-4);
 }
@@ -127,9 +138,9 @@ static void noise_has_its_spread_and_follows_its_seed(void **state)
     const int count = 40000;
     int same = 0;
     for (int i = 0; i < count; i++) {
-        double v = sensors_read(&s, 0, 0.5, 1).velocity - 0.5;
-        assert_true(sensors_read(&twin, 0, 0.5, 1).velocity - 0.5 == v);
-        same += sensors_read(&other, 0, 0.5, 1).velocity - 0.5 == v;
+        double v = read_hub(&s, 0, 0.5, 1).velocity - 0.5;
+        assert_true(read_hub(&twin, 0, 0.5, 1).velocity - 0.5 == v);
+        same += read_hub(&other, 0, 0.5, 1).velocity - 0.5 == v;
         sum += v;
         squares += v * v;
     }
@@ -145,18 +156,18 @@ static void ripple_follows_the_shaft(void **state)
     sensors s = fresh_sensors(
         SETTINGS("sensor.tachometer_noise=0", "sensor.adc_bits=0", "sensor.tachometer_ripple=0.05"),
         1);
-    check_close(sensors_read(&s, 0.5 * PI / 79, 2, 0).velocity, 2.1, 1e-9);
-    check_close(sensors_read(&s, 1.5 * PI / 79, 2, 0).velocity, 1.9, 1e-9);
+    check_close(read_hub(&s, 0.5 * PI / 79, 2, 0).velocity, 2.1, 1e-9);
+    check_close(read_hub(&s, 1.5 * PI / 79, 2, 0).velocity, 1.9, 1e-9);
 }
 
 static void ideal_sensors_tell_the_truth(void **state)
 {
     (void)state;
     sensors s = fresh_sensors(SETTINGS("sensor.ideal=true"), 1);
-    sensor_reading r = sensors_read(&s, 0.1234567, -1.2345678, 3.456789);
+    sensor_reading r = read_hub(&s, 0.1234567, -1.2345678, 3.456789);
     check_close(r.angle, 0.1234567, 0);
     check_close(r.velocity, -1.2345678, 1e-12);
-    check_close(r.force, 3.456789, 1e-12);
+    check_close(r.fsr_force, 3.456789, 1e-12);
 }
 
 // --- the loop -------------------------------------------------------------------------------
@@ -209,9 +220,9 @@ static void a_command_a_period_late_goes_out_with_the_next_sample(void **state)
         assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
         for (int i = 0; i < 300; i++) {
             // forces that never repeat, so that every command is another one
-            double force = 0.5 + 0.003 * i;
+            sensed_motion now = {.force = 0.5 + 0.003 * i};
             long samples = r->samples;
-            assert_int_equal(rig_act(r, rig_next_time(r), 0, 0, force, &changed, &f), STATUS_OK);
+            assert_int_equal(rig_act(r, rig_next_time(r), &now, &changed, &f), STATUS_OK);
             if (r->samples == samples) {
                 continue; // only a command took effect
             }
@@ -246,7 +257,7 @@ static void jitter_stays_within_its_width(void **state)
         double time = rig_next_time(r), off = time - i * 0.005;
         check_below(fabs(off), 0.0005 + 1e-12);
         widest = fmax(widest, fabs(off));
-        assert_int_equal(rig_act(r, time, 0, 0, 0, &changed, &f), STATUS_OK);
+        assert_int_equal(rig_act(r, time, &(sensed_motion){0}, &changed, &f), STATUS_OK);
         assert_int_equal(changed, i == 0);
     }
     check_below(0.00045, widest);

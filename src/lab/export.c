@@ -240,10 +240,23 @@ json_t *export_run(const scenario *s, const run_result *result)
     return object;
 }
 
-static void csv_header(FILE *stream, const trace *t, bool angles)
+// Indices of the signals that have a column; returns how many those are.
+static int csv_signals(const trace *t, int *columns)
 {
+    int count = 0;
     for (int i = 0; i < signal_count; i++) {
-        fprintf(stream, "%s%s[%s]", i > 0 ? "," : "", signal_table[i].name, signal_table[i].unit);
+        if (!signal_table[i].optional || trace_has(t, i)) {
+            columns[count++] = i;
+        }
+    }
+    return count;
+}
+
+static void csv_header(FILE *stream, const trace *t, const int *columns, int count, bool angles)
+{
+    for (int i = 0; i < count; i++) {
+        const signal_info *signal = &signal_table[columns[i]];
+        fprintf(stream, "%s%s[%s]", i > 0 ? "," : "", signal->name, signal->unit);
     }
     for (int i = 0; angles && i < t->angle_count; i++) {
         fprintf(stream, ",angle_%d[rad]", i + 1);
@@ -254,11 +267,12 @@ static void csv_header(FILE *stream, const trace *t, bool angles)
 void export_csv(FILE *stream, const trace *t, int links)
 {
     char text[NUMBER_TEXT];
+    int columns[SIGNALS_AT_MOST], count = csv_signals(t, columns);
     bool angles = links > 2;
-    csv_header(stream, t, angles);
+    csv_header(stream, t, columns, count, angles);
     for (size_t row = 0; row < t->row_count && !ferror(stream); row++) {
-        for (int i = 0; i < signal_count; i++) {
-            number_format(text, signal_value(&t->rows[row], i));
+        for (int i = 0; i < count; i++) {
+            number_format(text, signal_value(&t->rows[row], columns[i]));
             if (i > 0) {
                 fputc(',', stream);
             }

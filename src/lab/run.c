@@ -75,8 +75,8 @@ typedef struct recording {
     bool pulse_open;           // the first pulse has not ended
     rig *rig;                  // NULL for the bare arm
     double command_time, command_angle; // when and where the present command took effect [s], [rad]
-    double hub_angle, hub_velocity, force; // printed model: after the last step [rad], [rad/s], [N]
-    fault *rig_fault;                      // printed model: where the rig's fault goes
+    sensed_motion after_step;           // printed model: what the sensors see
+    fault *rig_fault;                   // printed model: where the rig's fault goes
     status rig_status;
 } recording;
 
@@ -191,7 +191,10 @@ static void add_rig_signals(const recording *r, sample *row)
     bool sampled = on != NULL && on->samples > 0;
     row->encoder = sampled ? on->reading.angle : (double)NAN;
     row->tachometer = sampled ? on->reading.velocity : (double)NAN;
-    row->force_reading = sampled ? on->reading.force : (double)NAN;
+    row->force_reading = sampled ? on->reading.fsr_force : (double)NAN;
+    row->piezo_force = sampled ? on->reading.piezo_force : (double)NAN;
+    row->film = sampled ? on->reading.bending : (double)NAN;
+    row->accelerometer = sampled ? on->reading.acceleration : (double)NAN;
     row->command = sampled ? on->output.command : (double)NAN;
     row->controller_mode = sampled ? on->output.mode : (double)NAN;
     row->desired_angle = sampled ? on->output.desired_angle : (double)NAN;
@@ -377,6 +380,15 @@ static status book_event(recording *r, motion *m, const motion_report *report)
     return failed;
 }
 
+// Lets the force sensors feel an impact that has just been applied.
+static void strike(recording *r, const arm *a, const motion *m, const motion_report *report)
+{
+    // steps that do not resolve the impact carry its impulse in their force
+    if (r->rig != NULL && report->event == MOTION_IMPACT && !motion_unresolved(a, m)) {
+        sensors_strike(&r->rig->sensors, report->impulse);
+    }
+}
+
 // Applies an event that the machine stopped at and records the rows on its both sides.
 static status pass_event(recording *r, const arm *a, motion *m, motion_report *report)
 {
@@ -391,9 +403,7 @@ static status pass_event(recording *r, const arm *a, motion *m, motion_report *r
         r->result->touch_size = size;
     }
     motion_apply(a, m, report);
-    if (r->rig != NULL && report->event == MOTION_IMPACT && !motion_unresolved(a, m)) {
-        sensors_strike(&r->rig->sensors, report->impulse);
-    }
+    strike(r, a, m, report);
     if (failed == STATUS_OK) {
         failed = book_event(r, m, report);
     }
@@ -426,6 +436,7 @@ static status act(recording *r, arm *a, motion *m, fault *f)
             e.kind = EVENT_PUSH;
             e.impulse = todo->value;
             motion_push(a, m, todo->value, &report);
+            strike(r, a, m, &report);
         }
         if (failed == STATUS_OK) {
             failed = trace_add_event(&r->result->trace, e);
@@ -463,6 +474,19 @@ static status take_command(recording *r, arm *a, motion *m)
     return failed == STATUS_OK && now > 0 ? record_row(r, a, m, m->state, 0) : failed;
 }
 
+// What the sensors are fixed to, in a state of the motion.
+static sensed_motion sense(const arm *a, const motion *m, double *state)
+{
+    const double *q = state_angles(m, state), *w = state_velocities(m, state);
+    int first = a->first, last = a->dof - 1;
+    return (sensed_motion){.angle = q[0],
+                           .velocity = w[0],
+                           .acceleration = state_accelerations(m, state)[0],
+                           .bending = q[last] - q[first],
+                           .bending_rate = w[last] - w[first],
+                           .force = state[SLOT_FORCE]};
+}
+
 // Samples the sensors and changes the command where the time for it has come.
 static status control(recording *r, arm *a, motion *m, fault *f)
 {
@@ -471,8 +495,8 @@ static status control(recording *r, arm *a, motion *m, fault *f)
     if (r->rig == NULL || rig_next_time(r->rig) > now) {
         return STATUS_OK;
     }
-    status s = rig_act(r->rig, now, state_angles(m, m->state)[0], state_velocities(m, m->state)[0],
-                       m->state[SLOT_FORCE], &changed, f);
+    sensed_motion sensed = sense(a, m, m->state);
+    status s = rig_act(r->rig, now, &sensed, &changed, f);
     return s == STATUS_OK && changed ? take_command(r, a, m) : s;
 }
 
@@ -543,7 +567,8 @@ static status book_stride(recording *r, const arm *a, motion *m, bool at_event)
     double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
     double mean = length > SHORTEST_MEAN ? integral / length : ends;
     if (r->rig != NULL) {
-        sensors_follow(&r->rig->sensors, length, start[SLOT_FORCE], m->state[SLOT_FORCE], mean);
+        sensed_motion first = sense(a, m, m->trial), last = sense(a, m, m->state);
+        sensors_follow(&r->rig->sensors, length, &first, &last, mean);
     }
     if (s == STATUS_OK && length > 0) {
         s = remember_stride(r, (force_stride){start[SLOT_TIME], m->state[SLOT_TIME],
@@ -854,10 +879,15 @@ static bool observe_printed(void *context, const printed_row *row)
     double start = r->count > 0 ? r->strides[r->count - 1].end : row->time;
     force_stride stride = {start, row->time, before, row->force, (before + row->force) / 2};
     if (r->rig != NULL) {
-        sensors_follow(&r->rig->sensors, row->time - start, before, row->force, stride.mean);
-        r->hub_angle = row->angle[0];
-        r->hub_velocity = row->velocity[0];
-        r->force = row->force;
+        sensed_motion last = {.angle = row->angle[0],
+                              .velocity = row->velocity[0],
+                              .acceleration = row->acceleration[0],
+                              .bending = row->angle[2] - row->angle[1],
+                              .bending_rate = row->velocity[2] - row->velocity[1],
+                              .force = row->force};
+        sensed_motion first = r->count > 0 ? r->after_step : last;
+        sensors_follow(&r->rig->sensors, row->time - start, &first, &last, stride.mean);
+        r->after_step = last;
     }
     if (r->rig_status == STATUS_OK && asked_to_stop(r)) {
         r->rig_status = fault_set(r->rig_fault, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
@@ -884,10 +914,9 @@ static void script_printed(void *context, double time, parameters *p)
     }
     if (r->rig != NULL && r->rig_status == STATUS_OK) {
         bool changed;
-        r->rig_status =
-            rig_act(r->rig, time, r->hub_angle, r->hub_velocity, r->force, &changed, r->rig_fault);
+        r->rig_status = rig_act(r->rig, time, &r->after_step, &changed, r->rig_fault);
         if (changed) {
-            book_electrical_energy(r, time, r->hub_angle);
+            book_electrical_energy(r, time, r->after_step.angle);
         }
         p->motor.voltage = r->rig->applied;
     }
@@ -951,7 +980,7 @@ static status run_printed(recording *r, fault *f)
             }
         }
         finish_summary(r, weight > 0 ? total / weight * fmin(STEADY_WINDOW, p->run.duration) : 0);
-        finish_rig_summary(r, r->hub_angle);
+        finish_rig_summary(r, r->after_step.angle);
     }
     return s;
 }

@@ -3,9 +3,10 @@
 #include <string.h>
 
 #define AT(field) offsetof(sample, field)
+#define OPTIONAL  true
 
 const signal_info signal_table[] = {
-    // name, symbol, ASCII twin, unit, description, colour, line, offset
+    // name, symbol, ASCII twin, unit, description, colour, line, offset, whether it is optional
     {"time", "t", "t", "s", "simulated time", 0, LINE_SOLID, AT(time)},
     {"hub_angle", "θ<sub>1</sub>", "th1", "rad", "angle of the hub", 0, LINE_SOLID, AT(hub_angle)},
     {"first_angle", "θ<sub>2</sub>", "th2", "rad", "angle of the first link", 1, LINE_DASHED,
@@ -58,6 +59,14 @@ const signal_info signal_table[] = {
      LINE_SOLID, AT(tachometer)},
     {"force_reading", "f<sub>FSR</sub>", "fsr", "N", "contact force as the FSR reads it", 5,
      LINE_SOLID, AT(force_reading)},
+    {"piezo_force", "f<sub>piezo</sub>", "fpz", "N",
+     "contact force as the piezoelectric sensor reads it", 2, LINE_SOLID, AT(piezo_force),
+     OPTIONAL},
+    {"film", "δ<sub>film</sub>", "film", "rad",
+     "bending of the beam, last link's angle minus the first's, as the piezo film reads it", 4,
+     LINE_SOLID, AT(film), OPTIONAL},
+    {"accelerometer", "θ̈<sub>acc</sub>", "acc", "rad/s2",
+     "hub acceleration as the accelerometer reads it", 0, LINE_SOLID, AT(accelerometer), OPTIONAL},
     {"command", "u", "u", "V", "command of the controller", 6, LINE_SOLID, AT(command)},
     {"controller_mode", "mode", "mode", "", "mode of the controller, counted from 0", 3, LINE_SOLID,
      AT(controller_mode)},

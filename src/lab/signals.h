@@ -2,6 +2,7 @@
 // terminal's traces, figures and the manual.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 
 // One recorded row: the state at an instant and what belongs to that very state.
@@ -38,6 +39,9 @@ typedef struct sample {
     double encoder;             // hub angle as read [rad]
     double tachometer;          // hub velocity as read [rad/s]
     double force_reading;       // contact force as the FSR reads it [N]
+    double piezo_force;         // contact force as the piezoelectric sensor reads it [N]
+    double film;                // bending as the piezo film reads it [rad]
+    double accelerometer;       // hub acceleration as read [rad/s2]
     double command;             // what the controller asked for [V]
     double controller_mode;     // index of its mode
     double desired_angle;       // of the hub [rad]
@@ -56,10 +60,12 @@ typedef struct signal_info {
     int colour;              // slot in the palette, 0-7
     line_style style;
     size_t offset;           // in struct sample
+    bool optional;           // of a sensor that need not be there: no column where nothing is recorded
 } signal_info;
 
 extern const signal_info signal_table[];
 extern const int signal_count;
+enum { SIGNALS_AT_MOST = sizeof(sample) / sizeof(double) };
 
 // Index of a signal by name, or -1.
 int signal_find(const char *name);

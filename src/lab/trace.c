@@ -1,5 +1,6 @@
 #include "src/lab/trace.h"
 
+#include <math.h>
 #include <string.h>
 
 const char *event_name(event_kind kind)
@@ -101,4 +102,14 @@ status trace_add_event(trace *t, event e)
     }
     t->events[t->event_count++] = e;
     return STATUS_OK;
+}
+
+bool trace_has(const trace *t, int signal)
+{
+    for (size_t i = 0; i < t->row_count; i++) {
+        if (isfinite(signal_value(&t->rows[i], signal))) {
+            return true;
+        }
+    }
+    return false;
 }

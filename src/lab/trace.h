@@ -50,3 +50,6 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events);
 // Append a row (angles: angle_count values) or an event; STATUS_NO_MEMORY if there is no room.
 status trace_add_row(trace *t, const sample *row, const double *angles);
 status trace_add_event(trace *t, event e);
+
+// Whether any row holds a finite value of the signal.
+bool trace_has(const trace *t, int signal);

@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 // Version of this interface; a controller carries the one it was compiled with.
-enum { CONTROLLER_INTERFACE = 1 };
+enum { CONTROLLER_INTERFACE = 2 };
 
 // A number that a user may give a controller. Built-in names are those of `control.NAME`, a
 // plug-in's further ones are given in control.settings as NAME=VALUE.
@@ -44,8 +44,12 @@ typedef struct controller_input {
     double time;         // since the start [s]
     double hub_angle;    // encoder [rad]
     double hub_velocity; // tachometer [rad/s]
-    double force;        // FSR [N]
+    double force;        // of the sensor that sensor.force names [N]
     double applied;      // command at present in effect, after the D/A [V]
+    // sensors that need not be there; NaN where they are not fitted
+    double piezo_force;      // piezoelectric force sensor [N]
+    double bending;          // piezo film: last link's angle minus the first's [rad]
+    double hub_acceleration; // accelerometer [rad/s2]
 } controller_input;
 
 // What a controller answers.

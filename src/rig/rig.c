@@ -234,15 +234,19 @@ static void apply(rig *r, bool *changed)
     r->effect_time = HUGE_VAL;
 }
 
-static status take_sample(rig *r, double time, double angle, double velocity, double force,
-                          fault *f)
+static status take_sample(rig *r, double time, const sensed_motion *now, fault *f)
 {
-    r->reading = sensors_read(&r->sensors, angle, velocity, force);
+    const sensor_reading *read = &r->reading;
+    r->reading = sensors_read(&r->sensors, now);
     controller_input input = {.time = time,
-                              .hub_angle = r->reading.angle,
-                              .hub_velocity = r->reading.velocity,
-                              .force = r->reading.force,
-                              .applied = r->applied};
+                              .hub_angle = read->angle,
+                              .hub_velocity = read->velocity,
+                              .force = r->sensors.p.force == FORCE_BY_PIEZO ? read->piezo_force
+                                                                            : read->fsr_force,
+                              .applied = r->applied,
+                              .piezo_force = read->piezo_force,
+                              .bending = read->bending,
+                              .hub_acceleration = read->acceleration};
     controller_output *out = &r->output;
     *out = (controller_output){.desired_angle = (double)NAN,
                                .desired_velocity = (double)NAN,
@@ -263,8 +267,7 @@ static status take_sample(rig *r, double time, double angle, double velocity, do
     return STATUS_OK;
 }
 
-status rig_act(rig *r, double time, double angle, double velocity, double force, bool *changed,
-               fault *f)
+status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f)
 {
     const double late = 1e-9 * r->period; // instants of another grid may miss ours by rounding
     const int mode = r->output.mode;
@@ -276,7 +279,7 @@ status rig_act(rig *r, double time, double angle, double velocity, double force,
         apply(r, changed);
     }
     if (samples) {
-        s = take_sample(r, time, angle, velocity, force, f);
+        s = take_sample(r, time, now, f);
     }
     if (s == STATUS_OK && r->effect_time <= time + late) {
         apply(r, changed);

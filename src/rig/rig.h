@@ -37,12 +37,10 @@ void rig_destroy(rig *r); // r may be NULL
 // The next instant at which the rig has something to do [s].
 double rig_next_time(const rig *r);
 
-// What is due at `time` [s], with the hub at `angle` [rad] and `velocity` [rad/s] under the given
-// contact force [N]. *changed: another command took effect, r->applied, or the controller went into
-// another mode. STATUS_NOT_FINITE, with a sentence in f, if the controller answers with a command
-// that is not finite.
-status rig_act(rig *r, double time, double angle, double velocity, double force, bool *changed,
-               fault *f);
+// What is due at `time` [s], with the sensors seeing `now`. *changed: another command took effect,
+// r->applied, or the controller went into another mode. STATUS_NOT_FINITE, with a sentence in f, if
+// the controller answers with a command that is not finite.
+status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f);
 
 // The built-in controller of a law; NULL for LAW_NONE and LAW_PLUGIN.
 const controller *controller_of(int law);

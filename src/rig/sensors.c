@@ -7,19 +7,29 @@
 // 10 % to 90 % of a first-order lag takes ln 9 time constants.
 #define RISE_OVER_TIME_CONSTANT 2.1972245773362196
 
+// A stride that differs from none by rounding gains no velocity: its difference is rounding too
+// [s].
+#define SHORTEST_GAIN 1e-9
+
 static const double turn = 2 * 3.14159265358979323846; // [rad]
 
-// A number of the standard normal distribution, by Marsaglia's polar method, which makes two.
-static double random_normal(sensors *s)
+static void noise_start(noise_source *n, uint64_t seed)
 {
-    double spare = s->spare;
-    s->spare = (double)NAN;
+    random_seed(&n->random, seed);
+    n->spare = (double)NAN;
+}
+
+// A number of the standard normal distribution, by Marsaglia's polar method, which makes two.
+static double random_normal(noise_source *n)
+{
+    double spare = n->spare;
+    n->spare = (double)NAN;
     while (isnan(spare)) {
-        double x = 2 * random_uniform(&s->random) - 1, y = 2 * random_uniform(&s->random) - 1;
+        double x = 2 * random_uniform(&n->random) - 1, y = 2 * random_uniform(&n->random) - 1;
         double r = x * x + y * y;
         if (r > 0 && r < 1) {
             double factor = sqrt(-2 * log(r) / r);
-            s->spare = y * factor;
+            n->spare = y * factor;
             return x * factor;
         }
     }
@@ -39,44 +49,110 @@ double converter_value(double value, int bits, double range)
     return step * (double)((code < codes ? code : codes - 1) - codes / 2);
 }
 
-void sensors_init(sensors *s, const sensor_parameters *p, int seed)
+// --- in time --------------------------------------------------------------------------------
+
+// Carries out sensor.ideal.
+static void idealise(sensor_parameters *p)
 {
-    s->p = *p;
-    if (p->ideal) {
-        s->p.encoder_counts = s->p.adc_bits = s->p.dac_bits = 0;
-        s->p.tachometer_ripple = s->p.tachometer_noise = s->p.fsr_noise = 0;
-        s->p.fsr_rise_time = 0;
-    }
-    s->felt_force = 0;
-    s->spare = (double)NAN;
-    s->fsr_time_constant = s->p.fsr_rise_time / RISE_OVER_TIME_CONSTANT;
-    random_seed(&s->random, (uint64_t)seed);
+    p->encoder_counts = p->adc_bits = p->dac_bits = 0;
+    p->tachometer_ripple = p->tachometer_noise = p->fsr_noise = 0;
+    p->fsr_rise_time = 0;
+    p->piezo_rise_time = p->piezo_leak_time = p->piezo_range = p->piezo_noise = 0;
+    p->film_leak_time = p->film_noise = 0;
+    p->accelerometer_rise_time = p->accelerometer_range = p->accelerometer_noise = 0;
 }
 
-void sensors_follow(sensors *s, double h, double first, double last, double mean)
+void sensors_init(sensors *s, const sensor_parameters *p, int seed)
 {
-    double lag = s->fsr_time_constant;
+    const uint64_t other_sensor = UINT64_C(1) << 32; // beyond any seed
+    *s = (sensors){.p = *p, .seen_velocity = (double)NAN};
+    if (p->ideal) {
+        idealise(&s->p);
+    }
+    s->fsr.time_constant = s->p.fsr_rise_time / RISE_OVER_TIME_CONSTANT;
+    s->piezo_rise.time_constant = s->p.piezo_rise_time / RISE_OVER_TIME_CONSTANT;
+    s->piezo_leak.time_constant = s->p.piezo_leak_time;
+    s->film_leak.time_constant = s->p.film_leak_time;
+    s->acceleration.time_constant = s->p.accelerometer_rise_time / RISE_OVER_TIME_CONSTANT;
+    noise_start(&s->noise, (uint64_t)seed);
+    noise_start(&s->piezo_noise, (uint64_t)seed + other_sensor);
+    noise_start(&s->film_noise, (uint64_t)seed + 2 * other_sensor);
+    noise_start(&s->acceleration_noise, (uint64_t)seed + 3 * other_sensor);
+}
+
+// Over a time h [s], the input being the parabola through `first` and `last` with the given mean.
+static void lag_follow(first_order_lag *y, double h, double first, double last, double mean)
+{
+    double lag = y->time_constant;
     if (lag == 0 || h <= 0) {
         return;
     }
     // y' = (f - y)/lag with f = first + slope u + curve u^2, u = t/h: the particular solution
     // f - lag f' + lag^2 f'' and a transient that dies
     if (h < 1e-6 * lag) {
-        s->felt_force += h / lag * (mean - s->felt_force); // the transient's difference is rounding
+        y->value += h / lag * (mean - y->value); // the transient's difference is rounding
         return;
     }
     double curve = 3 * (first + last) - 6 * mean, slope = last - first - curve, r = lag / h;
     double at_start = first - r * slope + 2 * r * r * curve;
     double at_end = last - r * (slope + 2 * curve) + 2 * r * r * curve;
-    s->felt_force = at_end + (s->felt_force - at_start) * exp(-h / lag);
+    y->value = at_end + (y->value - at_start) * exp(-h / lag);
+}
+
+// Under a pulse of the input, given by its integral.
+static void lag_strike(first_order_lag *y, double pulse)
+{
+    if (y->time_constant > 0) {
+        y->value += pulse / y->time_constant;
+    }
+}
+
+// What comes out of the lag, an instant sensor having none.
+static double lag_output(const first_order_lag *y, double input)
+{
+    return y->time_constant > 0 ? y->value : input;
+}
+
+// Turns a jump of the hub's velocity since the last look into a pulse of its acceleration.
+static void feel_jump(sensors *s, double velocity)
+{
+    if (!isnan(s->seen_velocity)) {
+        lag_strike(&s->acceleration, velocity - s->seen_velocity);
+    }
+    s->seen_velocity = velocity;
+}
+
+void sensors_follow(sensors *s, double h, const sensed_motion *first, const sensed_motion *last,
+                    double mean_force)
+{
+    lag_follow(&s->fsr, h, first->force, last->force, mean_force);
+    if (s->p.piezo) {
+        lag_follow(&s->piezo_rise, h, first->force, last->force, mean_force);
+        lag_follow(&s->piezo_leak, h, first->force, last->force, mean_force);
+    }
+    if (s->p.film) {
+        double mean = (first->bending + last->bending) / 2 +
+                      h * (first->bending_rate - last->bending_rate) / 12;
+        lag_follow(&s->film_leak, h, first->bending, last->bending, mean);
+    }
+    if (s->p.accelerometer) {
+        feel_jump(s, first->velocity);
+        if (h > SHORTEST_GAIN) {
+            lag_follow(&s->acceleration, h, first->acceleration, last->acceleration,
+                       (last->velocity - first->velocity) / h);
+            s->seen_velocity = last->velocity;
+        }
+    }
 }
 
 void sensors_strike(sensors *s, double impulse)
 {
-    if (s->fsr_time_constant > 0) {
-        s->felt_force += impulse / s->fsr_time_constant;
-    }
+    lag_strike(&s->fsr, impulse);
+    lag_strike(&s->piezo_rise, impulse);
+    lag_strike(&s->piezo_leak, impulse);
 }
+
+// --- readings -------------------------------------------------------------------------------
 
 double fsr_volts(const sensor_parameters *p, double force)
 {
@@ -111,22 +187,63 @@ static double read_encoder(const sensors *s, double angle)
 }
 
 // Through the A/D converter, noise added before it.
-static double convert(sensors *s, double volts, double noise)
+static double convert(const sensors *s, noise_source *source, double volts, double noise)
 {
-    double disturbed = noise > 0 ? volts + noise * random_normal(s) : volts;
+    double disturbed = noise > 0 ? volts + noise * random_normal(source) : volts;
     return s->p.ideal ? disturbed : converter_value(disturbed, s->p.adc_bits, s->p.adc_range);
 }
 
-sensor_reading sensors_read(sensors *s, double angle, double velocity, double force)
+// Within the range either way, 0 being no limit.
+static double on_scale(double value, double range)
+{
+    return range > 0 ? fmax(-range, fmin(value, range)) : value;
+}
+
+// Rise and leak one behind the other, 1/(1 + s r) times s q/(1 + s q), as the difference of two
+// lags side by side, (1/(1 + s r) - 1/(1 + s q)) q/(q - r): each of them follows the force exactly.
+static double read_piezo(sensors *s, double force)
 {
     const sensor_parameters *p = &s->p;
-    double felt = s->fsr_time_constant > 0 ? s->felt_force : force;
+    double rise = s->piezo_rise.time_constant, leak = s->piezo_leak.time_constant;
+    double felt = lag_output(&s->piezo_rise, force);
+    if (leak > 0) {
+        felt = (felt - s->piezo_leak.value) * leak / (leak - rise);
+    }
+    double volts = p->piezo_gain * on_scale(felt, p->piezo_range);
+    return convert(s, &s->piezo_noise, volts, p->piezo_noise) / p->piezo_gain;
+}
+
+static double read_film(sensors *s, double bending)
+{
+    const sensor_parameters *p = &s->p;
+    double volts = p->film_gain * (bending - s->film_leak.value);
+    return convert(s, &s->film_noise, volts, p->film_noise) / p->film_gain;
+}
+
+static double read_accelerometer(sensors *s, const sensed_motion *now)
+{
+    const sensor_parameters *p = &s->p;
+    feel_jump(s, now->velocity);
+    double felt = lag_output(&s->acceleration, now->acceleration);
+    double volts = p->accelerometer_gain * on_scale(felt, p->accelerometer_range);
+    return convert(s, &s->acceleration_noise, volts, p->accelerometer_noise) /
+           p->accelerometer_gain;
+}
+
+sensor_reading sensors_read(sensors *s, const sensed_motion *now)
+{
+    const sensor_parameters *p = &s->p;
     double wave, unused;
-    inline_sincos(p->tachometer_ripple_count * angle, &wave, &unused);
+    inline_sincos(p->tachometer_ripple_count * now->angle, &wave, &unused);
     double ripple = 1 + p->tachometer_ripple * wave;
-    double tachometer = convert(s, p->tachometer_gain * velocity * ripple, p->tachometer_noise);
-    double fsr = convert(s, fsr_volts(p, felt), p->fsr_noise);
-    return (sensor_reading){.angle = read_encoder(s, angle),
+    double tachometer =
+        convert(s, &s->noise, p->tachometer_gain * now->velocity * ripple, p->tachometer_noise);
+    double fsr = convert(s, &s->noise, fsr_volts(p, lag_output(&s->fsr, now->force)), p->fsr_noise);
+    return (sensor_reading){.angle = read_encoder(s, now->angle),
                             .velocity = tachometer / p->tachometer_gain,
-                            .force = fsr_force(p, fsr)};
+                            .fsr_force = fsr_force(p, fsr),
+                            .piezo_force = p->piezo ? read_piezo(s, now->force) : (double)NAN,
+                            .bending = p->film ? read_film(s, now->bending) : (double)NAN,
+                            .acceleration =
+                                p->accelerometer ? read_accelerometer(s, now) : (double)NAN};
 }

@@ -3,38 +3,75 @@
 // Hub encoder and tachometer are collocated with the motor. The force sensing resistor (FSR) at the
 // tip lags the force by a first-order rise, its resistance falls with the force by a power law, and
 // a voltage divider and an amplifier (Fig. 2.1) turn that into volts.
+//
+// Three more need not be there: the additional measurements that chapter 6 of the thesis wishes
+// for. A piezoelectric force sensor rises fast, goes off scale in an impact, and its charge leaks
+// away. A piezo film shows how much the beam bends and leaks too. An accelerometer on the hub has a
+// bandwidth.
 #pragma once
 
 #include "src/lab/random.h"
 #include "src/parameters.h"
 
-typedef struct sensors {
-    sensor_parameters p; // with sensor.ideal carried out
+// What the sensors are fixed to, at one instant.
+typedef struct sensed_motion {
+    double angle, velocity, acceleration; // of the hub [rad], [rad/s], [rad/s2]
+    double bending;      // last link's angle minus the first's: theta3 - theta2 [rad]
+    double bending_rate; // [rad/s]
+    double force;        // of contact, impulses excluded [N]
+} sensed_motion;
+
+// A first-order lag: time_constant value' = input - value.
+typedef struct first_order_lag {
+    double time_constant; // [s], 0 for a sensor without it
+    double value;         // in the input's unit
+} first_order_lag;
+
+// White noise of its own.
+typedef struct noise_source {
     random_generator random;
-    double felt_force;        // what has arrived in the force sensor [N]
-    double fsr_time_constant; // [s]
-    double spare;             // second number of a pair of normal ones, NaN if there is none
+    double spare; // second number of a pair of normal ones, NaN if there is none
+} noise_source;
+
+typedef struct sensors {
+    sensor_parameters p;      // with sensor.ideal carried out
+    noise_source noise;       // of tachometer and FSR
+    noise_source piezo_noise; // the other sensors have their own: fitting one shifts nothing
+    noise_source film_noise;  //
+    noise_source acceleration_noise;
+    first_order_lag fsr;        // what has arrived in the FSR [N]
+    first_order_lag piezo_rise; // what has arrived in the piezoelectric sensor [N],
+    first_order_lag piezo_leak; // and the part of it that has leaked [N]
+    first_order_lag film_leak;  // the part of the bending that has leaked [rad]
+    first_order_lag acceleration;
+    double seen_velocity; // of the hub when the accelerometer last looked [rad/s], NaN before
 } sensors;
 
-// What a controller gets: volts read back through the sensors' nominal curves.
+// What the sensors read: volts read back through their nominal curves. NaN where one is not fitted.
 typedef struct sensor_reading {
-    double angle;    // encoder [rad]
-    double velocity; // tachometer [rad/s]
-    double force;    // FSR [N]
+    double angle;        // encoder [rad]
+    double velocity;     // tachometer [rad/s]
+    double fsr_force;    // FSR [N]
+    double piezo_force;  // piezoelectric force sensor [N]
+    double bending;      // piezo film [rad]
+    double acceleration; // accelerometer, of the hub [rad/s2]
 } sensor_reading;
 
 void sensors_init(sensors *s, const sensor_parameters *p, int seed);
 
-// Lets the force sensor follow the contact force over a time h [s], taken as the parabola that has
-// the values `first` and `last` at its ends and the given mean [N]. Exact.
-void sensors_follow(sensors *s, double h, double first, double last, double mean);
+// Lets the sensors with a lag or a leak follow the arm over a time h [s]. Force, bending and hub
+// acceleration are each taken as the parabola that has the values of `first` and `last` at its ends
+// and their mean: of the force as given [N], of the acceleration what the velocity gained, of the
+// bending what the cubic through angles and rates has. Exact for such parabolas. A velocity that
+// jumped before `first` is a pulse of acceleration.
+void sensors_follow(sensors *s, double h, const sensed_motion *first, const sensed_motion *last,
+                    double mean_force);
 
-// The force sensor under an impulse [N s] of the wall.
+// The force sensors under an impulse [N s] of the wall.
 void sensors_strike(sensors *s, double impulse);
 
-// Reads all sensors at once with the hub at `angle` [rad] and `velocity` [rad/s] and the given
-// contact force [N] (which an instant force sensor shows).
-sensor_reading sensors_read(sensors *s, double angle, double velocity, double force);
+// Reads all sensors at once.
+sensor_reading sensors_read(sensors *s, const sensed_motion *now);
 
 // Volts at the A/D under a constant force [N], without noise and converter: divider and gain stage.
 double fsr_volts(const sensor_parameters *p, double force);

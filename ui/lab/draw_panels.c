@@ -45,6 +45,12 @@ void draw_parameters(lab *l, screen *s, area a)
     }
 }
 
+// Signals of sensors that are not fitted have none.
+static bool has_value(const sample *row, int signal)
+{
+    return !signal_table[signal].optional || !isnan(signal_value(row, signal));
+}
+
 void draw_values(lab *l, screen *s, area a)
 {
     const session *e = &l->session;
@@ -60,16 +66,22 @@ void draw_values(lab *l, screen *s, area a)
     char title[64];
     snprintf(title, sizeof title, "values%s", against);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
-    int height = a.height - 2, last = signal_count > height ? signal_count - height : 0;
+    int height = a.height - 2, shown = 0, line = 0;
+    for (int i = 0; i < signal_count; i++) {
+        shown += has_value(row, i);
+    }
+    int last = shown > height ? shown - height : 0;
     l->value_scroll = l->value_scroll > last ? last : l->value_scroll < 0 ? 0 : l->value_scroll;
     draw_spot(l, PART_VALUES, a, 0);
-    for (int line = 0; line + l->value_scroll < signal_count && line < height; line++) {
-        int i = line + l->value_scroll;
+    for (int i = 0; i < signal_count && line < l->value_scroll + height; i++) {
+        if (!has_value(row, i) || line++ < l->value_scroll) {
+            continue;
+        }
         double value = signal_value(row, i), other = beside ? signal_value(beside, i) : 0;
         double difference = value - other, size = fmax(fabs(value), fabs(other));
         bool differs = beside != NULL && fabs(difference) > 1e-6 * size;
         char text[32];
-        int y = a.y + 1 + line;
+        int y = a.y + line - l->value_scroll;
         screen_text(s, a.x + 2, y, 16, INK_TEXT, signal_table[i].name);
         draw_number(text, sizeof text, value);
         screen_print(s, a.x + 18, y, a.width - 20, INK_TITLE, "%9s", text);
