@@ -80,7 +80,11 @@ set +o history
 lab() {
     (echo \$BASHPID >"$folder/pid"; exec "$program" "\$@")
     echo "status \$?"
-    stty -g >"$folder/after"
+    note_settings
+}
+# whole or not at all, for who waits for it
+note_settings() {
+    stty -g >"$folder/noted" && mv "$folder/noted" "$folder/after"
 }
 stty -g >"$folder/before"
 export XDG_CONFIG_HOME="$folder/config"
@@ -105,7 +109,7 @@ done
 start
 mux send-keys C-c
 await "ready>"
-mux send-keys "stty -g >$folder/after" Enter
+mux send-keys note_settings Enter
 check_given_back INT
 
 # suspended and taken up again
@@ -184,7 +188,8 @@ await "status 0"
 # as many colours as the terminal has, or is said to have
 # $1: settings of the environment, $2: options, $3: what the screen has, $4: what it has not
 colours() {
-    mux send-keys "clear; env $1 $program lab $2; stty -g >$folder/after" Enter
+    rm -f "$folder/after"
+    mux send-keys "clear; env $1 $program lab $2; note_settings" Enter
     await "Space run/pause"
     mux send-keys ":seek 0.35" Enter
     await "t 0.35000 s"
