@@ -76,8 +76,8 @@ static status read_line(trace *t, const char *line, const int *signals, int colu
     }
     g_strfreev(cells);
     if (code == STATUS_OK && isfinite(row.time)) {
-        const double no_angles = 0;
-        code = trace_add_row(t, &row, &no_angles);
+        const double nothing = 0;
+        code = trace_add_row(t, &row, &nothing, &nothing);
     }
     return code;
 }

@@ -190,10 +190,8 @@ static char *action_label(const scenario *s, const event *e)
     }
     const action *a = &s->actions[e->index];
     const parameter_info *info = &parameter_table[a->parameter];
-    parameters p = s->parameters;
     char value[128], unit[64];
-    parameter_set_number(&p, a->parameter, a->value, NULL);
-    parameter_format(&p, a->parameter, value, sizeof value);
+    action_format_value(a, value, sizeof value);
     text_unit(info->unit, unit, sizeof unit);
     const char *dot = strchr(info->path, '.'), *name = dot ? dot + 1 : info->path;
     return g_strdup_printf("%s %s\u2009%s", name, value, unit);

@@ -122,6 +122,8 @@ const parameter_info parameter_table[] = {
      "shared object with a controller of one's own (control.law = plugin)"},
     {"control.settings", "", TEXT, AT(control.settings), 0, 0, 0, 1, NULL, NOT_TIMED,
      "a plug-in's own parameters, written name=value and separated by spaces"},
+    {"control.lock", "", TEXT, AT(control.lock), 0, 0, 0, 1, "none", TIMED,
+     "mode that the law is held in, by its name, or none: the law chooses"},
     {"control.rate", "Hz", REAL, AT(control.rate), 200, 200, 1, 1e5, NULL, NOT_TIMED,
      "samples a second"},
     {"control.delay", "s", REAL, AT(control.delay), 0, 0, 0, 1, NULL, NOT_TIMED,
@@ -288,6 +290,7 @@ static void store(parameters *p, const parameter_info *info, double value)
     }
     case PARAMETER_TEXT:
         memset(at, 0, PARAMETER_TEXT_SIZE);
+        snprintf(at, PARAMETER_TEXT_SIZE, "%s", info->choices ? info->choices : "");
         break;
     }
 }

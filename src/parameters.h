@@ -99,6 +99,7 @@ typedef struct control_parameters {
     int law;                           // control_law
     char plugin[PARAMETER_TEXT_SIZE];  // file of a shared object
     char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
+    char lock[PARAMETER_TEXT_SIZE];     // mode that the law is held in, "none" if it is free
     double rate;                       // samples a second [Hz]
     double delay;                      // from sampling to the command's effect [s]
     double delay_periods;              // the same in sampling periods, on top of it
@@ -191,7 +192,8 @@ typedef struct parameter_info {
     double default_corrected;
     double default_printed;
     double minimum, maximum; // both included
-    const char *choices;     // "rigid|spring" in the order of the enumeration, or NULL
+    const char *choices;     // "rigid|spring" in the order of the enumeration; of a text what it is
+                             // where nothing gives it; else NULL
     bool timed;              // may be changed during a run
     const char *description; // one sentence without a full stop
 } parameter_info;

@@ -169,7 +169,7 @@ static char *csv_of(int links, double film)
                       .film = film,
                       .accelerometer = (double)NAN};
         double angles[] = {0.1, 0.2, 0.3};
-        assert_int_equal(trace_add_row(&t, &row, angles), STATUS_OK);
+        assert_int_equal(trace_add_row(&t, &row, angles, angles), STATUS_OK);
     }
     FILE *stream = open_memstream(&text, &length);
     export_csv(stream, &t, links);

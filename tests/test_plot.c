@@ -87,7 +87,7 @@ static void synthetic_init(synthetic *s, const trace_panel *panels, int count)
                       .force = force_at(t),
                       .contact = force_at(t) > 0,
                       .voltage = 1};
-        assert_int_equal(trace_add_row(&s->result.trace, &row, angles), STATUS_OK);
+        assert_int_equal(trace_add_row(&s->result.trace, &row, angles, angles), STATUS_OK);
     }
     for (int i = 0; i < 3; i++) {
         event e = {.time = times[i], .kind = EVENT_IMPACT, .impulse = impulses[i], .index = -1};

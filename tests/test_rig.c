@@ -357,6 +357,8 @@ static void wrong_plugins_are_refused(void **state)
                   "did you mean 'damping'?");
     check_refused(SETTINGS("control.law=plugin", file, "control.settings=damping=-1"),
                   "from 0 to 100");
+    check_refused(SETTINGS("control.law=plugin", file, "control.lock=force"),
+                  "expected none, approach or push");
     check_refused(SETTINGS("control.law=plugin", file, "control.settings=damping"),
                   "damping=NUMBER");
     check_refused(SETTINGS("control.law=plugin", file, "motor.amplifier_gain=0"), "no torque");

@@ -288,6 +288,25 @@ static void test_every_scenario_and_every_size_draws(void **state)
     lab_finish(&l);
 }
 
+// At the last row before a touch the linearised arm says what "impactlab predict" says, for as many
+// links as there are; while the run plays it is not asked.
+static void test_many_links_are_predicted_while_the_run_rests(void **state)
+{
+    (void)state;
+    lab l;
+    open_lab(&l, "corrected/five-links");
+    press(&l, "i");
+    const trace *t = &l.session.run.trace;
+    const sample *row = session_sample(&l.session);
+    const double *w = t->velocities + l.session.row * (size_t)t->angle_count;
+    check_close(w[0], row->first_velocity, 0);
+    check_close(w[t->angle_count - 1], row->last_velocity, 0);
+    assert_shows(&l, "linearised      3.201 N in 43 ms");
+    press(&l, ":seek 0.1<Enter><Space>");
+    assert_shows(&l, "linearised      -");
+    lab_finish(&l);
+}
+
 static int chance(random_generator *r, int limit)
 {
     return (int)random_below(r, (uint64_t)limit);
@@ -336,7 +355,7 @@ static void test_random_keys_do_no_harm(void **state)
     char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
-    session_write_scenario(&l.session, stream);
+    scenario_write(stream, &l.session.effective);
     fclose(stream);
     scenario saved;
     run_result again;
@@ -421,6 +440,7 @@ int main(void)
         cmocka_unit_test(test_a_click_moves_the_cursor),
         cmocka_unit_test(test_every_scenario_and_every_size_draws),
         cmocka_unit_test(test_a_long_run_is_drawn_while_it_is_computed),
+        cmocka_unit_test(test_many_links_are_predicted_while_the_run_rests),
         cmocka_unit_test(test_random_keys_do_no_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -227,7 +227,7 @@ static void save_and_compare(const session *s)
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
     assert_non_null(stream);
-    session_write_scenario(s, stream);
+    scenario_write(stream, &s->effective);
     fclose(stream);
     scenario saved;
     run_result again;

@@ -150,7 +150,7 @@ start
 mux send-keys Space Home
 await "t 0.00000 s"
 mux send-keys -l $'\033[<0;45;30M\033[<0;45;30m'
-await "t 0.49286 s"
+await "t 0.53906 s"
 mux send-keys ":mouse off" Enter
 await "the mouse is off"
 [ "$(mux display-message -p '#{mouse_any_flag}')" = 0 ] || fail "the mouse stays on"
@@ -165,7 +165,7 @@ await "t 0.00000 s"
 mux send-keys -l $'\033[<0;45;30M'
 mux send-keys -l $'\033[<32;60;30M'
 mux send-keys -l $'\033[<0;60;30m'
-await "t 0.70"
+await "t 0.77"
 mux send-keys -l $'\033[<64;60;30M'
 await "0.8 s"
 mux send-keys -l $'\033[1;2D'

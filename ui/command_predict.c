@@ -45,18 +45,6 @@ static three_body_state state_of(const sample *row)
     };
 }
 
-// The parameters as the script has changed them until `time`.
-static parameters parameters_at(const scenario *s, double time)
-{
-    parameters p = s->parameters;
-    for (int i = 0; i < s->action_count && s->actions[i].time <= time; i++) {
-        if (s->actions[i].kind == ACTION_SET) {
-            parameter_set_number(&p, s->actions[i].parameter, s->actions[i].value, NULL);
-        }
-    }
-    return p;
-}
-
 static status predict_by_linearised_arm(const parameters *p, const run_result *result,
                                         prediction *out, fault *f)
 {
@@ -78,7 +66,7 @@ static void predict_all(const scenario *s, const run_result *result, const sampl
                         outcome *outcomes)
 {
     three_body_state state = state_of(row);
-    parameters now = parameters_at(s, row->time);
+    parameters now = scenario_parameters_at(s, row->time);
     for (int i = 0; i < PREDICTORS; i++) {
         outcomes[i] = (outcome){.fault = {.code = STATUS_OK}};
         outcome *o = &outcomes[i];

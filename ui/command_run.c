@@ -59,9 +59,7 @@ static void print_event(const scenario *s, const event *e)
     } else if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
         char value[128];
         const action *a = &s->actions[e->index];
-        parameters p = s->parameters;
-        parameter_set_number(&p, a->parameter, a->value, NULL);
-        parameter_format(&p, a->parameter, value, sizeof value);
+        action_format_value(a, value, sizeof value);
         printf("   %s = %s", parameter_table[a->parameter].path, value);
     }
     printf("\n");

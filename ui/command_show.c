@@ -54,10 +54,7 @@ static void print_actions(const scenario *s)
             printf("  at %g s: push the tip with %g N s\n", a->time, a->value);
         } else {
             char value[128];
-            parameters p = s->parameters;
-            // a value that was validated before formats as a scenario file gives it
-            parameter_set_number(&p, a->parameter, a->value, NULL);
-            parameter_format(&p, a->parameter, value, sizeof value);
+            action_format_value(a, value, sizeof value);
             printf("  at %g s: %s = %s\n", a->time, parameter_table[a->parameter].path, value);
         }
     }

@@ -106,6 +106,7 @@ size_t computation_look(computation *c, run_result *view)
         const trace *t = &c->result.trace;
         view->trace = (trace){.rows = t->rows,
                               .angles = t->angles,
+                              .velocities = t->velocities,
                               .events = t->events,
                               .angle_count = t->angle_count,
                               .row_count = rows};

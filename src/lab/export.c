@@ -201,7 +201,8 @@ static json_t *event_object(const scenario *s, const event *e)
     if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
         const action *a = &s->actions[e->index];
         json_object_set_new(object, "parameter", json_string(parameter_table[a->parameter].path));
-        json_object_set_new(object, "value", json_number(a->value));
+        bool text = parameter_table[a->parameter].type == PARAMETER_TEXT;
+        json_object_set_new(object, "value", text ? json_text(a->text) : json_number(a->value));
     }
     return object;
 }

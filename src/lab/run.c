@@ -125,9 +125,10 @@ static void publish(const recording *r, double time)
 }
 
 // Adds a row and lets it be seen.
-static status add_row(recording *r, const sample *row, const double *angles)
+static status add_row(recording *r, const sample *row, const double *angles,
+                      const double *velocities)
 {
-    status s = trace_add_row(&r->result->trace, row, angles);
+    status s = trace_add_row(&r->result->trace, row, angles, velocities);
     publish(r, row->time);
     return s;
 }
@@ -225,7 +226,8 @@ static status start_rig(recording *r, fault *f)
     r->now.motor.voltage = 0;
     r->command_angle = p->initial.angle;
     r->result->summary.electrical_energy_J = 0;
-    return rig_create(&r->rig, p, f);
+    status s = rig_create(&r->rig, p, f);
+    return s == STATUS_OK ? scenario_check_locks(r->scenario, r->rig->law, f) : s;
 }
 
 static void finish_rig_summary(recording *r, double hub_angle)
@@ -315,7 +317,7 @@ static status record_row(recording *r, const arm *a, motion *m, double *state, d
         .energy_residual = motion_energy_residual(a, m, state),
     };
     add_rig_signals(r, &row);
-    return add_row(r, &row, q);
+    return add_row(r, &row, q, w);
 }
 
 static status record_event(recording *r, double time, event_kind kind, const motion_report *report)
@@ -425,9 +427,10 @@ static status act(recording *r, arm *a, motion *m, fault *f)
         event e = {.time = now, .kind = EVENT_CHANGE, .index = r->next_action};
         status failed = record_row(r, a, m, m->state, 0);
         if (todo->kind == ACTION_SET) {
-            failed = parameter_set_number(&r->now, todo->parameter, todo->value, f);
+            failed = action_apply(todo, &r->now, f);
             if (r->rig != NULL) {
                 r->now.motor.voltage = r->rig->applied; // the command is the controller's
+                failed = failed == STATUS_OK ? rig_lock(r->rig, r->now.control.lock, f) : failed;
             }
             arm before = *a;
             arm_init(a, &r->now);
@@ -646,10 +649,7 @@ static void take_up(recording *r, arm *a, motion *m)
     r->pulse_open = kept->pulse_open;
     r->integral_at_window = kept->integral_at_window;
     for (; r->next_action < kept->next_action; r->next_action++) {
-        const action *done = &r->scenario->actions[r->next_action];
-        if (done->kind == ACTION_SET) {
-            parameter_set_number(&r->now, done->parameter, done->value, NULL);
-        }
+        action_apply(&r->scenario->actions[r->next_action], &r->now, NULL);
     }
     arm_init(a, &r->now);
     memcpy(m->state, kept->state, (size_t)m->size * sizeof(double));
@@ -894,7 +894,8 @@ static bool observe_printed(void *context, const printed_row *row)
                                   status_text(STATUS_STOPPED));
     }
     return r->rig_status == STATUS_OK && remember_stride(r, stride) == STATUS_OK &&
-           (!r->keep_trace || add_row(r, &sampled, row->angle) == STATUS_OK);
+           (!r->keep_trace ||
+            add_row(r, &sampled, row->angle, row->velocity) == STATUS_OK);
 }
 
 // Scripted changes take effect at the next step; the printed model knows no pushes.
@@ -906,8 +907,10 @@ static void script_printed(void *context, double time, parameters *p)
          r->next_action++) {
         const action *todo = &s->actions[r->next_action];
         if (todo->kind == ACTION_SET) {
-            fault ignored; // the reader has checked the value
-            parameter_set_number(p, todo->parameter, todo->value, &ignored);
+            action_apply(todo, p, NULL); // the reader has checked the value
+            if (r->rig != NULL && r->rig_status == STATUS_OK) {
+                r->rig_status = rig_lock(r->rig, p->control.lock, r->rig_fault);
+            }
             trace_add_event(&r->result->trace,
                             (event){.time = time, .kind = EVENT_CHANGE, .index = r->next_action});
         }

@@ -104,7 +104,7 @@ status run_share(const run_result *from, size_t rows_expected, run_result *resul
 // Numbers of chunks (src/lab/long_array.h) that the rows, angles, events and strides of two results
 // both begin with.
 typedef struct run_likeness {
-    size_t rows, angles, events, strides;
+    size_t rows, angles, velocities, events, strides;
 } run_likeness;
 
 // Compares two shared results; result takes the chunks of `like` instead of its own equal ones.

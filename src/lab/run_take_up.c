@@ -36,7 +36,8 @@ static double same_until(const scenario *a, const scenario *b)
         const action *x = i < a->action_count ? &a->actions[i] : NULL;
         const action *y = i < b->action_count ? &b->actions[i] : NULL;
         bool same = x != NULL && y != NULL && x->time == y->time && x->kind == y->kind &&
-                    x->parameter == y->parameter && x->value == y->value;
+                    x->parameter == y->parameter && x->value == y->value &&
+                    strcmp(x->text, y->text) == 0;
         if (!same) {
             until = fmin(until, x != NULL ? x->time : HUGE_VAL);
             until = fmin(until, y != NULL ? y->time : HUGE_VAL);
@@ -134,6 +135,8 @@ run_likeness run_compare_rows(const run_result *result, const run_result *like)
     size_t strides = fewer(h->stride_count, k->stride_count);
     return (run_likeness){.rows = long_array_same_chunks(&a->row_array, &b->row_array, rows),
                           .angles = long_array_same_chunks(&a->angle_array, &b->angle_array, rows),
+                          .velocities = long_array_same_chunks(&a->velocity_array,
+                                                               &b->velocity_array, rows),
                           .events =
                               long_array_same_chunks(&a->event_array, &b->event_array, events),
                           .strides = long_array_same_chunks(&h->strides, &k->strides, strides)};
@@ -143,6 +146,7 @@ void run_merge(run_result *result, const run_result *like, const run_likeness *s
 {
     long_array_merge(&result->trace.row_array, &like->trace.row_array, same->rows);
     long_array_merge(&result->trace.angle_array, &like->trace.angle_array, same->angles);
+    long_array_merge(&result->trace.velocity_array, &like->trace.velocity_array, same->velocities);
     long_array_merge(&result->trace.event_array, &like->trace.event_array, same->events);
     long_array_merge(&result->history.strides, &like->history.strides, same->strides);
 }

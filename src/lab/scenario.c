@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/rig/rig.h"
 #include "src/words.h"
 
 enum { LONGEST_TITLE = 200 }; // bytes
@@ -76,6 +77,18 @@ static void report_unknown_top(reader *r, const tree_node *key)
                 key->text, groups);
 }
 
+// Reports a lock from the start on a mode that the law does not have.
+static void check_lock(reader *r)
+{
+    fault f;
+    const place *at = &r->given[parameter_find("control.lock")];
+    const controller *law = controller_of(r->s->parameters.control.law);
+    scenario unscripted = {.parameters = r->s->parameters};
+    if (at->line > 0 && scenario_check_locks(&unscripted, law, &f) != STATUS_OK) {
+        reader_report_at(r, at->line, at->column, "%s", f.text);
+    }
+}
+
 // Reads everything; script and expect come after the parameters that they depend on.
 static void read_root(reader *r, const tree_node *root)
 {
@@ -104,6 +117,7 @@ static void read_root(reader *r, const tree_node *root)
     }
     r->duration_known = r->given[parameter_find("run.duration")].line > 0 || r->faults == 0;
     reader_resolve(r);
+    check_lock(r);
     if (script != NULL) {
         reader_script(r, script);
     }
@@ -187,6 +201,11 @@ static status override_parameter(const scenario *s, parameters *p, const char *a
     status result = parameter_set_text(p, index, assignment + length + 1, f);
     if (result == STATUS_OK) {
         result = parameters_resolve(p, f);
+    }
+    if (result == STATUS_OK) {
+        scenario changed = *s;
+        changed.parameters = *p;
+        result = scenario_check_locks(&changed, controller_of(p->control.law), f);
     }
     for (int i = 0; i < s->action_count && result == STATUS_OK; i++) {
         if (s->actions[i].kind == ACTION_PUSH && p->arm.model == ARM_PRINTED) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/parameters.h"
+#include "src/rig/controller.h"
 
 typedef enum action_kind { ACTION_SET, ACTION_PUSH } action_kind;
 
@@ -12,6 +13,7 @@ typedef struct action {
     int parameter; // ACTION_SET: index in parameter_table
     double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the last link,
                    // positive towards growing angle [N s]
+    char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new value
 } action;
 
 // A quantity of the run's summary that the file expects.
@@ -34,6 +36,18 @@ typedef struct scenario {
     expectation *expectations;
     int expectation_count;
 } scenario;
+
+// Sets the parameter of an ACTION_SET; other actions change none.
+status action_apply(const action *a, parameters *p, fault *f);
+// The value that an ACTION_SET gives, as a scenario file would have it.
+void action_format_value(const action *a, char *text, size_t size);
+
+// The parameters as the script has set them until an instant, that included [s].
+parameters scenario_parameters_at(const scenario *s, double time);
+
+// Whether the law has every mode that control.lock and the script hold it in; else a sentence in f.
+// law: controller_of() before a run, which knows no plug-in; NULL says nothing.
+status scenario_check_locks(const scenario *s, const controller *law, fault *f);
 
 // Called once for each fault in a file, with a whole sentence "file:line:column: what, expected".
 typedef void (*fault_handler)(void *context, const char *sentence);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/rig/rig.h"
 #include "src/words.h"
 
 // Puts the action behind all that are not later; false without memory.
@@ -21,6 +22,20 @@ static bool add_action(reader *r, action a)
     }
     grown[i] = a;
     return true;
+}
+
+// Reports a lock on a mode that the law does not have. The one at the top of the file is reported
+// on its own.
+static void check_lock(reader *r, const tree_node *node, const action *a)
+{
+    fault f;
+    scenario locked = {.parameters = r->s->parameters};
+    action_apply(a, &locked.parameters, NULL);
+    if (a->parameter == parameter_find("control.lock") &&
+        scenario_check_locks(&locked, controller_of(locked.parameters.control.law), &f) !=
+            STATUS_OK) {
+        report_node(r, node, "%s", f.text);
+    }
 }
 
 static void read_set(reader *r, const tree_node *map, bool timed, double time)
@@ -56,10 +71,15 @@ static void read_set(reader *r, const tree_node *map, bool timed, double time)
         if (parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
         } else if (timed) {
-            add_action(r, (action){.time = time,
-                                   .kind = ACTION_SET,
-                                   .parameter = index,
-                                   .value = parameter_get(&scratch, index)});
+            action a = {.time = time,
+                        .kind = ACTION_SET,
+                        .parameter = index,
+                        .value = parameter_get(&scratch, index)};
+            if (parameter_table[index].type == PARAMETER_TEXT) {
+                parameter_format(&scratch, index, a.text, sizeof a.text);
+            }
+            check_lock(r, child, &a);
+            add_action(r, a);
         }
     }
 }

@@ -1,3 +1,4 @@
+// Writing a scenario as a file that gives it again.
 #include <string.h>
 
 #include "src/lab/export.h"
@@ -10,6 +11,8 @@ static void write_text(FILE *stream, const char *text)
     for (const char *c = text; *c != '\0'; c++) {
         if (*c == '\n' || *c == '\t') {
             fputs(*c == '\n' ? "\\n" : "\\t", stream);
+        } else if ((unsigned char)*c < ' ') {
+            fputc(' ', stream);
         } else {
             fprintf(stream, "%s%c", *c == '"' || *c == '\\' ? "\\" : "", *c);
         }
@@ -52,14 +55,19 @@ static void write_parameters(FILE *stream, const parameters *p)
 static void write_actions(FILE *stream, const scenario *s)
 {
     char text[NUMBER_TEXT];
-    fputs(s->action_count > 0 ? "script:\n" : "", stream);
-    for (int i = 0; i < s->action_count; i++) {
+    // what a shortened run no longer comes to is no part of it, and a file must not ask for it
+    int count = s->action_count;
+    while (count > 0 && s->actions[count - 1].time > s->parameters.run.duration) {
+        count--;
+    }
+    fputs(count > 0 ? "script:\n" : "", stream);
+    for (int i = 0; i < count; i++) {
         const action *a = &s->actions[i];
         number_format(text, a->time);
         fprintf(stream, "  - at: %s s\n", text);
         if (a->kind == ACTION_SET) {
             parameters scratch = s->parameters;
-            parameter_set_number(&scratch, a->parameter, a->value, NULL);
+            action_apply(a, &scratch, NULL);
             fprintf(stream, "    set: {%s: ", parameter_table[a->parameter].path);
             write_value(stream, &scratch, a->parameter);
             fputs("}\n", stream);
@@ -73,8 +81,8 @@ static void write_actions(FILE *stream, const scenario *s)
 void scenario_write(FILE *stream, const scenario *s)
 {
     fputs("title: ", stream);
-    write_text(stream, s->title);
-    if (s->description[0] != '\0') {
+    write_text(stream, s->title != NULL ? s->title : "");
+    if (s->description != NULL && s->description[0] != '\0') {
         fputs("\ndescription: ", stream);
         write_text(stream, s->description);
     }

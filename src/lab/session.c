@@ -65,10 +65,12 @@ static status build_effective(const session *s, scenario *to, fault *f)
         if (in->kind == INPUT_START) {
             code = parameter_set_text(&to->parameters, in->parameter, in->text, f);
         } else {
-            insert_action(to, (action){.time = in->time,
-                                       .kind = in->kind == INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
-                                       .parameter = in->parameter,
-                                       .value = in->value});
+            action a = {.time = in->time,
+                        .kind = in->kind == INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
+                        .parameter = in->parameter,
+                        .value = in->value};
+            snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
+            insert_action(to, a);
         }
     }
     return code == STATUS_OK ? parameters_resolve(&to->parameters, f) : code;
@@ -82,7 +84,8 @@ static double expected_rows(const parameters *p)
 static status check_memory(const parameters *p, fault *f)
 {
     double rows = expected_rows(p);
-    double bytes = rows * (double)(sizeof(sample) + sizeof(double) * (size_t)(p->arm.links + 1));
+    double bytes =
+        rows * (double)(sizeof(sample) + 2 * sizeof(double) * (size_t)(p->arm.links + 1));
     if (bytes > MEMORY_BUDGET) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at most "
@@ -343,14 +346,7 @@ const event *session_event(const session *s)
 
 parameters session_parameters_at(const session *s, double time)
 {
-    parameters p = s->effective.parameters;
-    for (int i = 0; i < s->effective.action_count && s->effective.actions[i].time <= time; i++) {
-        const action *a = &s->effective.actions[i];
-        if (a->kind == ACTION_SET) {
-            parameter_set_number(&p, a->parameter, a->value, NULL);
-        }
-    }
-    return p;
+    return scenario_parameters_at(&s->effective, time);
 }
 
 // --- inputs -----------------------------------------------------------------------------------

@@ -101,9 +101,6 @@ status session_branch(session *s, fault *f);
 // Forgets the run kept for comparison.
 void session_forget_other(session *s);
 
-// Writes a scenario file that gives the present run, inputs included. Errors stay in the stream.
-void session_write_scenario(const session *s, FILE *stream);
-
 // The last row of a trace whose time is not after `time`; 0 for an earlier time. The trace must
 // have a row.
 size_t trace_row_at(const trace *t, double time);

@@ -19,6 +19,7 @@ static void find_places(trace *t)
 {
     t->rows = t->row_array.base;
     t->angles = t->angle_array.base;
+    t->velocities = t->velocity_array.base;
     t->events = t->event_array.base;
 }
 
@@ -28,6 +29,7 @@ void trace_init(trace *t, int angle_count)
     t->angle_count = angle_count;
     long_array_init(&t->row_array, sizeof(sample));
     long_array_init(&t->angle_array, angles_size(angle_count));
+    long_array_init(&t->velocity_array, angles_size(angle_count));
     long_array_init(&t->event_array, sizeof(event));
 }
 
@@ -37,6 +39,7 @@ status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
     t->angle_count = angle_count;
     bool reserved = long_array_reserve(&t->row_array, sizeof(sample), least, most) &&
                     long_array_reserve(&t->angle_array, angles_size(angle_count), least, most) &&
+                    long_array_reserve(&t->velocity_array, angles_size(angle_count), least, most) &&
                     long_array_reserve(&t->event_array, sizeof(event), least, most);
     if (!reserved) {
         trace_finish(t);
@@ -50,6 +53,7 @@ void trace_finish(trace *t)
 {
     long_array_finish(&t->row_array);
     long_array_finish(&t->angle_array);
+    long_array_finish(&t->velocity_array);
     long_array_finish(&t->event_array);
     memset(t, 0, sizeof *t);
 }
@@ -58,6 +62,7 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 {
     if (!long_array_share(&t->row_array, &from->row_array, rows) ||
         !long_array_share(&t->angle_array, &from->angle_array, rows) ||
+        !long_array_share(&t->velocity_array, &from->velocity_array, rows) ||
         !long_array_share(&t->event_array, &from->event_array, events)) {
         return STATUS_NO_MEMORY;
     }
@@ -70,22 +75,26 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 static bool make_room(trace *t)
 {
     bool grown = long_array_grow(&t->row_array, t->row_count + 1) &&
-                 long_array_grow(&t->angle_array, t->row_count + 1);
+                 long_array_grow(&t->angle_array, t->row_count + 1) &&
+                 long_array_grow(&t->velocity_array, t->row_count + 1);
     if (t->row_array.reserved == 0) {
         find_places(t);
     }
     return grown;
 }
 
-status trace_add_row(trace *t, const sample *row, const double *angles)
+status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities)
 {
     size_t n = (size_t)t->angle_count;
-    bool full = t->row_count >= t->row_array.capacity || t->row_count >= t->angle_array.capacity;
+    bool full = t->row_count >= t->row_array.capacity ||
+                t->row_count >= t->angle_array.capacity ||
+                t->row_count >= t->velocity_array.capacity;
     if (full && !make_room(t)) {
         return STATUS_NO_MEMORY;
     }
     t->rows[t->row_count] = *row;
     memcpy(t->angles + t->row_count * n, angles, n * sizeof *angles);
+    memcpy(t->velocities + t->row_count * n, velocities, n * sizeof *velocities);
     t->row_count++;
     return STATUS_OK;
 }

@@ -31,10 +31,11 @@ const char *event_name(event_kind kind);
 typedef struct trace {
     sample *rows;
     double *angles;  // row r: angles[r * angle_count ...], hub first if it has an angle of its own [rad]
+    double *velocities; // the same of their velocities [rad/s]
     event *events;
     size_t row_count, event_count;
     int angle_count;
-    long_array row_array, angle_array, event_array; // where the three above lie
+    long_array row_array, angle_array, velocity_array, event_array; // where the four above lie
 } trace;
 
 // An empty trace for angle_count link angles a row.
@@ -47,8 +48,9 @@ void trace_finish(trace *t);
 // a copy. STATUS_NO_MEMORY if there is no room.
 status trace_share(trace *t, const trace *from, size_t rows, size_t events);
 
-// Append a row (angles: angle_count values) or an event; STATUS_NO_MEMORY if there is no room.
-status trace_add_row(trace *t, const sample *row, const double *angles);
+// Append a row (angles, velocities: angle_count values each) or an event; STATUS_NO_MEMORY if there
+// is no room.
+status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities);
 status trace_add_event(trace *t, event e);
 
 // Whether any row holds a finite value of the signal.

@@ -50,6 +50,7 @@ typedef struct controller_input {
     double piezo_force;      // piezoelectric force sensor [N]
     double bending;          // piezo film: last link's angle minus the first's [rad]
     double hub_acceleration; // accelerometer [rad/s2]
+    int wanted_mode;     // index in controller.modes it is to be in; -1: it chooses itself
 } controller_input;
 
 // What a controller answers.
@@ -65,6 +66,7 @@ typedef struct controller {
     int interface; // CONTROLLER_INTERFACE
     const char *name;
     const char *const *modes; // names, ended by NULL
+    bool lockable;            // it obeys controller_input.wanted_mode
     const controller_parameter *parameters;
     int parameter_count;
     size_t memory_size; // bytes of memory

@@ -42,6 +42,13 @@ static void sample_open_loop(void *memory, const controller_input *in, controlle
     out->command = m->p[APPROACH_VOLTAGE];
 }
 
+// Contact once it was felt, and from then on, unless the law is held in a mode.
+static void choose_mode(force_memory *m, const controller_input *in)
+{
+    bool contact = m->mode == CONTACT || in->force > m->p[THRESHOLD];
+    m->mode = in->wanted_mode >= 0 ? in->wanted_mode : contact ? CONTACT : APPROACH;
+}
+
 // Static torque of the wanted force, 2 f l, with feedback of the force's error and hub velocity
 // [V].
 static double force_pd(const force_memory *m, const controller_input *in)
@@ -53,7 +60,7 @@ static double force_pd(const force_memory *m, const controller_input *in)
 static void sample_force_pd(void *memory, const controller_input *in, controller_output *out)
 {
     force_memory *m = memory;
-    m->mode = m->mode == CONTACT || in->force > m->p[THRESHOLD] ? CONTACT : APPROACH;
+    choose_mode(m, in);
     out->mode = m->mode;
     out->command = m->mode == CONTACT ? force_pd(m, in) : m->p[APPROACH_VOLTAGE];
 }
@@ -63,8 +70,11 @@ static void sample_force_pd(void *memory, const controller_input *in, controller
 static void sample_force_integral(void *memory, const controller_input *in, controller_output *out)
 {
     force_memory *m = memory;
-    m->mode = m->mode == CONTACT || in->force > m->p[THRESHOLD] ? CONTACT : APPROACH;
-    if (m->mode == CONTACT) {
+    choose_mode(m, in);
+    if (m->mode == APPROACH) {
+        // a release goes on from the command there is
+        m->integral = m->p[APPROACH_VOLTAGE];
+    } else {
         double error = m->p[FORCE_WANTED] - in->force, limit = m->rig.voltage_limit;
         m->integral += m->p[INTEGRAL_GAIN] * error * m->rig.period;
         m->integral = fmax(-limit, fmin(m->integral, limit)); // no windup
@@ -78,19 +88,19 @@ static void sample_force_integral(void *memory, const controller_input *in, cont
 static void sample_discontinuous(void *memory, const controller_input *in, controller_output *out)
 {
     force_memory *m = memory;
-    bool contact = in->force > m->p[THRESHOLD];
+    bool contact = in->wanted_mode >= 0 ? in->wanted_mode == CONTACT : in->force > m->p[THRESHOLD];
     out->mode = contact ? CONTACT : APPROACH;
     out->command = contact ? force_pd(m, in) : m->p[APPROACH_VOLTAGE];
 }
 
-#define LAW(law, samples)                                                                          \
+#define LAW(law, obeys, samples)                                                                   \
     {                                                                                              \
-        .interface = CONTROLLER_INTERFACE, .name = law, .modes = mode_names, .parameters = table,  \
-        .parameter_count = PARAMETERS, .memory_size = sizeof(force_memory), .start = start,        \
-        .sample = samples                                                                          \
+        .interface = CONTROLLER_INTERFACE, .name = law, .modes = mode_names, .lockable = obeys,    \
+        .parameters = table, .parameter_count = PARAMETERS, .memory_size = sizeof(force_memory),   \
+        .start = start, .sample = samples                                                          \
     }
 
-const controller open_loop_law = LAW("open-loop", sample_open_loop);
-const controller force_pd_law = LAW("force-pd", sample_force_pd);
-const controller force_integral_law = LAW("force-integral", sample_force_integral);
-const controller discontinuous_law = LAW("discontinuous", sample_discontinuous);
+const controller open_loop_law = LAW("open-loop", false, sample_open_loop);
+const controller force_pd_law = LAW("force-pd", true, sample_force_pd);
+const controller force_integral_law = LAW("force-integral", true, sample_force_integral);
+const controller discontinuous_law = LAW("discontinuous", true, sample_discontinuous);

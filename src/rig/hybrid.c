@@ -8,7 +8,8 @@
 enum { APPROACH, IMPACT, FORCE, RECOVER };
 enum { GAINS_TORQUE, GAINS_VOLTS, GAINS_PRINTED };
 
-static const char *const mode_names[] = {"approach", "impact", "force", "recover", NULL};
+static const char *const mode_names[] = {"approach", "impact", "force", NULL};
+static const char *const recovering_names[] = {"approach", "impact", "force", "recover", NULL};
 
 // Parameters that all these laws share, in this order, then one of the law's own.
 enum { FORCE_WANTED, APPROACH_VOLTAGE, KP, KV, GAINS, COEFFICIENTS, TRANSITION, THRESHOLD, OWN };
@@ -130,6 +131,8 @@ static void plan(hybrid_memory *m, double angle, double velocity, double acceler
     m->a[5] = (12 * way - 6 * velocity * T - acceleration * T * T) / (2 * T * T * T * T * T);
 }
 
+// Goes into a mode. Entering the impact mode plans the trajectory from the present state and
+// command on, so that the command goes on from where it is.
 static void begin(hybrid_memory *m, int mode, const controller_input *in)
 {
     m->mode = mode;
@@ -140,11 +143,22 @@ static void begin(hybrid_memory *m, int mode, const controller_input *in)
     }
 }
 
+// Goes into the mode the law is held in. False if it is not: then it chooses itself, beginning with
+// the mode that it is in.
+static bool held(hybrid_memory *m, const controller_input *in)
+{
+    if (in->wanted_mode >= 0 && in->wanted_mode != m->mode) {
+        begin(m, in->wanted_mode, in);
+    }
+    return in->wanted_mode >= 0;
+}
+
 // Impact mode: the quintic and the law (5.24).
 static double impact_command(const hybrid_memory *m, const controller_input *in,
                              controller_output *out)
 {
-    const double *a = m->a, t = in->time - m->since;
+    // held in this mode beyond t_f it stays at the trajectory's end
+    const double *a = m->a, t = fmin(in->time - m->since, m->transition);
     double angle = a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * (a[4] + t * a[5]))));
     double velocity = a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
     double acceleration = 2 * a[2] + t * (6 * a[3] + t * (12 * a[4] + t * 20 * a[5]));
@@ -171,10 +185,11 @@ static double force_command(const hybrid_memory *m, const controller_input *in,
 static double hybrid_command(hybrid_memory *m, const controller_input *in, controller_output *out,
                              double approach)
 {
-    if ((m->mode == APPROACH || m->mode == RECOVER) && in->force > m->threshold) {
+    bool chooses = !held(m, in);
+    if (chooses && (m->mode == APPROACH || m->mode == RECOVER) && in->force > m->threshold) {
         begin(m, IMPACT, in);
     }
-    if (m->mode == IMPACT && in->time - m->since >= m->transition) {
+    if (chooses && m->mode == IMPACT && in->time - m->since >= m->transition) {
         begin(m, FORCE, in);
     }
     out->mode = m->mode;
@@ -228,10 +243,11 @@ static void sample_bang_bang(void *memory, const controller_input *in, controlle
 static void sample_reverse_torque(void *memory, const controller_input *in, controller_output *out)
 {
     hybrid_memory *m = memory;
-    if (m->mode == APPROACH && in->force > m->threshold) {
+    bool chooses = !held(m, in);
+    if (chooses && m->mode == APPROACH && in->force > m->threshold) {
         begin(m, IMPACT, in);
     }
-    if (m->mode == IMPACT && in->time - m->since >= m->own) {
+    if (chooses && m->mode == IMPACT && in->time - m->since >= m->own) {
         begin(m, FORCE, in);
     }
     out->mode = m->mode;
@@ -248,7 +264,8 @@ static void sample_recovering(void *memory, const controller_input *in, controll
     hybrid_memory *m = memory;
     const int lost = 2; // readings without contact in a row
     m->readings_without_contact = in->force > m->threshold ? 0 : m->readings_without_contact + 1;
-    if ((m->mode == IMPACT || m->mode == FORCE) && m->readings_without_contact >= lost) {
+    bool pressing = m->mode == IMPACT || m->mode == FORCE;
+    if (!held(m, in) && pressing && m->readings_without_contact >= lost) {
         begin(m, RECOVER, in);
     }
     // a slow move towards the angle at which the beam would press
@@ -265,17 +282,19 @@ static const controller_parameter with_share[] = {
 static const controller_parameter with_time[] = {
     SHARED_PARAMETERS, {"reverse_time", "s", 0.02, 0, 10, "how long the motor pulls back"}};
 
-#define LAW(law, table, starts, samples)                                                           \
+#define LAW(law, names, table, starts, samples)                                                    \
     {                                                                                              \
-        .interface = CONTROLLER_INTERFACE, .name = law, .modes = mode_names, .parameters = table,  \
-        .parameter_count = (int)(sizeof table / sizeof table[0]),                                  \
+        .interface = CONTROLLER_INTERFACE, .name = law, .modes = names, .lockable = true,          \
+        .parameters = table, .parameter_count = (int)(sizeof table / sizeof table[0]),             \
         .memory_size = sizeof(hybrid_memory), .start = starts, .sample = samples                   \
     }
 
-const controller hybrid_law = LAW("hybrid", shared, start, sample_hybrid);
-const controller recovering_law = LAW("recovering", shared, start, sample_recovering);
+const controller hybrid_law = LAW("hybrid", mode_names, shared, start, sample_hybrid);
+const controller recovering_law =
+    LAW("recovering", recovering_names, shared, start, sample_recovering);
 const controller speed_limit_law =
-    LAW("speed-limit", with_speed, start_with_own, sample_speed_limit);
-const controller bang_bang_law = LAW("bang-bang", with_share, start_with_own, sample_bang_bang);
+    LAW("speed-limit", mode_names, with_speed, start_with_own, sample_speed_limit);
+const controller bang_bang_law =
+    LAW("bang-bang", mode_names, with_share, start_with_own, sample_bang_bang);
 const controller reverse_torque_law =
-    LAW("reverse-torque", with_time, start_with_own, sample_reverse_torque);
+    LAW("reverse-torque", mode_names, with_time, start_with_own, sample_reverse_torque);

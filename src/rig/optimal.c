@@ -42,13 +42,13 @@ typedef struct optimal_memory {
     double jump[2];     // rate of x after an impact, of both links' velocities before it
     int mode;
     bool started;
-    int samples_in_contact;
-    double inertia;      // M [kg m2]
-    double stiffness;    // 4 k2 [N m/rad]
-    double spring_force; // of x: 2 k2/l [N/rad]
-    double mass_force;   // mu [N s2/rad]
-    double divergence;   // s [1/s]
-    double gain[2];      // of x and its rate [V/rad], [V s/rad]
+    bool held_in_contact; // the tip touched while the law was held in the approach
+    double inertia;       // M [kg m2]
+    double stiffness;     // 4 k2 [N m/rad]
+    double spring_force;  // of x: 2 k2/l [N/rad]
+    double mass_force;    // mu [N s2/rad]
+    double divergence;    // s [1/s]
+    double gain[2];       // of x and its rate [V/rad], [V s/rad]
     sampled_model flight, contact, during_delay;
     estimator e;         // of the flight or of the contact
     double ceiling;      // largest force to brake with [N]
@@ -189,6 +189,46 @@ static void enter_contact(optimal_memory *m, const controller_input *in)
     m->mode = PRESS;
 }
 
+// The wall is where the beam's bend of that force has it.
+static void find_wall(optimal_memory *m, const controller_input *in, double force)
+{
+    m->e.z[PRESSED_WALL] = in->hub_angle - force / m->spring_force;
+    m->e.p[PRESSED_WALL][PRESSED_WALL] = 1e-6;
+}
+
+// The same for a tip that has touched the wall for a while already.
+static void go_on_in_contact(optimal_memory *m, const controller_input *in)
+{
+    m->e = (estimator){.z = {in->hub_angle, in->hub_velocity, 0, 0}};
+    m->e.p[PRESSED_ANGLE][PRESSED_ANGLE] = ANGLE_VARIANCE;
+    m->e.p[PRESSED_RATE][PRESSED_RATE] = RATE_VARIANCE;
+    m->e.p[PRESSED_TORQUE][PRESSED_TORQUE] = 1e-4;
+    find_wall(m, in, in->force);
+    m->ceiling = m->force;
+    m->mode = PRESS;
+}
+
+// Goes into the approach: both links as they are if the tip rests where it is.
+static void approach_again(optimal_memory *m, const controller_input *in)
+{
+    double bend = 2 * in->force / m->spring_force;
+    m->e = (estimator){
+        .z = {in->hub_angle, in->hub_angle - bend, in->hub_velocity, -in->hub_velocity}};
+    for (int i = FREE_FIRST; i <= FREE_LAST; i++) {
+        m->e.p[i][i] = ANGLE_VARIANCE;
+        m->e.p[i + 2][i + 2] = RATE_VARIANCE;
+    }
+    m->mode = APPROACH;
+}
+
+// Holds what there is, as far as a force reading tells it.
+static void hold_here(optimal_memory *m, const controller_input *in)
+{
+    m->mode = HOLD;
+    m->held_force = in->force;
+    m->hold_command = m->stiffness * in->force / m->spring_force / m->rig.torque_per_volt;
+}
+
 // Force to brake with where stopping takes at least `stopping` [N].
 static double braking_force(const optimal_memory *m, double stopping)
 {
@@ -306,10 +346,9 @@ static double hold(optimal_memory *m, const controller_input *in)
 {
     const double smoothing = 0.05;
     m->held_force += smoothing * (in->force - m->held_force);
-    if (fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
+    if (in->wanted_mode < 0 && fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
         m->mode = PRESS;
-        m->e.z[PRESSED_WALL] = in->hub_angle - m->held_force / m->spring_force;
-        m->e.p[PRESSED_WALL][PRESSED_WALL] = 1e-6;
+        find_wall(m, in, m->held_force);
     }
     return m->hold_command;
 }
@@ -327,7 +366,7 @@ static double press(optimal_memory *m, const controller_input *in)
     double error = aim - x, tolerance = 0.01 * m->force + 0.005; // [N]
     double velocity = z[PRESSED_RATE];
     bool rests = fabs(velocity) < 0.02;
-    if (rests && fabs(error) * m->spring_force < tolerance) {
+    if (in->wanted_mode < 0 && rests && fabs(error) * m->spring_force < tolerance) {
         m->mode = HOLD;
         m->held_force = m->spring_force * x;
         m->hold_command = m->stiffness * x / m->rig.torque_per_volt;
@@ -338,6 +377,37 @@ static double press(optimal_memory *m, const controller_input *in)
     return limit_command(m, z, steady + m->gain[0] * error - m->gain[1] * velocity);
 }
 
+// Goes into the mode the law is held in, with an observer that begins with what the sensors read.
+static void enter_wanted_mode(optimal_memory *m, const controller_input *in)
+{
+    if (in->wanted_mode == APPROACH) {
+        approach_again(m, in);
+    } else if (in->wanted_mode == HOLD) {
+        hold_here(m, in);
+    } else {
+        go_on_in_contact(m, in);
+    }
+}
+
+// The observer in flight, or the change to contact.
+static void observe_approach(optimal_memory *m, const controller_input *in)
+{
+    bool touches = in->force > m->threshold;
+    if (touches && in->wanted_mode == APPROACH) {
+        approach_again(m, in);
+        m->held_in_contact = true;
+    } else if (touches && m->held_in_contact) {
+        go_on_in_contact(m, in);
+        m->held_in_contact = false;
+    } else if (touches) {
+        enter_contact(m, in);
+    } else {
+        m->held_in_contact = false;
+        predict_flight(m, in);
+        observe_flight(m, in);
+    }
+}
+
 static void sample(void *memory, const controller_input *in, controller_output *out)
 {
     optimal_memory *m = memory;
@@ -346,11 +416,11 @@ static void sample(void *memory, const controller_input *in, controller_output *
         m->e = (estimator){.z = {in->hub_angle, in->hub_angle, 0, 0}};
     } else if (m->mode == PRESS) {
         observe_contact(m, in);
-    } else if (m->mode == APPROACH && in->force > m->threshold) {
-        enter_contact(m, in);
     } else if (m->mode == APPROACH) {
-        predict_flight(m, in);
-        observe_flight(m, in);
+        observe_approach(m, in);
+    }
+    if (in->wanted_mode >= 0 && in->wanted_mode != m->mode) {
+        enter_wanted_mode(m, in);
     }
     out->command = m->mode == APPROACH ? approach(m) : m->mode == HOLD ? hold(m, in) : press(m, in);
     out->mode = m->mode;
@@ -367,8 +437,8 @@ static void sample(void *memory, const controller_input *in, controller_output *
 
 #define LAW(law, table, starts)                                                                    \
     {                                                                                              \
-        .interface = CONTROLLER_INTERFACE, .name = law, .modes = mode_names, .parameters = table,  \
-        .parameter_count = (int)(sizeof table / sizeof table[0]),                                  \
+        .interface = CONTROLLER_INTERFACE, .name = law, .modes = mode_names, .lockable = true,     \
+        .parameters = table, .parameter_count = (int)(sizeof table / sizeof table[0]),             \
         .memory_size = sizeof(optimal_memory), .start = starts, .sample = sample                   \
     }
 

@@ -123,6 +123,69 @@ static status take_settings(rig *r, const char *settings, fault *f)
     return s;
 }
 
+// "approach, impact or force"
+static void list_modes(const controller *law, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; law->modes != NULL && law->modes[i] != NULL && used < size; i++) {
+        const char *before = i == 0 ? "" : law->modes[i + 1] == NULL ? " or " : ", ";
+        used += (size_t)snprintf(text + used, size - used, "%s%.40s", before, law->modes[i]);
+    }
+}
+
+status rig_find_mode(const controller *law, const char *lock, int *mode, fault *f)
+{
+    char modes[256];
+    *mode = -1;
+    if (lock[0] == '\0' || strcmp(lock, "none") == 0) {
+        return STATUS_OK;
+    }
+    if (!law->lockable || law->modes == NULL) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.lock = '%.60s', but the law '%s' cannot be held in a mode, "
+                         "expected none",
+                         lock, law->name);
+    }
+    for (int i = 0; law->modes[i] != NULL; i++) {
+        if (strcmp(law->modes[i], lock) == 0) {
+            *mode = i;
+            return STATUS_OK;
+        }
+    }
+    list_modes(law, modes, sizeof modes);
+    return fault_set(f, STATUS_BAD_SCENARIO,
+                     "control.lock = '%.60s' is no mode of the law '%s', expected none, %s", lock,
+                     law->name, modes);
+}
+
+status rig_lock(rig *r, const char *lock, fault *f)
+{
+    int mode;
+    status s = rig_find_mode(r->law, lock, &mode, f);
+    r->lock = s == STATUS_OK ? mode : r->lock;
+    return s;
+}
+
+int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, bool *lockable)
+{
+    fault ignored;
+    int count = 0;
+    rig r = {.law = controller_of(p->control.law)};
+    if (p->control.law == LAW_PLUGIN && load_plugin(&r, p->control.plugin, &ignored) != STATUS_OK) {
+        r.law = NULL;
+    }
+    *lockable = r.law != NULL && r.law->lockable;
+    const char *const *modes = r.law != NULL ? r.law->modes : NULL;
+    for (; modes != NULL && modes[count] != NULL && count < most; count++) {
+        snprintf(names[count], MODE_NAME_SIZE, "%s", modes[count]);
+    }
+    if (r.library != NULL) {
+        dlclose(r.library);
+    }
+    return count;
+}
+
 static controller_setup make_setup(const rig *r, const parameters *p)
 {
     // controllers work on the two-link beam, whatever the arm is
@@ -199,6 +262,7 @@ status rig_create(rig **created, const parameters *p, fault *f)
     if (p->control.law == LAW_PLUGIN) {
         s = load_plugin(r, p->control.plugin, f);
     }
+    s = s == STATUS_OK ? rig_lock(r, p->control.lock, f) : s;
     s = s == STATUS_OK ? start_controller(r, p, f) : s;
     if (s != STATUS_OK) {
         rig_destroy(r);
@@ -246,7 +310,8 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
                               .applied = r->applied,
                               .piezo_force = read->piezo_force,
                               .bending = read->bending,
-                              .hub_acceleration = read->acceleration};
+                              .hub_acceleration = read->acceleration,
+                              .wanted_mode = r->lock};
     controller_output *out = &r->output;
     *out = (controller_output){.desired_angle = (double)NAN,
                                .desired_velocity = (double)NAN,

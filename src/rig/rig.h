@@ -26,6 +26,7 @@ typedef struct rig {
     sensor_reading reading;       // of the last sample
     controller_output output;     // of the last sample
     double largest_command;       // in magnitude, as put out [V]
+    int lock;                     // mode that the controller is to be in, -1 if it chooses
 } rig;
 
 // Sets up the rig of resolved parameters with control.law other than none. On failure (a plug-in
@@ -33,6 +34,18 @@ typedef struct rig {
 // nothing is to be freed.
 status rig_create(rig **created, const parameters *p, fault *f);
 void rig_destroy(rig *r); // r may be NULL
+
+// The index of the mode that a value of control.lock names, -1 for "none". STATUS_BAD_SCENARIO,
+// with a sentence in f, if the controller has no such mode or cannot be held in one.
+status rig_find_mode(const controller *law, const char *lock, int *mode, fault *f);
+// From the next sample on the controller is held in the mode of that name, or chooses itself again.
+// On failure, as above, nothing changes.
+status rig_lock(rig *r, const char *lock, fault *f);
+
+// The names of the modes of the law, at most `most` of them, cut to fit; a plug-in is opened for
+// them. Returns how many; 0 if there is no law or the plug-in cannot be opened.
+enum { MODE_NAME_SIZE = 32 };
+int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, bool *lockable);
 
 // The next instant at which the rig has something to do [s].
 double rig_next_time(const rig *r);

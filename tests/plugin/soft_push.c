@@ -19,7 +19,7 @@ static const controller_parameter parameters[PARAMETERS] = {
 typedef struct soft_push {
     controller_setup rig;
     double force, approach_voltage, rise_time, damping;
-    bool touched;
+    int mode;
     double touch_time;
 } soft_push;
 
@@ -37,13 +37,15 @@ static const char *start(void *memory, const controller_setup *setup)
 static void sample(void *memory, const controller_input *input, controller_output *output)
 {
     soft_push *c = memory;
-    if (!c->touched && input->force > 0.05) {
-        c->touched = true;
+    // held in a mode, or free to choose: contact means to push from then on
+    int mode = c->mode == PUSH || input->force > 0.05 ? PUSH : APPROACH;
+    mode = input->wanted_mode >= 0 ? input->wanted_mode : mode;
+    if (mode == PUSH && c->mode != PUSH) {
         c->touch_time = input->time;
     }
-    output->mode = c->touched ? PUSH : APPROACH;
+    output->mode = c->mode = mode;
     output->command = c->approach_voltage;
-    if (c->touched) {
+    if (mode == PUSH) {
         double share = 1 - 0.5 * exp(-(input->time - c->touch_time) / c->rise_time);
         double torque =
             share * 2 * c->force * c->rig.link_length - c->damping * input->hub_velocity;
@@ -55,6 +57,7 @@ static const controller soft_push_controller = {
     .interface = CONTROLLER_INTERFACE,
     .name = "soft push",
     .modes = modes,
+    .lockable = true,
     .parameters = parameters,
     .parameter_count = PARAMETERS,
     .memory_size = sizeof(soft_push),

@@ -17,6 +17,8 @@ bool act_edit(lab *l, const char *argument);
 bool act_nudge(lab *l, const char *argument);
 bool act_select_parameter(lab *l, const char *argument);
 bool act_push(lab *l, const char *argument);
+bool act_law(lab *l, const char *argument);
+bool act_lock(lab *l, const char *argument);
 bool act_exchange_model(lab *l, const char *argument);
 bool act_extend(lab *l, const char *argument);
 bool act_branch(lab *l, const char *argument);
@@ -53,6 +55,15 @@ bool act_quit(lab *l, const char *argument);
 
 // Says what was wrong unless the code is STATUS_OK; returns whether it is.
 bool lab_complain(lab *l, status code, const fault *f);
+
+// Gives a parameter a new value and says what came of it.
+bool lab_change(lab *l, int parameter, const char *text);
+
+// The mouse takes hold of a slider or moves it, lets go of it, turns its wheel on it. The first
+// only shows a value, the others give it.
+void lab_hold_slider(lab *l, const lab_spot *spot, int x);
+void lab_drop_slider(lab *l);
+void lab_turn_slider(lab *l, int parameter, int direction);
 
 // Reads a number; false with a message if the text is none.
 bool lab_take_number(lab *l, const char *text, double *value);

@@ -7,8 +7,7 @@
 
 #include "src/lab/export.h"
 
-// Gives a parameter a new value and says what came of it.
-static bool change(lab *l, int parameter, const char *text)
+bool lab_change(lab *l, int parameter, const char *text)
 {
     fault f = {0};
     session *s = &l->session;
@@ -47,7 +46,7 @@ bool act_set(lab *l, const char *argument)
         return true;
     }
     l->parameter = parameter;
-    return change(l, parameter, value);
+    return lab_change(l, parameter, value);
 }
 
 // The next or the previous value of the selected parameter: a tenth more or less, another choice.
@@ -59,6 +58,9 @@ bool act_nudge(lab *l, const char *argument)
     double value = parameter_get(&p, index);
     char text[LAB_TEXT];
     fault f = {0};
+    if (strcmp(info->path, "control.lock") == 0) {
+        return act_lock(l, direction > 0 ? "next" : "previous");
+    }
     if (info->type == PARAMETER_TEXT) {
         lab_say(l, true, "%s is a text: Enter edits it", info->path);
         return false;
@@ -76,7 +78,7 @@ bool act_nudge(lab *l, const char *argument)
         return false;
     }
     parameter_format(&p, index, text, sizeof text);
-    return change(l, index, text);
+    return lab_change(l, index, text);
 }
 
 bool act_edit(lab *l, const char *argument)
@@ -88,7 +90,7 @@ bool act_edit(lab *l, const char *argument)
     const parameter_info *info = &parameter_table[l->parameter];
     l->prompting = true;
     snprintf(l->prompt, sizeof l->prompt, "set %s %.160s", info->path, value);
-    if (info->choices != NULL) {
+    if (info->choices != NULL && info->type == PARAMETER_CHOICE) {
         lab_say(l, false, "%s: %s", info->description, info->choices);
     } else if (info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER) {
         lab_say(l, false, "%s: %g to %g %s", info->description, info->minimum, info->maximum,
@@ -160,7 +162,7 @@ bool act_exchange_model(lab *l, const char *argument)
 {
     (void)argument;
     bool printed = l->session.effective.parameters.arm.model == ARM_PRINTED;
-    return change(l, parameter_find("arm.model"), printed ? "corrected" : "printed");
+    return lab_change(l, parameter_find("arm.model"), printed ? "corrected" : "printed");
 }
 
 bool act_extend(lab *l, const char *argument)
@@ -172,7 +174,7 @@ bool act_extend(lab *l, const char *argument)
     }
     double seen = l->session.seen;
     number_format(text, duration + more);
-    if (!change(l, parameter_find("run.duration"), text)) {
+    if (!lab_change(l, parameter_find("run.duration"), text)) {
         return false;
     }
     l->session.seen = seen;

@@ -94,7 +94,7 @@ bool act_save(lab *l, const char *argument)
             if (ends_with(argument, ".csv")) {
                 export_csv(file.stream, &s->run.trace, s->effective.parameters.arm.links);
             } else if (ends_with(argument, ".yaml")) {
-                session_write_scenario(s, file.stream);
+                scenario_write(file.stream, &s->effective);
             } else {
                 write_screen(l, file.stream);
             }

@@ -33,15 +33,24 @@ bool act_step(lab *l, const char *argument)
 
 static void tell_event(lab *l)
 {
+    const lab_log *log = lab_run_log(l);
     const event *e = session_event(&l->session);
-    if (e == NULL) {
-        return;
-    }
-    if (e->kind == EVENT_IMPACT) {
+    char name[MODE_NAME_SIZE];
+    if (e != NULL && e->kind == EVENT_IMPACT) {
         lab_say(l, false, "impact at %.6f s: %.4g N s at %.4g m/s, %.4g J lost", e->time,
                 e->impulse, e->speed, e->loss);
-    } else {
+        return;
+    }
+    if (e != NULL) {
         lab_say(l, false, "%s at %.6f s", event_name(e->kind), e->time);
+        return;
+    }
+    for (size_t i = 0; i < log->count; i++) {
+        if (log->entries[i].event < 0 && log->entries[i].time == l->session.now) {
+            lab_mode_name(l, log->entries[i].mode, name, sizeof name);
+            lab_say(l, false, "the controller goes into its mode '%s' at %.6f s", name,
+                    l->session.now);
+        }
     }
 }
 
@@ -49,7 +58,7 @@ bool act_step_event(lab *l, const char *argument)
 {
     bool back = argument[0] == '-';
     l->playing = false;
-    if (!session_step_event(&l->session, back ? -1 : 1)) {
+    if (!lab_step_log(l, back ? -1 : 1)) {
         lab_say(l, true, "no %s event", back ? "earlier" : "later");
         return false;
     }

@@ -46,6 +46,8 @@ static const lab_action actions[] = {
     {"nudge", "[-1]", "selected parameter a little up or down", act_nudge},
     {"select", "[-1]", "next or previous parameter", act_select_parameter},
     {"push", "[N s]", "an impulse at the tip, 0.01 N s", act_push},
+    {"law", "[NAME|off]", "another control law; alone: off or on again", act_law},
+    {"lock", "MODE|next|off", "hold the law in a mode, or let it choose", act_lock},
     {"model", "", "corrected or printed equations", act_exchange_model},
     {"extend", "[S]", "a longer run", act_extend},
     {"branch", "", "keep this run and make another beside it", act_branch},

@@ -33,36 +33,63 @@ void draw_spot(lab *l, lab_part part, area a, int index)
     }
 }
 
+static void draw_side(lab *l, screen *s, area a)
+{
+    if (l->side == SIDE_VALUES) {
+        draw_values(l, s, a);
+    } else {
+        draw_parameters(l, s, a);
+    }
+}
+
+// What stands on the right, from top to bottom; `log` and `predictors` are heights.
+static void draw_stack(lab *l, screen *s, area a, int predictors, int log)
+{
+    int law = draw_controller_height(l, a.height - predictors);
+    a.height -= law + predictors + log;
+    draw_side(l, s, a);
+    a.y += a.height;
+    if (law > 0) {
+        draw_controller(l, s, (area){a.x, a.y, a.width, law});
+    }
+    a.y += law;
+    if (predictors > 0) {
+        draw_predictors(l, s, (area){a.x, a.y, a.width, predictors});
+    }
+    a.y += predictors;
+    if (log > 0) {
+        draw_log(l, s, (area){a.x, a.y, a.width, log});
+    }
+}
+
+// Of the stack on the right; from 120 on there is room for sliders beside the values.
+static int side_width(const screen *s)
+{
+    static const struct {
+        int screen, side;
+    } widths[] = {{200, 60}, {120, 46}, {100, 40}, {SIDE_WIDTH, 34}};
+    for (size_t i = 0; i < sizeof widths / sizeof widths[0]; i++) {
+        if (s->width >= widths[i].screen) {
+            return widths[i].side;
+        }
+    }
+    return 0;
+}
+
 static void draw_panels(lab *l, screen *s)
 {
-    int right = s->width >= 100 ? 40 : s->width >= SIDE_WIDTH ? 34 : 0;
-    int left = s->width - right, body = s->height - 3;
+    int right = side_width(s), left = s->width - right, body = s->height - 3;
     int arm_height = body >= 20 ? body * 2 / 5 : body / 2;
     draw_arm(l, s, (area){0, 1, left, arm_height});
     area below = {0, 1 + arm_height, left, body - arm_height};
-    if (right == 0 && l->side_in_front && l->side == SIDE_VALUES) {
-        draw_values(l, s, below);
-    } else if (right == 0 && l->side_in_front) {
-        draw_parameters(l, s, below);
+    if (right == 0 && l->side_in_front) {
+        draw_stack(l, s, below, 0, 0);
     } else {
         draw_curves(l, s, below);
     }
-    if (right == 0) {
-        return;
-    }
-    int predictors = body >= 18 ? 6 : 0, log = body >= 26 ? body / 4 : 0;
-    int top = body - predictors - log;
-    area side = {left, 1, right, top};
-    if (l->side == SIDE_VALUES) {
-        draw_values(l, s, side);
-    } else {
-        draw_parameters(l, s, side);
-    }
-    if (predictors > 0) {
-        draw_predictors(l, s, (area){left, 1 + top, right, predictors});
-    }
-    if (log > 0) {
-        draw_log(l, s, (area){left, 1 + top + predictors, right, log});
+    if (right > 0) {
+        int predictors = body >= 18 ? 6 : 0, log = body >= 26 ? body / 4 : 0;
+        draw_stack(l, s, (area){left, 1, right, body}, predictors, log);
     }
 }
 

@@ -31,6 +31,9 @@ void draw_curves(lab *l, screen *s, area a);
 void draw_parameters(lab *l, screen *s, area a);
 void draw_values(lab *l, screen *s, area a);
 void draw_predictors(lab *l, screen *s, area a);
+// The controller's panel and how many rows it takes of `room` [cells], 0 without a law.
+int draw_controller_height(const lab *l, int room);
+void draw_controller(lab *l, screen *s, area a);
 void draw_log(lab *l, screen *s, area a);
 void draw_help(lab *l, screen *s);
 void draw_list(lab *l, screen *s);

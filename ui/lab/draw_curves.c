@@ -20,6 +20,8 @@ void lab_draw_finish(lab *l)
 {
     lab_forget_extremes(&l->run_extremes);
     lab_forget_extremes(&l->other_extremes);
+    lab_forget_log(l);
+    l->modes.version = l->linearised.version = 0;
 }
 
 static double plot_x(const plot_frame *f, double time)

@@ -1,4 +1,4 @@
-// The panels on the right: parameters, values, predictors, events.
+// Panels on the right: recorded values, predictors.
 #include "ui/lab/draw.h"
 
 #include <math.h>
@@ -8,42 +8,7 @@
 #include "src/predict/linearised.h"
 #include "src/predict/predict.h"
 
-void draw_parameters(lab *l, screen *s, area a)
-{
-    parameters p = session_parameters_at(&l->session, l->session.now);
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "parameters (Tab: values)");
-    int count = 0, selected = 0, line = 0, height = a.height - 2;
-    for (int i = 0; i < parameter_count; i++) {
-        selected = i == l->parameter ? count : selected;
-        count += lab_applies(l, i);
-    }
-    int first = draw_first_line(selected, count, height);
-    for (int i = 0; i < parameter_count; i++) {
-        if (!lab_applies(l, i)) {
-            continue;
-        }
-        int y = a.y + 1 + line++ - first;
-        if (y <= a.y || y >= a.y + a.height - 1) {
-            continue;
-        }
-        const parameter_info *info = &parameter_table[i];
-        char value[160], shown[200];
-        if (info->type == PARAMETER_REAL) {
-            snprintf(value, sizeof value, "%.6g", parameter_get(&p, i));
-        } else {
-            parameter_format(&p, i, value, sizeof value);
-        }
-        snprintf(shown, sizeof shown, "%.12s %s", value, info->unit);
-        int room = a.width - 4, start = room - (int)strlen(shown);
-        bool given = l->session.effective.parameters.set[i] != 0;
-        screen_text(s, a.x + 2, y, room, given ? INK_TITLE : INK_TEXT, info->path);
-        screen_text(s, a.x + 2 + (start < 18 ? 18 : start), y, start < 18 ? room - 18 : room,
-                    info->timed ? INK_ARM : INK_DIM, shown);
-        if (i == l->parameter) {
-            screen_tint(s, a.x + 1, y, a.width - 2, 1, INK_SELECTED);
-        }
-    }
-}
+enum { MOST_PREDICTED = 32 }; // links: more would take seconds
 
 // Signals of sensors that are not fitted have none.
 static bool has_value(const sample *row, int signal)
@@ -98,8 +63,8 @@ void draw_values(lab *l, screen *s, area a)
 // The linearised arm's answer for the state in a row; false where it has none.
 static bool ask_linearised(const parameters *p, const trace *t, size_t r, prediction *out)
 {
-    const sample *row = &t->rows[r];
-    if (p->arm.model == ARM_PRINTED || t->angle_count > 3 || p->arm.links > 2) {
+    size_t state = r * (size_t)t->angle_count;
+    if (p->arm.model == ARM_PRINTED || p->arm.links > MOST_PREDICTED) {
         return false;
     }
     arm a;
@@ -108,14 +73,26 @@ static bool ask_linearised(const parameters *p, const trace *t, size_t r, predic
     if (work == NULL) {
         return false;
     }
-    double w[3] = {row->hub_velocity, row->first_velocity, row->last_velocity};
-    if (t->angle_count < 3) {
-        w[0] = row->first_velocity;
-        w[1] = row->last_velocity;
-    }
-    status code = predict_linearised(&a, work, t->angles + r * (size_t)t->angle_count, w, out);
+    status code = predict_linearised(&a, work, t->angles + state, t->velocities + state, out);
     motion_destroy(work);
     return code == STATUS_OK;
+}
+
+// The same, asked once for each row: with more links than two it takes milliseconds, too long for
+// every frame of a run that plays.
+static bool linearised_at(lab *l, const parameters *p, size_t r, prediction *out)
+{
+    const session *e = &l->session;
+    if (l->linearised.version != e->version || l->linearised.row != r) {
+        if (l->playing && p->arm.links > 2) {
+            return false;
+        }
+        l->linearised.version = e->version;
+        l->linearised.row = r;
+        l->linearised.known = ask_linearised(p, &e->run.trace, r, &l->linearised.answer);
+    }
+    *out = l->linearised.answer;
+    return l->linearised.known;
 }
 
 // The row whose touch is asked about: the present one in free flight, else the last free one.
@@ -190,7 +167,7 @@ void draw_predictors(lab *l, screen *s, area a)
     predictor_line(s, a, 0, "energy", &out, known);
     known = predict_impact_dynamics(&p, &state, &out, &ignored) == STATUS_OK;
     predictor_line(s, a, 1, "impact dynamics", &out, known);
-    known = ask_linearised(&p, &e->run.trace, r, &out);
+    known = linearised_at(l, &p, r, &out);
     predictor_line(s, a, 2, "linearised", &out, known);
     if (touches) {
         out = what_came(e, r);
@@ -201,43 +178,5 @@ void draw_predictors(lab *l, screen *s, area a)
             .holds = true, .force = m->first_pulse_peak_N, .delay = m->first_pulse_time_to_peak_s};
         bool seen = e->seen >= m->first_contact_s + m->first_pulse_time_to_peak_s;
         predictor_line(s, a, 3, "first pulse", &out, seen);
-    }
-}
-
-void draw_log(lab *l, screen *s, area a)
-{
-    const session *e = &l->session;
-    const trace *t = &e->run.trace;
-    size_t seen = 0;
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "events (n, N)");
-    while (seen < t->event_count && t->events[seen].time <= e->seen) {
-        seen++;
-    }
-    // the present event in the middle, or the last ones
-    int current = 0, height = a.height - 2;
-    for (size_t i = 0; i < seen; i++) {
-        current = t->events[i].time <= e->now ? (int)i : current;
-    }
-    int still = draw_first_line(current, (int)seen, height), last = (int)seen - height;
-    int first = still + l->log_scroll;
-    first = first > last ? last : first;
-    first = first < 0 ? 0 : first;
-    l->log_scroll = first - still;
-    draw_spot(l, PART_LOG, (area){a.x + 1, a.y + 1, a.width - 2, height}, first);
-    for (int i = first; i < (int)seen && i < first + height; i++) {
-        const event *v = &t->events[i];
-        int y = a.y + 1 + i - first;
-        screen_print(s, a.x + 2, y, a.width - 4, INK_TEXT, "%9.5f s  %s", v->time,
-                     event_name(v->kind));
-        if (v->kind == EVENT_IMPACT || v->kind == EVENT_PUSH) {
-            screen_print(s, a.x + 22, y, a.width - 24, INK_EVENT, "%.3g N s", v->impulse);
-        } else if (v->kind == EVENT_CHANGE && v->index >= 0) {
-            const action *c = &e->effective.actions[v->index];
-            screen_print(s, a.x + 22, y, a.width - 24, INK_EVENT, "%s",
-                         parameter_table[c->parameter].path);
-        }
-        if (v->time == e->now) {
-            screen_tint(s, a.x + 1, y, a.width - 2, 1, INK_SELECTED);
-        }
     }
 }

@@ -22,7 +22,8 @@ static const char everywhere[] = "Esc goes back one level. : takes a command, Ta
 static const char mouse[] =
     "Mouse: click or drag in the curves to move the cursor, the wheel zooms there, Shift-wheel "
     "pans. Drag the time axis or an axis of values to move it, turn the wheel on it too. Click an "
-    "event or a scenario, once more to open it. Shift-drag selects text in most terminals.";
+    "event, a parameter or a scenario (once more opens it); drag a slider and let go. Shift-drag "
+    "selects text in most terminals.";
 
 // A page that is being written.
 typedef struct page {

@@ -48,8 +48,22 @@ static bool type(char *text, int key)
     return true;
 }
 
+// The i-th control law, then "off"; NULL beyond it.
+static const char *law_name(int i)
+{
+    static char name[LAB_TEXT];
+    if (i > LAW_PLUGIN) {
+        return i == LAW_PLUGIN + 1 ? "off" : NULL;
+    }
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    p.control.law = i;
+    parameter_format(&p, parameter_find("control.law"), name, sizeof name);
+    return name;
+}
+
 // Candidates for the word that is being typed: the i-th, or NULL.
-static const char *candidate(const lab *l, const char *command, int i)
+static const char *candidate(lab *l, const char *command, int i)
 {
     if (command == NULL) {
         return lab_command_name(i);
@@ -59,6 +73,14 @@ static const char *candidate(const lab *l, const char *command, int i)
     }
     if (strcmp(command, "trace") == 0) {
         return i < signal_count ? signal_table[i].name : NULL;
+    }
+    if (strcmp(command, "law") == 0) {
+        return law_name(i);
+    }
+    if (strcmp(command, "lock") == 0) {
+        static const char *const others[] = {"next", "off"};
+        int modes = lab_law_modes(l)->count;
+        return i < modes ? l->modes.names[i] : i < modes + 2 ? others[i - modes] : NULL;
     }
     if (strcmp(command, "open") == 0) {
         return i < l->name_count ? l->names[i] : NULL;

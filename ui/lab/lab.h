@@ -2,11 +2,13 @@
 #pragma once
 
 #include "src/lab/session.h"
+#include "src/predict/predict.h"
+#include "src/rig/rig.h"
 #include "ui/key_codes.h"
 #include "ui/screen.h"
 
 enum { EXTREMES_BLOCK = 64, LAB_SIGNALS = 64 };
-enum { LAB_PANES = 10, PANE_SIGNALS = 4, LAB_TEXT = 256, LAB_SPOTS = 32, LAB_USER_KEYS = 64 };
+enum { LAB_PANES = 10, PANE_SIGNALS = 4, LAB_TEXT = 256, LAB_SPOTS = 160, LAB_USER_KEYS = 64 };
 enum { SIDE_WIDTH = 72 }; // of a screen that has room for the side beside the curves
 
 typedef enum lab_overlay { OVERLAY_NONE, OVERLAY_HELP, OVERLAY_OPEN, OVERLAY_COMPARE } lab_overlay;
@@ -37,7 +39,9 @@ typedef enum lab_part {
     PART_LABELS,    // a pane's axis of values; index: the pane
     PART_TIME_AXIS, // below the curves
     PART_VALUES,
-    PART_LOG, // index: the first event shown
+    PART_LOG,       // index: the first line shown
+    PART_PARAMETER, // a line of the parameters; index: which one
+    PART_SLIDER,    // of a parameter; index: which one
     PART_HELP,
     PART_LIST, // index: the first line shown
     PART_COMPARISON
@@ -80,8 +84,47 @@ typedef struct lab_user_key {
     char line[LAB_TEXT]; // what it carries out, "" for nothing
 } lab_user_key;
 
+// The modes of the law that is on.
+enum { LAB_MODES = 12 };
+typedef struct lab_modes {
+    unsigned version; // of the session; 0: nothing is known
+    int count;
+    bool lockable;
+    char names[LAB_MODES][MODE_NAME_SIZE];
+} lab_modes;
+
+// A line of the log: an event of the run, or the controller went into another mode.
+typedef struct log_entry {
+    double time; // [s]
+    int event;   // index in the trace, -1 for a change of mode
+    double mode; // that it went into
+} log_entry;
+
+typedef struct lab_log {
+    unsigned version; // of the session; 0: nothing is known
+    log_entry *entries;
+    size_t count, capacity;
+    size_t rows, events; // of the run that were gone through
+    double mode;         // at the last of them, NaN if there was none yet
+} lab_log;
+
+// What a slider spans.
+typedef struct slider_scale {
+    double low, high;
+    bool logarithmic;
+} slider_scale;
+
 typedef struct lab {
     session session;
+    lab_modes modes;
+    lab_log log;
+    char last_law[LAB_TEXT]; // the one that was on when it was switched off, "" for none
+    struct {
+        bool held; // the mouse holds it: nothing is changed before it lets go
+        int parameter;
+        double value;
+        slider_scale scale;
+    } slider;
     bool playing;
     double speed;              // wanted: simulated seconds per second
     double measured;           // what came out of it lately
@@ -130,6 +173,12 @@ typedef struct lab {
     int log_scroll;           // lines that the log is away from the present event
     int value_scroll;         // first value shown
     lab_extremes run_extremes, other_extremes;
+    struct {
+        unsigned version; // of the session; 0: nothing was asked
+        size_t row;
+        bool known;
+        prediction answer;
+    } linearised; // what the linearised arm predicts for a touch at a row
     struct {
         unsigned version;
         size_t rows;            // looked at
@@ -205,9 +254,27 @@ bool lab_pane_axis(lab *l, int pane, double *low, double *high);
 // Takes what has been seen into the growing axes.
 void lab_grow_axes(lab *l);
 
+// Whether a control law is on, and what its modes are called.
+bool lab_has_law(const lab *l);
+const lab_modes *lab_law_modes(lab *l);
+void lab_mode_name(lab *l, double mode, char *text, size_t size);
+
+// Events and changes of mode in the order of time.
+const lab_log *lab_run_log(lab *l);
+void lab_forget_log(lab *l);
+// Moves to the next line of the log after the cursor (direction 1) or the one before it (-1). False
+// if there is none.
+bool lab_step_log(lab *l, int direction);
+
+// What a slider of a parameter spans round a value; false if it is no number.
+bool lab_slider_scale(int parameter, double value, slider_scale *scale);
+// Where on it a value lies, 0 to 1, and the value at a share of it, rounded to what a cell of
+// `cells` can tell and kept within the parameter's range.
+double slider_share(const slider_scale *scale, double value);
+double slider_value(const slider_scale *scale, int parameter, double share, int cells);
+
 // Low and high of each block of rows of a signal, also of what has come to a growing run; NULL
-// without memory. Low is above high in a block
-// without a finite value.
+// without memory. Low is above high in a block without a finite value.
 const double *lab_extremes_of(lab_extremes *e, unsigned version, const trace *t, int signal);
 void lab_forget_extremes(lab_extremes *e);
 

@@ -53,11 +53,11 @@ static void press_in_list(lab *l, const lab_spot *s, int y)
 
 static void press_in_log(lab *l, const lab_spot *s, int y)
 {
-    const trace *t = &l->session.run.trace;
+    const lab_log *log = lab_run_log(l);
     size_t index = (size_t)(s->index + y - s->y);
-    if (index < t->event_count && t->events[index].time <= l->session.seen) {
+    if (index < log->count && log->entries[index].time <= l->session.seen) {
         l->playing = false;
-        session_seek(&l->session, t->events[index].time);
+        session_seek(&l->session, log->entries[index].time);
         l->log_scroll = 0;
     }
 }
@@ -78,6 +78,10 @@ static void press(lab *l, lab_pointer p)
         press_in_list(l, &s, p.y);
     } else if (s.part == PART_LOG) {
         press_in_log(l, &s, p.y);
+    } else if (s.part == PART_SLIDER) {
+        lab_hold_slider(l, &s, p.x);
+    } else if (s.part == PART_PARAMETER) {
+        l->parameter = s.index;
     } else if (s.part == PART_LABELS) {
         l->focus = s.index;
     } else if (s.part == PART_CURVES) {
@@ -100,6 +104,8 @@ static void drag(lab *l, lab_pointer p)
     l->grabbed_y = p.y;
     if (s->part == PART_CURVES) {
         scrub(l, p.x);
+    } else if (s->part == PART_SLIDER) {
+        lab_hold_slider(l, s, p.x);
     } else if (s->part == PART_TIME_AXIS && s->width > 0) {
         lab_window(l, &from, &to);
         lab_pan_by(l, -across * (to - from) / s->width);
@@ -137,6 +143,9 @@ static void turn_wheel(lab *l, lab_pointer p)
     case PART_LABELS:
         lab_scale_axis(l, s.index, direction < 0 ? 0.8 : 1.25,
                        (p.y - s.y + 0.5) / (s.height > 0 ? s.height : 1));
+        break;
+    case PART_SLIDER:
+        lab_turn_slider(l, s.index, direction);
         break;
     case PART_LOG:
         l->log_scroll += direction * WHEEL_LINES;
@@ -176,6 +185,7 @@ void lab_point(lab *l, lab_pointer p)
         }
         l->grabbed.part = PART_NONE;
         l->holding = false;
+        lab_drop_slider(l);
         break;
     default:
         turn_wheel(l, p);

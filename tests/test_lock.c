@@ -1,0 +1,274 @@
+// Laws held in a mode (control.lock): what they do then, how they go on, and that a lock made in a
+// session is an input like any other.
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/lab/session.h"
+#include "src/rig/rig.h"
+#include "tests/rig_fixture.h"
+
+#define LOCK_TIME    0.5 // [s]
+#define RELEASE_TIME 0.9
+
+// The rig's run with the law held in a mode from LOCK_TIME to RELEASE_TIME.
+static run_result locked_run(const char *const *settings, const char *mode)
+{
+    const int lock = parameter_find("control.lock");
+    action script[2] = {{.time = LOCK_TIME, .kind = ACTION_SET, .parameter = lock},
+                        {.time = RELEASE_TIME, .kind = ACTION_SET, .parameter = lock}};
+    snprintf(script[0].text, sizeof script[0].text, "%s", mode);
+    snprintf(script[1].text, sizeof script[1].text, "none");
+    scenario s = {.parameters = rig_parameters(settings), .actions = script, .action_count = 2};
+    run_result result;
+    if (run_scenario(&s, true, &result) != STATUS_OK) {
+        fail_msg("%s: %s", mode, result.summary.message);
+    }
+    return result;
+}
+
+// The row with the controller's answer to the sample at an instant.
+static const sample *answer_at(const run_result *r, double time)
+{
+    return &r->trace.rows[trace_row_at(&r->trace, time + 1e-4)];
+}
+
+static void every_lockable_law_stays_in_every_mode_of_its_own(void **state)
+{
+    (void)state;
+    int lockable = 0;
+    char setting[64];
+    for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
+        const controller *c = controller_of(law);
+        lockable += c->lockable;
+        for (int mode = 0; c->lockable && c->modes[mode] != NULL; mode++) {
+            snprintf(setting, sizeof setting, "control.law=%s", c->name);
+            run_result r = locked_run(SETTINGS(setting), c->modes[mode]);
+            for (size_t i = 0; i < r.trace.row_count; i++) {
+                const sample *row = &r.trace.rows[i];
+                if (row->time > LOCK_TIME && row->time < RELEASE_TIME &&
+                    row->controller_mode != mode) {
+                    fail_msg("%s leaves %s for mode %g at %g s", c->name, c->modes[mode],
+                             row->controller_mode, row->time);
+                }
+            }
+            run_finish(&r);
+        }
+    }
+    assert_int_equal(lockable, 10);
+}
+
+static void approach_means_the_approach_command(void **state)
+{
+    (void)state;
+    static const char *const laws[] = {"hybrid",   "recovering",     "reverse-torque",
+                                       "force-pd", "force-integral", "discontinuous",
+                                       "optimal"};
+    for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
+        char setting[64];
+        snprintf(setting, sizeof setting, "control.law=%s", laws[i]);
+        run_result r = locked_run(SETTINGS(setting, "control.approach_voltage=0.8"), "approach");
+        check_close(answer_at(&r, 0.6)->command, 0.8, 0);
+        check_close(answer_at(&r, 0.89)->command, 0.8, 0);
+        // it is in contact, and knows so once it is free
+        check_close(answer_at(&r, 0.89)->contact, 1, 0);
+        assert_true(answer_at(&r, 0.92)->controller_mode > 0);
+        run_finish(&r);
+    }
+}
+
+static void force_means_the_force_law_at_once(void **state)
+{
+    (void)state;
+    // in free flight, from the first sample on
+    run_result r =
+        rig_run(SETTINGS("control.law=hybrid", "control.lock=force", "sensor.ideal=true"), true);
+    const sample *first = &r.trace.rows[0];
+    double final = 0.5 / (2 * 4.92), torque = 2 * 1 * 0.5 + 10.15 * (final - first->hub_angle);
+    check_close(first->controller_mode, 2, 0);
+    check_close(first->desired_angle, final, 1e-12);
+    parameters p = rig_parameters(NULL);
+    check_relative(first->command, torque / motor_torque_per_volt(&p.motor), 1e-9);
+    check_close(r.summary.steady_force_N, 1, 0.05);
+    run_finish(&r);
+}
+
+static void impact_mode_is_planned_anew_and_waits_at_its_end(void **state)
+{
+    (void)state;
+    run_result r = locked_run(
+        SETTINGS("control.law=hybrid", "sensor.ideal=true", "control.transition_time=0.2"),
+        "impact");
+    const sample *before = answer_at(&r, LOCK_TIME - 0.005), *entry = answer_at(&r, LOCK_TIME);
+    double final = 0.5 / (2 * 4.92);
+    check_close(before->controller_mode, 2, 0);
+    check_close(entry->desired_angle, entry->hub_angle, 1e-4);
+    // the plan begins with the acceleration that the command in effect gives
+    check_close(entry->command, before->voltage, 0.05);
+    check_close(answer_at(&r, LOCK_TIME + 0.3)->desired_angle, final, 1e-9);
+    check_close(answer_at(&r, LOCK_TIME + 0.3)->desired_velocity, 0, 1e-9);
+    // released after t_f it is the force mode's turn, and its command goes on from there
+    const sample *last = answer_at(&r, RELEASE_TIME - 0.005), *next = answer_at(&r, RELEASE_TIME);
+    check_close(next->controller_mode, 2, 0);
+    check_close(next->command, last->command, 0.15); // friction's part is the difference
+    run_finish(&r);
+}
+
+static void release_goes_on_from_the_command_in_effect(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"hybrid", "force"},           {"recovering", "force"}, {"force-pd", "contact"},
+        {"force-integral", "contact"}, {"optimal", "hold"},     {"force-integral", "approach"},
+        {"predictive", "hold"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char setting[64];
+        snprintf(setting, sizeof setting, "control.law=%s", cases[i][0]);
+        run_result r = locked_run(SETTINGS(setting, "sensor.ideal=true"), cases[i][1]);
+        double last = answer_at(&r, RELEASE_TIME - 0.005)->command;
+        double next = answer_at(&r, RELEASE_TIME)->command;
+        if (fabs(next - last) > 0.1) {
+            fail_msg("%s released from %s jumps from %g V to %g V", cases[i][0], cases[i][1], last,
+                     next);
+        }
+        run_finish(&r);
+    }
+}
+
+// Held in the approach while the beam presses, the observers lose neither arm nor wall.
+static void observers_survive_a_lock_in_contact(void **state)
+{
+    (void)state;
+    static const char *const laws[] = {"control.law=optimal", "control.law=predictive"};
+    static const char *const modes[] = {"approach", "press", "hold"};
+    for (size_t i = 0; i < 6; i++) {
+        run_result r =
+            locked_run(SETTINGS(laws[i / 3], "control.approach_voltage=2"), modes[i % 3]);
+        check_close(r.summary.steady_force_N, 1, 0.1);
+        run_finish(&r);
+    }
+}
+
+static void unknown_modes_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *law, *mode, *why;
+    } cases[] = {
+        {"control.law=hybrid", "press", "expected none, approach, impact or force"},
+        {"control.law=optimal", "force", "expected none, approach, press or hold"},
+        {"control.law=open-loop", "approach", "cannot be held in a mode"},
+        {"control.law=inverse-dynamics", "press", "cannot be held in a mode"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        fault f;
+        char setting[128];
+        scenario s = {.parameters = rig_parameters(SETTINGS(cases[i].law))};
+        snprintf(setting, sizeof setting, "control.lock=%s", cases[i].mode);
+        assert_int_equal(scenario_override(&s, setting, &f), STATUS_BAD_SCENARIO);
+        assert_non_null(strstr(f.text, cases[i].why));
+        check_close(parameter_get(&s.parameters, parameter_find("control.lock")), 0, 0);
+        assert_int_equal(scenario_override(&s, "control.lock=none", &f), STATUS_OK);
+    }
+    // without a law it says nothing, like every parameter of the rig
+    scenario bare = {.parameters = rig_parameters(NULL)};
+    assert_int_equal(scenario_override(&bare, "control.lock=force", NULL), STATUS_OK);
+}
+
+static void keep_sentences(void *context, const char *sentence)
+{
+    char *all = context;
+    snprintf(all + strlen(all), 1024 - strlen(all), "%s\n", sentence);
+}
+
+static void files_are_checked_where_the_lock_stands(void **state)
+{
+    (void)state;
+    const char *text = "title: t\n"
+                       "control: {law: hybrid, lock: pres}\n"
+                       "script:\n"
+                       "  - at: 0.2 s\n"
+                       "    set: {control.lock: recover}\n"
+                       "  - at: 0.4 s\n"
+                       "    set: {control.lock: none}\n";
+    char sentences[1024] = "";
+    scenario s;
+    assert_int_equal(
+        scenario_parse(&s, text, strlen(text), "x.yaml", NULL, keep_sentences, sentences),
+        STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(sentences, "x.yaml:2:30: control.lock = 'pres' is no mode of"));
+    assert_non_null(strstr(sentences, "x.yaml:5:25: control.lock = 'recover' is no mode of"));
+}
+
+// --- in a session -----------------------------------------------------------------------------
+
+static void fail_on_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static void assert_same_rows(const trace *a, const trace *b)
+{
+    assert_int_equal(a->row_count, b->row_count);
+    assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
+}
+
+static void lock_is_an_input_that_a_saved_scenario_repeats(void **state)
+{
+    (void)state;
+    const int lock = parameter_find("control.lock");
+    scenario s, saved;
+    session e;
+    fault f = {0};
+    run_result free_run, again;
+    assert_int_equal(scenario_open(&s, "compare/hybrid", fail_on_fault, NULL), STATUS_OK);
+    run_scenario(&s, true, &free_run);
+    assert_int_equal(session_init(&e, &s, &f), STATUS_OK);
+    session_seek(&e, 0.4);
+    assert_int_equal(session_change(&e, lock, "approach", &f), STATUS_OK);
+    session_seek(&e, 0.7);
+    assert_int_equal(session_change(&e, lock, "none", &f), STATUS_OK);
+    assert_int_equal(session_change(&e, lock, "nonsense", &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(e.input_count, 2);
+    parameters then = session_parameters_at(&e, 0.5), later = session_parameters_at(&e, 0.8);
+    assert_string_equal(then.control.lock, "approach");
+    assert_string_equal(later.control.lock, "none");
+
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    scenario_write(stream, &e.effective);
+    fclose(stream);
+    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
+                     STATUS_OK);
+    run_scenario(&saved, true, &again);
+    assert_same_rows(&again.trace, &e.run.trace);
+    run_finish(&again);
+    scenario_finish(&saved);
+    free(text);
+
+    assert_int_equal(session_undo(&e, &f), STATUS_OK);
+    assert_int_equal(session_undo(&e, &f), STATUS_OK);
+    assert_same_rows(&e.run.trace, &free_run.trace);
+    assert_int_equal(session_redo(&e, &f), STATUS_OK);
+    check_close(e.run.trace.rows[trace_row_at(&e.run.trace, 0.6)].controller_mode, 0, 0);
+    run_finish(&free_run);
+    session_finish(&e);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_lockable_law_stays_in_every_mode_of_its_own),
+        cmocka_unit_test(approach_means_the_approach_command),
+        cmocka_unit_test(force_means_the_force_law_at_once),
+        cmocka_unit_test(impact_mode_is_planned_anew_and_waits_at_its_end),
+        cmocka_unit_test(release_goes_on_from_the_command_in_effect),
+        cmocka_unit_test(observers_survive_a_lock_in_contact),
+        cmocka_unit_test(unknown_modes_are_refused),
+        cmocka_unit_test(files_are_checked_where_the_lock_stands),
+        cmocka_unit_test(lock_is_an_input_that_a_saved_scenario_repeats),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

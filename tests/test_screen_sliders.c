@@ -1,0 +1,162 @@
+// Sliders of the terminal lab's parameters: what they span, and the mouse on them.
+#include "tests/lab_on_screen.h"
+
+#include <math.h>
+
+static void point(lab *l, pointer_kind kind, int x, int y)
+{
+    lab_point(l, (lab_pointer){.kind = kind, .x = x, .y = y});
+    free(picture(l, 120, 40, GLYPHS_BRAILLE));
+}
+
+// The slider drawn last for a parameter, the wide one where it is selected.
+static lab_spot slider_of(lab *l, int parameter)
+{
+    free(picture(l, 120, 40, GLYPHS_BRAILLE));
+    lab_spot widest = {.part = PART_NONE};
+    for (int i = 0; i < l->spot_count; i++) {
+        const lab_spot *s = &l->spots[i];
+        if (s->part == PART_SLIDER && s->index == parameter && s->width > widest.width) {
+            widest = *s;
+        }
+    }
+    assert_int_equal(widest.part, PART_SLIDER);
+    return widest;
+}
+
+static double value_of(const lab *l, int parameter)
+{
+    parameters p = session_parameters_at(&l->session, l->session.now);
+    return parameter_get(&p, parameter);
+}
+
+static void test_every_number_has_a_scale_that_suits_it(void **state)
+{
+    (void)state;
+    parameters p;
+    fault f;
+    parameters_defaults(&p, ARM_CORRECTED);
+    p.arm.link_inertia = 1e-3; // derived otherwise
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        bool number = info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER;
+        double value = parameter_get(&p, i);
+        slider_scale scale;
+        assert_int_equal(lab_slider_scale(i, value, &scale), number);
+        if (!number) {
+            continue;
+        }
+        check_below(scale.low, scale.high);
+        assert_true(scale.low >= info->minimum && scale.high <= info->maximum);
+        assert_true(scale.low <= value && value <= scale.high);
+        for (int k = 0; k <= 20; k++) {
+            double at = slider_value(&scale, i, k / 20.0, 21);
+            assert_int_equal(parameter_set_number(&p, i, at, &f), STATUS_OK);
+            check_close(slider_share(&scale, at), k / 20.0,
+                        info->type == PARAMETER_INTEGER ? 0.5 : 0.051);
+        }
+        // far away from the default it is still on the scale
+        assert_true(lab_slider_scale(i, info->maximum, &scale));
+        check_close(slider_share(&scale, info->maximum), 1, 0);
+    }
+}
+
+static void test_ranges_over_decades_are_logarithmic(void **state)
+{
+    (void)state;
+    slider_scale k2, kp, damping;
+    assert_true(lab_slider_scale(parameter_find("arm.k2"), 4.92, &k2));
+    assert_true(lab_slider_scale(parameter_find("control.kp"), 10.15, &kp));
+    assert_true(lab_slider_scale(parameter_find("arm.damping_ratio"), 0.1, &damping));
+    assert_true(k2.logarithmic && k2.low == 0.01 && k2.high == 1000);
+    assert_true(!kp.logarithmic && kp.low == -50 && kp.high == 50);
+    assert_true(!damping.logarithmic && damping.low == 0 && damping.high == 1);
+}
+
+static void test_a_drag_takes_effect_when_the_mouse_lets_go(void **state)
+{
+    (void)state;
+    const int voltage = parameter_find("motor.voltage");
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    press(&l, ":seek 0.2<Enter>");
+    lab_spot s = slider_of(&l, voltage);
+    unsigned computed = l.session.version;
+    point(&l, POINTER_PRESS, s.x + s.width / 2, s.y);
+    for (int i = 0; i < 10; i++) {
+        point(&l, POINTER_DRAG, s.x + s.width - 1 - i / 5, s.y + i);
+    }
+    assert_int_equal(l.session.version, computed);
+    check_close(value_of(&l, voltage), 1, 0);
+    point(&l, POINTER_DRAG, s.x + s.width + 50, s.y);
+    assert_shows(&l, "5 V");
+    point(&l, POINTER_RELEASE, s.x + s.width + 50, s.y);
+    assert_int_equal(l.session.version, computed + 1);
+    check_close(value_of(&l, voltage), 5, 0);
+    check_close(l.session.inputs[0].time, 0.2, 0);
+    // a click where the knob is changes nothing
+    s = slider_of(&l, voltage);
+    point(&l, POINTER_PRESS, s.x + s.width - 1, s.y);
+    point(&l, POINTER_RELEASE, s.x + s.width - 1, s.y);
+    assert_int_equal(l.session.version, computed + 1);
+    press(&l, "u");
+    check_close(value_of(&l, voltage), 1, 0);
+    lab_finish(&l);
+}
+
+static void test_clicks_select_and_the_wheel_nudges(void **state)
+{
+    (void)state;
+    const int limit = parameter_find("motor.voltage_limit");
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    lab_spot s = slider_of(&l, limit);
+    // the line of it, not its slider
+    point(&l, POINTER_PRESS, s.x - 10, s.y);
+    point(&l, POINTER_RELEASE, s.x - 10, s.y);
+    assert_int_equal(l.parameter, limit);
+    assert_int_equal(l.session.input_count, 0);
+    s = slider_of(&l, limit);
+    point(&l, POINTER_WHEEL_UP, s.x + 1, s.y);
+    check_close(value_of(&l, limit), 11, 0);
+    point(&l, POINTER_WHEEL_DOWN, s.x + 1, s.y);
+    check_close(value_of(&l, limit), 10, 0);
+    lab_finish(&l);
+}
+
+// The wide slider, ends and all.
+static void assert_slider(lab *l, int width, int height, glyph_set set, const char *track)
+{
+    char *text = picture(l, width, height, set);
+    if (!strstr(text, " -5 ") || !strstr(text, track) || !strstr(text, " 5 ")) {
+        fail_msg("no slider on the screen of %d x %d:\n%s", width, height, text);
+    }
+    free(text);
+}
+
+static void test_the_selected_number_has_a_slider_on_every_screen(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{45, 16}, {60, 24}, {80, 24}, {120, 40}, {200, 60}};
+    static const glyph_set sets[] = {GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII};
+    static const char *const tracks[] = {"\u2500\u25cf\u2500", "\u2500\u25cf\u2500", "-o-"};
+    lab l;
+    open_lab(&l, "corrected/first-impact");
+    l.side_in_front = true;
+    for (int i = 0; i < 15; i++) {
+        assert_slider(&l, sizes[i / 3][0], sizes[i / 3][1], sets[i % 3], tracks[i % 3]);
+    }
+    lab_finish(&l);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_number_has_a_scale_that_suits_it),
+        cmocka_unit_test(test_ranges_over_decades_are_logarithmic),
+        cmocka_unit_test(test_a_drag_takes_effect_when_the_mouse_lets_go),
+        cmocka_unit_test(test_clicks_select_and_the_wheel_nudges),
+        cmocka_unit_test(test_the_selected_number_has_a_slider_on_every_screen),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
