@@ -133,13 +133,12 @@ run_likeness run_compare_rows(const run_result *result, const run_result *like)
     size_t rows = fewer(a->row_count, b->row_count);
     size_t events = fewer(a->event_count, b->event_count);
     size_t strides = fewer(h->stride_count, k->stride_count);
-    return (run_likeness){.rows = long_array_same_chunks(&a->row_array, &b->row_array, rows),
-                          .angles = long_array_same_chunks(&a->angle_array, &b->angle_array, rows),
-                          .velocities = long_array_same_chunks(&a->velocity_array,
-                                                               &b->velocity_array, rows),
-                          .events =
-                              long_array_same_chunks(&a->event_array, &b->event_array, events),
-                          .strides = long_array_same_chunks(&h->strides, &k->strides, strides)};
+    return (run_likeness){
+        .rows = long_array_same_chunks(&a->row_array, &b->row_array, rows),
+        .angles = long_array_same_chunks(&a->angle_array, &b->angle_array, rows),
+        .velocities = long_array_same_chunks(&a->velocity_array, &b->velocity_array, rows),
+        .events = long_array_same_chunks(&a->event_array, &b->event_array, events),
+        .strides = long_array_same_chunks(&h->strides, &k->strides, strides)};
 }
 
 void run_merge(run_result *result, const run_result *like, const run_likeness *same)
