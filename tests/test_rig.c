@@ -314,7 +314,7 @@ static void many_links_want_their_own_stiffness(void **state)
 
 // --- plug-ins -------------------------------------------------------------------------------
 
-static const char *soft_push_file, *broken_file;
+static const char *soft_push_file, *broken_file, *outdated_file;
 
 static const char *plugin_setting(char *text, size_t size, const char *file)
 {
@@ -362,6 +362,18 @@ static void wrong_plugins_are_refused(void **state)
     check_refused(SETTINGS("control.law=plugin", file, "control.settings=damping"),
                   "damping=NUMBER");
     check_refused(SETTINGS("control.law=plugin", file, "motor.amplifier_gain=0"), "no torque");
+    plugin_setting(file, sizeof file, outdated_file);
+    check_refused(SETTINGS("control.law=plugin", file), "compile it again");
+}
+
+// A stop of the run and a sample that differ by rounding are one instant: a stride between them
+// would be too short for an implicit method.
+static void instants_apart_by_rounding_are_one(void **state)
+{
+    (void)state;
+    summary s = rig_summary(SETTINGS("control.law=hybrid", "arm.links=12", "wall.kind=plane",
+                                     "method.name=newmark", "run.duration=1.5"));
+    check_below(0, s.impacts);
 }
 
 static void command_that_is_not_finite_stops_the_run(void **state)
@@ -403,13 +415,15 @@ int main(int count, char **arguments)
         cmocka_unit_test(many_links_want_their_own_stiffness),
         cmocka_unit_test(plugin_controls_the_arm),
         cmocka_unit_test(wrong_plugins_are_refused),
+        cmocka_unit_test(instants_apart_by_rounding_are_one),
         cmocka_unit_test(command_that_is_not_finite_stops_the_run),
     };
-    if (count != 3) {
-        fprintf(stderr, "usage: test_rig SOFT_PUSH.so BROKEN.so\n");
+    if (count != 4) {
+        fprintf(stderr, "usage: test_rig SOFT_PUSH.so BROKEN.so OUTDATED.so\n");
         return 2;
     }
     soft_push_file = arguments[1];
     broken_file = arguments[2];
+    outdated_file = arguments[3];
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

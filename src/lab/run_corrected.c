@@ -10,6 +10,7 @@
 #define TINY_TURN           1e-2 // nor below what the motor does in this turn [rad]
 #define WRONG_ENERGY        0.1  // share of the energy turned over that may not be unaccounted for
 #define MOST_EVENTS_AT_ONCE 100  // events without time passing before the run is given up
+#define ONE_INSTANT         1e-12 // samples, actions and windows that differ by rounding coincide [s]
 
 // Takes note of the ledger; a run that makes energy is stopped.
 static status audit(recording *r, const arm *a, motion *m)
@@ -167,7 +168,7 @@ static status act(recording *r, arm *a, motion *m, fault *f)
 {
     const scenario *s = r->scenario;
     double now = m->state[SLOT_TIME];
-    for (; r->next_action < s->action_count && s->actions[r->next_action].time <= now;
+    for (; r->next_action < s->action_count && s->actions[r->next_action].time <= now + ONE_INSTANT;
          r->next_action++) {
         const action *todo = &s->actions[r->next_action];
         motion_report report = {.event = MOTION_REACHED};
@@ -242,7 +243,7 @@ static status control(recording *r, arm *a, motion *m, fault *f)
 {
     bool changed;
     double now = m->state[SLOT_TIME];
-    if (r->rig == NULL || rig_next_time(r->rig) > now) {
+    if (r->rig == NULL || rig_next_time(r->rig) > now + ONE_INSTANT) {
         return STATUS_OK;
     }
     sensed_motion sensed = sense(a, m, m->state);
@@ -384,7 +385,7 @@ static double next_cut(const recording *r, double window, double now)
 {
     const scenario *s = r->scenario;
     double cut = r->next_action < s->action_count ? s->actions[r->next_action].time : HUGE_VAL;
-    return window > now ? fmin(window, cut) : cut;
+    return window > now + ONE_INSTANT ? fmin(window, cut) : cut;
 }
 
 // Puts the arm where it starts, and records the row of that instant.
@@ -428,7 +429,7 @@ status run_corrected(recording *r, fault *f)
         failed = begin_corrected(r, &a, m, f);
     }
     while (failed == STATUS_OK && m->state[SLOT_TIME] < duration) {
-        if (m->state[SLOT_TIME] == window) {
+        if (fabs(m->state[SLOT_TIME] - window) <= ONE_INSTANT) {
             r->integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         }
         failed = act(r, &a, m, f);

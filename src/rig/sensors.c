@@ -80,20 +80,29 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed)
     noise_start(&s->acceleration_noise, (uint64_t)seed + 3 * other_sensor);
 }
 
-// Over a time h [s], the input being the parabola through `first` and `last` with the given mean.
+// A stride shorter than this share of the time constant leaves the closed form too few digits.
+#define SHORT_STRIDE 1e-3
+
+// Over a time h [s], the input being the parabola through `first` and `last` with the given mean:
+// y' = (f - y)/lag with f = first + slope u + curve u^2, u = t/h.
 static void lag_follow(first_order_lag *y, double h, double first, double last, double mean)
 {
     double lag = y->time_constant;
     if (lag == 0 || h <= 0) {
         return;
     }
-    // y' = (f - y)/lag with f = first + slope u + curve u^2, u = t/h: the particular solution
-    // f - lag f' + lag^2 f'' and a transient that dies
-    if (h < 1e-6 * lag) {
-        y->value += h / lag * (mean - y->value); // the transient's difference is rounding
+    double curve = 3 * (first + last) - 6 * mean, slope = last - first - curve;
+    if (h < SHORT_STRIDE * lag) {
+        // the integrals of u^n exp(-(1 - u) x) over the stride as series in x
+        double x = h / lag;
+        double of_one = 1 - x / 2 * (1 - x / 3 * (1 - x / 4));
+        double of_u = 1.0 / 2 - x / 6 * (1 - x / 4 * (1 - x / 5));
+        double of_square = 1.0 / 3 - x / 12 * (1 - x / 5 * (1 - x / 6));
+        y->value += x * ((first - y->value) * of_one + slope * of_u + curve * of_square);
         return;
     }
-    double curve = 3 * (first + last) - 6 * mean, slope = last - first - curve, r = lag / h;
+    // the particular solution f - lag f' + lag^2 f'' and a transient that dies
+    double r = lag / h;
     double at_start = first - r * slope + 2 * r * r * curve;
     double at_end = last - r * (slope + 2 * curve) + 2 * r * r * curve;
     y->value = at_end + (y->value - at_start) * exp(-h / lag);
