@@ -402,6 +402,26 @@ static void sensors_feel_a_push_in_contact(void **state)
     run_finish(&run);
 }
 
+// Steps that do not resolve an impact deliver it as a force, unless it rebounds: then it is a jump,
+// and an impulse like any other.
+static void sensors_feel_an_unresolved_rebound(void **state)
+{
+    (void)state;
+    run_result run = rig_run(SETTINGS(QUIET, "control.law=open-loop", "control.rate=5000",
+                                      "method.name=newmark", "arm.links=12", "wall.kind=plane",
+                                      "wall.restitution=0.8", "run.duration=0.305"),
+                             true);
+    double fsr = 0, largest_impulse = 0;
+    for (size_t i = 0; i < run.trace.row_count; i++) {
+        largest_impulse = fmax(largest_impulse, run.trace.rows[i].impulse);
+        fsr = fmax(fsr, run.trace.rows[i].force_reading);
+    }
+    check_below(0.003, largest_impulse);
+    // 0.003 N s over a time constant of 0.68 ms; the next sample comes within 0.2 ms
+    check_below(0.003 / 0.68e-3 * exp(-0.2 / 0.68), fsr);
+    run_finish(&run);
+}
+
 // Which input the last controller got.
 static controller_input got;
 
@@ -495,6 +515,7 @@ int main(void)
         cmocka_unit_test(accelerometer_feels_a_jump),
         cmocka_unit_test(run_feeds_the_sensors),
         cmocka_unit_test(sensors_feel_a_push_in_contact),
+        cmocka_unit_test(sensors_feel_an_unresolved_rebound),
         cmocka_unit_test(controller_gets_what_is_fitted),
         cmocka_unit_test(ideal_force_sensors_are_alike),
         cmocka_unit_test(printed_arm_feeds_the_sensors_too),

@@ -131,10 +131,10 @@ static status book_event(recording *r, motion *m, const motion_report *report)
 }
 
 // Lets the force sensors feel an impact that has just been applied.
-static void strike(recording *r, const arm *a, const motion *m, const motion_report *report)
+static void strike(recording *r, const motion *m, const motion_report *report)
 {
-    // steps that do not resolve the impact carry its impulse in their force
-    if (r->rig != NULL && report->event == MOTION_IMPACT && !motion_unresolved(a, m)) {
+    // an impulse that the next step is to deliver is part of that step's force
+    if (r->rig != NULL && report->event == MOTION_IMPACT && m->state[SLOT_IMPULSE] == 0) {
         sensors_strike(&r->rig->sensors, report->impulse);
     }
 }
@@ -153,7 +153,7 @@ static status pass_event(recording *r, const arm *a, motion *m, motion_report *r
         r->result->touch_size = size;
     }
     motion_apply(a, m, report);
-    strike(r, a, m, report);
+    strike(r, m, report);
     if (failed == STATUS_OK) {
         failed = book_event(r, m, report);
     }
@@ -187,7 +187,7 @@ static status act(recording *r, arm *a, motion *m, fault *f)
             e.kind = EVENT_PUSH;
             e.impulse = todo->value;
             motion_push(a, m, todo->value, &report);
-            strike(r, a, m, &report);
+            strike(r, m, &report);
         }
         if (failed == STATUS_OK) {
             failed = trace_add_event(&r->result->trace, e);
