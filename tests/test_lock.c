@@ -257,6 +257,20 @@ static void lock_is_an_input_that_a_saved_scenario_repeats(void **state)
     session_finish(&e);
 }
 
+// Held in the pressing mode before there is a wall to press on, the observer follows the flight and
+// the law goes for where the wall is believed to be; what it then presses with is what is wanted.
+static void pressing_from_the_start_finds_the_wall(void **state)
+{
+    (void)state;
+    const char *const laws[] = {"control.law=optimal", "control.law=predictive"};
+    for (int i = 0; i < 2; i++) {
+        summary s = rig_summary(SETTINGS(laws[i], "control.lock=press"));
+        check_close(s.steady_force_N, 1, 0.03);
+        check_below(s.peak_force_N, 2);
+        check_close(s.separations, 0, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -269,6 +283,7 @@ int main(void)
         cmocka_unit_test(unknown_modes_are_refused),
         cmocka_unit_test(files_are_checked_where_the_lock_stands),
         cmocka_unit_test(lock_is_an_input_that_a_saved_scenario_repeats),
+        cmocka_unit_test(pressing_from_the_start_finds_the_wall),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

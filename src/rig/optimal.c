@@ -42,13 +42,14 @@ typedef struct optimal_memory {
     double jump[2];     // rate of x after an impact, of both links' velocities before it
     int mode;
     bool started;
-    bool held_in_contact; // the tip touched while the law was held in the approach
-    double inertia;       // M [kg m2]
-    double stiffness;     // 4 k2 [N m/rad]
-    double spring_force;  // of x: 2 k2/l [N/rad]
-    double mass_force;    // mu [N s2/rad]
-    double divergence;    // s [1/s]
-    double gain[2];       // of x and its rate [V/rad], [V s/rad]
+    bool flies; // the estimate is of the free flight
+    int samples_in_contact;
+    double inertia;      // M [kg m2]
+    double stiffness;    // 4 k2 [N m/rad]
+    double spring_force; // of x: 2 k2/l [N/rad]
+    double mass_force;   // mu [N s2/rad]
+    double divergence;   // s [1/s]
+    double gain[2];      // of x and its rate [V/rad], [V s/rad]
     sampled_model flight, contact, during_delay;
     estimator e;         // of the flight or of the contact
     double ceiling;      // largest force to brake with [N]
@@ -186,53 +187,28 @@ static void enter_contact(optimal_memory *m, const controller_input *in)
     e.p[PRESSED_TORQUE][PRESSED_TORQUE] = 1e-4;
     m->e = e;
     m->ceiling = m->force;
-    m->mode = PRESS;
-}
-
-// The wall is where the beam's bend of that force has it.
-static void find_wall(optimal_memory *m, const controller_input *in, double force)
-{
-    m->e.z[PRESSED_WALL] = in->hub_angle - force / m->spring_force;
-    m->e.p[PRESSED_WALL][PRESSED_WALL] = 1e-6;
-}
-
-// The same for a tip that has touched the wall for a while already.
-static void go_on_in_contact(optimal_memory *m, const controller_input *in)
-{
-    m->e = (estimator){.z = {in->hub_angle, in->hub_velocity, 0, 0}};
-    m->e.p[PRESSED_ANGLE][PRESSED_ANGLE] = ANGLE_VARIANCE;
-    m->e.p[PRESSED_RATE][PRESSED_RATE] = RATE_VARIANCE;
-    m->e.p[PRESSED_TORQUE][PRESSED_TORQUE] = 1e-4;
-    find_wall(m, in, in->force);
-    m->ceiling = m->force;
-    m->mode = PRESS;
-}
-
-// Goes into the approach: both links as they are if the tip rests where it is.
-static void approach_again(optimal_memory *m, const controller_input *in)
-{
-    double bend = 2 * in->force / m->spring_force;
-    m->e = (estimator){
-        .z = {in->hub_angle, in->hub_angle - bend, in->hub_velocity, -in->hub_velocity}};
-    for (int i = FREE_FIRST; i <= FREE_LAST; i++) {
-        m->e.p[i][i] = ANGLE_VARIANCE;
-        m->e.p[i + 2][i + 2] = RATE_VARIANCE;
-    }
-    m->mode = APPROACH;
-}
-
-// Holds what there is, as far as a force reading tells it.
-static void hold_here(optimal_memory *m, const controller_input *in)
-{
-    m->mode = HOLD;
-    m->held_force = in->force;
-    m->hold_command = m->stiffness * in->force / m->spring_force / m->rig.torque_per_volt;
+    m->flies = false;
 }
 
 // Force to brake with where stopping takes at least `stopping` [N].
 static double braking_force(const optimal_memory *m, double stopping)
 {
     return stopping + 0.2 * fmax(0, stopping - m->force) + 0.01;
+}
+
+// Back to free flight where that is wanted: the tip is taken to be at the wall still, where both
+// links turn against each other.
+static void leave_contact(optimal_memory *m, const controller_input *in)
+{
+    double wall = m->e.z[PRESSED_WALL];
+    estimator e = {
+        .z = {in->hub_angle, 2 * wall - in->hub_angle, in->hub_velocity, -in->hub_velocity}};
+    e.p[FREE_FIRST][FREE_FIRST] = ANGLE_VARIANCE;
+    e.p[FREE_FIRST_RATE][FREE_FIRST_RATE] = RATE_VARIANCE;
+    e.p[FREE_LAST][FREE_LAST] = 1e-4;
+    e.p[FREE_LAST_RATE][FREE_LAST_RATE] = 0.1;
+    m->e = e;
+    m->flies = true;
 }
 
 // If the tip touched the wall now: the impact throws the links' velocities onto x' as (4.10)-(4.17)
@@ -341,16 +317,54 @@ static double limit_command(optimal_memory *m, const double *z, double command)
     return fmax(-limit, fmin(command, limit));
 }
 
+// Holds what the beam presses with now.
+static void begin_hold(optimal_memory *m, double x)
+{
+    m->mode = HOLD;
+    m->held_force = m->spring_force * x;
+    m->hold_command = m->stiffness * x / m->rig.torque_per_volt;
+}
+
+// Goes into the mode that is wanted, with the state in the model of that mode.
+static void change_mode(optimal_memory *m, const controller_input *in)
+{
+    const double *z = m->e.z;
+    m->mode = in->wanted_mode;
+    if (m->mode == APPROACH && !m->flies) {
+        leave_contact(m, in);
+    } else if (m->mode == PRESS && !m->flies) {
+        m->e.z[PRESSED_ANGLE] = in->hub_angle; // nothing was observed while it held
+        m->e.z[PRESSED_RATE] = in->hub_velocity;
+    } else if (m->mode == HOLD) {
+        begin_hold(m, m->flies ? (z[FREE_FIRST] - z[FREE_LAST]) / 2
+                               : z[PRESSED_ANGLE] - z[PRESSED_WALL]);
+    }
+}
+
 // Friction holds the hub best in the middle of its band; the beam does the rest.
 static double hold(optimal_memory *m, const controller_input *in)
 {
     const double smoothing = 0.05;
     m->held_force += smoothing * (in->force - m->held_force);
-    if (in->wanted_mode < 0 && fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
+    bool wanted = in->wanted_mode == HOLD;
+    if (!wanted && fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
         m->mode = PRESS;
-        find_wall(m, in, m->held_force);
+        if (!m->flies) {
+            m->e.z[PRESSED_WALL] = in->hub_angle - m->held_force / m->spring_force;
+            m->e.p[PRESSED_WALL][PRESSED_WALL] = 1e-6;
+        }
     }
     return m->hold_command;
+}
+
+// Asked to press before there is contact: the feedback round the angle at which the beam would
+// press if the wall were where it is believed to be.
+static double seek_wall(const optimal_memory *m)
+{
+    const double *z = m->e.z;
+    double aim = m->force / m->spring_force, x = z[FREE_FIRST] - m->rig.wall_angle;
+    return m->stiffness * aim / m->rig.torque_per_volt + m->gain[0] * (aim - x) -
+           m->gain[1] * z[FREE_FIRST_RATE];
 }
 
 static double press(optimal_memory *m, const controller_input *in)
@@ -366,10 +380,9 @@ static double press(optimal_memory *m, const controller_input *in)
     double error = aim - x, tolerance = 0.01 * m->force + 0.005; // [N]
     double velocity = z[PRESSED_RATE];
     bool rests = fabs(velocity) < 0.02;
-    if (in->wanted_mode < 0 && rests && fabs(error) * m->spring_force < tolerance) {
-        m->mode = HOLD;
-        m->held_force = m->spring_force * x;
-        m->hold_command = m->stiffness * x / m->rig.torque_per_volt;
+    bool wanted = in->wanted_mode == PRESS;
+    if (!wanted && rests && fabs(error) * m->spring_force < tolerance) {
+        begin_hold(m, x);
         return m->hold_command;
     }
     double against = rests ? copysign(m->rig.stiction, error) : friction(m, velocity, 0);
@@ -377,62 +390,46 @@ static double press(optimal_memory *m, const controller_input *in)
     return limit_command(m, z, steady + m->gain[0] * error - m->gain[1] * velocity);
 }
 
-// Goes into the mode the law is held in, with an observer that begins with what the sensors read.
-static void enter_wanted_mode(optimal_memory *m, const controller_input *in)
+// The observer's turn, and the law's own choice where the flight ends.
+static void observe(optimal_memory *m, const controller_input *in)
 {
-    if (in->wanted_mode == APPROACH) {
-        approach_again(m, in);
-    } else if (in->wanted_mode == HOLD) {
-        hold_here(m, in);
-    } else {
-        go_on_in_contact(m, in);
-    }
-}
-
-// The observer in flight, or the change to contact.
-static void observe_approach(optimal_memory *m, const controller_input *in)
-{
-    bool touches = in->force > m->threshold;
-    if (touches && in->wanted_mode == APPROACH) {
-        approach_again(m, in);
-        m->held_in_contact = true;
-    } else if (touches && m->held_in_contact) {
-        go_on_in_contact(m, in);
-        m->held_in_contact = false;
-    } else if (touches) {
+    bool locked = in->wanted_mode >= 0;
+    if (!m->started) {
+        m->started = m->flies = true;
+        m->e = (estimator){.z = {in->hub_angle, in->hub_angle, 0, 0}};
+    } else if (m->flies && in->wanted_mode != APPROACH && in->force > m->threshold) {
         enter_contact(m, in);
-    } else {
-        m->held_in_contact = false;
+        m->mode = locked ? m->mode : PRESS;
+    } else if (m->flies) {
         predict_flight(m, in);
         observe_flight(m, in);
+    } else if (m->mode == PRESS || locked) {
+        observe_contact(m, in);
     }
 }
 
 static void sample(void *memory, const controller_input *in, controller_output *out)
 {
     optimal_memory *m = memory;
-    if (!m->started) {
-        m->started = true;
-        m->e = (estimator){.z = {in->hub_angle, in->hub_angle, 0, 0}};
-    } else if (m->mode == PRESS) {
-        observe_contact(m, in);
-    } else if (m->mode == APPROACH) {
-        observe_approach(m, in);
-    }
+    observe(m, in);
     if (in->wanted_mode >= 0 && in->wanted_mode != m->mode) {
-        enter_wanted_mode(m, in);
+        change_mode(m, in);
     }
-    out->command = m->mode == APPROACH ? approach(m) : m->mode == HOLD ? hold(m, in) : press(m, in);
+    out->command = m->mode == APPROACH ? approach(m)
+                   : m->mode == HOLD   ? hold(m, in)
+                   : m->flies          ? seek_wall(m)
+                                       : press(m, in);
     out->mode = m->mode;
-    if (m->mode != APPROACH) {
-        out->desired_angle = m->e.z[PRESSED_WALL] + m->force / m->spring_force;
-        out->desired_velocity = 0;
-        out->force_estimate = m->mode == HOLD
-                                  ? m->held_force
-                                  : contact_force(m, m->e.z, motor_torque(m, in->applied));
-    } else {
+    if (m->mode == APPROACH) {
         out->force_estimate = m->force_limit == HUGE_VAL ? 0 : force_of_touch(m);
+        return;
     }
+    double wall = m->flies ? m->rig.wall_angle : m->e.z[PRESSED_WALL];
+    out->desired_angle = wall + m->force / m->spring_force;
+    out->desired_velocity = 0;
+    out->force_estimate = m->mode == HOLD ? m->held_force
+                          : m->flies      ? 0
+                                          : contact_force(m, m->e.z, motor_torque(m, in->applied));
 }
 
 #define LAW(law, table, starts)                                                                    \
