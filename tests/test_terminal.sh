@@ -65,6 +65,19 @@ start() {
     await "Space run/pause"
 }
 
+# suspends the lab; on a busy machine the shell may not have handed the terminal over when the key
+# comes, which is then lost
+suspend() {
+    for _ in 1 2 3; do
+        mux send-keys C-z
+        for _ in $(seq 60); do
+            picture | grep -qF "ready>" && return 0
+            sleep 0.05
+        done
+    done
+    fail "^Z does not suspend"
+}
+
 # the terminal is as it was: settings, alternate screen, cursor, mouse
 check_given_back() {
     await_file "$folder/after" || return
@@ -114,8 +127,7 @@ check_given_back INT
 
 # suspended and taken up again
 start
-mux send-keys C-z
-await "ready>"
+suspend
 mux send-keys "clear; jobs" Enter
 await "Stopped"
 mux send-keys "fg" Enter
@@ -227,8 +239,7 @@ await "Space run/pause"
 mux resize-window -x 90 -y 30
 await "? help"
 mux send-keys Escape
-mux send-keys C-z
-await "ready>"
+suspend
 mux send-keys "clear; fg" Enter
 await "impactlab  corrected/first-impact"
 await "motor.voltage"
