@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/arm/arm.h"
-#include "src/lab/scenario.h"
+#include "src/scenario/scenario.h"
 #include "tests/check.h"
 
 // Resolved parameters of the corrected arm with the given settings; the list ends with NULL.

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/run.h"
-#include "src/lab/scenario.h"
+#include "src/run/run.h"
+#include "src/scenario/scenario.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

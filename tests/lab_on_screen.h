@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ui/lab/lab.h"
+#include "ui/explorer/lab.h"
 
 static inline void fail_on_fault(void *context, const char *sentence)
 {

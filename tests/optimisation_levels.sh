@@ -18,9 +18,8 @@ done
 flags="-std=c17 -D_GNU_SOURCE -ffp-contract=off -I. $(pkg-config --cflags yaml-0.1 jansson lapack)"
 libraries="$(pkg-config --libs yaml-0.1 jansson lapack sqlite3) -ldl -lm -lpthread"
 
-# what a run needs: the library without what only makes many runs, or times them
-unneeded='sweep|sweep_store|batch|bench|convergence|sensor_view|tables'
-sources=$(find src tests/optimisation_runs.c -name '*.c' | grep -vE "/($unneeded)\.c$" | sort)
+# what a run needs: the library below the studies, which make many runs or time them
+sources=$(find src tests/optimisation_runs.c -name '*.c' | grep -v '^src/study/' | sort)
 newest_header=$(find src -name '*.h' -printf '%T@\n' | sort -n | tail -n 1)
 
 for level in 1 2 3; do

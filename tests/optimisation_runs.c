@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/export.h"
+#include "src/run/export.h"
 #include "src/predict/linearised.h"
 
 // Each line a run: settings, separated by blanks.

@@ -1,7 +1,7 @@
 // Runs on the rig for tests: the impact of the thesis's 5.4 with settings as "path=value" strings.
 #pragma once
 
-#include "src/lab/run.h"
+#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 // Resolved parameters: wall at 0, start at rest 0.1 rad before it, 1.5 s, then the settings.

@@ -18,7 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "src/lab/random.h"
+#include "src/base/random.h"
 
 #define SESSION_TIME  20.0 // [s]
 #define ANSWER_TIME   10.0 // longest until an answer, sanitizers and a busy machine included [s]

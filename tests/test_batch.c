@@ -1,7 +1,7 @@
 // Many runs at once give what single runs give.
 #include <stdlib.h>
 
-#include "src/lab/batch.h"
+#include "src/study/batch.h"
 #include "tests/arm_fixture.h"
 
 enum { RUNS = 200 };

@@ -1,10 +1,10 @@
-#include "src/lab/bench.h"
+#include "src/study/bench.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "src/lab/export.h"
+#include "src/run/export.h"
 #include "tests/check.h"
 
 static int calls;

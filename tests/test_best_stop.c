@@ -1,5 +1,5 @@
 // The best that could be done after an impact: closed forms, and controllers tried at random.
-#include "src/lab/random.h"
+#include "src/base/random.h"
 #include "src/predict/best_stop.h"
 #include "tests/arm_fixture.h"
 

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/calibrate.h"
+#include "src/study/calibrate.h"
 #include "tests/rig_fixture.h"
 
 static const double commands[] = {1.125, 2.25, 4.5, 6.75};

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/compare.h"
+#include "src/study/compare.h"
 #include "tests/rig_fixture.h"
 
 static void differences_are_shares_of_the_larger_value(void **state)

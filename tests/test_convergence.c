@@ -1,4 +1,4 @@
-#include "src/lab/convergence.h"
+#include "src/study/convergence.h"
 #include "tests/arm_fixture.h"
 
 static void the_order_of_made_up_errors_is_found(void **state)

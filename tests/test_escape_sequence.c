@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "ui/escape_sequence.h"
+#include "ui/terminal/escape_sequence.h"
 
 typedef struct meant {
     sequence_result result;

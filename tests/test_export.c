@@ -1,4 +1,4 @@
-#include "src/lab/export.h"
+#include "src/run/export.h"
 
 #include <stdlib.h>
 #include <string.h>

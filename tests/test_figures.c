@@ -8,9 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "render/figures.h"
-#include "render/report.h"
-#include "render/text.h"
+#include "render/figures/figures.h"
+#include "render/figures/report.h"
+#include "render/page/text.h"
 
 // fontconfig keeps its cache until the process ends
 const char *__lsan_default_suppressions(void);

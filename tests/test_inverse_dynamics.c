@@ -4,7 +4,7 @@
 #include <complex.h>
 #include <stdlib.h>
 
-#include "src/rig/laws.h"
+#include "src/rig/laws/laws.h"
 #include "tests/rig_fixture.h"
 
 #define PI          3.14159265358979323846

@@ -1,7 +1,7 @@
 // The project's own predictor against the corrected simulation, on the cases of Tables 4.1-4.3.
 #include <stdlib.h>
 
-#include "src/lab/run.h"
+#include "src/run/run.h"
 #include "src/predict/linearised.h"
 #include "tests/arm_fixture.h"
 

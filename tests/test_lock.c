@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/session.h"
+#include "src/session/session.h"
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "src/lab/random.h"
-#include "src/lab/session.h"
+#include "src/base/random.h"
+#include "src/session/session.h"
 
 static void fail_on_fault(void *context, const char *sentence)
 {

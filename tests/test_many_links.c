@@ -2,7 +2,7 @@
 // and ends pressing on the wall with the force a static beam would give.
 #include <math.h>
 
-#include "src/lab/run.h"
+#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 static void check_case(int links, const char *hub, const char *wall, double volts)

@@ -2,7 +2,7 @@
 // forms and by what must hold at every row.
 #include <math.h>
 
-#include "src/lab/run.h"
+#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 static run_result run(const char *const *settings)

@@ -1,5 +1,5 @@
 // The table of parameters: what every entry has to keep, and how values are read and resolved.
-#include "src/parameters.h"
+#include "src/quantities/parameters.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -10,9 +10,9 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "render/figure_file.h"
-#include "render/text.h"
-#include "render/trace_plot.h"
+#include "render/plot/figure_file.h"
+#include "render/page/text.h"
+#include "render/plot/trace_plot.h"
 
 // fontconfig keeps its cache until the process ends
 const char *__lsan_default_suppressions(void);

@@ -5,7 +5,7 @@
 
 #include "src/arm/arm.h"
 #include "src/arm/printed_arm.h"
-#include "src/solve/dense.h"
+#include "src/base/dense.h"
 
 // A fixed sequence of numbers between -1 and 1.
 static double noise(unsigned *seed)

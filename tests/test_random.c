@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "src/lab/random.h"
+#include "src/base/random.h"
 #include "tests/check.h"
 
 static void xoshiro_gives_its_published_sequence(void **state)

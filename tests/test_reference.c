@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/run.h"
+#include "src/run/run.h"
 #include "tests/check.h"
 #include "tests/reference/reference_arm.h"
 

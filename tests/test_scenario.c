@@ -1,14 +1,14 @@
 // Reading scenarios: what a file may say, and the place and sentence of everything it may not.
-#include "src/lab/scenario.h"
+#include "src/scenario/scenario.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/lab/run.h"
-#include "src/lab/yaml_tree.h"
-#include "src/words.h"
+#include "src/run/run.h"
+#include "src/scenario/yaml_tree.h"
+#include "src/base/words.h"
 #include "tests/check.h"
 
 // All sentences of one reading, a line each.

@@ -11,10 +11,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "render/film.h"
-#include "render/film_file.h"
-#include "render/scene.h"
-#include "render/text.h"
+#include "render/scene/film.h"
+#include "render/scene/film_file.h"
+#include "render/scene/scene.h"
+#include "render/page/text.h"
 
 enum { WIDTH = 320, HEIGHT = 180 };
 

@@ -3,7 +3,7 @@
 
 #include <unistd.h>
 
-#include "src/lab/random.h"
+#include "src/base/random.h"
 
 static void test_text_is_cut_and_cleaned(void **state)
 {

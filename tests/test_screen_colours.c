@@ -2,7 +2,7 @@
 // choice with fewer of them.
 #include "tests/lab_on_screen.h"
 
-#include "ui/ink_colours.h"
+#include "ui/terminal/ink_colours.h"
 
 static void test_measures_agree_with_known_values(void **state)
 {

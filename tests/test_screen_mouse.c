@@ -1,7 +1,7 @@
 // The mouse in each part of the terminal lab's screen.
 #include "tests/lab_on_screen.h"
 
-#include "src/lab/random.h"
+#include "src/base/random.h"
 
 static void point(lab *l, pointer_kind kind, int x, int y)
 {

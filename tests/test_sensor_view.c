@@ -1,4 +1,4 @@
-#include "src/lab/sensor_view.h"
+#include "src/study/sensor_view.h"
 #include "tests/arm_fixture.h"
 
 static void an_impulse_jumps_and_decays(void **state)

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/random.h"
-#include "src/lab/session.h"
+#include "src/base/random.h"
+#include "src/session/session.h"
 
 static void fail_on_fault(void *context, const char *sentence)
 {

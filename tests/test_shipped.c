@@ -1,7 +1,7 @@
 // Every shipped scenario runs, meets its own expectations and keeps its ledger.
 #include <stdlib.h>
 
-#include "src/lab/run.h"
+#include "src/run/run.h"
 #include "tests/check.h"
 
 static void print_fault(void *context, const char *sentence)

@@ -1,12 +1,12 @@
 // Figures over logarithmic axes, judged by the pixels of an image.
-#include "render/study_plot.h"
+#include "render/plot/study_plot.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "render/palette.h"
-#include "render/text.h"
+#include "render/page/palette.h"
+#include "render/page/text.h"
 #include "tests/check.h"
 
 enum { SCALE = 2 };

@@ -6,9 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "render/sweep_plot.h"
-#include "render/text.h"
-#include "src/lab/sweep_store.h"
+#include "render/plot/sweep_plot.h"
+#include "render/page/text.h"
+#include "src/study/sweep_store.h"
 #include "tests/check.h"
 
 static char folder[] = "/tmp/sweep-XXXXXX";

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "src/lab/tables.h"
+#include "src/study/thesis_tables.h"
 
 static thesis_tables tables;
 

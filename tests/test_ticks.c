@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/ticks.h"
+#include "render/plot/ticks.h"
 
 static void expect_ticks(const ticks *t, int count, const double *expected)
 {

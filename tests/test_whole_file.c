@@ -1,4 +1,4 @@
-#include "src/lab/whole_file.h"
+#include "src/base/whole_file.h"
 
 #include <dirent.h>
 #include <errno.h>

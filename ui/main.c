@@ -1,14 +1,14 @@
 // impactlab on the command line: finds the command and hands over to it.
-#include "ui/command.h"
+#include "ui/commands/command.h"
 
 #include <errno.h>
 #include <locale.h>
 #include <signal.h>
 #include <string.h>
 
-#include "src/lab/whole_file.h"
-#include "src/words.h"
-#include "ui/terminal.h"
+#include "src/base/whole_file.h"
+#include "src/base/words.h"
+#include "ui/terminal/terminal.h"
 
 static const command *const command_table[] = {
     &lab_command,

@@ -9,7 +9,7 @@
 // acts with the generalised force -J^T f, J = dg/dq, f >= 0.
 #pragma once
 
-#include "src/parameters.h"
+#include "src/quantities/parameters.h"
 
 typedef struct arm {
     int links; // N

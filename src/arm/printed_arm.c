@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/arm/arm.h"
-#include "src/solve/dense.h"
+#include "src/base/dense.h"
 
 void printed_arm_init(printed_arm *a, const parameters *p)
 {

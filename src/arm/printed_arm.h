@@ -20,7 +20,7 @@
 
 #include <stdbool.h>
 
-#include "src/parameters.h"
+#include "src/quantities/parameters.h"
 
 enum { PRINTED_BODIES = 3, PRINTED_EQUATIONS = 4 };
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/predict/two_link.h"
-#include "src/solve/dense.h"
+#include "src/base/dense.h"
 
 // Range of delays that are looked at [s].
 #define SHORTEST_DELAY 1e-9

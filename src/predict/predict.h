@@ -1,8 +1,8 @@
 // Predictors of the peak force, usable in free flight: "if it touched now, how hard would it hit?"
 #pragma once
 
-#include "src/parameters.h"
-#include "src/status.h"
+#include "src/quantities/parameters.h"
+#include "src/base/status.h"
 
 // The state a prediction starts from: three bodies for the thesis's predictors.
 typedef struct three_body_state {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/arm/arm.h"
-#include "src/solve/dense.h"
+#include "src/base/dense.h"
 
 double two_link_inertia(const parameters *p)
 {

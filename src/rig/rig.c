@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "src/arm/arm.h"
-#include "src/k2_table.h"
-#include "src/rig/laws.h"
-#include "src/words.h"
+#include "src/quantities/k2_table.h"
+#include "src/rig/laws/laws.h"
+#include "src/base/words.h"
 
 const controller *controller_of(int law)
 {

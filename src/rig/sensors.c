@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "src/arm/sincos.h"
+#include "src/base/sincos.h"
 
 // 10 % to 90 % of a first-order lag takes ln 9 time constants.
 #define RISE_OVER_TIME_CONSTANT 2.1972245773362196

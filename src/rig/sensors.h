@@ -10,8 +10,8 @@
 // bandwidth.
 #pragma once
 
-#include "src/lab/random.h"
-#include "src/parameters.h"
+#include "src/base/random.h"
+#include "src/quantities/parameters.h"
 
 // What the sensors are fixed to, at one instant.
 typedef struct sensed_motion {

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "src/arm/chain.h"
-#include "src/status.h"
+#include "src/base/status.h"
 
 // Bookkeeping at the head of the state vector; angles, velocities and the rest follow.
 enum motion_slot {

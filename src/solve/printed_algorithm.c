@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/arm/printed_arm.h"
-#include "src/solve/dense.h"
+#include "src/base/dense.h"
 
 // Below this force contact is given up at the next step [N].
 #define RELEASE_FORCE 1e-6

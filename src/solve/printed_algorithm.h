@@ -1,8 +1,8 @@
 // The thesis's own simulation: Table 3.2 with the habits of its listing, on the printed equations.
 #pragma once
 
-#include "src/parameters.h"
-#include "src/status.h"
+#include "src/quantities/parameters.h"
+#include "src/base/status.h"
 
 // What the printed algorithm knows after a step.
 typedef struct printed_row {

@@ -47,7 +47,7 @@ int main(int argc, char **argv)
         !set(&p, "wall.kind", "plane") || parameters_resolve(&p, &f) != STATUS_OK) {
         return 2;
     }
-    // the stretches of src/lab/bench.c: two links before the hub sticks, many when they rest
+    // the stretches of src/study/bench.c: two links before the hub sticks, many when they rest
     bool contact = strcmp(argv[3], "contact") == 0, two = p.arm.links == 2;
     double from = !contact ? 0.05 : two ? 0.30 : 0.7, to = !contact ? 0.25 : two ? 0.36 : 0.9;
     arm_init(&a, &p);

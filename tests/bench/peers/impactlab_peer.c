@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/lab/run.h"
+#include "src/run/run.h"
 #include "tests/bench/peers/peer.h"
 
 typedef enum impactlab_variant {

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "src/lab/whole_file.h"
+#include "src/base/whole_file.h"
 #include "tests/bench/peers/peer.h"
 
 #define SAMPLE_TIME 0.02 // shortest time of one sample [s]

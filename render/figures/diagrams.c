@@ -1,0 +1,647 @@
+#include "render/figures/diagrams.h"
+
+#include <glib.h>
+#include <math.h>
+#include <string.h>
+
+#include "render/plot/figure_file.h"
+#include "render/plot/opened_run.h"
+#include "render/page/sketch.h"
+#include "src/run/export.h"
+#include "src/base/whole_file.h"
+#include "src/predict/predict.h"
+
+#define DEGREE     (G_PI / 180)
+#define HUB_RADIUS 0.11 // of the experiment's hub, section 2.3 [m]
+
+enum { VALUES = 16, CURVE_POINTS = 400 };
+
+// A number that a diagram shows or is drawn from.
+typedef struct diagram_value {
+    const char *name, *unit;
+    double value;
+} diagram_value;
+
+typedef struct diagram {
+    sketch_frame frame;
+    char *title, *caption, *parameters;
+    void (*draw)(sketch *s, const struct diagram *d);
+    parameters p;
+    diagram_value values[VALUES];
+    int value_count;
+    three_body_state before;   // 4.2: the instant before the impact
+    double after[3];           // angular velocities just after it [rad/s]
+    double impulse;            // [N s]
+    double *curve_x, *curve_y; // 2.1: force and output
+} diagram;
+
+static void add_value(diagram *d, const char *name, double value, const char *unit)
+{
+    d->values[d->value_count++] = (diagram_value){name, unit, value};
+}
+
+// ---- a diagram as an artwork
+// ----------------------------------------------------------------------
+
+static status paint_diagram(cairo_t *cr, const void *what, figure_report *report, fault *f)
+{
+    sketch s;
+    const diagram *d = what;
+    status code = sketch_begin(&s, cr, &d->frame, report, f);
+    if (code == STATUS_OK) {
+        d->draw(&s, d);
+        sketch_end(&s);
+    }
+    return code;
+}
+
+static void write_value(FILE *stream, const char *name, double value, const char *unit)
+{
+    char number[NUMBER_TEXT];
+    number_format(number, value);
+    csv_field(stream, name);
+    fprintf(stream, ",%s,%s\n", number, unit);
+}
+
+static status write_diagram(const void *what, const char *path, fault *f)
+{
+    whole_file file;
+    const diagram *d = what;
+    status code = whole_file_open(&file, path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    fputs("quantity,value,unit\n", file.stream);
+    for (int i = 0; i < d->value_count; i++) {
+        write_value(file.stream, d->values[i].name, d->values[i].value, d->values[i].unit);
+    }
+    for (int i = 0; d->curve_x != NULL && i < CURVE_POINTS; i++) {
+        write_value(file.stream, "force", d->curve_x[i], "N");
+        write_value(file.stream, "output", d->curve_y[i], "V");
+    }
+    return whole_file_commit(&file, f);
+}
+
+static void release_diagram(void *what)
+{
+    diagram *d = what;
+    g_free(d->title);
+    g_free(d->caption);
+    g_free(d->parameters);
+    g_free(d->curve_x);
+    g_free(d->curve_y);
+    g_free(d);
+}
+
+static diagram *new_diagram(const char *title, const char *caption, double body,
+                            const figure_options *o)
+{
+    diagram *d = g_new0(diagram, 1);
+    d->title = g_strdup(title);
+    d->caption = g_strdup(caption);
+    d->frame = (sketch_frame){d->title, d->caption, body, o->width_mm, o->theme};
+    parameters_defaults(&d->p, ARM_CORRECTED);
+    parameters_resolve(&d->p, NULL);
+    return d;
+}
+
+static artwork artwork_of_diagram(diagram *d)
+{
+    artwork a = {.title = d->title,
+                 .parameters = d->parameters,
+                 .what = d,
+                 .paint = paint_diagram,
+                 .write_csv = write_diagram,
+                 .release = release_diagram};
+    sketch_size(&d->frame, &a.width, &a.height);
+    return a;
+}
+
+// ---- 2.1: the force sensor
+// ------------------------------------------------------------------------
+
+// The circuit's resistors are the thesis's. Supply and sensor, which it does not print, are the
+// rig's.
+#define R_GAIN     10e3 // both of the gain stage [ohm]
+#define MOST_FORCE 12.0 // [N]
+
+static double sensor_output(const sensor_parameters *p, double force)
+{
+    double felt = fmin(force, p->fsr_saturation);
+    double resistance = p->fsr_resistance * pow(felt, -p->fsr_exponent);
+    double divided = felt > 0 ? p->fsr_supply * p->fsr_divider / (p->fsr_divider + resistance) : 0;
+    return divided * p->fsr_gain;
+}
+
+static void draw_ground(const sketch *s, double x, double y)
+{
+    sketch_line(s, x, y, x, y + 5, 0.8, SKETCH_INK);
+    for (int i = 0; i < 3; i++) {
+        sketch_line(s, x - 6 + 2 * i, y + 5 + 2.4 * i, x + 6 - 2 * i, y + 5 + 2.4 * i, 0.8,
+                    SKETCH_INK);
+    }
+}
+
+static void wire(const sketch *s, double x0, double y0, double x1, double y1)
+{
+    sketch_line(s, x0, y0, x1, y1, 0.8, SKETCH_INK);
+}
+
+// An amplifier whose inputs are at (x, y - 10) and (x, y + 10) and whose output is at (x + 40, y).
+static void draw_amplifier(sketch *s, double x, double y)
+{
+    wire(s, x, y - 22, x, y + 22);
+    wire(s, x, y - 22, x + 40, y);
+    wire(s, x, y + 22, x + 40, y);
+    sketch_text(s, x + 7, y - 10, 0.5, 0.5, "+", SKETCH_LABEL);
+    sketch_text(s, x + 7, y + 10, 0.5, 0.5, "\u2212", SKETCH_LABEL);
+}
+
+static void draw_divider(sketch *s, const sensor_parameters *p, double x, double y)
+{
+    char text[96];
+    snprintf(text, sizeof text, "<i>V</i><sub>+</sub> = %g\u2009V", p->fsr_supply);
+    sketch_text(s, x, y, 0.5, 0, text, SKETCH_SMALL);
+    sketch_disc(s, x, y + 14, 1.8, SKETCH_INK, false);
+    wire(s, x, y + 16, x, y + 20);
+    sketch_resistor(s, x, y + 18, x, y + 62);
+    sketch_text(s, x + 9, y + 40, 0, 0.5, "FSR", SKETCH_SMALL);
+    sketch_arrow(s, x - 34, y + 40, x - 8, y + 40, 5);
+    sketch_text(s, x - 38, y + 40, 1, 0.5, "<i>f</i>", SKETCH_LABEL);
+    sketch_resistor(s, x, y + 62, x, y + 116);
+    snprintf(text, sizeof text, "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
+    sketch_text(s, x - 9, y + 92, 1, 0.5, text, SKETCH_SMALL);
+    draw_ground(s, x, y + 112);
+    sketch_disc(s, x, y + 62, 1.7, SKETCH_INK, true);
+}
+
+// From the divider's node at (x, y) through buffer and gain stage to the output.
+static void draw_stages(sketch *s, double x, double y)
+{
+    double first = x + 56, second = first + 92, node = second - 14;
+    wire(s, x, y, first, y);
+    draw_amplifier(s, first, y + 10);
+    wire(s, first + 40, y + 10, second, y + 10);
+    sketch_disc(s, first + 52, y + 10, 1.7, SKETCH_INK, true);
+    wire(s, first + 52, y + 10, first + 52, y + 44);
+    wire(s, first + 52, y + 44, first - 10, y + 44);
+    wire(s, first - 10, y + 44, first - 10, y + 20);
+    wire(s, first - 10, y + 20, first, y + 20);
+    sketch_text(s, first + 10, y - 20, 0.5, 1, "buffer", SKETCH_SMALL);
+    draw_amplifier(s, second, y + 20);
+    sketch_text(s, second + 14, y - 10, 0.5, 1,
+                "gain 1 + <i>R</i><sub>6</sub>/<i>R</i><sub>5</sub> = 2", SKETCH_SMALL);
+    wire(s, second, y + 30, node, y + 30);
+    wire(s, node, y + 30, node, y + 62);
+    sketch_disc(s, node, y + 62, 1.7, SKETCH_INK, true);
+    sketch_resistor(s, node, y + 62, second + 54, y + 62);
+    sketch_text(s, (node + second + 54) / 2, y + 69, 0.5, 0, "<i>R</i><sub>6</sub> = 10\u2009kΩ",
+                SKETCH_SMALL);
+    wire(s, second + 54, y + 62, second + 54, y + 20);
+    sketch_disc(s, second + 54, y + 20, 1.7, SKETCH_INK, true);
+    sketch_resistor(s, node, y + 62, node, y + 106);
+    sketch_text(s, node - 9, y + 86, 1, 0.5, "<i>R</i><sub>5</sub>\n10\u2009kΩ", SKETCH_SMALL);
+    draw_ground(s, node, y + 102);
+    wire(s, second + 40, y + 20, second + 86, y + 20);
+    sketch_disc(s, second + 88, y + 20, 1.8, SKETCH_INK, false);
+    sketch_text(s, second + 92, y + 12, 1, 1, "<i>V</i><sub>out</sub>", SKETCH_LABEL);
+}
+
+// A plot as a part of the page.
+static void paint_part(sketch *s, const figure *fig, double x, double y)
+{
+    figure_report *part = g_new0(figure_report, 1);
+    cairo_save(s->cr);
+    cairo_translate(s->cr, x, y);
+    figure_paint(s->cr, fig, part, NULL);
+    cairo_restore(s->cr);
+    for (int i = 0; i < part->text_count; i++) {
+        figure_rect r = part->texts[i].place;
+        char *text = text_escape(part->texts[i].text);
+        report_add_text(s->report, text,
+                        (figure_rect){s->scale * (x + r.x), s->scale * (y + r.y),
+                                      s->scale * r.width, s->scale * r.height});
+        g_free(text);
+    }
+    g_free(part);
+}
+
+static void draw_sensor(sketch *s, const diagram *d)
+{
+    draw_divider(s, &d->p.sensor, s->left + 74, s->top);
+    draw_stages(s, s->left + 74, s->top + 62);
+    const figure_series curve = {
+        .name = "output", .x = d->curve_x, .y = d->curve_y, .count = CURVE_POINTS, .colour = 5};
+    const figure_panel panel = {.name = "output",
+                                .label = "Output <i>V</i><sub>out</sub>",
+                                .unit = "V",
+                                .series = &curve,
+                                .series_count = 1,
+                                .with_zero = true};
+    const figure plot = {.x_name = "force",
+                         .x_label = "Force on the sensor <i>f</i>",
+                         .x_unit = "N",
+                         .panels = &panel,
+                         .panel_count = 1,
+                         .width = (s->right - s->left) * 25.4 / 72,
+                         .height = 52,
+                         .theme = s->theme};
+    paint_part(s, &plot, s->left, s->top + 186);
+}
+
+status diagram_sensor(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    (void)f;
+    diagram *d = new_diagram(title, NULL, 186 + 52 / 25.4 * 72, o);
+    const sensor_parameters *p = &d->p.sensor;
+    d->caption = g_strdup_printf(
+        "The sheet sensor (FSR) and the measuring resistor divide the supply; a buffer keeps the "
+        "divider unloaded, a second amplifier doubles its output. Resistors as in the thesis; "
+        "supply and sensor are not printed there and are the rig's: %g\u2009V, %g\u2009kΩ at "
+        "1\u2009N, resistance falling with the power %g of the force up to %g\u2009N.",
+        p->fsr_supply, p->fsr_resistance / 1e3, p->fsr_exponent, p->fsr_saturation);
+    d->frame.caption = d->caption;
+    d->draw = draw_sensor;
+    add_value(d, "measuring resistor", p->fsr_divider, "ohm");
+    add_value(d, "gain resistor R5", R_GAIN, "ohm");
+    add_value(d, "gain resistor R6", R_GAIN, "ohm");
+    add_value(d, "supply", p->fsr_supply, "V");
+    add_value(d, "sensor resistance at 1 N", p->fsr_resistance, "ohm");
+    add_value(d, "exponent of the sensor's power law", p->fsr_exponent, "");
+    add_value(d, "force beyond which it saturates", p->fsr_saturation, "N");
+    d->curve_x = g_new(double, CURVE_POINTS);
+    d->curve_y = g_new(double, CURVE_POINTS);
+    for (int i = 0; i < CURVE_POINTS; i++) {
+        // close together where the curve bends
+        double share = (double)i / (CURVE_POINTS - 1);
+        d->curve_x[i] = MOST_FORCE * share * share;
+        d->curve_y[i] = sensor_output(p, d->curve_x[i]);
+    }
+    *out = artwork_of_diagram(d);
+    return STATUS_OK;
+}
+
+// ---- 2.2: hub and links
+// ----------------------------------------------------------------------------
+
+// Where the model's metres are on the page; y upwards in the model. `across` enlarges what lies
+// across the line to the right.
+typedef struct view {
+    double x, y, metre, across;
+} view;
+
+typedef struct point {
+    double x, y;
+} point;
+
+static point on_page(const view *v, double x, double y)
+{
+    return (point){v->x + v->metre * x, v->y - v->metre * v->across * y};
+}
+
+// End of a piece of length `length` at `angle` from a point of the model.
+static point end_of(point from, double length, double angle)
+{
+    return (point){from.x + length * cos(angle), from.y + length * sin(angle)};
+}
+
+// An angle from the dashed reference line at a joint to a link.
+static void draw_angle(sketch *s, point at, double radius, double angle, const char *markup)
+{
+    sketch_dashed(s, at.x, at.y, at.x + radius + 14, at.y, SKETCH_FAINT);
+    sketch_arc(s, at.x, at.y, radius, 0, angle, SKETCH_INK, true);
+    sketch_text(s, at.x + (radius + 3) * cos(angle / 2), at.y - (radius + 3) * sin(angle / 2), 0,
+                0.5, markup, SKETCH_LABEL);
+}
+
+// A measure beside a link, `away` points from it.
+static void draw_length(sketch *s, point from, point to, double away, double ax, double ay,
+                        const char *markup)
+{
+    double length = hypot(to.x - from.x, to.y - from.y);
+    double nx = (to.y - from.y) / length, ny = -(to.x - from.x) / length;
+    double x0 = from.x + away * nx, y0 = from.y + away * ny;
+    double x1 = to.x + away * nx, y1 = to.y + away * ny;
+    sketch_measure(s, x0, y0, x1, y1);
+    sketch_text(s, (x0 + x1) / 2 + 3 * nx * (away < 0 ? -1 : 1),
+                (y0 + y1) / 2 + 3 * ny * (away < 0 ? -1 : 1), ax, ay, markup, SKETCH_LABEL);
+}
+
+static void draw_links(sketch *s, const diagram *d)
+{
+    const double first = 12 * DEGREE, hub = 5 * DEGREE, second = 32 * DEGREE;
+    double l = d->p.arm.length / 2, radius = HUB_RADIUS;
+    view v = {s->left + 56, s->bottom - 44, 265, 1};
+    point o = {0, 0}, joint = end_of(o, l, first), tip = end_of(joint, l, second);
+    point hub_page = on_page(&v, 0, 0), joint_page = on_page(&v, joint.x, joint.y);
+    point tip_page = on_page(&v, tip.x, tip.y);
+    point c1 = end_of(o, l / 2, first), c2 = end_of(joint, l / 2, second);
+    point c1_page = on_page(&v, c1.x, c1.y), c2_page = on_page(&v, c2.x, c2.y);
+
+    sketch_disc(s, hub_page.x, hub_page.y, v.metre * radius, SKETCH_INK, false);
+    draw_angle(s, hub_page, 104, first, "<i>θ</i><sub>2</sub>");
+    draw_angle(s, joint_page, 74, second, "<i>θ</i><sub>3</sub>");
+    sketch_bar(s, hub_page.x, hub_page.y, joint_page.x, joint_page.y, 7);
+    sketch_bar(s, joint_page.x, joint_page.y, tip_page.x, tip_page.y, 7);
+    sketch_mass_point(s, c1_page.x, c1_page.y);
+    sketch_mass_point(s, c2_page.x, c2_page.y);
+
+    // the hub's own direction, which the spring k1 parts from the first link
+    point rim = end_of(o, radius, hub - 40 * DEGREE), rim_page = on_page(&v, rim.x, rim.y);
+    sketch_line(s, hub_page.x, hub_page.y, rim_page.x, rim_page.y, 0.8, SKETCH_INK);
+    sketch_arc(s, hub_page.x, hub_page.y, v.metre * radius + 8, -75 * DEGREE, hub - 40 * DEGREE,
+               SKETCH_INK, true);
+    sketch_text(s, rim_page.x + 12, rim_page.y + 6, 0, 0.5,
+                "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_spiral(s, hub_page.x, hub_page.y, 13, 0);
+    sketch_spiral(s, joint_page.x, joint_page.y, 11, 0);
+    sketch_text(s, hub_page.x - v.metre * radius - 4, hub_page.y, 1, 0.5, "<i>k</i><sub>1</sub>",
+                SKETCH_LABEL);
+    sketch_text(s, joint_page.x, joint_page.y + 14, 0.5, 0, "<i>k</i><sub>2</sub>", SKETCH_LABEL);
+    draw_length(s, hub_page, c1_page, 35, 0.5, 1, "<i>ε</i><sub>2</sub>");
+    draw_length(s, joint_page, c2_page, 17, 1, 1, "<i>ε</i><sub>3</sub>");
+    draw_length(s, hub_page, joint_page, 54, 0.5, 1, "<i>l</i>");
+    draw_length(s, joint_page, tip_page, 36, 1, 1, "<i>l</i>");
+    sketch_text(s, c1_page.x + 30, c1_page.y - 13, 0.5, 1,
+                "<i>m</i><sub>2</sub>, <i>I</i><sub>2</sub>", SKETCH_LABEL);
+    sketch_text(s, c2_page.x + 64, c2_page.y - 22, 0, 0,
+                "<i>m</i><sub>3</sub>, <i>I</i><sub>3</sub>", SKETCH_LABEL);
+    sketch_text(s, tip_page.x + 7, tip_page.y, 0, 0.5, "tip", SKETCH_LABEL);
+}
+
+static void add_arm_values(diagram *d)
+{
+    const arm_parameters *a = &d->p.arm;
+    add_value(d, "length of a link l", a->length / 2, "m");
+    add_value(d, "distance of its centre from the joint", a->length / 4, "m");
+    add_value(d, "mass of a link", a->mass / 2, "kg");
+    add_value(d, "inertia of a link about its centre", a->link_inertia, "kg m2");
+    add_value(d, "inertia of the hub", a->hub_inertia, "kg m2");
+    add_value(d, "spring of the hub joint k1", a->k1, "N m/rad");
+    add_value(d, "spring of the beam k2", a->k2, "N m/rad");
+}
+
+status diagram_links(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    (void)f;
+    diagram *d = new_diagram(title, NULL, 190, o);
+    d->draw = draw_links;
+    add_arm_values(d);
+    d->caption = g_strdup_printf(
+        "Hub (body 1) and two rigid links (bodies 2 and 3) in the proportions of the model, bent "
+        "far more than in use. <i>l</i> = %g\u2009m, <i>ε</i> = %g\u2009m, <i>m</i> = "
+        "%.4g\u2009kg, "
+        "<i>I</i> = %.3g\u2009kg·m², <i>I</i><sub>1</sub> = %.3g\u2009kg·m², <i>k</i><sub>1</sub> "
+        "= "
+        "%.6g\u2009N·m/rad, <i>k</i><sub>2</sub> = %g\u2009N·m/rad. Angles are absolute.",
+        d->p.arm.length / 2, d->p.arm.length / 4, d->p.arm.mass / 2, d->p.arm.link_inertia,
+        d->p.arm.hub_inertia, d->p.arm.k1, d->p.arm.k2);
+    d->frame.caption = d->caption;
+    *out = artwork_of_diagram(d);
+    return STATUS_OK;
+}
+
+// ---- 2.3: free bodies
+// ------------------------------------------------------------------------------
+
+// A turning arrow about a point, with its label above.
+static void draw_torque(sketch *s, point at, double from, double to, const char *markup, double ax,
+                        double ay, point label)
+{
+    sketch_arc(s, at.x, at.y, 17, from * DEGREE, to * DEGREE, 0, true);
+    sketch_text(s, label.x, label.y, ax, ay, markup, SKETCH_LABEL);
+}
+
+static void draw_free_bodies(sketch *s, const diagram *d)
+{
+    double l = d->p.arm.length / 2, metre = 184;
+    const double first = 9 * DEGREE, second = 20 * DEGREE;
+    double base = s->bottom - 52;
+    view hub = {s->left + 44, base, metre, 1}, one = {s->left + 122, base, metre, 1};
+    point h = on_page(&hub, 0, 0), a = on_page(&one, 0, 0);
+    point e = end_of((point){0, 0}, l, first), b = on_page(&one, e.x, e.y);
+    view two = {b.x + 46, b.y - 14, metre, 1};
+    point c = on_page(&two, 0, 0), g = end_of((point){0, 0}, l, second);
+    point t = on_page(&two, g.x, g.y);
+
+    sketch_disc(s, h.x, h.y, 0.9 * metre * HUB_RADIUS, SKETCH_INK, false);
+    sketch_disc(s, h.x, h.y, 2, SKETCH_INK, true);
+    sketch_arc(s, h.x, h.y, 11, 200 * DEGREE, 40 * DEGREE, 0, true);
+    sketch_text(s, h.x + 19, h.y - 14, 0, 1, "\u2212<i>τ</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_arc(s, h.x, h.y, 30, -150 * DEGREE, -40 * DEGREE, 2, true);
+    sketch_text(s, h.x, h.y + 36, 0.5, 0, "motor <i>τ</i><sub>m</sub>, friction", SKETCH_SMALL);
+    sketch_text(s, h.x, h.y - 40, 0.5, 1, "body 1", SKETCH_SMALL);
+
+    sketch_bar(s, a.x, a.y, b.x, b.y, 7);
+    sketch_mass_point(s, (a.x + b.x) / 2, (a.y + b.y) / 2);
+    draw_torque(s, a, 120, 250, "<i>τ</i><sub>1</sub>", 0.5, 1, (point){a.x - 10, a.y - 21});
+    draw_torque(s, b, -110, 60, "<i>τ</i><sub>2</sub>", 1, 1, (point){b.x + 2, b.y - 16});
+    sketch_arrow(s, a.x, a.y, a.x + 8, a.y + 36, 5);
+    sketch_text(s, a.x + 12, a.y + 37, 0, 0.5, "<i>f</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_arrow(s, b.x, b.y, b.x - 8, b.y + 36, 5);
+    sketch_text(s, b.x - 12, b.y + 37, 1, 0.5, "<i>f</i><sub>2</sub>", SKETCH_LABEL);
+    sketch_text(s, (a.x + b.x) / 2, (a.y + b.y) / 2 + 9, 0.5, 0, "body 2", SKETCH_SMALL);
+
+    sketch_bar(s, c.x, c.y, t.x, t.y, 7);
+    sketch_mass_point(s, (c.x + t.x) / 2, (c.y + t.y) / 2);
+    draw_torque(s, c, 230, 110, "\u2212<i>τ</i><sub>2</sub>", 0.5, 0, (point){c.x + 8, c.y + 18});
+    sketch_arrow(s, c.x, c.y, c.x + 8, c.y - 36, 5);
+    sketch_text(s, c.x + 12, c.y - 37, 0, 0.5, "\u2212<i>f</i><sub>2</sub>", SKETCH_LABEL);
+    // the wall pushes back, across the last link
+    double away = 40;
+    sketch_arrow(s, t.x - away * sin(second), t.y - away * cos(second), t.x, t.y - 4, 5);
+    sketch_text(s, t.x - away * sin(second) - 5, t.y - away * cos(second), 1, 0.5, "<i>f</i>",
+                SKETCH_LABEL);
+    sketch_text(s, (c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10, 0, 0, "body 3", SKETCH_SMALL);
+}
+
+status diagram_free_bodies(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    (void)f;
+    diagram *d = new_diagram(
+        title,
+        "Each body on its own with what its neighbours do to it: torques <i>τ</i> of the springs "
+        "<i>k</i><sub>1</sub>, <i>k</i><sub>2</sub> and forces <i>f</i><sub>1</sub>, "
+        "<i>f</i><sub>2</sub> of the hinges, equal and opposite on both sides of a joint. Added "
+        "up over bodies 2 and 3, <i>τ</i><sub>2</sub> and <i>f</i><sub>2</sub> cancel; the printed "
+        "(2.16) keeps <i>k</i><sub>2</sub> all the same. The contact force <i>f</i> acts across "
+        "the last link.",
+        158, o);
+    d->draw = draw_free_bodies;
+    add_arm_values(d);
+    *out = artwork_of_diagram(d);
+    return STATUS_OK;
+}
+
+// ---- 4.1: springs in series
+// ------------------------------------------------------------------------
+
+static void draw_springs(sketch *s, const diagram *d)
+{
+    char text[128];
+    double y = s->top + 46, wall = s->right - 40, mass = s->left + 74;
+    sketch_line(s, s->left + 20, y + 20, wall, y + 20, 0.5, SKETCH_FAINT);
+    set_colour(s->cr, s->colours->shade);
+    cairo_rectangle(s->cr, mass - 26, y - 20, 52, 40);
+    cairo_fill_preserve(s->cr);
+    set_colour(s->cr, s->colours->axis);
+    cairo_set_line_width(s->cr, 0.8);
+    cairo_stroke(s->cr);
+    sketch_text(s, mass, y, 0.5, 0.5, "<i>m</i><sub>c</sub>", SKETCH_LABEL);
+    sketch_arrow(s, mass - 14, y - 30, mass + 34, y - 30, 2);
+    sketch_text(s, mass + 38, y - 30, 0, 0.5, "<i>v</i><sub>0</sub>", SKETCH_LABEL);
+    double middle = (mass + 26 + wall) / 2;
+    sketch_coil(s, mass + 26, y, middle, y, 5, 0);
+    sketch_coil(s, middle, y, wall, y, 9, 0);
+    sketch_disc(s, middle, y, 2, SKETCH_INK, true);
+    sketch_wall(s, wall, y + 34, wall, y - 34);
+    snprintf(text, sizeof text, "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", d->p.arm.k1);
+    sketch_text(s, (mass + 26 + middle) / 2, y + 26, 0.5, 0, text, SKETCH_SMALL);
+    snprintf(text, sizeof text, "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", d->p.arm.k2);
+    sketch_text(s, (middle + wall) / 2, y + 26, 0.5, 0, text, SKETCH_SMALL);
+    double k1 = d->p.arm.k1, k2 = d->p.arm.k2;
+    snprintf(text, sizeof text,
+             "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + 1/<i>k</i><sub>2</sub>,   "
+             "<i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
+             k1 * k2 / (k1 + k2));
+    sketch_text(s, (s->left + s->right) / 2, y + 50, 0.5, 0, text, SKETCH_LABEL);
+}
+
+// The first impact of a scenario: speed, impulse and the arm the instant before.
+static status take_first_impact(diagram *d, const char *name, double *speed, fault *f)
+{
+    opened_run run;
+    status code = run_begin(&run, name, NULL, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    const trace *t = &run.result.trace;
+    code = STATUS_BAD_SCENARIO;
+    for (size_t i = 0; i < t->event_count && code != STATUS_OK; i++) {
+        if (t->events[i].kind == EVENT_IMPACT) {
+            const double *touch = run.result.touch;
+            code = STATUS_OK;
+            *speed = t->events[i].speed;
+            d->impulse = t->events[i].impulse;
+            d->before =
+                (three_body_state){{touch[0], touch[0], touch[1]}, {touch[2], touch[2], touch[3]}};
+        }
+    }
+    if (code != STATUS_OK) {
+        fault_set(f, code, "%s: no impact to draw", name);
+    } else {
+        d->p = run.scenario.parameters;
+        d->parameters = parameters_line(&run.scenario);
+    }
+    run_end(&run);
+    return code;
+}
+
+status diagram_springs(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    diagram *d = new_diagram(title, NULL, 108, o);
+    double speed = 0;
+    parameters defaults = d->p;
+    status code = take_first_impact(d, "corrected/first-impact", &speed, f);
+    if (code != STATUS_OK) {
+        release_diagram(d);
+        return code;
+    }
+    d->p = defaults;
+    d->draw = draw_springs;
+    add_arm_values(d);
+    add_value(d, "stiffness in series", d->p.arm.k1 * d->p.arm.k2 / (d->p.arm.k1 + d->p.arm.k2),
+              "N m/rad");
+    add_value(d, "approach speed", speed, "m/s");
+    add_value(d, "impulse", d->impulse, "N s");
+    add_value(d, "mass at the contact point", d->impulse / speed, "kg");
+    d->caption = g_strdup_printf(
+        "What the wall feels: a mass on the arm's springs in series. The stiff hub joint hardly "
+        "counts, the beam's spring takes almost all the energy. At 1\u2009V the contact point "
+        "arrives with <i>v</i><sub>0</sub> = %.3g\u2009m/s and the impact of %.3g\u2009N·s shows a "
+        "mass <i>m</i><sub>c</sub> = %.3g\u2009kg there, of the beam's %.3g\u2009kg.",
+        speed, d->impulse, d->impulse / speed, d->p.arm.mass);
+    d->frame.caption = d->caption;
+    *out = artwork_of_diagram(d);
+    return STATUS_OK;
+}
+
+// ---- 4.2: the arm as it hits
+// -----------------------------------------------------------------------
+
+#define ACROSS       8.0  // enlargement across the line to the contact point
+#define SPEED_LENGTH 70.0 // page points to 1 m/s
+
+static void draw_collision(sketch *s, const diagram *d)
+{
+    char text[96];
+    double l = d->p.arm.length / 2, wall = d->p.wall.angle;
+    view v = {s->left + 40, s->top + 74, 270, ACROSS};
+    point joint = end_of((point){0, 0}, l, d->before.angle[1] - wall);
+    point hub_page = on_page(&v, 0, 0), joint_page = on_page(&v, joint.x, joint.y);
+    point contact = on_page(&v, d->p.arm.length, 0);
+    double joint_before = l * d->before.velocity[1], joint_after = l * d->after[1];
+    double tip_before = joint_before + l * d->before.velocity[2];
+
+    sketch_wall(s, contact.x + 34, contact.y - 5, contact.x - 6, contact.y - 5);
+    sketch_dashed(s, hub_page.x, hub_page.y, contact.x, contact.y, SKETCH_FAINT);
+    sketch_bar(s, hub_page.x, hub_page.y, joint_page.x, joint_page.y, 7);
+    sketch_bar(s, joint_page.x, joint_page.y, contact.x, contact.y, 7);
+    sketch_disc(s, hub_page.x, hub_page.y, 14, SKETCH_INK, false);
+    sketch_disc(s, hub_page.x, hub_page.y, 2, SKETCH_INK, true);
+    sketch_disc(s, joint_page.x, joint_page.y, 2.6, SKETCH_INK, true);
+    sketch_mass_point(s, (hub_page.x + joint_page.x) / 2, (hub_page.y + joint_page.y) / 2);
+    sketch_mass_point(s, (contact.x + joint_page.x) / 2, (contact.y + joint_page.y) / 2);
+    sketch_text(s, hub_page.x, hub_page.y + 18, 0.5, 0, "hub", SKETCH_SMALL);
+    sketch_text(s, contact.x + 8, contact.y + 6, 0, 0, "contact\npoint", SKETCH_SMALL);
+
+    // velocities: before to the left of each point, after to the right
+    double y = joint_page.y - 6;
+    sketch_arrow(s, joint_page.x - 6, y, joint_page.x - 6, y - SPEED_LENGTH * joint_before, 2);
+    sketch_dashed_arrow(s, joint_page.x + 6, y, joint_page.x + 6, y - SPEED_LENGTH * joint_after,
+                        1);
+    snprintf(text, sizeof text, "before\n%.3f\u2009m/s", joint_before);
+    sketch_text(s, joint_page.x - 12, y - 4, 1, 1, text, SKETCH_SMALL);
+    snprintf(text, sizeof text, "after\n%.3f\u2009m/s", joint_after);
+    sketch_text(s, joint_page.x + 12, y - 4, 0, 1, text, SKETCH_SMALL);
+    sketch_arrow(s, contact.x - 8, contact.y + 6 + SPEED_LENGTH * tip_before, contact.x - 8,
+                 contact.y + 6, 2);
+    snprintf(text, sizeof text, "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
+    sketch_text(s, contact.x - 14, contact.y + 14, 1, 0, text, SKETCH_SMALL);
+    sketch_arrow(s, contact.x, contact.y - 56, contact.x, contact.y - 6, 5);
+    snprintf(text, sizeof text, "impulse %.4f\u2009N·s", d->impulse);
+    sketch_text(s, contact.x, contact.y - 60, 0.5, 1, text, SKETCH_SMALL);
+}
+
+status diagram_collision(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    diagram *d = new_diagram(title, NULL, 150, o);
+    double speed = 0, impulse = 0;
+    status code = take_first_impact(d, "corrected/first-impact", &speed, f);
+    if (code == STATUS_OK) {
+        code = predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f);
+    }
+    if (code != STATUS_OK) {
+        release_diagram(d);
+        return code;
+    }
+    static const char *const bodies[] = {"hub", "first link", "last link"};
+    d->draw = draw_collision;
+    for (int i = 1; i < 3; i++) {
+        add_value(d, bodies[i], d->before.angle[i], "rad");
+        add_value(d, bodies[i], d->before.velocity[i], "rad/s before");
+        add_value(d, bodies[i], d->after[i], "rad/s after");
+    }
+    add_value(d, "impulse", d->impulse, "N s");
+    add_value(d, "approach speed", speed, "m/s");
+    d->caption = g_strdup_printf(
+        "The arm of corrected/first-impact at the instant of its first contact, seen along the "
+        "line to the contact point and enlarged %g times across it. The impulse of the wall stops "
+        "the contact point and throws the joint forward: the links' angular velocities jump from "
+        "%.3f and %.3f\u2009rad/s to %.3f and \u2212%.3f\u2009rad/s, the first up and the last "
+        "down.",
+        ACROSS, d->before.velocity[1], d->before.velocity[2], d->after[1], fabs(d->after[2]));
+    d->frame.caption = d->caption;
+    *out = artwork_of_diagram(d);
+    return STATUS_OK;
+}

@@ -1,0 +1,41 @@
+// The catalogue of figures and tables: the thesis's own, and the lab's maps beside them. Each is
+// drawn from the lab's own runs.
+#pragma once
+
+#include "render/figures/artwork.h"
+#include "render/plot/trace_plot.h"
+
+enum { THESIS_PANELS = 3 };
+
+typedef struct thesis_figure {
+    const char *id;       // "3.4", "T4.1", "beta-gamma"
+    const char *file;     // name of its files without extension, "fig-3-4"
+    const char *caption;  // plain, one line
+    const char *scenario; // "thesis/fig-3-4"; NULL: it needs no run
+    const char *model;    // plain, the model used: "printed; corrected dashed"
+    bool alone;           // recorded signals of one run, without the corrected model beside it
+    // opens it; NULL for recorded signals in `panels`
+    status (*open)(const char *title, const figure_options *o, artwork *out, fault *f);
+    trace_panel panels[THESIS_PANELS];
+    int panel_count;
+} thesis_figure;
+
+extern const thesis_figure thesis_figures[];
+extern const int thesis_figure_count;
+
+// A figure by its id or the name of its files, or NULL.
+const thesis_figure *thesis_figure_find(const char *id);
+
+// Runs what the figure needs and opens it. Figures of recorded signals run their scenario twice
+// unless they stand alone, with the corrected model as a thin dashed line. artwork_finish
+// afterwards. Returns what the runs return.
+status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f);
+
+// Draws a figure to FOLDER/fig-3-4.png and so on for every format in the list ("png,pdf,svg") and
+// writes FOLDER/fig-3-4.csv. The folder is created if it is not there.
+// STATUS_BAD_ARGUMENT for an unknown id or format, otherwise what the run or the writing returns.
+status figure_draw_as(const char *id, const figure_options *o, const char *folder,
+                      const char *formats, fault *f);
+
+// The same as it comes: in colour, at its own width, 200 dpi.
+status figure_draw(const char *id, const char *folder, const char *formats, fault *f);

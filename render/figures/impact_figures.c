@@ -1,0 +1,464 @@
+#include "render/figures/impact_figures.h"
+
+#include <glib.h>
+#include <math.h>
+#include <string.h>
+
+#include "render/plot/curve.h"
+#include "render/plot/figure_file.h"
+#include "render/plot/opened_run.h"
+#include "render/page/sketch.h"
+#include "src/run/export.h"
+
+#define IMPACT_SCENARIO "corrected/first-impact"
+
+enum { PANELS = 2, SERIES = 4, NODES = 3, ASSUMED_POINTS = 101, MARKS = 2 };
+
+// A figure with everything it borrows.
+typedef struct impact_figure {
+    figure figure;
+    figure_panel panels[PANELS];
+    figure_series series[PANELS][SERIES];
+    figure_level levels[PANELS];
+    figure_mark marks[MARKS];
+    figure_interval interval;
+    figure_impulse impulse;
+    opened_run run;
+    GPtrArray *owned;                // texts and numbers
+    double contact, peak_time, peak; // first pulse [s], [s], [N]
+} impact_figure;
+
+static void *own(impact_figure *fig, void *block)
+{
+    g_ptr_array_add(fig->owned, block);
+    return block;
+}
+
+static void release_impact(void *owner)
+{
+    impact_figure *fig = owner;
+    run_end(&fig->run);
+    g_ptr_array_free(fig->owned, TRUE);
+    g_free(fig);
+}
+
+// Runs the scenario and describes what all these figures share. NULL if it fails.
+static impact_figure *new_impact(const char *title, const char *of, const char *change,
+                                 const figure_options *o, fault *f)
+{
+    impact_figure *fig = g_new0(impact_figure, 1);
+    if (run_begin(&fig->run, of, change, f) != STATUS_OK) {
+        g_free(fig);
+        return NULL;
+    }
+    const summary *m = &fig->run.result.summary;
+    fig->owned = g_ptr_array_new_with_free_func(g_free);
+    fig->contact = m->first_contact_s;
+    fig->peak_time = m->first_contact_s + m->first_pulse_time_to_peak_s;
+    fig->peak = m->first_pulse_peak_N;
+    if (!isfinite(fig->peak_time)) {
+        fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to draw", of);
+        release_impact(fig);
+        return NULL;
+    }
+    fig->figure.title = own(fig, g_strdup(title));
+    fig->figure.parameters = own(fig, parameters_line(&fig->run.scenario));
+    fig->figure.software = own(fig, g_strconcat("impactlab ", lab_version(), NULL));
+    fig->figure.panels = fig->panels;
+    fig->figure.width = o->width_mm;
+    fig->figure.dpi = o->dpi;
+    fig->figure.theme = o->theme;
+    for (int i = 0; i < PANELS; i++) {
+        fig->panels[i].series = fig->series[i];
+    }
+    return fig;
+}
+
+static figure_series *add_series(impact_figure *fig, int panel, figure_series s)
+{
+    figure_series *out = &fig->series[panel][fig->panels[panel].series_count++];
+    *out = s;
+    return out;
+}
+
+// A recorded signal over time.
+static void add_signal(impact_figure *fig, int panel, const char *name, const char *label)
+{
+    const trace *t = &fig->run.result.trace;
+    const signal_info *signal = &signal_table[signal_find(name)];
+    const char *base = (const char *)t->rows;
+    fig->panels[panel].name = signal->name;
+    fig->panels[panel].unit = signal->unit;
+    add_series(fig, panel,
+               (figure_series){.name = signal->name,
+                               .label = label,
+                               .x = (const double *)(base + offsetof(sample, time)),
+                               .y = (const double *)(base + signal->offset),
+                               .count = t->row_count,
+                               .stride = sizeof(sample),
+                               .colour = signal->colour});
+}
+
+// ---- shapes of the arm
+// ---------------------------------------------------------------------------
+
+// Hub, joint and tip in the direction of the contact point: along it [m] and across it [mm].
+static void add_shape(impact_figure *fig, double first, double last, figure_series s)
+{
+    const parameters *p = &fig->run.scenario.parameters;
+    double l = p->arm.length / 2, wall = p->wall.angle;
+    double *x = own(fig, g_new(double, NODES)), *y = own(fig, g_new(double, NODES));
+    x[0] = y[0] = 0;
+    x[1] = l * cos(first - wall);
+    y[1] = 1e3 * l * sin(first - wall);
+    x[2] = x[1] + l * cos(last - wall);
+    y[2] = y[1] + 1e3 * l * sin(last - wall);
+    s.x = x;
+    s.y = y;
+    s.count = NODES;
+    add_series(fig, 0, s);
+}
+
+static void describe_shapes(impact_figure *fig)
+{
+    double *x = own(fig, g_new(double, 1)), *y = own(fig, g_new(double, 1));
+    *x = fig->run.scenario.parameters.arm.length;
+    *y = 0;
+    add_series(fig, 0,
+               (figure_series){.name = "contact point",
+                               .label = "contact point",
+                               .x = x,
+                               .y = y,
+                               .count = 1,
+                               .colour = 5,
+                               .marker = MARKER_SQUARE,
+                               .no_line = true});
+    fig->figure.x_name = "along";
+    fig->figure.x_label = "Along the line to the contact point";
+    fig->figure.x_unit = "m";
+    fig->figure.x_low = -0.04;
+    fig->figure.x_high = 1.06;
+    fig->panels[0].name = "across";
+    fig->panels[0].label = "Across it";
+    fig->panels[0].unit = "mm";
+    fig->panels[0].with_zero = true;
+    fig->panels[0].weight = 1.5;
+    fig->figure.panel_count = 1;
+}
+
+// The first row of contact that the next one shares.
+static size_t first_contact_pair(const trace *t)
+{
+    for (size_t i = 0; i + 1 < t->row_count; i++) {
+        if (t->rows[i].contact > 0.5 && t->rows[i + 1].contact > 0.5 &&
+            t->rows[i + 1].time > t->rows[i].time) {
+            return i;
+        }
+    }
+    return 0;
+}
+
+status figure_contact(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    impact_figure *fig = new_impact(title, "thesis/fig-3-1", "method.step=0.01", o, f);
+    if (fig == NULL) {
+        return f != NULL ? f->code : STATUS_BAD_SCENARIO;
+    }
+    const trace *t = &fig->run.result.trace;
+    size_t first = first_contact_pair(t);
+    for (size_t i = first; i < first + 2 && i < t->row_count; i++) {
+        const sample *row = &t->rows[i];
+        char *label = own(fig, g_strdup_printf("arm at <i>t</i> = %.2f\u2009s", row->time));
+        char *name = own(fig, g_strdup_printf("arm at %.2f s", row->time));
+        add_shape(fig, row->first_angle, row->last_angle,
+                  (figure_series){.name = name,
+                                  .label = label,
+                                  .colour = i == first ? 0 : 1,
+                                  .style = i == first ? LINE_SOLID : LINE_DASHED,
+                                  .marker = MARKER_CIRCLE});
+    }
+    describe_shapes(fig);
+    fig->figure.caption =
+        "Hub, joint and tip of the printed model at two successive steps in contact, 1\u2009V. The "
+        "last link always passes through the contact point, (3.9). Steps of 10\u2009ms, so that "
+        "they can be told apart; across the line the scale is larger.";
+    *out = artwork_of_figure(&fig->figure, fig, release_impact);
+    return STATUS_OK;
+}
+
+// The row nearest to an instant.
+static const sample *row_at(const trace *t, double time)
+{
+    const sample *best = &t->rows[0];
+    for (size_t i = 1; i < t->row_count; i++) {
+        if (fabs(t->rows[i].time - time) < fabs(best->time - time)) {
+            best = &t->rows[i];
+        }
+    }
+    return best;
+}
+
+// The last row before the impact's jump.
+static const sample *row_before(const trace *t, double contact)
+{
+    const sample *before = &t->rows[0];
+    for (size_t i = 0; i < t->row_count && t->rows[i].contact < 0.5; i++) {
+        if (t->rows[i].time <= contact) {
+            before = &t->rows[i];
+        }
+    }
+    return before;
+}
+
+status figure_peak_shape(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    impact_figure *fig = new_impact(title, IMPACT_SCENARIO, NULL, o, f);
+    if (fig == NULL) {
+        return f != NULL ? f->code : STATUS_BAD_SCENARIO;
+    }
+    const trace *t = &fig->run.result.trace;
+    const parameters *p = &fig->run.scenario.parameters;
+    const sample *before = row_before(t, fig->contact), *peak = row_at(t, fig->peak_time);
+    double energy = before->kinetic_energy + before->strain_energy;
+    double bend = sqrt(2 * energy / p->arm.k2);
+    add_shape(fig, before->first_angle, before->last_angle,
+              (figure_series){.name = "first contact",
+                              .label = "at first contact",
+                              .colour = 7,
+                              .style = LINE_DOTTED,
+                              .marker = MARKER_CIRCLE});
+    add_shape(fig, peak->first_angle, peak->last_angle,
+              (figure_series){.name = "peak",
+                              .label = "at the peak, computed",
+                              .colour = 0,
+                              .marker = MARKER_CIRCLE});
+    add_shape(fig, p->wall.angle + bend / 2, p->wall.angle - bend / 2,
+              (figure_series){.name = "peak by energy",
+                              .label = "at the peak, energy principle",
+                              .colour = 1,
+                              .style = LINE_DASHED,
+                              .marker = MARKER_TRIANGLE});
+    describe_shapes(fig);
+    fig->figure.caption = own(
+        fig,
+        g_strdup_printf(
+            "The arm of corrected/first-impact %.1f\u2009ms after first contact, at its peak "
+            "force of %.3g\u2009N: <i>θ</i><sub>2</sub> = %.4f, <i>θ</i><sub>3</sub> = "
+            "%.4f\u2009rad, bend \u2212%.4f\u2009rad. The energy principle puts the %.3g\u2009mJ "
+            "before contact into the spring, half the bend on either side of the line, "
+            "\u2212%.4f\u2009rad, because it leaves out what the impact itself takes.",
+            1e3 * (fig->peak_time - fig->contact), fig->peak, peak->first_angle, peak->last_angle,
+            fabs(peak->last_angle - peak->first_angle), 1e3 * energy, bend));
+    *out = artwork_of_figure(&fig->figure, fig, release_impact);
+    return STATUS_OK;
+}
+
+// ---- the force pulse
+// -----------------------------------------------------------------------------
+
+// The plot, and T as a measure over the pulse.
+static status paint_profile(cairo_t *cr, const void *what, figure_report *report, fault *f)
+{
+    const impact_figure *fig = what;
+    figure_report *seen = report != NULL ? report : g_new0(figure_report, 1);
+    status code = figure_paint(cr, &fig->figure, seen, f);
+    if (code == STATUS_OK) {
+        const figure *shown = &fig->figure;
+        plane p = {seen->panels[0], shown->x_low, shown->x_high, fig->panels[0].y_low,
+                   fig->panels[0].y_high};
+        sketch s = {.cr = cr,
+                    .context = text_context_create(),
+                    .colours = palette_of(shown->theme),
+                    .theme = shown->theme,
+                    .report = report,
+                    .scale = 1};
+        double y = plane_y(&p, 1.13 * fig->peak), x0 = plane_x(&p, fig->contact);
+        double x1 = plane_x(&p, fig->peak_time);
+        char text[64];
+        cairo_save(cr);
+        sketch_measure(&s, x0, y, x1, y);
+        snprintf(text, sizeof text, "<i>T</i> = %.1f\u2009ms",
+                 1e3 * (fig->peak_time - fig->contact));
+        sketch_text(&s, (x0 + x1) / 2, y - 2, 0.5, 1, text, SKETCH_SMALL);
+        cairo_restore(cr);
+        g_object_unref(s.context);
+    }
+    if (report == NULL) {
+        g_free(seen);
+    }
+    return code;
+}
+
+static status write_profile(const void *what, const char *path, fault *f)
+{
+    const impact_figure *fig = what;
+    return figure_write_csv(&fig->figure, path, f);
+}
+
+status figure_force_profile(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    impact_figure *fig = new_impact(title, IMPACT_SCENARIO, NULL, o, f);
+    if (fig == NULL) {
+        return f != NULL ? f->code : STATUS_BAD_SCENARIO;
+    }
+    const summary *m = &fig->run.result.summary;
+    figure_panel *panel = &fig->panels[0];
+    double pulse = isfinite(m->first_pulse_s) ? m->first_pulse_s : fig->peak_time - fig->contact;
+    add_signal(fig, 0, "force", NULL);
+    panel->label = "Contact force <i>f</i>";
+    panel->weight = 1.7;
+    panel->y_low = -0.04 * fig->peak;
+    panel->y_high = 1.3 * fig->peak;
+    fig->impulse = (figure_impulse){fig->contact, m->contact_impulse_Ns};
+    panel->impulses = &fig->impulse;
+    panel->impulse_count = 1;
+    panel->impulse_label = "Impulse <i>p</i>";
+    panel->impulse_unit = "N s";
+    fig->levels[0] = (figure_level){
+        fig->peak, own(fig, g_strdup_printf("<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak))};
+    panel->levels = fig->levels;
+    panel->level_count = 1;
+    fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
+    fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
+    fig->figure.marks = fig->marks;
+    fig->figure.mark_count = 2;
+    fig->interval = (figure_interval){fig->contact, fig->contact + pulse};
+    fig->figure.intervals = &fig->interval;
+    fig->figure.interval_count = 1;
+    fig->figure.x_name = "time";
+    fig->figure.x_label = "Time <i>t</i>";
+    fig->figure.x_unit = "s";
+    fig->figure.x_low = fig->contact - 0.25 * pulse;
+    fig->figure.x_high = fig->contact + 1.25 * pulse;
+    fig->figure.panel_count = 1;
+    fig->figure.caption =
+        "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse that takes no "
+        "time (arrow, its own axis); the force that follows is finite and grows to its peak while "
+        "the beam bends. Shaded: contact.";
+    // the figure with the measure of T on top
+    *out = (artwork){.title = fig->figure.title,
+                     .parameters = fig->figure.parameters,
+                     .what = fig,
+                     .paint = paint_profile,
+                     .write_csv = write_profile,
+                     .release = release_impact};
+    figure_size(&fig->figure, &out->width, &out->height);
+    return STATUS_OK;
+}
+
+// ---- assumptions of the predictors
+// ----------------------------------------------------------------
+
+// The row just after the impact's jump.
+static const sample *row_after(const trace *t)
+{
+    for (size_t i = 0; i < t->row_count; i++) {
+        if (t->rows[i].contact > 0.5) {
+            return &t->rows[i];
+        }
+    }
+    return &t->rows[0];
+}
+
+// What (4.19) assumes of a body from contact to peak: a velocity that falls to zero in a straight
+// line, and the angle that goes with it.
+static void add_assumption(impact_figure *fig, int panel, double angle, double velocity,
+                           bool of_angle, const char *label)
+{
+    double period = fig->peak_time - fig->contact;
+    double *x = own(fig, g_new(double, ASSUMED_POINTS)),
+           *y = own(fig, g_new(double, ASSUMED_POINTS));
+    for (int i = 0; i < ASSUMED_POINTS; i++) {
+        double since = period * i / (ASSUMED_POINTS - 1);
+        x[i] = fig->contact + since;
+        y[i] = of_angle ? angle + velocity * (since - since * since / (2 * period))
+                        : velocity * (1 - since / period);
+    }
+    add_series(fig, panel,
+               (figure_series){.name = "assumed",
+                               .label = label,
+                               .x = x,
+                               .y = y,
+                               .count = ASSUMED_POINTS,
+                               .colour = 5,
+                               .style = LINE_DASHED});
+}
+
+// Largest distance of a recorded signal from the assumption between contact and peak.
+static double departure(const impact_figure *fig, const char *name, double angle, double velocity,
+                        bool of_angle)
+{
+    const trace *t = &fig->run.result.trace;
+    double period = fig->peak_time - fig->contact, most = 0;
+    int index = signal_find(name);
+    for (size_t i = 0; i < t->row_count; i++) {
+        double since = t->rows[i].time - fig->contact;
+        if (t->rows[i].contact > 0.5 && since >= 0 && since <= period) {
+            double assumed = of_angle ? angle + velocity * (since - since * since / (2 * period))
+                                      : velocity * (1 - since / period);
+            most = fmax(most, fabs(signal_value(&t->rows[i], index) - assumed));
+        }
+    }
+    return most;
+}
+
+static status assumed_motion(const char *title, bool of_angle, const figure_options *o,
+                             artwork *out, fault *f)
+{
+    static const char *const signals[2][PANELS] = {{"first_velocity", "last_velocity"},
+                                                   {"first_angle", "last_angle"}};
+    static const char *const labels[2][PANELS] = {
+        {"Angular velocity <i>θ̇</i><sub>2</sub>", "Angular velocity <i>θ̇</i><sub>3</sub>"},
+        {"Angle <i>θ</i><sub>2</sub>", "Angle <i>θ</i><sub>3</sub>"}};
+    impact_figure *fig = new_impact(title, IMPACT_SCENARIO, NULL, o, f);
+    if (fig == NULL) {
+        return f != NULL ? f->code : STATUS_BAD_SCENARIO;
+    }
+    const sample *after = row_after(&fig->run.result.trace);
+    const double angles[] = {after->first_angle, after->last_angle};
+    const double velocities[] = {after->first_velocity, after->last_velocity};
+    double most[PANELS];
+    for (int i = 0; i < PANELS; i++) {
+        const char *name = signals[of_angle][i];
+        add_signal(fig, i, name, i == 0 ? "computed" : NULL);
+        add_assumption(fig, i, angles[i], velocities[i], of_angle,
+                       i > 0      ? NULL
+                       : of_angle ? "quadratic approximation (4.19)"
+                                  : "linear approximation");
+        most[i] = departure(fig, name, angles[i], velocities[i], of_angle);
+        fig->panels[i].label = labels[of_angle][i];
+    }
+    double period = fig->peak_time - fig->contact;
+    fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
+    fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
+    fig->figure.marks = fig->marks;
+    fig->figure.mark_count = 2;
+    fig->figure.x_name = "time";
+    fig->figure.x_label = "Time <i>t</i>";
+    fig->figure.x_unit = "s";
+    fig->figure.x_low = fig->contact - 0.4 * period;
+    fig->figure.x_high = fig->contact + 1.4 * period;
+    fig->figure.panel_count = PANELS;
+    fig->figure.caption = own(
+        fig, g_strdup_printf("First and last link of corrected/first-impact from first contact to "
+                             "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
+                             "departure between them: %.2g and %.2g\u2009%s.",
+                             1e3 * period,
+                             of_angle ? "The angles that belong to velocities falling to zero in a "
+                                        "straight line"
+                                      : "The predictors assume that velocities fall to zero in a "
+                                        "straight line",
+                             most[0], most[1], of_angle ? "rad" : "rad/s"));
+    *out = artwork_of_figure(&fig->figure, fig, release_impact);
+    return STATUS_OK;
+}
+
+status figure_linear_velocity(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    return assumed_motion(title, false, o, out, f);
+}
+
+status figure_quadratic_angle(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    return assumed_motion(title, true, o, out, f);
+}

@@ -1,0 +1,355 @@
+#include "render/figures/thesis_tables.h"
+
+#include <glib.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/arm/modes.h"
+#include "src/study/thesis_tables.h"
+
+// ---- a table as an artwork
+// -----------------------------------------------------------------------
+
+static status paint_table(cairo_t *cr, const void *what, figure_report *report, fault *f)
+{
+    return table_paint(cr, what, report, f);
+}
+
+static status write_table(const void *what, const char *path, fault *f)
+{
+    return table_write_csv(what, path, f);
+}
+
+static void release_table(void *what)
+{
+    table_finish(what);
+    g_free(what);
+}
+
+static table_page *new_table(const char *title, const figure_options *o)
+{
+    table_page *t = g_new0(table_page, 1);
+    table_begin(t, title);
+    t->width_mm = o->width_mm;
+    t->theme = o->theme;
+    return t;
+}
+
+static artwork artwork_of_table(table_page *t)
+{
+    artwork a = {.title = t->title,
+                 .parameters = t->parameters,
+                 .table = t,
+                 .what = t,
+                 .paint = paint_table,
+                 .write_csv = write_table,
+                 .release = release_table};
+    table_size(t, &a.width, &a.height);
+    return a;
+}
+
+// ---- 2.1: the motor
+// ------------------------------------------------------------------------------
+
+// A parameter of the lab with what the thesis prints for it.
+static void add_motor_row(table_page *t, const parameters *p, const char *symbol,
+                          const char *printed, const char *path)
+{
+    char unit[64];
+    int index = parameter_find(path);
+    const parameter_info *info = &parameter_table[index];
+    text_unit(info->unit, unit, sizeof unit);
+    char *used = g_strdup_printf("%.6g\u2009%s", parameter_get(p, index),
+                                 strcmp(unit, "ohm") == 0 ? "Ω" : unit);
+    char *name = g_strdup_printf("%s: %s", path, info->description);
+    table_add_row(t, (const char *[]){symbol, printed, used, name});
+    g_free(used);
+    g_free(name);
+}
+
+status table_motor(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    status code = parameters_resolve(&p, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    table_page *t = new_table(title, o);
+    table_add_column(t, "Symbol", 0.75, TEXT_LEFT);
+    table_add_column(t, "Thesis", 1.75, TEXT_LEFT);
+    table_add_column(t, "As used", 1.75, TEXT_LEFT);
+    table_add_column(t, "Parameter", 3.2, TEXT_LEFT);
+    add_motor_row(t, &p, "<i>k</i><sub>B</sub>", "2.443\u2009V·s/rad", "motor.back_emf");
+    add_motor_row(t, &p, "<i>k</i><sub>T</sub>", "0.249092\u2009kg·m/A", "motor.torque_constant");
+    add_motor_row(t, &p, "<i>R</i><sub>a</sub>", "33.6\u2009Ω", "motor.resistance");
+    add_motor_row(t, &p, "<i>k</i><sub>fr</sub>", "5.4192×10<sup>−3</sup>\u2009N·m·s/rad",
+                  "motor.viscous_friction");
+    add_motor_row(t, &p, "<i>k</i><sub>st</sub>", "0.045\u2009N·m", "motor.stiction");
+    add_motor_row(t, &p, "", "6.02 (section 2.3)", "motor.amplifier_gain");
+    add_motor_row(t, &p, "", "10\u2009V (section 2.3)", "motor.voltage_limit");
+    t->caption = g_strdup("The printed <i>k</i><sub>T</sub> counts kilograms of force; times "
+                          "9.80665\u2009m/s² it is equal to <i>k</i><sub>B</sub>, as it must be.");
+    *out = artwork_of_table(t);
+    return STATUS_OK;
+}
+
+// ---- 3.1: stability
+// ------------------------------------------------------------------------------
+
+// One pair (beta, gamma): where it stands in the table and what it means for this arm.
+static void add_pair(table_page *t, const char *name, double beta, double gamma, double fastest)
+{
+    bool always = 2 * beta >= gamma;
+    char *pair = g_strdup_printf("%.4g, %.4g", beta, gamma), *bound, *step;
+    if (always) {
+        bound = g_strdup("none");
+        step = g_strdup("any");
+    } else {
+        double critical = 1 / sqrt(gamma / 2 - beta);
+        bound = g_strdup_printf("%.4g", critical);
+        step = g_strdup_printf("%.3g\u2009ms", 1e3 * critical / fastest);
+    }
+    table_add_row(t, (const char *[]){name, pair, bound, step, gamma > 0.5 ? "1" : "2"});
+    g_free(pair);
+    g_free(bound);
+    g_free(step);
+}
+
+status table_stability(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    arm a;
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    status code = parameter_set_text(&p, parameter_find("arm.hub_joint"), "spring", f);
+    code = code == STATUS_OK ? parameters_resolve(&p, f) : code;
+    if (code != STATUS_OK) {
+        return code;
+    }
+    // hub and two links: three modes, the last is the fastest
+    double frequencies[3], shapes[9];
+    int count = 0;
+    arm_init(&a, &p);
+    code = modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes);
+    if (code != STATUS_OK || count < 1) {
+        return fault_set(f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed");
+    }
+    double fastest = frequencies[count - 1];
+    table_page *t = new_table(title, o);
+    table_add_column(t, "Method", 2.6, TEXT_LEFT);
+    table_add_column(t, "<i>β</i>, <i>γ</i>", 1.2, TEXT_LEFT);
+    table_add_column(t, "Largest <i>ωh</i>", 1.1, TEXT_RIGHT);
+    table_add_column(t, "Longest step", 1.2, TEXT_RIGHT);
+    table_add_column(t, "Order", 0.7, TEXT_RIGHT);
+    table_add_group(t, "Stable at any step: 2<i>β</i> ≥ <i>γ</i> ≥ ½");
+    add_pair(t, "trapezoidal rule", 0.25, 0.5, fastest);
+    add_pair(t, "the thesis's choice", 0.4, 0.5, fastest);
+    add_pair(t, "with damping of fast modes", 0.36, 0.7, fastest);
+    table_add_group(
+        t, "Stable up to <i>ωh</i> = (<i>γ</i>/2 − <i>β</i>)<sup>−1/2</sup>: <i>γ</i> ≥ ½, "
+           "<i>β</i> &lt; <i>γ</i>/2");
+    add_pair(t, "linear acceleration", 1.0 / 6, 0.5, fastest);
+    add_pair(t, "Fox and Goodwin", 1.0 / 12, 0.5, fastest);
+    add_pair(t, "central differences", 0, 0.5, fastest);
+    t->caption = g_strdup_printf(
+        "Without damping; <i>ω</i> is the fastest mode, for the two-link arm with the printed hub "
+        "spring %.4g\u2009rad/s. <i>γ</i> > ½ damps fast modes and costs one order. In contact "
+        "<i>β</i> "
+        "has to exceed ¼ as well, whatever the step: figure beta-gamma.",
+        fastest);
+    *out = artwork_of_table(t);
+    return STATUS_OK;
+}
+
+// ---- 3.2: the algorithm
+// --------------------------------------------------------------------------
+
+status table_algorithm(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    static const char *const rows[][3] = {
+        {"1", "Start from given angles and velocities; accelerations are zero.", "printed_run"},
+        {"2",
+         "Not in contact, the wall not reached: Newmark's rule and Newton's method for the "
+         "three bodies.",
+         "solve_step"},
+        {"3",
+         "A free step would end behind the wall: take it back and do it again with the "
+         "constraint (3.9) and the force as a fourth unknown.",
+         "solve_step"},
+        {"4",
+         "In contact: from the angles and velocities found, accelerations and force once "
+         "more out of the linear system with (3.13), the constraint's second derivative.",
+         "printed_reevaluate"},
+        {"5", "In contact and the force still pushes: the next step is step 3 and 4 again.",
+         "printed_run"},
+        {"6", "The force would pull: contact is over, the next step is step 2.", "printed_run"},
+        {"7", "Next time step.", "printed_run"},
+    };
+    (void)f;
+    table_page *t = new_table(title, o);
+    table_add_column(t, "", 0.25, TEXT_LEFT);
+    table_add_column(t, "What happens in a step", 4, TEXT_LEFT);
+    table_add_column(t, "In the lab", 1.2, TEXT_LEFT);
+    for (size_t i = 0; i < G_N_ELEMENTS(rows); i++) {
+        table_add_row(t, rows[i]);
+    }
+    t->caption = g_strdup("As the lab runs it for the printed model. The corrected model locates "
+                          "contact and release in time instead; docs/physics.md, sections 4 and "
+                          "7.");
+    *out = artwork_of_table(t);
+    return STATUS_OK;
+}
+
+// ---- 4.1 to 4.3: predictions
+// ---------------------------------------------------------------------
+
+static const struct {
+    const char *quantity, *label;
+} quantities[] = {
+    {"max_force_energy", "Peak force by the energy principle (N)"},
+    {"max_force_dynamics", "Peak force by impact dynamics (N)"},
+    {"max_force_simulation", "Peak force by simulation (N)"},
+    {"delay_dynamics", "Delay of the peak by impact dynamics (ms)"},
+    {"delay_simulation", "Delay of the peak by simulation (ms)"},
+};
+
+static const table_row *find_row(const thesis_tables *t, const char *table, const char *model,
+                                 const char *quantity)
+{
+    for (int i = 0; i < t->row_count; i++) {
+        const table_row *row = &t->rows[i];
+        if (strcmp(row->table, table) == 0 && strcmp(row->model, model) == 0 &&
+            strcmp(row->quantity, quantity) == 0) {
+            return row;
+        }
+    }
+    return NULL;
+}
+
+static char *cell_text(const char *format, double value)
+{
+    if (!isfinite(value)) {
+        return g_strdup("–");
+    }
+    char *text = g_strdup_printf(format, fabs(value));
+    char *cell = g_strconcat(value < 0 ? "\u2212" : "", text, NULL);
+    g_free(text);
+    return cell;
+}
+
+// A row of four values, each times `scale`.
+static void add_values(table_page *t, const char *name, const double *values, double scale,
+                       const char *format)
+{
+    char *cells[TABLE_VOLTAGES + 1] = {(char *)name};
+    for (int i = 0; i < TABLE_VOLTAGES; i++) {
+        cells[i + 1] = cell_text(format, scale * values[i]);
+    }
+    table_add_row(t, (const char *const *)cells);
+    for (int i = 0; i < TABLE_VOLTAGES; i++) {
+        g_free(cells[i + 1]);
+    }
+}
+
+static void add_model(table_page *t, const table_row *row, double scale, const char *format)
+{
+    double difference[TABLE_VOLTAGES];
+    for (int i = 0; i < TABLE_VOLTAGES; i++) {
+        difference[i] = row->computed[i] / row->printed[i] - 1;
+    }
+    char *name = g_strdup_printf("%s model", row->model);
+    add_values(t, name, row->computed, scale, format);
+    add_values(t, "  difference (%)", difference, 100, "%.1f");
+    g_free(name);
+}
+
+// Computing the tables takes a while, and three pages want them.
+static const thesis_tables *computed_tables(fault *f)
+{
+    static thesis_tables tables;
+    static bool done;
+    if (!done && tables_compute(&tables, f) != STATUS_OK) {
+        return NULL;
+    }
+    done = true;
+    return &tables;
+}
+
+static status open_predictions(const char *table, const char *title, const figure_options *o,
+                               artwork *out, fault *f)
+{
+    const thesis_tables *all = computed_tables(f);
+    if (all == NULL) {
+        return f != NULL ? f->code : STATUS_NO_MEMORY;
+    }
+    table_page *t = new_table(title, o);
+    table_add_column(t, "Command", 2.2, TEXT_LEFT);
+    static const char *const heads[TABLE_VOLTAGES] = {"1\u2009V", "2\u2009V", "5\u2009V",
+                                                      "10\u2009V"};
+    for (int i = 0; i < TABLE_VOLTAGES; i++) {
+        table_add_column(t, heads[i], 1, TEXT_RIGHT);
+    }
+    for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
+        const table_row *printed = find_row(all, table, "printed", quantities[q].quantity);
+        const table_row *corrected = find_row(all, table, "corrected", quantities[q].quantity);
+        bool delay = strncmp(quantities[q].quantity, "delay", 5) == 0;
+        double scale = delay ? 1e3 : 1;
+        const char *format = delay ? "%.1f" : "%.2f";
+        table_add_group(t, quantities[q].label);
+        add_values(t, "thesis", printed->printed, scale, delay ? "%.0f" : "%.2f");
+        add_model(t, printed, scale, format);
+        add_model(t, corrected, scale, format);
+    }
+    t->caption = g_strdup_printf(
+        "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are from what "
+        "the thesis prints. The printed model has the constants inferred from these tables "
+        "(docs/physics.md, section 1); the corrected one has the mechanics derived anew and is not "
+        "meant to agree. –: the arm swings away as it touches, there is no pulse.",
+        4.92 * find_row(all, table, "printed", "max_force_energy")->k2_factor);
+    t->parameters = g_strdup_printf("table=%s", table);
+    *out = artwork_of_table(t);
+    return STATUS_OK;
+}
+
+status table_hundredfold(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    return open_predictions("4.1", title, o, out, f);
+}
+
+status table_tenfold(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    return open_predictions("4.2", title, o, out, f);
+}
+
+status table_nominal(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    return open_predictions("4.3", title, o, out, f);
+}
+
+// ---- how near the computed tables come
+// -----------------------------------------------------------
+
+status table_errors(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    const thesis_tables *all = computed_tables(f);
+    if (all == NULL) {
+        return f != NULL ? f->code : STATUS_NO_MEMORY;
+    }
+    table_page *t = new_table(title, o);
+    table_add_column(t, "Row", 3, TEXT_LEFT);
+    table_add_column(t, "Printed (%)", 1.2, TEXT_RIGHT);
+    table_add_column(t, "Corrected (%)", 1.2, TEXT_RIGHT);
+    for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
+        char *printed =
+            cell_text("%.1f", 100 * tables_mean_error(all, "printed", quantities[q].quantity));
+        char *corrected =
+            cell_text("%.1f", 100 * tables_mean_error(all, "corrected", quantities[q].quantity));
+        table_add_row(t, (const char *[]){quantities[q].label, printed, corrected});
+        g_free(printed);
+        g_free(corrected);
+    }
+    t->caption = g_strdup("Mean size of the difference from the thesis over the cells of a row that "
+                          "have a value, three stiffnesses at four voltages.");
+    *out = artwork_of_table(t);
+    return STATUS_OK;
+}

@@ -1,0 +1,238 @@
+#include "render/page/picture_file.h"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "render/page/png_file.h"
+#include "render/page/svg_ids.h"
+#include "render/page/text.h"
+#include "src/base/whole_file.h"
+
+#define DEFAULT_DPI 200.0
+#define LEAST_DPI   10.0
+#define MOST_DPI    2400.0
+#define MOST_PIXELS 20000.0 // along one edge
+
+picture_format picture_format_of(const char *path)
+{
+    static const struct {
+        const char *name;
+        picture_format format;
+    } known[] = {{"png", FORMAT_PNG}, {"pdf", FORMAT_PDF}, {"svg", FORMAT_SVG}};
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        if (strcasecmp(dot ? dot + 1 : name, known[i].name) == 0) {
+            return known[i].format;
+        }
+    }
+    return FORMAT_NONE;
+}
+
+static status check_extension(const char *path, fault *f)
+{
+    if (picture_format_of(path) == FORMAT_NONE || strchr(path, '.') == NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' is no name for a picture: expected one that ends in .png, .pdf or "
+                         ".svg",
+                         path);
+    }
+    return STATUS_OK;
+}
+
+status picture_check_path(const char *path, fault *f)
+{
+    status code = check_extension(path, f);
+    return code == STATUS_OK ? whole_file_check(path, f) : code;
+}
+
+static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsigned length)
+{
+    return fwrite(bytes, 1, length, stream) == length ? CAIRO_STATUS_SUCCESS
+                                                      : CAIRO_STATUS_WRITE_ERROR;
+}
+
+// Draws on a surface and finishes it. A write error is left to whoever closes the stream.
+static status paint_surface(cairo_surface_t *surface, const picture *p, bool finish, fault *f)
+{
+    cairo_t *cr = cairo_create(surface);
+    status code = p->paint(cr, p->what, f);
+    cairo_destroy(cr);
+    if (finish) {
+        cairo_surface_finish(surface);
+    }
+    cairo_status_t state = cairo_surface_status(surface);
+    if (code == STATUS_OK && state != CAIRO_STATUS_SUCCESS && state != CAIRO_STATUS_WRITE_ERROR &&
+        state != CAIRO_STATUS_SURFACE_FINISHED) {
+        code = fault_set(f, STATUS_NO_MEMORY, "a picture could not be drawn: %s",
+                         cairo_status_to_string(state));
+    }
+    return code;
+}
+
+static status write_png(FILE *stream, const picture *p, fault *f)
+{
+    double dpi = p->dpi != 0 ? p->dpi : DEFAULT_DPI;
+    if (!(dpi >= LEAST_DPI && dpi <= MOST_DPI)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "a PNG of %g dpi, expected %g to %g", dpi,
+                         LEAST_DPI, MOST_DPI);
+    }
+    double pixels_across = round(p->width * dpi / 72), pixels_down = round(p->height * dpi / 72);
+    if (!(pixels_across >= 1 && pixels_across <= MOST_PIXELS && pixels_down >= 1 &&
+          pixels_down <= MOST_PIXELS)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge",
+                         pixels_across, pixels_down, MOST_PIXELS);
+    }
+    cairo_surface_t *surface =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)pixels_across, (int)pixels_down);
+    // the page ends exactly where the pixels do
+    cairo_surface_set_device_scale(surface, pixels_across / p->width, pixels_down / p->height);
+    status code = paint_surface(surface, p, false, f);
+    if (code == STATUS_OK) {
+        const png_note notes[] = {
+            {"Title", p->title}, {"Software", p->software}, {"Parameters", p->parameters}};
+        code = png_file_write(stream, surface, dpi, notes, 3, f);
+    }
+    cairo_surface_destroy(surface);
+    return code;
+}
+
+static void set_metadata(cairo_surface_t *surface, cairo_pdf_metadata_t what, const char *value)
+{
+    if (value != NULL) {
+        char *valid = g_utf8_make_valid(value, -1);
+        cairo_pdf_surface_set_metadata(surface, what, valid);
+        g_free(valid);
+    }
+}
+
+static status write_pages(FILE *stream, const picture *p, int count, fault *f)
+{
+    cairo_surface_t *surface =
+        cairo_pdf_surface_create_for_stream(to_stream, stream, p->width, p->height);
+    // without a date of ours cairo writes the present one, and no two files are alike
+    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
+    set_metadata(surface, CAIRO_PDF_METADATA_TITLE, p->title);
+    set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, p->software);
+    set_metadata(surface, CAIRO_PDF_METADATA_KEYWORDS, p->parameters);
+    status code = STATUS_OK;
+    for (int i = 0; i < count && code == STATUS_OK; i++) {
+        cairo_pdf_surface_set_size(surface, p[i].width, p[i].height);
+        code = paint_surface(surface, &p[i], i == count - 1, f);
+        if (i < count - 1) {
+            cairo_surface_show_page(surface);
+        }
+    }
+    cairo_surface_destroy(surface);
+    return code;
+}
+
+static status write_pdf(FILE *stream, const picture *p, fault *f)
+{
+    return write_pages(stream, p, 1, f);
+}
+
+static cairo_status_t to_string(void *string, const unsigned char *bytes, unsigned length)
+{
+    g_string_append_len(string, (const char *)bytes, (gssize)length);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+static void add_element(GString *out, const char *indent, const char *name, const char *content)
+{
+    if (content != NULL) {
+        char *escaped = text_escape(content);
+        g_string_append_printf(out, "%s<%s>%s</%s>\n", indent, name, escaped, name);
+        g_free(escaped);
+    }
+}
+
+// Title and metadata as the children of an SVG's root.
+static GString *svg_metadata(const picture *p)
+{
+    GString *out = g_string_new("\n");
+    add_element(out, "", "title", p->title);
+    g_string_append(out, "<metadata>\n"
+                         "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\" "
+                         "xmlns:dc=\"http://purl.org/dc/elements/1.1/\">\n"
+                         "<rdf:Description>\n");
+    add_element(out, "  ", "dc:title", p->title);
+    add_element(out, "  ", "dc:creator", p->software);
+    add_element(out, "  ", "dc:description", p->parameters);
+    g_string_append(out, "</rdf:Description>\n</rdf:RDF>\n</metadata>");
+    return out;
+}
+
+char *picture_svg(const picture *p, fault *f)
+{
+    char *numbered = NULL;
+    GString *svg = g_string_new(NULL);
+    cairo_surface_t *surface =
+        cairo_svg_surface_create_for_stream(to_string, svg, p->width, p->height);
+    status code = paint_surface(surface, p, true, f);
+    cairo_surface_destroy(surface);
+    if (code == STATUS_OK) {
+        char *root = strstr(svg->str, "<svg"), *end = root ? strchr(root, '>') : NULL;
+        if (end != NULL) {
+            GString *metadata = svg_metadata(p);
+            g_string_insert(svg, end + 1 - svg->str, metadata->str);
+            g_string_free(metadata, TRUE);
+        }
+        numbered = svg_renumber_ids(svg->str);
+    }
+    g_string_free(svg, TRUE);
+    return numbered;
+}
+
+static status write_svg(FILE *stream, const picture *p, fault *f)
+{
+    fault why = {0};
+    char *svg = picture_svg(p, &why);
+    if (svg == NULL) {
+        return fault_set(f, why.code, "%s", why.text);
+    }
+    fputs(svg, stream);
+    g_free(svg);
+    return STATUS_OK;
+}
+
+status picture_write_pages(const picture *pages, int count, const char *path, fault *f)
+{
+    whole_file file;
+    status code = whole_file_open(&file, path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = write_pages(file.stream, pages, count, f);
+    if (code != STATUS_OK) {
+        whole_file_abandon(&file);
+        return code;
+    }
+    return whole_file_commit(&file, f);
+}
+
+status picture_write(const picture *p, const char *path, fault *f)
+{
+    typedef status (*writer)(FILE *, const picture *, fault *);
+    static const writer writers[] = {
+        [FORMAT_PNG] = write_png, [FORMAT_PDF] = write_pdf, [FORMAT_SVG] = write_svg};
+    whole_file file;
+    status code = check_extension(path, f);
+    if (code == STATUS_OK) {
+        code = whole_file_open(&file, path, f);
+    }
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = writers[picture_format_of(path)](file.stream, p, f);
+    if (code != STATUS_OK) {
+        whole_file_abandon(&file);
+        return code;
+    }
+    return whole_file_commit(&file, f);
+}

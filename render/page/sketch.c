@@ -1,0 +1,373 @@
+#include "render/page/sketch.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TITLE_SIZE   9.0
+#define TITLE_SPACE  7.0
+#define CAPTION_SIZE 6.5
+#define LINE_WIDTH   0.8
+#define HEAD_LENGTH  5.0
+#define MM           (72 / 25.4)
+
+// ---- the page
+// ------------------------------------------------------------------------------------
+
+static text_block title_block(const char *markup)
+{
+    return (text_block){.markup = markup,
+                        .size = TITLE_SIZE,
+                        .bold = true,
+                        .width = SKETCH_WIDTH - 2 * SKETCH_MARGIN};
+}
+
+static text_block caption_block(const char *markup)
+{
+    return (text_block){
+        .markup = markup, .size = CAPTION_SIZE, .width = SKETCH_WIDTH - 2 * SKETCH_MARGIN};
+}
+
+static double page_scale(const sketch_frame *frame)
+{
+    return frame->width_mm > 0 ? frame->width_mm * MM / SKETCH_WIDTH : 1;
+}
+
+// Heights of title and caption, with the space between them and the drawing.
+static void frame_heights(PangoContext *context, const sketch_frame *frame, double *above,
+                          double *below)
+{
+    double width, height = 0;
+    char *title = text_escape(frame->title);
+    text_block t = title_block(title), c = caption_block(frame->caption);
+    text_measure(context, &t, &width, &height);
+    *above = SKETCH_MARGIN + height + TITLE_SPACE;
+    *below = SKETCH_MARGIN;
+    if (frame->caption != NULL) {
+        text_measure(context, &c, &width, &height);
+        *below += height + TITLE_SPACE;
+    }
+    g_free(title);
+}
+
+void sketch_size(const sketch_frame *frame, double *width, double *height)
+{
+    double above, below, scale = page_scale(frame);
+    PangoContext *context = text_context_create();
+    frame_heights(context, frame, &above, &below);
+    *width = scale * SKETCH_WIDTH;
+    *height = scale * (above + frame->body_height + below);
+    g_object_unref(context);
+}
+
+void report_add_text(figure_report *report, const char *markup, figure_rect place)
+{
+    if (report == NULL || report->text_count == FIGURE_TEXTS) {
+        return;
+    }
+    figure_text *t = &report->texts[report->text_count++];
+    char *plain = text_plain(markup);
+    const char *end;
+    t->place = place;
+    g_strlcpy(t->text, plain, sizeof t->text);
+    // a character that was cut in two goes altogether
+    if (!g_utf8_validate(t->text, -1, &end)) {
+        t->text[end - t->text] = '\0';
+    }
+    g_free(plain);
+}
+
+static void draw_block(sketch *s, text_block t, double x, double y, double ax, double ay, colour c)
+{
+    double width, height;
+    text_measure(s->context, &t, &width, &height);
+    x -= ax * width;
+    y -= ay * height;
+    set_colour(s->cr, c);
+    cairo_move_to(s->cr, x, y);
+    text_draw(s->cr, s->context, &t);
+    double k = s->scale;
+    report_add_text(s->report, t.markup, (figure_rect){k * x, k * y, k * width, k * height});
+}
+
+status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
+                    fault *f)
+{
+    double above, below, width, height;
+    status code = text_check_font(f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    *s = (sketch){.cr = cr,
+                  .context = text_context_create(),
+                  .colours = palette_of(frame->theme),
+                  .theme = frame->theme,
+                  .report = report,
+                  .scale = page_scale(frame)};
+    frame_heights(s->context, frame, &above, &below);
+    sketch_size(frame, &width, &height);
+    if (report != NULL) {
+        memset(report, 0, sizeof *report);
+        report->page = (figure_rect){0, 0, width, height};
+    }
+    cairo_save(cr);
+    set_colour(cr, s->colours->page);
+    cairo_rectangle(cr, 0, 0, width, height);
+    cairo_fill(cr);
+    cairo_scale(cr, s->scale, s->scale);
+    s->left = SKETCH_MARGIN;
+    s->right = SKETCH_WIDTH - SKETCH_MARGIN;
+    s->top = above;
+    s->bottom = above + frame->body_height;
+    char *title = text_escape(frame->title);
+    draw_block(s, title_block(title), s->left, SKETCH_MARGIN, 0, 0, s->colours->text);
+    g_free(title);
+    if (frame->caption != NULL) {
+        draw_block(s, caption_block(frame->caption), s->left, s->bottom + TITLE_SPACE, 0, 0,
+                   s->colours->faint_text);
+    }
+    return STATUS_OK;
+}
+
+void sketch_end(sketch *s)
+{
+    cairo_restore(s->cr);
+    g_object_unref(s->context);
+}
+
+// ---- lines
+// ---------------------------------------------------------------------------------------
+
+colour sketch_colour(const sketch *s, int slot)
+{
+    if (slot == SKETCH_FAINT) {
+        return s->colours->mark;
+    }
+    return slot < 0 || s->theme == THEME_MONO ? s->colours->text
+                                              : palette_series(s->theme, slot, 0);
+}
+
+static void set_pen(const sketch *s, double width, int slot)
+{
+    set_colour(s->cr, sketch_colour(s, slot));
+    set_line_style(s->cr, LINE_SOLID, width);
+    cairo_new_path(s->cr);
+}
+
+void sketch_line(const sketch *s, double x0, double y0, double x1, double y1, double width,
+                 int slot)
+{
+    set_pen(s, width, slot);
+    cairo_move_to(s->cr, x0, y0);
+    cairo_line_to(s->cr, x1, y1);
+    cairo_stroke(s->cr);
+}
+
+static void set_dashes(const sketch *s)
+{
+    static const double pattern[] = {3, 2};
+    cairo_set_line_cap(s->cr, CAIRO_LINE_CAP_BUTT);
+    cairo_set_dash(s->cr, pattern, 2, 0);
+}
+
+void sketch_dashed(const sketch *s, double x0, double y0, double x1, double y1, int slot)
+{
+    set_pen(s, 0.6, slot);
+    set_dashes(s);
+    cairo_move_to(s->cr, x0, y0);
+    cairo_line_to(s->cr, x1, y1);
+    cairo_stroke(s->cr);
+}
+
+// A head whose tip is at (x, y) and that points along `direction` on the page.
+static void draw_head(const sketch *s, double x, double y, double direction, double length)
+{
+    cairo_save(s->cr);
+    cairo_translate(s->cr, x, y);
+    cairo_rotate(s->cr, direction);
+    cairo_move_to(s->cr, 0, 0);
+    cairo_line_to(s->cr, -length, 0.36 * length);
+    cairo_line_to(s->cr, -length, -0.36 * length);
+    cairo_close_path(s->cr);
+    cairo_restore(s->cr);
+    cairo_fill(s->cr);
+}
+
+static void draw_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot,
+                       bool dashed)
+{
+    double length = hypot(x1 - x0, y1 - y0), head = fmin(HEAD_LENGTH, length);
+    double direction = atan2(y1 - y0, x1 - x0), share = length > 0 ? 1 - 0.8 * head / length : 0;
+    set_pen(s, 1.1, slot);
+    if (dashed) {
+        set_dashes(s);
+    }
+    cairo_move_to(s->cr, x0, y0);
+    cairo_line_to(s->cr, x0 + share * (x1 - x0), y0 + share * (y1 - y0));
+    cairo_stroke(s->cr);
+    draw_head(s, x1, y1, direction, head);
+}
+
+void sketch_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot)
+{
+    draw_arrow(s, x0, y0, x1, y1, slot, false);
+}
+
+void sketch_dashed_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot)
+{
+    draw_arrow(s, x0, y0, x1, y1, slot, true);
+}
+
+void sketch_measure(const sketch *s, double x0, double y0, double x1, double y1)
+{
+    double direction = atan2(y1 - y0, x1 - x0);
+    sketch_line(s, x0, y0, x1, y1, 0.5, SKETCH_INK);
+    draw_head(s, x1, y1, direction, 3.6);
+    draw_head(s, x0, y0, direction + G_PI, 3.6);
+}
+
+void sketch_arc(const sketch *s, double x, double y, double radius, double from, double to,
+                int slot, bool head)
+{
+    double turn = to > from ? 1 : -1;
+    // the head takes the arc's last bit
+    double bit = head ? turn * fmin(0.8 * 4.2 / radius, fabs(to - from)) : 0;
+    set_pen(s, LINE_WIDTH, slot);
+    if (turn > 0) {
+        cairo_arc_negative(s->cr, x, y, radius, -from, -(to - bit));
+    } else {
+        cairo_arc(s->cr, x, y, radius, -from, -(to - bit));
+    }
+    cairo_stroke(s->cr);
+    if (head) {
+        double direction = -(to - bit / 2) - turn * G_PI / 2;
+        draw_head(s, x + radius * cos(to), y - radius * sin(to), direction, 4.2);
+    }
+}
+
+void sketch_disc(const sketch *s, double x, double y, double radius, int slot, bool filled)
+{
+    set_pen(s, LINE_WIDTH, slot);
+    cairo_arc(s->cr, x, y, radius, 0, 2 * G_PI);
+    if (!filled) {
+        set_colour(s->cr, s->colours->page);
+        cairo_fill_preserve(s->cr);
+        set_colour(s->cr, sketch_colour(s, slot));
+        cairo_stroke(s->cr);
+    } else {
+        cairo_fill(s->cr);
+    }
+}
+
+// ---- parts
+// ---------------------------------------------------------------------------------------
+
+void sketch_bar(const sketch *s, double x0, double y0, double x1, double y1, double thickness)
+{
+    cairo_set_dash(s->cr, NULL, 0, 0);
+    cairo_set_line_cap(s->cr, CAIRO_LINE_CAP_ROUND);
+    cairo_move_to(s->cr, x0, y0);
+    cairo_line_to(s->cr, x1, y1);
+    set_colour(s->cr, s->colours->axis);
+    cairo_set_line_width(s->cr, thickness);
+    cairo_stroke_preserve(s->cr);
+    set_colour(s->cr, s->colours->shade);
+    cairo_set_line_width(s->cr, thickness - 1.4);
+    cairo_stroke(s->cr);
+}
+
+void sketch_mass_point(const sketch *s, double x, double y)
+{
+    const double r = 3;
+    sketch_disc(s, x, y, r, SKETCH_INK, false);
+    for (int quarter = 0; quarter < 4; quarter += 2) {
+        cairo_move_to(s->cr, x, y);
+        cairo_arc(s->cr, x, y, r, quarter * G_PI / 2, (quarter + 1) * G_PI / 2);
+        cairo_close_path(s->cr);
+        cairo_fill(s->cr);
+    }
+}
+
+void sketch_spiral(const sketch *s, double x, double y, double radius, int slot)
+{
+    enum { POINTS = 90 };
+    set_pen(s, 1, slot);
+    for (int i = 0; i <= POINTS; i++) {
+        double share = (double)i / POINTS, angle = 2 * G_PI * 2.5 * share;
+        double r = radius * (0.2 + 0.8 * share);
+        cairo_line_to(s->cr, x + r * cos(angle), y + r * sin(angle));
+    }
+    cairo_stroke(s->cr);
+}
+
+// A zigzag with straight leads at both ends.
+static void draw_zigzag(const sketch *s, double x0, double y0, double x1, double y1, int turns,
+                        double height, double lead)
+{
+    double length = hypot(x1 - x0, y1 - y0), ux = (x1 - x0) / length, uy = (y1 - y0) / length;
+    double step = (length - 2 * lead) / (2 * turns);
+    cairo_move_to(s->cr, x0, y0);
+    cairo_line_to(s->cr, x0 + lead * ux, y0 + lead * uy);
+    for (int i = 0; i < 2 * turns; i++) {
+        double along = lead + (i + 0.5) * step, across = i % 2 ? -height : height;
+        cairo_line_to(s->cr, x0 + along * ux - across * uy, y0 + along * uy + across * ux);
+    }
+    cairo_line_to(s->cr, x1 - lead * ux, y1 - lead * uy);
+    cairo_line_to(s->cr, x1, y1);
+    cairo_stroke(s->cr);
+}
+
+void sketch_coil(const sketch *s, double x0, double y0, double x1, double y1, int turns, int slot)
+{
+    set_pen(s, 1.1, slot);
+    draw_zigzag(s, x0, y0, x1, y1, turns, 8, 8);
+}
+
+void sketch_resistor(const sketch *s, double x0, double y0, double x1, double y1)
+{
+    double length = hypot(x1 - x0, y1 - y0);
+    set_pen(s, LINE_WIDTH, SKETCH_INK);
+    draw_zigzag(s, x0, y0, x1, y1, 3, 4, (length - 22) / 2);
+}
+
+void sketch_wall(const sketch *s, double x0, double y0, double x1, double y1)
+{
+    const double spacing = 5, depth = 6;
+    double length = hypot(x1 - x0, y1 - y0), ux = (x1 - x0) / length, uy = (y1 - y0) / length;
+    sketch_line(s, x0, y0, x1, y1, 1.1, SKETCH_INK);
+    set_pen(s, 0.5, SKETCH_INK);
+    for (double at = spacing; at <= length; at += spacing) {
+        double x = x0 + at * ux, y = y0 + at * uy;
+        cairo_move_to(s->cr, x, y);
+        cairo_line_to(s->cr, x - depth * (0.7 * ux + 0.7 * uy), y - depth * (0.7 * uy - 0.7 * ux));
+    }
+    cairo_stroke(s->cr);
+}
+
+// ---- text
+// ----------------------------------------------------------------------------------------
+
+void sketch_text(sketch *s, double x, double y, double ax, double ay, const char *markup,
+                 double size)
+{
+    draw_block(s, (text_block){.markup = markup, .size = size}, x, y, ax, ay, s->colours->text);
+}
+
+void sketch_wrapped(sketch *s, double x, double y, double width, text_align align,
+                    const char *markup, double size, bool bold)
+{
+    text_block t = {.markup = markup, .size = size, .bold = bold, .align = align, .width = width};
+    double ax = 0;
+    if (align != TEXT_LEFT) {
+        // short lines are placed by their own width
+        double natural, height;
+        text_block line = t;
+        line.width = 0;
+        text_measure(s->context, &line, &natural, &height);
+        if (natural <= width) {
+            t.width = 0;
+            ax = align == TEXT_RIGHT ? 1 : 0.5;
+            x += ax * width;
+        }
+    }
+    draw_block(s, t, x, y, ax, 0, s->colours->text);
+}

@@ -1,0 +1,91 @@
+// Pages drawn by hand rather than plotted: diagrams and tables, with a title above and a caption
+// below. Lengths are in points of the page as designed; a page of another width is the same page
+// scaled.
+#pragma once
+
+#include "render/page/palette.h"
+#include "render/plot/plot.h"
+#include "render/page/text.h"
+
+#define SKETCH_WIDTH  370.0 // a page as designed (130 mm)
+#define SKETCH_MARGIN 8.0
+#define SKETCH_LABEL  8.0 // size of letters
+#define SKETCH_SMALL  7.0
+
+// What stands round a drawing.
+typedef struct sketch_frame {
+    const char *title;   // plain
+    const char *caption; // markup, wrapped; NULL for none
+    double body_height;  // of the drawing itself [pt]
+    double width_mm;     // of the page; 0: as designed
+    figure_theme theme;
+} sketch_frame;
+
+typedef struct sketch {
+    cairo_t *cr;
+    PangoContext *context;
+    const palette *colours;
+    figure_theme theme;
+    figure_report *report; // may be NULL
+    double scale;          // page points to a designed point
+    double left, right;    // of the drawing
+    double top, bottom;
+} sketch;
+
+// Size of the page in its own points.
+void sketch_size(const sketch_frame *frame, double *width, double *height);
+
+// Paints page, title and caption and opens the drawing's space; sketch_end closes it.
+// STATUS_CANNOT_READ if the font is missing.
+status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
+                    fault *f);
+void sketch_end(sketch *s);
+
+// The colour of a palette slot, and that of axes and text (slot -1).
+enum { SKETCH_INK = -1, SKETCH_FAINT = -2 };
+colour sketch_colour(const sketch *s, int slot);
+
+// Lines of a given width in a slot's colour.
+void sketch_line(const sketch *s, double x0, double y0, double x1, double y1, double width,
+                 int slot);
+void sketch_dashed(const sketch *s, double x0, double y0, double x1, double y1, int slot);
+
+// An arrow with its head at (x1, y1).
+void sketch_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot);
+void sketch_dashed_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot);
+
+// A line with a head at each end.
+void sketch_measure(const sketch *s, double x0, double y0, double x1, double y1);
+
+// An arc about (x, y) from one angle to another, angles counterclockwise from the right [rad];
+// with a head at its end.
+void sketch_arc(const sketch *s, double x, double y, double radius, double from, double to,
+                int slot, bool head);
+
+void sketch_disc(const sketch *s, double x, double y, double radius, int slot, bool filled);
+
+// A link: a bar with round ends between two points.
+void sketch_bar(const sketch *s, double x0, double y0, double x1, double y1, double thickness);
+
+// A centre of mass.
+void sketch_mass_point(const sketch *s, double x, double y);
+
+// A spiral spring round a joint.
+void sketch_spiral(const sketch *s, double x, double y, double radius, int slot);
+
+// A coil spring and a resistor along a line.
+void sketch_coil(const sketch *s, double x0, double y0, double x1, double y1, int turns, int slot);
+void sketch_resistor(const sketch *s, double x0, double y0, double x1, double y1);
+
+// A fixed surface: a line, hatched on its right-hand side as seen from its start.
+void sketch_wall(const sketch *s, double x0, double y0, double x1, double y1);
+
+// A text whose point (ax, ay), as parts of its width and height, lies at (x, y). `width` > 0 wraps
+// it.
+void sketch_text(sketch *s, double x, double y, double ax, double ay, const char *markup,
+                 double size);
+void sketch_wrapped(sketch *s, double x, double y, double width, text_align align,
+                    const char *markup, double size, bool bold);
+
+// Adds a text and its place on the page to a report (may be NULL).
+void report_add_text(figure_report *report, const char *markup, figure_rect place);

@@ -1,0 +1,254 @@
+#include "render/page/table_page.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "render/plot/figure_file.h"
+#include "src/base/whole_file.h"
+
+#define CELL_SPACE 3.0 // above and below a row's text, and left and right of a cell's
+#define CELL_SIZE  7.0
+
+void table_begin(table_page *t, const char *title)
+{
+    memset(t, 0, sizeof *t);
+    t->title = g_strdup(title);
+    t->rows = g_ptr_array_new_with_free_func((GDestroyNotify)g_strfreev);
+}
+
+void table_add_column(table_page *t, const char *label, double share, text_align align)
+{
+    t->columns[t->column_count++] = (table_column){label, share, align};
+}
+
+void table_add_row(table_page *t, const char *const *cells)
+{
+    char **row = g_new0(char *, (gsize)t->column_count + 1);
+    for (int i = 0; i < t->column_count; i++) {
+        row[i] = g_strdup(cells[i]);
+    }
+    g_ptr_array_add(t->rows, row);
+}
+
+void table_add_group(table_page *t, const char *heading)
+{
+    char **row = g_new0(char *, 2);
+    row[0] = g_strdup(heading);
+    g_ptr_array_add(t->rows, row);
+}
+
+void table_finish(table_page *t)
+{
+    g_free(t->title);
+    g_free(t->caption);
+    g_free(t->parameters);
+    if (t->rows != NULL) {
+        g_ptr_array_free(t->rows, TRUE);
+    }
+    memset(t, 0, sizeof *t);
+}
+
+static char **row_cells(const table_page *t, guint row)
+{
+    return g_ptr_array_index(t->rows, row);
+}
+
+bool table_row_is_group(const table_page *t, guint row)
+{
+    return t->column_count > 1 && row_cells(t, row)[1] == NULL;
+}
+
+// ---- the page
+// ------------------------------------------------------------------------------------
+
+static double column_width(const table_page *t, int column)
+{
+    double sum = 0;
+    for (int i = 0; i < t->column_count; i++) {
+        sum += t->columns[i].share;
+    }
+    return (SKETCH_WIDTH - 2 * SKETCH_MARGIN) * t->columns[column].share / sum;
+}
+
+static double text_height(PangoContext *context, const char *markup, double width, bool bold)
+{
+    double across, down;
+    text_block t = {
+        .markup = markup, .size = CELL_SIZE, .bold = bold, .width = width - 2 * CELL_SPACE};
+    text_measure(context, &t, &across, &down);
+    return down;
+}
+
+static double heading_height(PangoContext *context, const table_page *t)
+{
+    double most = 0;
+    for (int i = 0; i < t->column_count; i++) {
+        most = fmax(most, text_height(context, t->columns[i].label, column_width(t, i), true));
+    }
+    return most + 2 * CELL_SPACE;
+}
+
+static double row_height(PangoContext *context, const table_page *t, guint row)
+{
+    char **cells = row_cells(t, row);
+    double most = 0;
+    if (table_row_is_group(t, row)) {
+        most = text_height(context, cells[0], SKETCH_WIDTH - 2 * SKETCH_MARGIN, true);
+        return most + 2 * CELL_SPACE;
+    }
+    for (int i = 0; i < t->column_count; i++) {
+        most = fmax(most, text_height(context, cells[i], column_width(t, i), false));
+    }
+    return most + CELL_SPACE;
+}
+
+static sketch_frame frame_of(const table_page *t)
+{
+    PangoContext *context = text_context_create();
+    double body = heading_height(context, t) + CELL_SPACE;
+    for (guint row = 0; row < t->rows->len; row++) {
+        body += row_height(context, t, row);
+    }
+    g_object_unref(context);
+    return (sketch_frame){.title = t->title,
+                          .caption = t->caption,
+                          .body_height = body,
+                          .width_mm = t->width_mm,
+                          .theme = t->theme};
+}
+
+void table_size(const table_page *t, double *width, double *height)
+{
+    sketch_frame frame = frame_of(t);
+    sketch_size(&frame, width, height);
+}
+
+static void draw_cells(sketch *s, const table_page *t, char *const *cells, double y, bool bold)
+{
+    double x = s->left;
+    for (int i = 0; i < t->column_count; i++) {
+        double width = column_width(t, i);
+        const char *text = cells != NULL ? cells[i] : t->columns[i].label;
+        if (text[0] != '\0') {
+            sketch_wrapped(s, x + CELL_SPACE, y, width - 2 * CELL_SPACE, t->columns[i].align, text,
+                           CELL_SIZE, bold);
+        }
+        x += width;
+    }
+}
+
+static void draw_group(sketch *s, const char *heading, double y, double height)
+{
+    set_colour(s->cr, s->colours->shade);
+    cairo_rectangle(s->cr, s->left, y, s->right - s->left, height);
+    cairo_fill(s->cr);
+    sketch_wrapped(s, s->left + CELL_SPACE, y + CELL_SPACE, s->right - s->left - 2 * CELL_SPACE,
+                   TEXT_LEFT, heading, CELL_SIZE, true);
+}
+
+status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f)
+{
+    sketch s;
+    sketch_frame frame = frame_of(t);
+    status code = sketch_begin(&s, cr, &frame, report, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    double y = s.top;
+    sketch_line(&s, s.left, y, s.right, y, 0.9, SKETCH_INK);
+    draw_cells(&s, t, NULL, y + CELL_SPACE, true);
+    y += heading_height(s.context, t);
+    sketch_line(&s, s.left, y, s.right, y, 0.5, SKETCH_INK);
+    for (guint row = 0; row < t->rows->len; row++) {
+        double height = row_height(s.context, t, row);
+        if (table_row_is_group(t, row)) {
+            draw_group(&s, row_cells(t, row)[0], y, height);
+        } else {
+            draw_cells(&s, t, row_cells(t, row), y + CELL_SPACE / 2, false);
+        }
+        y += height;
+    }
+    sketch_line(&s, s.left, y + CELL_SPACE, s.right, y + CELL_SPACE, 0.9, SKETCH_INK);
+    sketch_end(&s);
+    return STATUS_OK;
+}
+
+// ---- numbers and HTML
+// ----------------------------------------------------------------------------
+
+static void write_plain(FILE *stream, const char *markup)
+{
+    char *plain = text_plain(markup);
+    csv_field(stream, plain);
+    g_free(plain);
+}
+
+status table_write_csv(const table_page *t, const char *path, fault *f)
+{
+    whole_file file;
+    status code = whole_file_open(&file, path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    bool grouped = false;
+    const char *group = "";
+    for (guint row = 0; row < t->rows->len; row++) {
+        grouped = grouped || table_row_is_group(t, row);
+    }
+    fputs(grouped ? "group," : "", file.stream);
+    for (int i = 0; i < t->column_count; i++) {
+        fputs(i > 0 ? "," : "", file.stream);
+        write_plain(file.stream, t->columns[i].label);
+    }
+    fputc('\n', file.stream);
+    for (guint row = 0; row < t->rows->len; row++) {
+        char **cells = row_cells(t, row);
+        if (table_row_is_group(t, row)) {
+            group = cells[0];
+            continue;
+        }
+        if (grouped) {
+            write_plain(file.stream, group);
+            fputc(',', file.stream);
+        }
+        for (int i = 0; i < t->column_count; i++) {
+            fputs(i > 0 ? "," : "", file.stream);
+            write_plain(file.stream, cells[i]);
+        }
+        fputc('\n', file.stream);
+    }
+    return whole_file_commit(&file, f);
+}
+
+static void add_html_cell(GString *html, const char *tag, text_align align, const char *markup)
+{
+    // Pango's <span> and <sub> are HTML's; its colours and sizes are not used in cells
+    g_string_append_printf(html, "<%s%s>%s</%s>", tag,
+                           align == TEXT_LEFT ? "" : " class=\"number\"", markup, tag);
+}
+
+void table_add_html(const table_page *t, GString *html)
+{
+    g_string_append(html, "<table>\n<thead><tr>");
+    for (int i = 0; i < t->column_count; i++) {
+        add_html_cell(html, "th", t->columns[i].align, t->columns[i].label);
+    }
+    g_string_append(html, "</tr></thead>\n<tbody>\n");
+    for (guint row = 0; row < t->rows->len; row++) {
+        char **cells = row_cells(t, row);
+        if (table_row_is_group(t, row)) {
+            g_string_append_printf(html, "<tr><th class=\"group\" colspan=\"%d\">%s</th></tr>\n",
+                                   t->column_count, cells[0]);
+            continue;
+        }
+        g_string_append(html, "<tr>");
+        for (int i = 0; i < t->column_count; i++) {
+            add_html_cell(html, "td", t->columns[i].align, cells[i]);
+        }
+        g_string_append(html, "</tr>\n");
+    }
+    g_string_append(html, "</tbody>\n</table>\n");
+    if (t->caption != NULL) {
+        g_string_append_printf(html, "<p class=\"note\">%s</p>\n", t->caption);
+    }
+}

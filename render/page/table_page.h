@@ -1,0 +1,45 @@
+// Tables as pages: a heading, rows of cells, and rows that head a group.
+#pragma once
+
+#include "render/plot/plot.h"
+#include "render/page/sketch.h"
+
+enum { TABLE_COLUMNS = 10 };
+
+typedef struct table_column {
+    const char *label; // markup
+    double share;      // of the width
+    text_align align;
+} table_column;
+
+// Texts are markup and owned by the table.
+typedef struct table_page {
+    char *title;      // plain
+    char *caption;    // NULL for none
+    char *parameters; // plain, for the file's metadata; NULL for none
+    table_column columns[TABLE_COLUMNS];
+    int column_count;
+    GPtrArray *rows; // of char **: column_count cells, or one cell and NULL for a group's heading
+    double width_mm; // 0: as designed
+    figure_theme theme;
+} table_page;
+
+// An empty table; the title is copied.
+void table_begin(table_page *t, const char *title);
+void table_add_column(table_page *t, const char *label, double share, text_align align);
+
+// A row of column_count cells, copied; and a group's heading.
+void table_add_row(table_page *t, const char *const *cells);
+void table_add_group(table_page *t, const char *heading);
+void table_finish(table_page *t);
+
+bool table_row_is_group(const table_page *t, guint row);
+
+void table_size(const table_page *t, double *width, double *height);
+status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f);
+
+// Writes the bare texts of the cells; a group's heading is the first column of its rows.
+status table_write_csv(const table_page *t, const char *path, fault *f);
+
+// Appends the table as HTML.
+void table_add_html(const table_page *t, GString *html);

@@ -1,0 +1,172 @@
+#include "render/page/text.h"
+
+#include <fontconfig/fontconfig.h>
+#include <string.h>
+
+static bool family_matches(void)
+{
+    FcPattern *wanted = FcPatternCreate();
+    if (wanted == NULL) {
+        return false;
+    }
+    FcPatternAddString(wanted, FC_FAMILY, (const FcChar8 *)TEXT_FAMILY);
+    FcConfigSubstitute(NULL, wanted, FcMatchPattern);
+    FcDefaultSubstitute(wanted);
+    FcResult result;
+    FcPattern *found = FcFontMatch(NULL, wanted, &result);
+    FcChar8 *family = NULL;
+    bool matches = found != NULL &&
+                   FcPatternGetString(found, FC_FAMILY, 0, &family) == FcResultMatch &&
+                   strcmp((const char *)family, TEXT_FAMILY) == 0;
+    if (found != NULL) {
+        FcPatternDestroy(found);
+    }
+    FcPatternDestroy(wanted);
+    return matches;
+}
+
+status text_check_font(fault *f)
+{
+    // asked once: a process does not see fonts come and go
+    static int known; // 0 not asked, 1 there, -1 missing
+    if (known == 0) {
+        FcFontSet *fonts = FcInit() ? FcConfigGetFonts(NULL, FcSetSystem) : NULL;
+        known = fonts != NULL && fonts->nfont > 0 && family_matches() ? 1 : -1;
+    }
+    if (known < 0) {
+        return fault_set(f, STATUS_CANNOT_READ,
+                         "the font " TEXT_FAMILY " is not installed, figures need it: install "
+                         "fonts-dejavu-core");
+    }
+    return STATUS_OK;
+}
+
+PangoContext *text_context_create(void)
+{
+    PangoContext *context = pango_font_map_create_context(pango_cairo_font_map_get_default());
+    cairo_font_options_t *options = cairo_font_options_create();
+    cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+    cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+    pango_cairo_context_set_font_options(context, options);
+    cairo_font_options_destroy(options);
+    pango_context_set_round_glyph_positions(context, FALSE);
+    pango_cairo_context_set_resolution(context, 72);
+    return context;
+}
+
+char *text_translate(const char *markup, double size)
+{
+    GString *out = g_string_new(NULL);
+    for (const char *c = markup; *c != '\0';) {
+        bool lowered = strncmp(c, "<sub>", 5) == 0, raised = strncmp(c, "<sup>", 5) == 0;
+        if (lowered || raised) {
+            // in 1/1024 of a point, which every version of Pango understands
+            g_string_append_printf(out, "<span size=\"%d\" rise=\"%d\">", (int)(0.7 * size * 1024),
+                                   (int)((raised ? 0.35 : -0.2) * size * 1024));
+            c += 5;
+        } else if (strncmp(c, "</sub>", 6) == 0 || strncmp(c, "</sup>", 6) == 0) {
+            g_string_append(out, "</span>");
+            c += 6;
+        } else {
+            g_string_append_c(out, *c++);
+        }
+    }
+    return g_string_free(out, FALSE);
+}
+
+PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
+{
+    static const PangoAlignment alignments[] = {PANGO_ALIGN_LEFT, PANGO_ALIGN_CENTER,
+                                                PANGO_ALIGN_RIGHT};
+    PangoLayout *layout = pango_layout_new(context);
+    PangoFontDescription *font = pango_font_description_new();
+    pango_font_description_set_family_static(font, TEXT_FAMILY);
+    pango_font_description_set_size(font, (int)(t->size * PANGO_SCALE));
+    pango_font_description_set_weight(font, t->bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
+    pango_layout_set_font_description(layout, font);
+    pango_font_description_free(font);
+
+    char *valid = g_utf8_make_valid(t->markup, -1), *markup = text_translate(valid, t->size);
+    if (pango_parse_markup(markup, -1, 0, NULL, NULL, NULL, NULL)) {
+        pango_layout_set_markup(layout, markup, -1);
+    } else {
+        pango_layout_set_text(layout, valid, -1);
+    }
+    g_free(markup);
+    g_free(valid);
+    pango_layout_set_alignment(layout, alignments[t->align]);
+    if (t->width > 0) {
+        pango_layout_set_width(layout, (int)(t->width * PANGO_SCALE));
+        pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);
+    }
+    return layout;
+}
+
+void text_measure(PangoContext *context, const text_block *t, double *width, double *height)
+{
+    PangoRectangle logical;
+    PangoLayout *layout = text_layout_create(context, t);
+    pango_layout_get_extents(layout, NULL, &logical);
+    *width = (double)logical.width / PANGO_SCALE;
+    *height = (double)logical.height / PANGO_SCALE;
+    g_object_unref(layout);
+}
+
+double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
+{
+    PangoRectangle logical;
+    // the context has to know whether cr is rotated
+    pango_cairo_update_context(cr, context);
+    PangoLayout *layout = text_layout_create(context, t);
+    pango_layout_get_extents(layout, NULL, &logical);
+    // lines that are not set left begin somewhere inside the layout
+    cairo_rel_move_to(cr, -(double)logical.x / PANGO_SCALE, 0);
+    pango_cairo_show_layout(cr, layout);
+    g_object_unref(layout);
+    return (double)logical.width / PANGO_SCALE;
+}
+
+void text_unit(const char *unit, char *out, size_t size)
+{
+    static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                         "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+    GString *shown = g_string_new(NULL);
+    for (const char *c = unit; *c != '\0'; c++) {
+        bool after_letter = c > unit && (g_ascii_isalpha(c[-1]) || g_ascii_isdigit(c[-1]));
+        if (*c == ' ') {
+            g_string_append(shown, "\u00b7");
+        } else if (g_ascii_isdigit(*c)) {
+            g_string_append(shown, powers[*c - '0']);
+        } else if (*c == '-' && after_letter && g_ascii_isdigit(c[1])) {
+            g_string_append(shown, "\u207b");
+        } else {
+            g_string_append_c(shown, *c);
+        }
+    }
+    g_strlcpy(out, shown->str, size);
+    g_string_free(shown, TRUE);
+}
+
+char *text_plain(const char *markup)
+{
+    char *valid = g_utf8_make_valid(markup, -1), *plain = NULL;
+    if (pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
+        g_free(valid);
+        return plain;
+    }
+    return valid;
+}
+
+char *text_escape(const char *bytes)
+{
+    char *valid = g_utf8_make_valid(bytes, -1), *escaped = g_markup_escape_text(valid, -1);
+    g_free(valid);
+    return escaped;
+}
+
+void text_release(void)
+{
+    pango_cairo_font_map_set_default(NULL);
+    cairo_debug_reset_static_data();
+}

@@ -1,0 +1,59 @@
+// Text of figures: one font, laid out alike on every surface.
+//
+// Lengths are in points. Markup is Pango's; <sub> and <sup> are translated, because Pango 1.50
+// draws them too large under a scaled surface.
+#pragma once
+
+#include <pango/pangocairo.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "src/base/status.h"
+
+// The family that every figure uses.
+#define TEXT_FAMILY "DejaVu Sans"
+
+typedef enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT } text_align;
+
+// A text to draw or measure.
+typedef struct text_block {
+    const char *markup;
+    double size; // of the letters
+    bool bold;
+    text_align align; // of its lines
+    double width;     // at which it is wrapped into lines; 0: never
+} text_block;
+
+// Fails with STATUS_CANNOT_READ if TEXT_FAMILY is not installed; f says what to install.
+status text_check_font(fault *f);
+
+// A context whose layouts do not depend on the surface: no hinting, no rounding, 72 per inch. Give
+// it to g_object_unref.
+PangoContext *text_context_create(void);
+
+// A layout of t, to be given to g_object_unref. Markup that cannot be parsed is shown as it stands.
+PangoLayout *text_layout_create(PangoContext *context, const text_block *t);
+
+// Width and height of t.
+void text_measure(PangoContext *context, const text_block *t, double *width, double *height);
+
+// Draws t with its top left corner at the current point (of a possibly rotated cr) and returns its
+// width.
+double text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
+
+// Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size. Free the result
+// with g_free.
+char *text_translate(const char *markup, double size);
+
+// A unit as the SI brochure sets it: "rad/s2" gives "rad/s²", "kg m2" gives "kg·m²".
+void text_unit(const char *unit, char *out, size_t size);
+
+// The markup's bare text, valid UTF-8. Free the result with g_free.
+char *text_plain(const char *markup);
+
+// Any bytes as valid UTF-8 that markup shows as they stand. Free the result with g_free.
+char *text_escape(const char *bytes);
+
+// Gives back what Pango and cairo keep for later figures (for leak checkers). No figure may be in
+// work.
+void text_release(void);

@@ -1,0 +1,234 @@
+#include "render/plot/curve.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define COLUMN     0.12 // width of a column [pt]
+#define CLIP_SPACE 4.0  // kept round the plane, so that line ends stay out of sight [pt]
+#define FARTHEST   1e9  // beyond it a point is as far as any [pt]
+
+double plane_x(const plane *p, double x)
+{
+    return p->box.x + p->box.width * ((x - p->x_low) / (p->x_high - p->x_low));
+}
+
+double plane_y(const plane *p, double y)
+{
+    return p->box.y + p->box.height * ((p->y_high - y) / (p->y_high - p->y_low));
+}
+
+static double value_at(const figure_series *s, const double *values, size_t index)
+{
+    double value;
+    size_t stride = s->stride ? s->stride : sizeof value;
+    memcpy(&value, (const char *)values + index * stride, sizeof value);
+    return value;
+}
+
+double series_x(const figure_series *s, size_t index)
+{
+    return value_at(s, s->x, index);
+}
+
+double series_y(const figure_series *s, size_t index)
+{
+    return value_at(s, s->y, index);
+}
+
+void series_x_range(const figure_series *s, double *low, double *high)
+{
+    for (size_t i = 0; i < s->count; i++) {
+        double x = series_x(s, i);
+        if (isfinite(x)) {
+            *low = fmin(*low, x);
+            *high = fmax(*high, x);
+        }
+    }
+}
+
+void series_y_range(const figure_series *s, double x_low, double x_high, double *low, double *high)
+{
+    for (size_t i = 0; i < s->count; i++) {
+        double x = series_x(s, i), y = series_y(s, i);
+        if (isfinite(y) && x >= x_low && x <= x_high) {
+            *low = fmin(*low, y);
+            *high = fmax(*high, y);
+        }
+    }
+}
+
+// ---- clipping
+// -------------------------------------------------------------------------------------
+
+typedef struct point {
+    double x, y;
+} point;
+
+// Draws a line piece by piece, leaving out what lies outside.
+typedef struct pen {
+    double left, top, right, bottom;
+    stroke_sink sink;
+    void *context;
+    point at;       // last point given, inside or not
+    bool has_point; // a line is in progress
+    bool moved;     // the sink's line ends at `at`
+    bool alone;     // `at` has no line to it yet
+} pen;
+
+static bool inside(const pen *p, point q)
+{
+    return q.x >= p->left && q.x <= p->right && q.y >= p->top && q.y <= p->bottom;
+}
+
+// Narrows [*from, *to] to the part of a line where start + t delta lies within low and high.
+static bool narrow(double start, double delta, double low, double high, double *from, double *to)
+{
+    if (delta == 0) {
+        return start >= low && start <= high;
+    }
+    double enter = ((delta > 0 ? low : high) - start) / delta;
+    double leave = ((delta > 0 ? high : low) - start) / delta;
+    *from = fmax(*from, enter);
+    *to = fmin(*to, leave);
+    return *from <= *to;
+}
+
+static void pen_lift(pen *p)
+{
+    if (p->has_point && p->alone && inside(p, p->at)) {
+        p->sink(p->context, STROKE_DOT, p->at.x, p->at.y);
+    }
+    p->has_point = p->moved = false;
+}
+
+static void pen_line(pen *p, point q)
+{
+    point a = p->at;
+    double from = 0, to = 1;
+    if (narrow(a.x, q.x - a.x, p->left, p->right, &from, &to) &&
+        narrow(a.y, q.y - a.y, p->top, p->bottom, &from, &to)) {
+        if (!p->moved) {
+            p->sink(p->context, STROKE_MOVE, a.x + from * (q.x - a.x), a.y + from * (q.y - a.y));
+        }
+        // exactly q where nothing is cut off
+        point end = to == 1 ? q : (point){a.x + to * (q.x - a.x), a.y + to * (q.y - a.y)};
+        p->sink(p->context, STROKE_LINE, end.x, end.y);
+        p->moved = to == 1;
+    } else {
+        p->moved = false;
+    }
+}
+
+static void pen_to(pen *p, point q)
+{
+    q.x = fmax(-FARTHEST, fmin(FARTHEST, q.x));
+    q.y = fmax(-FARTHEST, fmin(FARTHEST, q.y));
+    if (p->has_point) {
+        pen_line(p, q);
+    }
+    p->alone = !p->has_point;
+    p->has_point = true;
+    p->at = q;
+}
+
+// ---- decimation
+// -----------------------------------------------------------------------------------
+
+// The points of one column that matter, with their numbers to keep their order.
+typedef struct column {
+    double index; // of the column
+    size_t count;
+    size_t first_at, low_at, high_at, last_at;
+    point first, low, high, last;
+} column;
+
+static void column_begin(column *c, double index, point q, size_t at)
+{
+    *c = (column){index, 1, at, at, at, at, q, q, q, q};
+}
+
+static void column_add(column *c, point q, size_t at)
+{
+    c->count++;
+    c->last = q;
+    c->last_at = at;
+    if (q.y > c->low.y) {
+        c->low = q;
+        c->low_at = at;
+    }
+    if (q.y < c->high.y) {
+        c->high = q;
+        c->high_at = at;
+    }
+}
+
+static void column_flush(column *c, pen *p)
+{
+    if (c->count == 0) {
+        return;
+    }
+    bool low_first = c->low_at < c->high_at;
+    const point middle[2] = {low_first ? c->low : c->high, low_first ? c->high : c->low};
+    const size_t at[2] = {low_first ? c->low_at : c->high_at, low_first ? c->high_at : c->low_at};
+    size_t drawn = c->first_at;
+    pen_to(p, c->first);
+    for (int i = 0; i < 2; i++) {
+        if (at[i] > drawn && at[i] < c->last_at) {
+            pen_to(p, middle[i]);
+            drawn = at[i];
+        }
+    }
+    if (c->last_at > c->first_at) {
+        pen_to(p, c->last);
+    }
+    c->count = 0;
+}
+
+// Columns only make sense where x never goes back.
+static bool x_ascends(const figure_series *s)
+{
+    double last = -(double)INFINITY;
+    for (size_t i = 0; i < s->count; i++) {
+        double x = series_x(s, i);
+        if (x < last) {
+            return false;
+        }
+        last = isnan(x) ? last : x;
+    }
+    return true;
+}
+
+void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void *context)
+{
+    pen tip = {.left = p->box.x - CLIP_SPACE,
+               .top = p->box.y - CLIP_SPACE,
+               .right = p->box.x + p->box.width + CLIP_SPACE,
+               .bottom = p->box.y + p->box.height + CLIP_SPACE,
+               .sink = sink,
+               .context = context};
+    bool columns = (double)s->count > 4 * p->box.width / COLUMN && x_ascends(s);
+    column c = {.count = 0};
+    for (size_t i = 0; i < s->count; i++) {
+        double x = series_x(s, i), y = series_y(s, i);
+        if (!isfinite(x) || !isfinite(y)) {
+            column_flush(&c, &tip);
+            pen_lift(&tip);
+            continue;
+        }
+        point q = {plane_x(p, x), plane_y(p, y)};
+        double index = floor((q.x - p->box.x) / COLUMN);
+        if (columns && c.count > 0 && index == c.index) {
+            column_add(&c, q, i);
+            continue;
+        }
+        column_flush(&c, &tip);
+        if (columns) {
+            column_begin(&c, index, q, i);
+        } else {
+            pen_to(&tip, q);
+        }
+    }
+    column_flush(&c, &tip);
+    pen_lift(&tip);
+}

@@ -1,0 +1,19 @@
+// Figures as files.
+#pragma once
+
+#include <stdio.h>
+
+#include "render/page/picture_file.h"
+#include "render/plot/plot.h"
+
+// Draws the figure into a file as picture_write does. Title, software and parameters go into the
+// file's metadata.
+status figure_write(const figure *fig, const char *path, fault *f);
+
+// Writes what the figure shows as CSV in long form, panel,series,x,y: every point of every curve (y
+// empty where the curve has a gap), impulses as the series impulse[unit], then marks and shaded
+// intervals with an empty y.
+status figure_write_csv(const figure *fig, const char *path, fault *f);
+
+// Writes one CSV field, in quotes where it needs them.
+void csv_field(FILE *stream, const char *field);

@@ -1,0 +1,52 @@
+#include "render/plot/opened_run.h"
+
+#include <glib.h>
+
+// Keeps the first of a scenario's faults.
+static void keep_first(void *context, const char *sentence)
+{
+    fault *f = context;
+    if (f->code == STATUS_OK) {
+        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
+    }
+}
+
+void run_end(opened_run *r)
+{
+    run_finish(&r->result);
+    scenario_finish(&r->scenario);
+}
+
+status run_begin(opened_run *r, const char *name, const char *change, fault *f)
+{
+    fault first = {STATUS_OK, ""};
+    status code = scenario_open(&r->scenario, name, keep_first, &first);
+    if (code != STATUS_OK) {
+        return fault_set(f, code, "%s", first.text);
+    }
+    if (change != NULL) {
+        code = scenario_override(&r->scenario, change, f);
+    }
+    if (code == STATUS_OK) {
+        code = run_scenario(&r->scenario, true, &r->result);
+        if (code == STATUS_OK) {
+            return code;
+        }
+        fault_set(f, code, "%s: %s", name, r->result.summary.message);
+        run_finish(&r->result);
+    }
+    scenario_finish(&r->scenario);
+    return code;
+}
+
+char *parameters_line(const scenario *s)
+{
+    GString *out = g_string_new(NULL);
+    g_string_printf(out, "scenario=%s", s->name);
+    for (int i = 0; i < parameter_count; i++) {
+        char value[128];
+        parameter_format(&s->parameters, i, value, sizeof value);
+        g_string_append_printf(out, " %s=%s", parameter_table[i].path, value);
+    }
+    return g_string_free(out, FALSE);
+}

@@ -1,0 +1,18 @@
+// Scenarios run for figures.
+#pragma once
+
+#include "src/run/run.h"
+
+// A run with its scenario, finished by run_end.
+typedef struct opened_run {
+    scenario scenario;
+    run_result result; // with its trace
+} opened_run;
+
+// Opens and runs a scenario, with one parameter changed if `change` ("arm.model=corrected") is not
+// NULL. If it fails nothing is to be finished.
+status run_begin(opened_run *r, const char *name, const char *change, fault *f);
+void run_end(opened_run *r);
+
+// The scenario's name and every parameter in one line, for a file's metadata. Free with g_free.
+char *parameters_line(const scenario *s);

@@ -1,0 +1,248 @@
+#include "render/plot/ticks.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+// the nice numbers, nicest first; each is tenths / 10
+static const int nice_tenths[] = {10, 50, 20, 25, 40, 30};
+enum { NICE = 6 };
+static const double weight_simplicity = 0.25, weight_coverage = 0.2, weight_density = 0.5,
+                    weight_legibility = 0.05;
+
+// A labelling: tick i is at (start + i j) nice 10^power.
+typedef struct labelling {
+    double start;
+    int j, nice, power, count;
+    double score;
+} labelling;
+
+// What ticks are wanted for.
+typedef struct wish {
+    double low, high; // of the data
+    int count;
+    bool inside; // no tick beyond low and high
+} wish;
+
+static double step_unit(const labelling *l)
+{
+    return 0.1 * nice_tenths[l->nice] * pow(10, l->power);
+}
+
+// Number times nice times a power of ten, rounded once.
+static double tick_value(const labelling *l, double number)
+{
+    double whole = number * nice_tenths[l->nice];
+    int power = l->power - 1;
+    return power < 0 ? whole / pow(10, -power) : whole * pow(10, power);
+}
+
+static double combined(double simplicity, double coverage, double density)
+{
+    return weight_simplicity * simplicity + weight_coverage * coverage + weight_density * density +
+           weight_legibility;
+}
+
+// Early in the list, few skipped, and 0 among the ticks.
+static double simplicity(const labelling *l)
+{
+    double last = l->start + (double)(l->count - 1) * l->j;
+    bool zero = fmod(l->start, l->j) == 0 && l->start <= 0 && last >= 0;
+    return 1 - (double)l->nice / (NICE - 1) - l->j + zero;
+}
+
+static double simplicity_most(int nice, int j)
+{
+    return 2 - (double)nice / (NICE - 1) - j;
+}
+
+static double coverage(double low, double high, double first, double last)
+{
+    double tenth = 0.1 * (high - low);
+    return 1 - 0.5 * (pow(high - last, 2) + pow(low - first, 2)) / (tenth * tenth);
+}
+
+static double coverage_most(double low, double high, double span)
+{
+    double range = high - low, half = (span - range) / 2;
+    return span > range ? 1 - half * half / pow(0.1 * range, 2) : 1;
+}
+
+static double density(int count, int wanted, double low, double high, double first, double last)
+{
+    double have = (count - 1) / (last - first);
+    double want = (wanted - 1) / (fmax(last, high) - fmin(low, first));
+    return 2 - fmax(have / want, want / have);
+}
+
+static double density_most(int count, int wanted)
+{
+    return count >= wanted ? 2 - (double)(count - 1) / (wanted - 1) : 1;
+}
+
+// Tries every start for the given step and count.
+static void try_starts(labelling l, const wish *w, labelling *best)
+{
+    double unit = step_unit(&l), step = unit * l.j;
+    double from = (floor(w->high / step) - (l.count - 1)) * l.j, to = ceil(w->low / step) * l.j;
+    double slack = w->inside ? 1e-9 * (w->high - w->low) : (double)INFINITY;
+    for (l.start = from; l.start <= to; l.start++) {
+        double first = l.start * unit, last = first + step * (l.count - 1);
+        l.score = combined(simplicity(&l), coverage(w->low, w->high, first, last),
+                           density(l.count, w->count, w->low, w->high, first, last));
+        if (l.score > best->score && first >= w->low - slack && last <= w->high + slack) {
+            *best = l;
+        }
+    }
+}
+
+// Tries the powers of ten, from the one that just spans the data upwards.
+static void try_powers(labelling l, const wish *w, labelling *best)
+{
+    double nice = 0.1 * nice_tenths[l.nice];
+    l.power = (int)ceil(log10((w->high - w->low) / (l.count + 1) / l.j / nice));
+    for (;; l.power++) {
+        double span = l.j * step_unit(&l) * (l.count - 1);
+        double most = combined(simplicity_most(l.nice, l.j), coverage_most(w->low, w->high, span),
+                               density_most(l.count, w->count));
+        if (most < best->score) {
+            return;
+        }
+        try_starts(l, w, best);
+    }
+}
+
+static labelling best_labelling(const wish *w)
+{
+    labelling best = {.score = -2};
+    for (int j = 1;; j++) {
+        for (int nice = 0; nice < NICE; nice++) {
+            double simple = simplicity_most(nice, j);
+            if (combined(simple, 1, 1) < best.score) {
+                return best;
+            }
+            for (int count = 2; combined(simple, 1, density_most(count, w->count)) >= best.score;
+                 count++) {
+                try_powers((labelling){.j = j, .nice = nice, .count = count}, w, &best);
+            }
+        }
+    }
+}
+
+// Minor ticks fall on rounder numbers than the step itself.
+static int minor_parts(const labelling *l)
+{
+    static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
+    return l->j == 1 ? parts[l->nice] : 1;
+}
+
+// Digits after the point that tick values in units of 10^exponent need.
+static int decimals_needed(const ticks *t)
+{
+    double unit = pow(10, t->exponent);
+    for (int decimals = 0; decimals < 15; decimals++) {
+        bool enough = true;
+        for (int i = 0; i < t->count && enough; i++) {
+            double scaled = t->value[i] / unit * pow(10, decimals);
+            enough = fabs(scaled - round(scaled)) <= 1e-6 + 1e-12 * fabs(scaled);
+        }
+        if (enough) {
+            return decimals;
+        }
+    }
+    return 15;
+}
+
+// Long rows of zeros go into a factor.
+static void choose_format(ticks *t)
+{
+    double largest = 0;
+    for (int i = 0; i < t->count; i++) {
+        largest = fmax(largest, fabs(t->value[i]));
+    }
+    t->exponent = 0;
+    if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
+        t->exponent = 3 * (int)floor(log10(largest) / 3);
+    }
+    t->decimals = decimals_needed(t);
+}
+
+// Puts the limits in order and apart; false if they are no numbers.
+static bool straighten(wish *w)
+{
+    if (!isfinite(w->low) || !isfinite(w->high)) {
+        return false;
+    }
+    if (w->low > w->high) {
+        double other = w->low;
+        w->low = w->high;
+        w->high = other;
+    }
+    double size = fmax(fabs(w->low), fabs(w->high));
+    if (w->high - w->low <= 1e-10 * size || w->high == w->low) {
+        double half = size > 0 ? 0.1 * size : 1;
+        w->low -= half;
+        w->high += half;
+    }
+    w->count = w->count < 2 ? 2 : w->count > TICKS_MOST / 2 ? TICKS_MOST / 2 : w->count;
+    return isfinite(w->high - w->low);
+}
+
+static void fill(ticks *t, const labelling *l, double first, int count)
+{
+    t->count = count < TICKS_MOST ? count : TICKS_MOST;
+    for (int i = 0; i < t->count; i++) {
+        double value = tick_value(l, first + (double)i * l->j);
+        t->value[i] = value == 0 ? 0 : value; // no minus zero
+    }
+    t->step = t->count > 1 ? tick_value(l, l->j) : 0;
+    t->minor = minor_parts(l);
+    choose_format(t);
+}
+
+void ticks_extended(ticks *t, double low, double high, int wanted)
+{
+    wish w = {low, high, wanted, false};
+    memset(t, 0, sizeof *t);
+    t->minor = 1;
+    if (straighten(&w)) {
+        labelling best = best_labelling(&w);
+        fill(t, &best, best.start, best.count);
+    }
+}
+
+void ticks_between(ticks *t, double low, double high, int wanted)
+{
+    wish w = {low, high, wanted, true};
+    memset(t, 0, sizeof *t);
+    t->minor = 1;
+    if (!straighten(&w)) {
+        return;
+    }
+    labelling best = best_labelling(&w);
+    double unit = step_unit(&best), slack = 1e-9 * (w.high - w.low);
+    double first = best.start;
+    // whatever else lies on a whole step inside
+    while ((first - best.j) * unit >= w.low - slack) {
+        first -= best.j;
+    }
+    fill(t, &best, first, (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1);
+}
+
+void tick_label(const ticks *t, int index, char text[TICK_TEXT])
+{
+    double value = t->value[index] / pow(10, t->exponent);
+    char digits[TICK_TEXT - 4];
+    snprintf(digits, sizeof digits, "%.*f", t->decimals, fabs(value));
+    snprintf(text, TICK_TEXT, "%s%s", value < 0 ? "\u2212" : "", digits);
+}
+
+void tick_factor(const ticks *t, char *text, size_t size)
+{
+    text[0] = '\0';
+    if (t->exponent != 0) {
+        snprintf(text, size, "\u00d710<sup>%s%d</sup>", t->exponent < 0 ? "\u2212" : "",
+                 t->exponent < 0 ? -t->exponent : t->exponent);
+    }
+}

@@ -1,0 +1,54 @@
+// Figures of recorded runs.
+#pragma once
+
+#include "render/plot/plot.h"
+#include "src/run/run.h"
+
+enum { TRACE_SIGNALS = 4, TRACE_RUNS = 3 };
+
+// A panel: signals of one unit over time.
+typedef struct trace_panel {
+    const char *label;                  // of the axis, markup; NULL: the first signal's own
+    const char *signals[TRACE_SIGNALS]; // names in the signal table, unused ones NULL
+    double weight;                      // share of the height, 0 counts as 1
+    bool with_zero;                     // the axis includes 0
+    bool impulses;                      // impulses of impacts in a strip above the panel
+    bool inset;                         // the first pulse once more, if it is short
+    bool wall;                          // the wall's angle as a line
+    bool modes;                         // shade the controller's second mode instead of contact
+} trace_panel;
+
+// A run to draw. The first one gives marks, shading, impulses and caption; further ones are thin
+// dashed lines in the same panels.
+typedef struct trace_run {
+    const scenario *scenario;
+    const run_result *result; // with its trace
+    const char *name;         // "corrected"; only shown if there are several runs
+    bool points;              // further runs only: reference data, points where it has a number
+} trace_run;
+
+// A figure with everything it borrows, except for the runs.
+typedef struct trace_figure {
+    figure figure;
+    figure_panel panels[FIGURE_PANELS];
+    figure_series series[FIGURE_PANELS][TRACE_SIGNALS * TRACE_RUNS];
+    figure_level wall;
+    char **texts; // NULL at the end
+    figure_mark *marks;
+    figure_interval *intervals;
+    figure_impulse *impulses;
+} trace_figure;
+
+// Describes the panels (at most FIGURE_PANELS) of the runs (at most TRACE_RUNS). `title` is plain,
+// NULL for the first scenario's. The runs must outlive the figure. STATUS_BAD_ARGUMENT for an
+// unknown signal, STATUS_NO_MEMORY; then nothing is to be finished.
+status trace_figure_init(trace_figure *t, const char *title, const trace_panel *panels,
+                         int panel_count, const trace_run *runs, int run_count, fault *f);
+void trace_figure_finish(trace_figure *t);
+
+// The picture of `run --plot`: contact force with the impulses, angles, angular velocities and
+// the voltage over time, written to path as figure_write does.
+status plot_run(const scenario *s, const run_result *result, const char *path, fault *f);
+// The same with an older run of the scenario beside it (may be NULL).
+status plot_run_beside(const scenario *s, const run_result *result, const run_result *old,
+                       const char *path, fault *f);

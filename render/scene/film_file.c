@@ -1,0 +1,443 @@
+#include "render/scene/film_file.h"
+
+#include <errno.h>
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "src/base/whole_file.h"
+
+extern char **environ;
+
+typedef enum film_kind { FILM_UNKNOWN, FILM_MP4, FILM_WEBM, FILM_GIF, FILM_FRAMES } film_kind;
+
+enum { ARGUMENTS_MOST = 64, FRAME_DPI = 144 };
+
+struct film_file {
+    film_kind kind;
+    film_facts facts;
+    char *path;
+    int frames;      // written so far
+    whole_file file; // of a film
+    pid_t encoder;   // 0: none runs
+    int pipe;        // to it, -1 if closed
+    FILE *words;     // what it says
+};
+
+static film_kind kind_of(const char *path)
+{
+    static const struct {
+        const char *ending;
+        film_kind kind;
+    } known[] = {{".mp4", FILM_MP4}, {".webm", FILM_WEBM}, {".gif", FILM_GIF}};
+    struct stat found;
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    for (size_t i = 0; dot != NULL && i < sizeof known / sizeof known[0]; i++) {
+        if (strcasecmp(dot, known[i].ending) == 0) {
+            return known[i].kind;
+        }
+    }
+    bool folder = stat(path, &found) == 0 && S_ISDIR(found.st_mode);
+    // a name without an ending means a folder, as does one that is there
+    return folder || dot == NULL || dot[1] == '\0' || dot[1] == '/' ? FILM_FRAMES : FILM_UNKNOWN;
+}
+
+// --- checks ---------------------------------------------------------------------------------
+
+static bool has_ffmpeg(void)
+{
+    const char *folders = getenv("PATH");
+    bool found = false;
+    while (folders != NULL && *folders != '\0' && !found) {
+        char path[4096];
+        int length = (int)strcspn(folders, ":");
+        snprintf(path, sizeof path, "%.*s/ffmpeg", length, folders);
+        found = access(path, X_OK) == 0;
+        folders += length + (folders[length] == ':');
+    }
+    return found;
+}
+
+static bool is_empty_folder(const char *path)
+{
+    DIR *folder = opendir(path);
+    int entries = 0;
+    while (folder != NULL && readdir(folder) != NULL) {
+        entries++;
+    }
+    if (folder != NULL) {
+        closedir(folder);
+    }
+    return folder != NULL && entries <= 2;
+}
+
+static status check_folder(const char *path, fault *f)
+{
+    struct stat found;
+    if (stat(path, &found) != 0) {
+        // made later; its own folder must take it
+        return whole_file_check(path, f);
+    }
+    if (!S_ISDIR(found.st_mode)) {
+        return fault_set(f, STATUS_CANNOT_WRITE,
+                         "%s is a file: expected the name of a folder, or one that ends in .mp4, "
+                         ".webm or .gif",
+                         path);
+    }
+    if (!is_empty_folder(path)) {
+        return fault_set(f, STATUS_CANNOT_WRITE,
+                         "the folder %s is not empty: frames of two films would mix, empty it or "
+                         "name another",
+                         path);
+    }
+    return STATUS_OK;
+}
+
+status film_file_check(const char *path, fault *f)
+{
+    film_kind kind = kind_of(path);
+    if (kind == FILM_UNKNOWN || strcmp(path, "-") == 0) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' is no name for a film: expected one that ends in .mp4, .webm or "
+                         ".gif, or a folder for PNG frames",
+                         path);
+    }
+    if (kind == FILM_FRAMES) {
+        return check_folder(path, f);
+    }
+    if (!has_ffmpeg()) {
+        return fault_set(f, STATUS_CANNOT_WRITE,
+                         "%s needs the program ffmpeg, which is not installed: install the package "
+                         "ffmpeg, or give a folder to get PNG frames",
+                         path);
+    }
+    return whole_file_check(path, f);
+}
+
+// --- ffmpeg ---------------------------------------------------------------------------------
+
+typedef struct argument_list {
+    char *words[ARGUMENTS_MOST];
+    int count;
+    bool out_of_memory;
+} argument_list;
+
+static void add_word(argument_list *list, const char *word)
+{
+    char *copy = list->count + 1 < ARGUMENTS_MOST ? strdup(word) : NULL;
+    list->out_of_memory = list->out_of_memory || copy == NULL;
+    if (copy != NULL) {
+        list->words[list->count++] = copy;
+    }
+}
+
+// Words separated by blanks.
+static void add_words(argument_list *list, const char *words)
+{
+    while (*words != '\0') {
+        char word[512];
+        int length = (int)strcspn(words, " ");
+        snprintf(word, sizeof word, "%.*s", length, words);
+        add_word(list, word);
+        words += length + (words[length] == ' ');
+    }
+}
+
+static void add_notes(argument_list *list, const film_facts *facts)
+{
+    for (int i = 0; i < facts->note_count; i++) {
+        const png_note *note = &facts->notes[i];
+        char *word = malloc(strlen(note->keyword) + strlen(note->text ? note->text : "") + 16);
+        if (word == NULL || note->text == NULL) {
+            free(word);
+            continue;
+        }
+        // the containers know few keys; a comment takes the parameters
+        bool title = strcmp(note->keyword, "Title") == 0;
+        bool parameters_note = strcmp(note->keyword, "Parameters") == 0;
+        if (title || parameters_note) {
+            sprintf(word, "%s=%s", title ? "title" : "comment", note->text);
+        } else {
+            sprintf(word, "%s=%s",
+                    strcmp(note->keyword, "Software") == 0 ? "artist" : "description", note->text);
+        }
+        add_word(list, "-metadata");
+        add_word(list, word);
+        free(word);
+    }
+}
+
+// How each kind of film is made. Fixed numbers of threads and bitexact keep the bytes alike.
+static void add_codec(argument_list *list, film_kind kind)
+{
+    static const char *const words[] = {
+        [FILM_MP4] =
+            "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset fast -crf 18 -threads 2 "
+            "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 "
+            "-movflags +faststart -f mp4",
+        [FILM_WEBM] =
+            "-vf scale=out_color_matrix=bt709 -c:v libvpx-vp9 -b:v 0 -crf 24 -deadline "
+            "realtime -cpu-used 7 -row-mt 1 -threads 2 -pix_fmt yuv420p -colorspace bt709 "
+            "-color_primaries bt709 -color_trc bt709 -f webm",
+        // the first frame only gives the palette: no later one has to wait for the film's end
+        [FILM_GIF] = "-filter_complex fps=25,scale=iw*5/8:-1:flags=area,split[a][b];"
+                     "[a]trim=end_frame=1,palettegen[p];[b]trim=start_frame=1,"
+                     "setpts=PTS-STARTPTS[c];[c][p]paletteuse=dither=none:diff_mode=rectangle "
+                     "-loop 0 -f gif",
+    };
+    add_words(list, words[kind]);
+    add_words(list, "-fflags +bitexact -flags:v +bitexact");
+}
+
+static void list_arguments(argument_list *list, const film_file *film)
+{
+    char word[4096 + 8];
+    add_words(list, "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s");
+    snprintf(word, sizeof word, "%dx%d", film->facts.width, film->facts.height);
+    add_word(list, word);
+    add_word(list, "-r");
+    snprintf(word, sizeof word, "%d", film->facts.frames_per_second);
+    add_word(list, word);
+    add_words(list, "-i pipe:0 -an");
+    add_codec(list, film->kind);
+    add_notes(list, &film->facts);
+    const char *target = film->file.temporary ? film->file.temporary : film->file.path;
+    snprintf(word, sizeof word, "file:%s", target);
+    add_word(list, word);
+    list->words[list->count] = NULL;
+}
+
+// Starts ffmpeg with its input from `input` and its words going to film->words.
+static status spawn(film_file *film, char **words, int input, fault *f)
+{
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    sigset_t defaults;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, input, 0);
+    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, fileno(film->words), 2);
+    // a group of its own: an interrupt of the terminal reaches us, and we end it in order
+    posix_spawnattr_init(&attributes);
+    sigemptyset(&defaults);
+    sigaddset(&defaults, SIGPIPE);
+    posix_spawnattr_setsigdefault(&attributes, &defaults);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+    int failed = posix_spawnp(&film->encoder, words[0], &actions, &attributes, words, environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed != 0) {
+        film->encoder = 0;
+        return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
+                         strerror(failed));
+    }
+    return STATUS_OK;
+}
+
+static status start_encoder(film_file *film, fault *f)
+{
+    argument_list list = {.count = 0};
+    int ends[2];
+    status code = STATUS_NO_MEMORY;
+    list_arguments(&list, film);
+    film->words = tmpfile();
+    if (list.out_of_memory) {
+        fault_set(f, code, "no memory for a film");
+    } else if (film->words == NULL ||
+               socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        code = fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
+                         strerror(errno));
+    } else {
+        code = spawn(film, list.words, ends[0], f);
+        close(ends[0]);
+        film->pipe = ends[1];
+    }
+    for (int i = 0; i < list.count; i++) {
+        free(list.words[i]);
+    }
+    return code;
+}
+
+// Waits for the encoder and takes its last words. True if it succeeded.
+static bool end_encoder(film_file *film, char *said, size_t size)
+{
+    int result = -1;
+    said[0] = '\0';
+    if (film->pipe >= 0) {
+        close(film->pipe);
+        film->pipe = -1;
+    }
+    if (film->encoder > 0) {
+        while (waitpid(film->encoder, &result, 0) < 0 && errno == EINTR) {
+        }
+        film->encoder = 0;
+    }
+    rewind(film->words);
+    char line[512];
+    while (fgets(line, sizeof line, film->words) != NULL) {
+        line[strcspn(line, "\r\n")] = '\0';
+        // the first complaint is the cause, later ones follow from it
+        if (said[0] == '\0') {
+            snprintf(said, size, "%s", line);
+        }
+    }
+    return WIFEXITED(result) && WEXITSTATUS(result) == 0;
+}
+
+static status complain_encoder(const film_file *film, const char *said, fault *f)
+{
+    return fault_set(f, STATUS_CANNOT_WRITE, "%s could not be made, ffmpeg says: %s", film->path,
+                     said[0] ? said : "nothing");
+}
+
+static status send_bytes(film_file *film, const unsigned char *bytes, size_t length, fault *f)
+{
+    while (length > 0) {
+        // a reader that went away is an error, not a signal
+        ssize_t sent = send(film->pipe, bytes, length, MSG_NOSIGNAL);
+        if (sent < 0 && errno != EINTR) {
+            char said[512];
+            end_encoder(film, said, sizeof said);
+            return complain_encoder(film, said, f);
+        }
+        bytes += sent > 0 ? sent : 0;
+        length -= sent > 0 ? (size_t)sent : 0;
+    }
+    return STATUS_OK;
+}
+
+// --- the film -------------------------------------------------------------------------------
+
+static status make_folder(const film_file *film, fault *f)
+{
+    if (mkdir(film->path, 0777) != 0 && errno != EEXIST) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "the folder %s could not be made: %s", film->path,
+                         strerror(errno));
+    }
+    return STATUS_OK;
+}
+
+static void film_file_free(film_file *film)
+{
+    if (film->words != NULL) {
+        fclose(film->words);
+    }
+    free(film->path);
+    free(film);
+}
+
+status film_file_open(film_file **out, const char *path, const film_facts *facts, fault *f)
+{
+    *out = NULL;
+    status code = film_file_check(path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    film_file *film = calloc(1, sizeof *film);
+    if (film != NULL) {
+        film->path = strdup(path);
+    }
+    if (film == NULL || film->path == NULL) {
+        free(film);
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
+    }
+    film->kind = kind_of(path);
+    film->facts = *facts;
+    film->pipe = -1;
+    if (film->kind == FILM_FRAMES) {
+        code = make_folder(film, f);
+    } else {
+        code = whole_file_open(&film->file, path, f);
+        if (code == STATUS_OK) {
+            code = start_encoder(film, f);
+            if (code != STATUS_OK) {
+                whole_file_abandon(&film->file);
+            }
+        }
+    }
+    if (code != STATUS_OK) {
+        film_file_free(film);
+        return code;
+    }
+    *out = film;
+    return STATUS_OK;
+}
+
+static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
+{
+    char path[4096];
+    whole_file file;
+    snprintf(path, sizeof path, "%s/frame-%05d.png", film->path, film->frames + 1);
+    status code = whole_file_open(&file, path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code =
+        png_file_write(file.stream, frame, FRAME_DPI, film->facts.notes, film->facts.note_count, f);
+    if (code != STATUS_OK) {
+        whole_file_abandon(&file);
+        return code;
+    }
+    return whole_file_commit(&file, f);
+}
+
+bool film_file_wants_palette(const film_file *film)
+{
+    return film->kind == FILM_GIF;
+}
+
+status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
+{
+    status code = STATUS_OK;
+    if (film->kind == FILM_FRAMES) {
+        code = add_to_folder(film, frame, f);
+    } else {
+        cairo_surface_flush(frame);
+        const unsigned char *data = cairo_image_surface_get_data(frame);
+        ptrdiff_t stride = cairo_image_surface_get_stride(frame);
+        for (int row = 0; row < film->facts.height && code == STATUS_OK; row++) {
+            code = send_bytes(film, data + row * stride, 4 * (size_t)film->facts.width, f);
+        }
+    }
+    film->frames++;
+    return code;
+}
+
+status film_file_commit(film_file *film, fault *f)
+{
+    status code = STATUS_OK;
+    if (film->kind != FILM_FRAMES) {
+        char said[512];
+        if (end_encoder(film, said, sizeof said)) {
+            code = whole_file_commit(&film->file, f);
+        } else {
+            code = complain_encoder(film, said, f);
+            whole_file_abandon(&film->file);
+        }
+    }
+    film_file_free(film);
+    return code;
+}
+
+void film_file_abandon(film_file *film)
+{
+    if (film->kind != FILM_FRAMES) {
+        char said[512];
+        if (film->encoder > 0) {
+            kill(film->encoder, SIGTERM);
+        }
+        end_encoder(film, said, sizeof said);
+        whole_file_abandon(&film->file);
+    }
+    film_file_free(film);
+}

@@ -1,0 +1,201 @@
+#include "render/scene/floor.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MAP = 640,       // cells along each edge of the shadow's map
+    BLUR = 4,        // half width of a smoothing pass [cells]
+    BLUR_PASSES = 3, // three boxes are nearly a bell
+};
+
+static const double page[] = {255, 255, 255}, ground[] = {243, 244, 246}, line[] = {208, 213, 219};
+#define SHADOW_DEPTH 0.30  // what a shadow takes away of the floor's light
+#define LINE_WIDTH   0.012 // of a grid line, in distances of the grid
+
+// How much of a pixel that is `across` wide a grid line covers.
+static double line_cover(double place, double grid, double across)
+{
+    double lines = place / grid, off = fabs(lines - floor(lines + 0.5)) * grid;
+    double cover = 0.5 + (fmax(LINE_WIDTH * grid, across) / 2 - off) / across;
+    return cover < 0 ? 0 : cover > 1 ? 1 : cover;
+}
+
+// Colour of the floor at (x, y) within its reach, a pixel being `wide` by `deep` there.
+static uint32_t floor_colour(const scene_floor *floor, double x, double y, double wide, double deep)
+{
+    double away_x = x - floor->middle.x, away_y = y - floor->middle.y;
+    double left = 1 - (away_x * away_x + away_y * away_y) / (floor->reach * floor->reach);
+    double fade = left * sqrt(left), over_x = line_cover(x, floor->grid, wide);
+    double over_y = line_cover(y, floor->grid, deep);
+    // lines closer than a few pixels would only flicker
+    double dense = fmin(1, fmax(0, floor->grid / fmax(wide, deep) / 6 - 0.5));
+    double cover = dense * (1 - (1 - over_x) * (1 - over_y));
+    uint32_t rgb = 0;
+    for (int i = 0; i < 3; i++) {
+        double own = ground[i] + cover * (line[i] - ground[i]);
+        rgb = rgb << 8 | (uint32_t)(page[i] + fade * (own - page[i]) + 0.5);
+    }
+    return rgb;
+}
+
+// Rays through pixels: of the first one's centre, and how they change to the right and downwards.
+typedef struct ray_field {
+    vector first, right, down;
+} ray_field;
+
+// Where a pixel meets the floor, and how wide and deep it is there.
+static void paint_pixel(scene_floor *floor, const camera *c, const ray_field *rays, vector ray,
+                        size_t at)
+{
+    double along = (floor->level - c->eye.z) / ray.z;
+    double x = c->eye.x + along * ray.x, y = c->eye.y + along * ray.y;
+    double away_x = x - floor->middle.x, away_y = y - floor->middle.y;
+    // a ray towards the sky meets the floor behind the eye, and none beyond its reach is seen
+    bool meets = ray.z < 0 && away_x * away_x + away_y * away_y < floor->reach * floor->reach;
+    floor->x[at] = meets ? (float)x : 1e30F;
+    floor->y[at] = meets ? (float)y : 1e30F;
+    floor->ground[at] = 0xFFFFFF;
+    if (meets) {
+        double slope_x = ray.x / ray.z, slope_y = ray.y / ray.z;
+        const vector *r = &rays->right, *d = &rays->down;
+        double wide = fabs(along * (r->x - slope_x * r->z)) + fabs(along * (d->x - slope_x * d->z));
+        double deep = fabs(along * (r->y - slope_y * r->z)) + fabs(along * (d->y - slope_y * d->z));
+        floor->ground[at] = floor_colour(floor, x, y, wide, deep);
+    }
+}
+
+static void paint_ground(scene_floor *floor, const camera *c)
+{
+    ray_field rays = {.first = camera_ray(c, 0.5, 0.5)};
+    rays.right = vector_sum(camera_ray(c, 1.5, 0.5), -1, rays.first);
+    rays.down = vector_sum(camera_ray(c, 0.5, 1.5), -1, rays.first);
+    for (int row = 0; row < floor->height; row++) {
+        vector start = vector_sum(rays.first, row, rays.down);
+        for (int column = 0; column < floor->width; column++) {
+            paint_pixel(floor, c, &rays, vector_sum(start, column, rays.right),
+                        (size_t)row * (size_t)floor->width + (size_t)column);
+        }
+    }
+}
+
+status scene_floor_init(scene_floor *floor, const camera *c, fault *f)
+{
+    floor->width = (int)c->width;
+    floor->height = (int)c->height;
+    size_t pixels = (size_t)floor->width * (size_t)floor->height;
+    floor->ground = malloc(pixels * sizeof *floor->ground);
+    floor->x = malloc(pixels * sizeof *floor->x);
+    floor->y = malloc(pixels * sizeof *floor->y);
+    floor->mask = malloc((size_t)MAP * MAP);
+    floor->spare = malloc((size_t)MAP * MAP);
+    if (!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
+                         floor->width, floor->height);
+    }
+    floor->map_left = floor->middle.x - floor->reach;
+    floor->map_low = floor->middle.y - floor->reach;
+    floor->map_cell = 2 * floor->reach / MAP;
+    paint_ground(floor, c);
+    return STATUS_OK;
+}
+
+void scene_floor_finish(scene_floor *floor)
+{
+    free(floor->ground);
+    free(floor->x);
+    free(floor->y);
+    free(floor->mask);
+    free(floor->spare);
+    *floor = (scene_floor){0};
+}
+
+// One smoothing pass along rows; the result is stored turned round, so that two passes do both
+// directions.
+static void blur_turned(const unsigned char *from, unsigned char *to)
+{
+    for (int row = 0; row < MAP; row++) {
+        const unsigned char *line_from = from + (ptrdiff_t)row * MAP;
+        int sum = 0;
+        for (int i = 0; i < BLUR; i++) {
+            sum += line_from[i];
+        }
+        for (int i = 0; i < MAP; i++) {
+            sum += i + BLUR < MAP ? line_from[i + BLUR] : 0;
+            to[(ptrdiff_t)i * MAP + row] = (unsigned char)(sum / (2 * BLUR + 1));
+            sum -= i >= BLUR ? line_from[i - BLUR] : 0;
+        }
+    }
+}
+
+// Draws the mesh's triangles, thrown onto the floor along the light, into the map.
+static void cast_shadow(scene_floor *floor, const mesh *m)
+{
+    memset(floor->mask, 0, (size_t)MAP * MAP);
+    cairo_surface_t *map =
+        cairo_image_surface_create_for_data(floor->mask, CAIRO_FORMAT_A8, MAP, MAP, MAP);
+    cairo_t *cr = cairo_create(map);
+    cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE);
+    for (size_t i = 0; i + 2 < m->corner_count; i += 3) {
+        // a closed solid's shadow is that of its lit side
+        if (vector_dot(m->vertices[m->corners[i]].normal, floor->light) <= 0) {
+            continue;
+        }
+        for (size_t k = 0; k < 3; k++) {
+            vector p = m->vertices[m->corners[i + k]].place;
+            double along = fmax(0, p.z - floor->level) / floor->light.z;
+            double x = p.x - along * floor->light.x, y = p.y - along * floor->light.y;
+            cairo_line_to(cr, (x - floor->map_left) / floor->map_cell,
+                          (y - floor->map_low) / floor->map_cell);
+        }
+        cairo_close_path(cr);
+        cairo_fill(cr);
+    }
+    cairo_destroy(cr);
+    cairo_surface_destroy(map);
+    for (int pass = 0; pass < BLUR_PASSES; pass++) {
+        blur_turned(floor->mask, floor->spare);
+        blur_turned(floor->spare, floor->mask);
+    }
+}
+
+// The shadow at a place of the floor, 0 to 255, between the map's cells.
+static float shadow_at(const scene_floor *floor, float x, float y)
+{
+    float scale = (float)(1 / floor->map_cell);
+    float u = (x - (float)floor->map_left) * scale - 0.5F;
+    float v = (y - (float)floor->map_low) * scale - 0.5F;
+    if (!(u >= 0 && v >= 0 && u < MAP - 1 && v < MAP - 1)) {
+        return 0;
+    }
+    int i = (int)u, j = (int)v;
+    float a = u - (float)i, b = v - (float)j;
+    const unsigned char *at = floor->mask + (ptrdiff_t)j * MAP + i;
+    return (1 - b) * ((1 - a) * at[0] + a * at[1]) + b * ((1 - a) * at[MAP] + a * at[MAP + 1]);
+}
+
+static uint32_t darkened(uint32_t rgb, float shadow)
+{
+    uint32_t light = 256 - (uint32_t)(shadow * (float)(SHADOW_DEPTH * 256 / 255));
+    uint32_t red = (rgb >> 16 & 255) * light >> 8, green = (rgb >> 8 & 255) * light >> 8;
+    return red << 16 | green << 8 | (rgb & 255) * light >> 8;
+}
+
+void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
+{
+    cast_shadow(floor, m);
+    cairo_surface_flush(onto);
+    unsigned char *data = cairo_image_surface_get_data(onto);
+    ptrdiff_t stride = cairo_image_surface_get_stride(onto);
+    for (int row = 0; row < floor->height; row++) {
+        uint32_t *to = (uint32_t *)(void *)(data + row * stride);
+        size_t at = (size_t)row * (size_t)floor->width;
+        for (int column = 0; column < floor->width; column++, at++) {
+            float shadow = shadow_at(floor, floor->x[at], floor->y[at]);
+            to[column] = shadow > 0 ? darkened(floor->ground[at], shadow) : floor->ground[at];
+        }
+    }
+    cairo_surface_mark_dirty(onto);
+}

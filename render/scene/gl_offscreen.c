@@ -1,0 +1,442 @@
+#include "render/scene/gl_offscreen.h"
+
+#include <dlfcn.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The few names of OpenGL, EGL and OSMesa that are needed, so that no header of theirs is. Values
+// from the Khronos registry and Mesa's GL/osmesa.h.
+enum {
+    GL_TRIANGLES = 0x0004,
+    GL_DEPTH_TEST = 0x0B71,
+    GL_SCISSOR_TEST = 0x0C11,
+    GL_UNSIGNED_BYTE = 0x1401,
+    GL_UNSIGNED_INT = 0x1405,
+    GL_FLOAT = 0x1406,
+    GL_RENDERER = 0x1F01,
+    GL_VERSION = 0x1F02,
+    GL_RGBA = 0x1908,
+    GL_DEPTH_BUFFER_BIT = 0x0100,
+    GL_COLOR_BUFFER_BIT = 0x4000,
+    GL_RGBA8 = 0x8058,
+    GL_BGRA = 0x80E1,
+    GL_DEPTH_COMPONENT24 = 0x81A6,
+    GL_UNSIGNED_INT_8_8_8_8_REV = 0x8367,
+    GL_ARRAY_BUFFER = 0x8892,
+    GL_ELEMENT_ARRAY_BUFFER = 0x8893,
+    GL_STREAM_DRAW = 0x88E0,
+    GL_FRAGMENT_SHADER = 0x8B30,
+    GL_VERTEX_SHADER = 0x8B31,
+    GL_LINK_STATUS = 0x8B82,
+    GL_FRAMEBUFFER_COMPLETE = 0x8CD5,
+    GL_COLOR_ATTACHMENT0 = 0x8CE0,
+    GL_DEPTH_ATTACHMENT = 0x8D00,
+    GL_FRAMEBUFFER = 0x8D40,
+    GL_RENDERBUFFER = 0x8D41,
+
+    OSMESA_FORMAT = 0x22,
+    OSMESA_PROFILE = 0x33,
+    OSMESA_CORE_PROFILE = 0x34,
+    OSMESA_CONTEXT_MAJOR_VERSION = 0x36,
+    OSMESA_CONTEXT_MINOR_VERSION = 0x37,
+
+    EGL_PLATFORM_SURFACELESS = 0x31DD,
+    EGL_OPENGL_API = 0x30A2,
+    EGL_OPENGL_BIT = 0x0008,
+    EGL_PBUFFER_BIT = 0x0001,
+    EGL_SURFACE_TYPE = 0x3033,
+    EGL_NONE = 0x3038,
+    EGL_RENDERABLE_TYPE = 0x3040,
+    EGL_HEIGHT = 0x3056,
+    EGL_WIDTH = 0x3057,
+    EGL_CONTEXT_MAJOR_VERSION = 0x3098,
+    EGL_CONTEXT_MINOR_VERSION = 0x30FB,
+    EGL_CONTEXT_PROFILE_MASK = 0x30FD,
+    EGL_CONTEXT_CORE_PROFILE = 0x0001,
+};
+
+// Every function of OpenGL that is called: result, name, arguments.
+#define GL_FUNCTIONS(X)                                                                            \
+    X(const unsigned char *, GetString, (unsigned name))                                           \
+    X(void, Viewport, (int x, int y, int width, int height))                                       \
+    X(void, Scissor, (int x, int y, int width, int height))                                        \
+    X(void, Enable, (unsigned what))                                                               \
+    X(void, ClearColor, (float red, float green, float blue, float alpha))                         \
+    X(void, Clear, (unsigned what))                                                                \
+    X(void, ReadPixels,                                                                            \
+      (int x, int y, int width, int height, unsigned format, unsigned type, void *to))             \
+    X(unsigned, GetError, (void))                                                                  \
+    X(void, GenFramebuffers, (int count, unsigned *names))                                         \
+    X(void, BindFramebuffer, (unsigned target, unsigned name))                                     \
+    X(void, DeleteFramebuffers, (int count, const unsigned *names))                                \
+    X(unsigned, CheckFramebufferStatus, (unsigned target))                                         \
+    X(void, GenRenderbuffers, (int count, unsigned *names))                                        \
+    X(void, BindRenderbuffer, (unsigned target, unsigned name))                                    \
+    X(void, DeleteRenderbuffers, (int count, const unsigned *names))                               \
+    X(void, RenderbufferStorage, (unsigned target, unsigned format, int width, int height))        \
+    X(void, FramebufferRenderbuffer,                                                               \
+      (unsigned target, unsigned attachment, unsigned kind, unsigned name))                        \
+    X(unsigned, CreateShader, (unsigned kind))                                                     \
+    X(void, ShaderSource, (unsigned name, int count, const char *const *text, const int *length))  \
+    X(void, CompileShader, (unsigned name))                                                        \
+    X(void, DeleteShader, (unsigned name))                                                         \
+    X(unsigned, CreateProgram, (void))                                                             \
+    X(void, AttachShader, (unsigned program, unsigned shader))                                     \
+    X(void, LinkProgram, (unsigned program))                                                       \
+    X(void, GetProgramiv, (unsigned program, unsigned what, int *value))                           \
+    X(void, UseProgram, (unsigned program))                                                        \
+    X(void, DeleteProgram, (unsigned program))                                                     \
+    X(void, GenVertexArrays, (int count, unsigned *names))                                         \
+    X(void, BindVertexArray, (unsigned name))                                                      \
+    X(void, DeleteVertexArrays, (int count, const unsigned *names))                                \
+    X(void, GenBuffers, (int count, unsigned *names))                                              \
+    X(void, BindBuffer, (unsigned target, unsigned name))                                          \
+    X(void, BufferData, (unsigned target, ptrdiff_t size, const void *from, unsigned use))         \
+    X(void, DeleteBuffers, (int count, const unsigned *names))                                     \
+    X(void, EnableVertexAttribArray, (unsigned index))                                             \
+    X(void, VertexAttribPointer,                                                                   \
+      (unsigned index, int size, unsigned type, unsigned char normalised, int stride,              \
+       const void *offset))                                                                        \
+    X(void, DrawElements, (unsigned mode, int count, unsigned type, const void *offset))
+
+typedef void (*any_function)(void);
+typedef any_function (*function_finder)(const char *name);
+
+struct gl_offscreen {
+    gl_library library;
+    void *handle; // of the library
+    function_finder find;
+    char renderer[256];
+    void *context, *display, *surface;
+    unsigned char *small;                // OSMesa's own picture, which nothing is drawn into
+    unsigned framebuffer, colour, depth; // names of OpenGL's objects
+    unsigned program, vertex_array, buffers[2];
+    int width, height;
+#define GL_MEMBER(result, name, arguments) result(*name) arguments;
+    GL_FUNCTIONS(GL_MEMBER)
+#undef GL_MEMBER
+};
+
+enum { SMALL = 16 }; // edge of the surface that a context insists on [pixels]
+
+// A function of a library; ISO C knows no other way from an object pointer to a function's.
+static bool load(void *handle, const char *name, void *function)
+{
+    void *found = dlsym(handle, name);
+    memcpy(function, &found, sizeof found);
+    return found != NULL;
+}
+
+// Makes the context the one that OpenGL's functions mean.
+static bool make_current(gl_offscreen *g)
+{
+    unsigned char (*osmesa)(void *, void *, unsigned, int, int);
+    unsigned (*egl)(void *, void *, void *, void *);
+    if (g->library == GL_OSMESA) {
+        return load(g->handle, "OSMesaMakeCurrent", &osmesa) &&
+               osmesa(g->context, g->small, GL_UNSIGNED_BYTE, SMALL, SMALL);
+    }
+    return load(g->handle, "eglMakeCurrent", &egl) &&
+           egl(g->display, g->surface, g->surface, g->context);
+}
+
+// --- OSMesa ---------------------------------------------------------------------------------
+
+static status open_osmesa(gl_offscreen *g, fault *f)
+{
+    static const int wanted[] = {OSMESA_FORMAT,
+                                 GL_RGBA,
+                                 OSMESA_PROFILE,
+                                 OSMESA_CORE_PROFILE,
+                                 OSMESA_CONTEXT_MAJOR_VERSION,
+                                 3,
+                                 OSMESA_CONTEXT_MINOR_VERSION,
+                                 3,
+                                 0,
+                                 0};
+    void *(*create)(const int *, void *);
+    g->handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+    if (g->handle == NULL) {
+        return fault_set(f, STATUS_CANNOT_WRITE,
+                         "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose "
+                         "--gl=egl or --gl=cairo");
+    }
+    if (!load(g->handle, "OSMesaCreateContextAttribs", &create) ||
+        !load(g->handle, "OSMesaGetProcAddress", &g->find)) {
+        return fault_set(f, STATUS_CANNOT_WRITE,
+                         "libOSMesa.so.8 is too old: expected one of Mesa 17 or later");
+    }
+    g->small = calloc(SMALL * SMALL, 4);
+    g->context = g->small ? create(wanted, NULL) : NULL;
+    if (g->context == NULL || !make_current(g)) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "OSMesa gives no context of OpenGL 3.3");
+    }
+    return STATUS_OK;
+}
+
+static void close_osmesa(gl_offscreen *g)
+{
+    void (*destroy)(void *);
+    if (g->context != NULL && load(g->handle, "OSMesaDestroyContext", &destroy)) {
+        destroy(g->context);
+    }
+    free(g->small);
+}
+
+// --- EGL ------------------------------------------------------------------------------------
+
+static status complain_egl(fault *f, const char *what)
+{
+    return fault_set(f, STATUS_CANNOT_WRITE,
+                     "EGL %s: install libegl1 and libgl1-mesa-dri, or choose --gl=osmesa or "
+                     "--gl=cairo",
+                     what);
+}
+
+// The display without a screen. It is kept until the end of the process: closing it would unload
+// drivers that hold memory.
+static void *egl_display(void *handle)
+{
+    static void *display;
+    void *(*get)(unsigned, void *, const void *);
+    unsigned (*initialise)(void *, int *, int *);
+    function_finder find;
+    if (display != NULL || !load(handle, "eglGetProcAddress", &find) ||
+        !load(handle, "eglInitialize", &initialise)) {
+        return display;
+    }
+    any_function found = find("eglGetPlatformDisplayEXT");
+    memcpy(&get, &found, sizeof found);
+    // what Mesa has to say on the way is said by the fault
+    setenv("EGL_LOG_LEVEL", "fatal", 0);
+    void *opened = get ? get(EGL_PLATFORM_SURFACELESS, NULL, NULL) : NULL;
+    if (opened != NULL && initialise(opened, NULL, NULL)) {
+        display = opened;
+    }
+    return display;
+}
+
+static status open_egl(gl_offscreen *g, fault *f)
+{
+    static const int config_wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
+                                        EGL_OPENGL_BIT, EGL_NONE};
+    static const int surface_wanted[] = {EGL_WIDTH, SMALL, EGL_HEIGHT, SMALL, EGL_NONE};
+    static const int context_wanted[] = {
+        EGL_CONTEXT_MAJOR_VERSION, 3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_PROFILE_MASK,
+        EGL_CONTEXT_CORE_PROFILE,  EGL_NONE};
+    unsigned (*bind)(unsigned), (*choose)(void *, const int *, void **, int, int *);
+    void *(*create_context)(void *, void *, void *, const int *);
+    void *(*create_surface)(void *, void *, const int *), *config;
+    int count = 0;
+    g->handle = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
+    if (g->handle == NULL) {
+        return complain_egl(f, "is not installed (libEGL.so.1)");
+    }
+    g->display = egl_display(g->handle);
+    if (g->display == NULL) {
+        return complain_egl(f, "gives no display without a screen");
+    }
+    if (!load(g->handle, "eglBindAPI", &bind) || !load(g->handle, "eglChooseConfig", &choose) ||
+        !load(g->handle, "eglCreateContext", &create_context) ||
+        !load(g->handle, "eglCreatePbufferSurface", &create_surface) ||
+        !load(g->handle, "eglGetProcAddress", &g->find) || !bind(EGL_OPENGL_API) ||
+        !choose(g->display, config_wanted, &config, 1, &count) || count < 1) {
+        return complain_egl(f, "knows no OpenGL");
+    }
+    g->surface = create_surface(g->display, config, surface_wanted);
+    g->context = create_context(g->display, config, NULL, context_wanted);
+    if (g->surface == NULL || g->context == NULL || !make_current(g)) {
+        return complain_egl(f, "gives no context of OpenGL 3.3");
+    }
+    return STATUS_OK;
+}
+
+static void close_egl(gl_offscreen *g)
+{
+    unsigned (*release)(void *, void *, void *, void *), (*destroy)(void *, void *);
+    if (g->display != NULL && load(g->handle, "eglMakeCurrent", &release)) {
+        release(g->display, NULL, NULL, NULL);
+    }
+    if (g->context != NULL && load(g->handle, "eglDestroyContext", &destroy)) {
+        destroy(g->display, g->context);
+    }
+    if (g->surface != NULL && load(g->handle, "eglDestroySurface", &destroy)) {
+        destroy(g->display, g->surface);
+    }
+}
+
+// --- OpenGL ---------------------------------------------------------------------------------
+
+static bool load_functions(gl_offscreen *g)
+{
+    any_function found;
+    bool all = true;
+#define GL_LOAD(result, name, arguments)                                                           \
+    found = g->find("gl" #name);                                                                   \
+    memcpy(&g->name, &found, sizeof found);                                                        \
+    all = all && found != NULL;
+    GL_FUNCTIONS(GL_LOAD)
+#undef GL_LOAD
+    return all;
+}
+
+static unsigned compile(gl_offscreen *g, unsigned kind, const char *text)
+{
+    unsigned name = g->CreateShader(kind);
+    g->ShaderSource(name, 1, &text, NULL);
+    g->CompileShader(name);
+    g->AttachShader(g->program, name);
+    return name;
+}
+
+// Colours arrive lit: the program only carries them across the triangles.
+static bool make_program(gl_offscreen *g)
+{
+    int linked = 0;
+    g->program = g->CreateProgram();
+    unsigned vertex = compile(g, GL_VERTEX_SHADER,
+                              "#version 330 core\n"
+                              "layout(location = 0) in vec4 place;\n"
+                              "layout(location = 1) in vec4 colour;\n"
+                              "out vec4 shade;\n"
+                              "void main() { gl_Position = place; shade = colour; }\n");
+    unsigned fragment = compile(g, GL_FRAGMENT_SHADER,
+                                "#version 330 core\n"
+                                "in vec4 shade;\n"
+                                "out vec4 pixel;\n"
+                                "void main() { pixel = shade; }\n");
+    g->LinkProgram(g->program);
+    g->GetProgramiv(g->program, GL_LINK_STATUS, &linked);
+    g->DeleteShader(vertex);
+    g->DeleteShader(fragment);
+    g->UseProgram(g->program);
+    return linked != 0;
+}
+
+static bool make_framebuffer(gl_offscreen *g)
+{
+    g->GenFramebuffers(1, &g->framebuffer);
+    g->BindFramebuffer(GL_FRAMEBUFFER, g->framebuffer);
+    g->GenRenderbuffers(1, &g->colour);
+    g->BindRenderbuffer(GL_RENDERBUFFER, g->colour);
+    g->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, g->width, g->height);
+    g->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, g->colour);
+    g->GenRenderbuffers(1, &g->depth);
+    g->BindRenderbuffer(GL_RENDERBUFFER, g->depth);
+    g->RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, g->width, g->height);
+    g->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, g->depth);
+    return g->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+static void make_buffers(gl_offscreen *g)
+{
+    g->GenVertexArrays(1, &g->vertex_array);
+    g->BindVertexArray(g->vertex_array);
+    g->GenBuffers(2, g->buffers);
+    g->BindBuffer(GL_ARRAY_BUFFER, g->buffers[0]);
+    g->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->buffers[1]);
+    g->EnableVertexAttribArray(0);
+    g->EnableVertexAttribArray(1);
+    g->VertexAttribPointer(0, 4, GL_FLOAT, 0, sizeof(gl_vertex), NULL);
+    g->VertexAttribPointer(1, 4, GL_FLOAT, 0, sizeof(gl_vertex),
+                           (const void *)offsetof(gl_vertex, colour));
+    g->Enable(GL_DEPTH_TEST);
+    g->Enable(GL_SCISSOR_TEST);
+    g->ClearColor(0, 0, 0, 0);
+}
+
+static status set_up(gl_offscreen *g, fault *f)
+{
+    status code = g->library == GL_OSMESA ? open_osmesa(g, f) : open_egl(g, f);
+    const char *name = g->library == GL_OSMESA ? "OSMesa" : "EGL";
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (!load_functions(g)) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3.3", name);
+    }
+    snprintf(g->renderer, sizeof g->renderer, "%s, %s, OpenGL %s", name,
+             (const char *)g->GetString(GL_RENDERER), (const char *)g->GetString(GL_VERSION));
+    if (!make_framebuffer(g) || !make_program(g)) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "%s cannot draw a picture of %d x %d pixels", name,
+                         g->width, g->height);
+    }
+    make_buffers(g);
+    return STATUS_OK;
+}
+
+status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f)
+{
+    gl_offscreen *g = calloc(1, sizeof *g);
+    *out = NULL;
+    if (g == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for OpenGL");
+    }
+    g->library = library;
+    g->width = width;
+    g->height = height;
+    status code = set_up(g, f);
+    if (code != STATUS_OK) {
+        gl_offscreen_destroy(g);
+        return code;
+    }
+    *out = g;
+    return STATUS_OK;
+}
+
+void gl_offscreen_destroy(gl_offscreen *g)
+{
+    if (g == NULL) {
+        return;
+    }
+    bool current = g->context != NULL && make_current(g);
+    if (current && g->vertex_array != 0) {
+        g->DeleteVertexArrays(1, &g->vertex_array);
+        g->DeleteBuffers(2, g->buffers);
+    }
+    if (current && g->framebuffer != 0) {
+        g->DeleteFramebuffers(1, &g->framebuffer);
+        g->DeleteRenderbuffers(1, &g->colour);
+        g->DeleteRenderbuffers(1, &g->depth);
+    }
+    if (current && g->program != 0) {
+        g->DeleteProgram(g->program);
+    }
+    if (g->library == GL_OSMESA) {
+        close_osmesa(g);
+    } else {
+        close_egl(g);
+    }
+    // the library stays: its threads may still be ending
+    free(g);
+}
+
+const char *gl_offscreen_renderer(const gl_offscreen *g)
+{
+    return g->renderer;
+}
+
+status gl_offscreen_draw(gl_offscreen *g, const gl_vertex *vertices, size_t vertex_count,
+                         const unsigned *corners, size_t corner_count, int x, int y, int width,
+                         int height, uint32_t *pixels, fault *f)
+{
+    if (!make_current(g)) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "OpenGL's context is lost");
+    }
+    g->Viewport(0, 0, g->width, g->height);
+    g->Scissor(x, y, width, height);
+    g->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    g->BufferData(GL_ARRAY_BUFFER, (ptrdiff_t)(vertex_count * sizeof *vertices), vertices,
+                  GL_STREAM_DRAW);
+    g->BufferData(GL_ELEMENT_ARRAY_BUFFER, (ptrdiff_t)(corner_count * sizeof *corners), corners,
+                  GL_STREAM_DRAW);
+    g->DrawElements(GL_TRIANGLES, (int)corner_count, GL_UNSIGNED_INT, NULL);
+    g->ReadPixels(x, y, width, height, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, pixels);
+    unsigned error = g->GetError();
+    if (error != 0) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "OpenGL refused to draw (error 0x%x)", error);
+    }
+    return STATUS_OK;
+}

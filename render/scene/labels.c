@@ -1,0 +1,105 @@
+#include "render/scene/labels.h"
+
+#include <math.h>
+
+#include "render/page/text.h"
+
+#define TITLE_LETTERS 15.0 // [pixels of a picture 720 high]
+#define FACT_LETTERS  13.0
+#define MARGIN        22.0
+
+static const colour ink_strong = {0.13, 0.14, 0.16}, ink_faint = {0.38, 0.40, 0.43};
+
+static double draw_text(const labels *l, double x, double y, const char *markup, double size,
+                        bool bold, colour ink)
+{
+    const text_block t = {.markup = markup, .size = size * l->scale, .bold = bold};
+    set_colour(l->cr, ink);
+    cairo_move_to(l->cr, x, y);
+    return text_draw(l->cr, l->context, &t);
+}
+
+// Pixels of a length at a place.
+static double pixels_of(const camera *c, vector place, double length)
+{
+    return length * c->focal_y * c->height / 2 / camera_project(c, place).z;
+}
+
+void labels_flash(const labels *l, vector place, double radius, double strength)
+{
+    enum { RAYS = 12 };
+    vector at = camera_project(l->camera, place);
+    double r = pixels_of(l->camera, place, radius) * (0.55 + 0.45 * strength);
+    cairo_pattern_t *glow = cairo_pattern_create_radial(at.x, at.y, 0, at.x, at.y, r);
+    cairo_pattern_add_color_stop_rgba(glow, 0, 1, 0.93, 0.65, 0.95 * strength);
+    cairo_pattern_add_color_stop_rgba(glow, 0.3, 1, 0.75, 0.2, 0.6 * strength);
+    cairo_pattern_add_color_stop_rgba(glow, 1, 1, 0.6, 0.1, 0);
+    cairo_set_source(l->cr, glow);
+    cairo_arc(l->cr, at.x, at.y, r, 0, 2 * M_PI);
+    cairo_fill(l->cr);
+    cairo_pattern_destroy(glow);
+    cairo_set_line_width(l->cr, 1.6 * l->scale);
+    cairo_set_line_cap(l->cr, CAIRO_LINE_CAP_ROUND);
+    cairo_set_source_rgba(l->cr, 0.88, 0.5, 0.02, strength);
+    for (int i = 0; i < RAYS; i++) {
+        double angle = 2 * M_PI * (i + 0.5) / RAYS, far = i % 2 ? 0.8 : 1.1;
+        cairo_move_to(l->cr, at.x + 0.5 * r * cos(angle), at.y + 0.5 * r * sin(angle));
+        cairo_line_to(l->cr, at.x + far * r * cos(angle), at.y + far * r * sin(angle));
+    }
+    cairo_stroke(l->cr);
+}
+
+void labels_force(const labels *l, vector from, vector end, double force, colour ink)
+{
+    char text[48];
+    double width, height, digits = force < 10 ? 2 : force < 100 ? 1 : 0;
+    snprintf(text, sizeof text, "%.*f\u2009N", (int)digits, force);
+    const text_block t = {.markup = text, .size = TITLE_LETTERS * l->scale, .bold = true};
+    text_measure(l->context, &t, &width, &height);
+    vector start = camera_project(l->camera, from), tip = camera_project(l->camera, end);
+    double dx = tip.x - start.x, dy = tip.y - start.y, length = fmax(1e-9, hypot(dx, dy));
+    // beyond the arrow's point, the box touching a circle round it
+    double x = tip.x + dx / length * (width / 2 + 8 * l->scale) - width / 2;
+    double y = tip.y + dy / length * (height / 2 + 6 * l->scale) - height / 2;
+    x = fmin(fmax(x, 4), l->camera->width - width - 4);
+    y = fmin(fmax(y, 4), l->camera->height - height - 4);
+    draw_text(l, x, y, text, TITLE_LETTERS, true, ink);
+}
+
+void labels_caption(const labels *l, const char *title, const char *facts)
+{
+    double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale;
+    char *escaped = text_escape(title);
+    draw_text(l, left, bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale, escaped,
+              TITLE_LETTERS, true, ink_strong);
+    draw_text(l, left, bottom - FACT_LETTERS * 1.25 * l->scale, facts, FACT_LETTERS, false,
+              ink_faint);
+    g_free(escaped);
+}
+
+void labels_instants(const labels *l, const double *times, const colour *inks, int count)
+{
+    double swatch = 26 * l->scale, step = FACT_LETTERS * 1.55 * l->scale;
+    double bottom = l->camera->height - MARGIN * l->scale, width = 0, height = 0;
+    for (int i = 0; i < count; i++) {
+        char text[48];
+        snprintf(text, sizeof text, "%.1f\u2009ms", 1e3 * times[i]);
+        const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
+        double own;
+        text_measure(l->context, &t, &own, &height);
+        width = fmax(width, own);
+    }
+    double right = l->camera->width - MARGIN * l->scale;
+    for (int i = 0; i < count; i++) {
+        char text[48];
+        double own, y = bottom - (count - i) * step;
+        snprintf(text, sizeof text, "%.1f\u2009ms", 1e3 * times[i]);
+        const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
+        text_measure(l->context, &t, &own, &height);
+        draw_text(l, right - own, y, text, FACT_LETTERS, false, ink_faint);
+        set_colour(l->cr, inks[i]);
+        cairo_rectangle(l->cr, right - width - 10 * l->scale - swatch,
+                        y + height / 2 - 2.5 * l->scale, swatch, 5 * l->scale);
+        cairo_fill(l->cr);
+    }
+}

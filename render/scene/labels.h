@@ -1,0 +1,25 @@
+// What is written and drawn on a scene besides the solids.
+#pragma once
+
+#include <pango/pangocairo.h>
+
+#include "render/scene/camera.h"
+
+typedef struct labels {
+    cairo_t *cr;
+    PangoContext *context;
+    const camera *camera;
+    double scale; // of letters and lines: 1 for a picture 720 pixels high
+} labels;
+
+// A flash at a place, of a radius [m], strength 0 to 1.
+void labels_flash(const labels *l, vector place, double radius, double strength);
+
+// "1.34 N" beside the end of an arrow that starts at `from`.
+void labels_force(const labels *l, vector from, vector end, double force, colour ink);
+
+// Title and a line of facts at the lower left corner; `facts` is markup, `title` plain.
+void labels_caption(const labels *l, const char *title, const char *facts);
+
+// A key of instants [s] with their colours at the lower right corner.
+void labels_instants(const labels *l, const double *times, const colour *inks, int count);

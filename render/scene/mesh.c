@@ -1,0 +1,270 @@
+#include "render/scene/mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { LATHE_SIDES = 56, TUBE_SIDES = 8, BOX_CELLS = 40 };
+
+vector vector_add(vector a, vector b)
+{
+    return (vector){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+vector vector_scaled(vector a, double factor)
+{
+    return (vector){factor * a.x, factor * a.y, factor * a.z};
+}
+
+vector vector_sum(vector a, double factor, vector b)
+{
+    return vector_add(a, vector_scaled(b, factor));
+}
+
+vector vector_cross(vector a, vector b)
+{
+    return (vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+double vector_dot(vector a, vector b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+vector vector_unit(vector a)
+{
+    double length = sqrt(vector_dot(a, a));
+    return length > 0 ? vector_scaled(a, 1 / length) : (vector){1, 0, 0};
+}
+
+void mesh_finish(mesh *m)
+{
+    free(m->vertices);
+    free(m->corners);
+    *m = (mesh){0};
+}
+
+void mesh_clear(mesh *m)
+{
+    m->vertex_count = m->corner_count = 0;
+}
+
+// Adds a vertex and returns its number.
+static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
+{
+    if (m->vertex_count == m->vertex_capacity && !m->out_of_memory) {
+        size_t capacity = m->vertex_capacity ? 2 * m->vertex_capacity : 4096;
+        mesh_vertex *vertices = realloc(m->vertices, capacity * sizeof *vertices);
+        m->out_of_memory = vertices == NULL;
+        if (vertices != NULL) {
+            m->vertices = vertices;
+            m->vertex_capacity = capacity;
+        }
+    }
+    if (m->out_of_memory) {
+        return 0;
+    }
+    m->vertices[m->vertex_count] = (mesh_vertex){place, normal, of};
+    return (unsigned)m->vertex_count++;
+}
+
+static void add_triangle(mesh *m, unsigned a, unsigned b, unsigned c)
+{
+    if (m->corner_count + 3 > m->corner_capacity && !m->out_of_memory) {
+        size_t capacity = m->corner_capacity ? 2 * m->corner_capacity : 12288;
+        unsigned *corners = realloc(m->corners, capacity * sizeof *corners);
+        m->out_of_memory = corners == NULL;
+        if (corners != NULL) {
+            m->corners = corners;
+            m->corner_capacity = capacity;
+        }
+    }
+    if (m->out_of_memory) {
+        return;
+    }
+    m->corners[m->corner_count++] = a;
+    m->corners[m->corner_count++] = b;
+    m->corners[m->corner_count++] = c;
+}
+
+// A quadrilateral of one normal.
+static void add_flat(mesh *m, const vector corners[4], vector normal, material of)
+{
+    unsigned at[4];
+    for (int i = 0; i < 4; i++) {
+        at[i] = add_vertex(m, corners[i], normal, of);
+    }
+    add_triangle(m, at[0], at[1], at[2]);
+    add_triangle(m, at[0], at[2], at[3]);
+}
+
+// Two unit vectors that make a right-handed frame with the axis.
+static void frame_of(vector axis, vector *across, vector *other)
+{
+    vector least = fabs(axis.z) < 0.9 ? (vector){0, 0, 1} : (vector){1, 0, 0};
+    *across = vector_unit(vector_cross(least, axis));
+    *other = vector_cross(axis, *across);
+}
+
+void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of)
+{
+    vector across, other;
+    frame_of(axis, &across, &other);
+    for (int k = 0; k + 1 < count; k++) {
+        const lathe_ring *low = &rings[k], *high = &rings[k + 1];
+        // the normal of a cone's flank leans against its taper
+        double rise = high->along - low->along, taper = low->radius - high->radius;
+        unsigned before_low = 0, before_high = 0;
+        for (int i = 0; i <= LATHE_SIDES; i++) {
+            double angle = 2 * M_PI * i / LATHE_SIDES;
+            vector out = vector_sum(vector_scaled(across, cos(angle)), sin(angle), other);
+            vector normal = vector_unit(vector_sum(vector_scaled(out, rise), taper, axis));
+            vector foot = vector_sum(base, low->along, axis);
+            vector head = vector_sum(base, high->along, axis);
+            unsigned at_low = add_vertex(m, vector_sum(foot, low->radius, out), normal, of);
+            unsigned at_high = add_vertex(m, vector_sum(head, high->radius, out), normal, of);
+            if (i > 0) {
+                add_triangle(m, before_low, at_low, at_high);
+                add_triangle(m, before_low, at_high, before_high);
+            }
+            before_low = at_low;
+            before_high = at_high;
+        }
+    }
+}
+
+static int cells_along(vector half, double cell)
+{
+    double cells = ceil(2 * sqrt(vector_dot(half, half)) / cell);
+    return cells < 1 ? 1 : cells > BOX_CELLS ? BOX_CELLS : (int)cells;
+}
+
+// The face of a box that `out` points at.
+static void add_face(mesh *m, vector centre, vector out, vector u, vector v, double cell,
+                     material of)
+{
+    int across = cells_along(u, cell), down = cells_along(v, cell);
+    vector middle = vector_add(centre, out), normal = vector_unit(out);
+    for (int i = 0; i < across; i++) {
+        for (int j = 0; j < down; j++) {
+            static const int di[] = {0, 1, 1, 0}, dj[] = {0, 0, 1, 1};
+            vector corners[4];
+            for (int k = 0; k < 4; k++) {
+                double a = 2.0 * (i + di[k]) / across - 1, b = 2.0 * (j + dj[k]) / down - 1;
+                corners[k] = vector_sum(vector_sum(middle, a, u), b, v);
+            }
+            add_flat(m, corners, normal, of);
+        }
+    }
+}
+
+void mesh_box(mesh *m, vector centre, vector u, vector v, vector w, double cell, material of)
+{
+    const vector half[] = {u, v, w};
+    for (int face = 0; face < 3; face++) {
+        vector out = half[face], a = half[(face + 1) % 3], b = half[(face + 2) % 3];
+        add_face(m, centre, out, a, b, cell, of);
+        add_face(m, centre, vector_scaled(out, -1), b, a, cell, of);
+    }
+}
+
+// A cross-section: corners and, of the edge from each to the next, the normal.
+typedef struct section {
+    double across[8], up[8], normal_across[8], normal_up[8];
+} section;
+
+// A rectangle whose edges are broken, so that they catch the light.
+static section broken_rectangle(double thickness, double height)
+{
+    double a = thickness / 2, b = height / 2, c = thickness / 4, d = M_SQRT1_2;
+    return (section){.across = {a, a, a - c, -(a - c), -a, -a, -(a - c), a - c},
+                     .up = {-(b - c), b - c, b, b, b - c, -(b - c), -b, -b},
+                     .normal_across = {1, d, 0, -d, -1, -d, 0, d},
+                     .normal_up = {0, d, 1, d, 0, -d, -1, -d}};
+}
+
+// Direction of a polyline at a place, by its neighbours.
+static vector direction_at(const vector *places, int count, int i)
+{
+    const vector *before = &places[i > 0 ? i - 1 : i], *after = &places[i + 1 < count ? i + 1 : i];
+    return vector_unit(vector_sum(*after, -1, *before));
+}
+
+static vector section_point(const section *s, int corner, vector place, vector across)
+{
+    vector p = vector_sum(place, s->across[corner], across);
+    p.z += s->up[corner];
+    return p;
+}
+
+// Closes a ribbon's end: the eight-sided section as three quadrilaterals. `forward`: the one that
+// looks along the ribbon.
+static void cap_ribbon(mesh *m, const section *s, vector place, vector along, bool forward,
+                       material of)
+{
+    static const int quads[3][4] = {{0, 1, 4, 5}, {1, 2, 3, 4}, {5, 6, 7, 0}};
+    vector across = {-along.y, along.x, 0};
+    for (int q = 0; q < 3; q++) {
+        vector corners[4];
+        for (int i = 0; i < 4; i++) {
+            corners[i] = section_point(s, quads[q][forward ? i : 3 - i], place, across);
+        }
+        add_flat(m, corners, vector_scaled(along, forward ? 1 : -1), of);
+    }
+}
+
+void mesh_ribbon(mesh *m, const vector *places, int count, double height, double thickness,
+                 material of)
+{
+    const section s = broken_rectangle(thickness, height);
+    for (int edge = 0; edge < 8; edge++) {
+        unsigned before_low = 0, before_high = 0;
+        for (int i = 0; i < count; i++) {
+            vector along = direction_at(places, count, i), across = {-along.y, along.x, 0};
+            vector normal = vector_scaled(across, s.normal_across[edge]);
+            normal.z = s.normal_up[edge];
+            unsigned low = add_vertex(m, section_point(&s, edge, places[i], across), normal, of);
+            unsigned high =
+                add_vertex(m, section_point(&s, (edge + 1) % 8, places[i], across), normal, of);
+            if (i > 0) {
+                add_triangle(m, before_low, high, low);
+                add_triangle(m, before_low, before_high, high);
+            }
+            before_low = low;
+            before_high = high;
+        }
+    }
+    if (count > 1) {
+        cap_ribbon(m, &s, places[0], direction_at(places, count, 0), false, of);
+        cap_ribbon(m, &s, places[count - 1], direction_at(places, count, count - 1), true, of);
+    }
+}
+
+void mesh_tube(mesh *m, const vector *places, const material *of, int count, double radius)
+{
+    unsigned before = 0;
+    for (int i = 0; i < count; i++) {
+        vector across, other;
+        frame_of(direction_at(places, count, i), &across, &other);
+        unsigned first = 0;
+        for (int k = 0; k <= TUBE_SIDES; k++) {
+            double angle = 2 * M_PI * k / TUBE_SIDES;
+            vector out = vector_sum(vector_scaled(across, cos(angle)), sin(angle), other);
+            unsigned at = add_vertex(m, vector_sum(places[i], radius, out), out, of[i]);
+            first = k == 0 ? at : first;
+        }
+        for (unsigned k = 0; k < TUBE_SIDES && i > 0; k++) {
+            add_triangle(m, before + k, first + k + 1, first + k);
+            add_triangle(m, before + k, before + k + 1, first + k + 1);
+        }
+        before = first;
+    }
+}
+
+void mesh_arrow(mesh *m, vector start, vector direction, double length, double radius, material of)
+{
+    double head = fmin(7 * radius, 0.6 * length), broad = 2.6 * radius * head / (7 * radius);
+    double shaft = fmin(radius, 0.5 * broad);
+    const lathe_ring rings[] = {
+        {0, 0}, {0, shaft}, {length - head, shaft}, {length - head, broad}, {length, 0}};
+    mesh_lathe(m, start, direction, rings, 5, of);
+}

@@ -1,0 +1,65 @@
+// Solids of a scene as triangles: what an arm, a wall and an arrow are made of.
+//
+// Lengths are in metres. Triangles are opaque; a solid is closed, so that it needs no back faces.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "render/page/palette.h"
+#include "src/base/status.h"
+
+typedef struct vector {
+    double x, y, z;
+} vector;
+
+vector vector_add(vector a, vector b);
+vector vector_scaled(vector a, double factor);
+vector vector_sum(vector a, double factor, vector b); // a + factor b
+vector vector_cross(vector a, vector b);
+double vector_dot(vector a, vector b);
+vector vector_unit(vector a);
+
+typedef struct material {
+    colour colour; // as on a screen
+    double shine;  // of highlights, 0 to 1
+} material;
+
+typedef struct mesh_vertex {
+    vector place, normal; // [m], [-]
+    material material;
+} mesh_vertex;
+
+typedef struct mesh {
+    mesh_vertex *vertices;
+    unsigned *corners; // three of each triangle
+    size_t vertex_count, vertex_capacity;
+    size_t corner_count, corner_capacity;
+    bool out_of_memory; // once true nothing is added any more
+} mesh;
+
+void mesh_finish(mesh *m);
+// Empties the mesh and keeps its memory for the next picture.
+void mesh_clear(mesh *m);
+
+// A ring of a turned solid.
+typedef struct lathe_ring {
+    double along, radius; // [m]
+} lathe_ring;
+
+// A solid turned about the axis (a unit vector) through base, from one ring to the next.
+void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of);
+
+// A box with half edges u, v, w, its faces cut into cells of about the given size, so that a
+// painter can sort them.
+void mesh_box(mesh *m, vector centre, vector u, vector v, vector w, double cell, material of);
+
+// A strip on edge along the places: thickness across it in the x-y plane, height along z.
+void mesh_ribbon(mesh *m, const vector *places, int count, double height, double thickness,
+                 material of);
+
+// A tube along the places, of a material for each.
+void mesh_tube(mesh *m, const vector *places, const material *of, int count, double radius);
+
+// An arrow from start along a unit vector.
+void mesh_arrow(mesh *m, vector start, vector direction, double length, double radius, material of);

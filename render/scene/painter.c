@@ -1,0 +1,335 @@
+#include "render/scene/painter.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/scene/gl_offscreen.h"
+
+enum { SAMPLES = 2 }; // along each edge of a pixel
+
+// A rectangle of pixels.
+typedef struct region {
+    int x, y, width, height;
+} region;
+
+struct scene_painter {
+    gl_offscreen *gl; // NULL: the depth buffer below is used
+    int width, height;
+    char name[300];
+    uint32_t *samples; // 0xAARRGGBB, a region's rows without gaps
+    gl_vertex *vertices;
+    size_t vertex_capacity;
+    float *depths; // of the samples; NULL where OpenGL paints
+};
+
+bool scene_renderer_find(const char *name, scene_renderer *which)
+{
+    static const char *const names[] = {"auto", "osmesa", "egl", "cairo"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (strcmp(names[i], name) == 0) {
+            *which = (scene_renderer)i;
+            return true;
+        }
+    }
+    return false;
+}
+
+static status complain_memory(const scene_painter *p, fault *f)
+{
+    return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", p->width,
+                     p->height);
+}
+
+// Opens the renderer asked for, or the first that is there.
+static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
+{
+    int width = SAMPLES * p->width, height = SAMPLES * p->height;
+    status code = STATUS_OK;
+    if (which == RENDER_OSMESA || which == RENDER_AUTO) {
+        code = gl_offscreen_create(&p->gl, GL_OSMESA, width, height, f);
+    }
+    if (which == RENDER_EGL || (which == RENDER_AUTO && p->gl == NULL)) {
+        code = gl_offscreen_create(&p->gl, GL_EGL, width, height, f);
+    }
+    if (p->gl != NULL) {
+        snprintf(p->name, sizeof p->name, "%s", gl_offscreen_renderer(p->gl));
+        return STATUS_OK;
+    }
+    if (which != RENDER_AUTO && which != RENDER_CAIRO) {
+        return code;
+    }
+    snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer", cairo_version_string());
+    p->depths = malloc((size_t)width * (size_t)height * sizeof *p->depths);
+    return p->depths ? STATUS_OK : complain_memory(p, f);
+}
+
+status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
+                            fault *f)
+{
+    scene_painter *p = calloc(1, sizeof *p);
+    *out = NULL;
+    if (p != NULL) {
+        p->width = width;
+        p->height = height;
+        p->samples = malloc((size_t)width * (size_t)height * SAMPLES * SAMPLES * sizeof(uint32_t));
+    }
+    if (p == NULL || p->samples == NULL) {
+        scene_painter_destroy(p);
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width,
+                         height);
+    }
+    status code = open_renderer(p, which, f);
+    if (code != STATUS_OK) {
+        scene_painter_destroy(p);
+        return code;
+    }
+    *out = p;
+    return STATUS_OK;
+}
+
+void scene_painter_destroy(scene_painter *p)
+{
+    if (p != NULL) {
+        gl_offscreen_destroy(p->gl);
+        free(p->samples);
+        free(p->vertices);
+        free(p->depths);
+        free(p);
+    }
+}
+
+const char *scene_painter_name(const scene_painter *p)
+{
+    return p->name;
+}
+
+// --- light ----------------------------------------------------------------------------------
+
+#define AMBIENT_SKY    0.50 // light from above, everywhere
+#define AMBIENT_GROUND 0.26 // light that the floor throws back
+#define LAMP           0.62
+#define FILL           0.14 // light from the side opposite to the lamp
+#define HIGHLIGHT      0.55
+#define HIGHLIGHT_EDGE 36.0 // how narrow highlights are
+
+static double to_linear(double shade)
+{
+    return pow(shade, 2.2);
+}
+
+static float to_screen(double light)
+{
+    return (float)pow(fmin(1, fmax(0, light)), 1 / 2.2);
+}
+
+// The colour in which the camera sees a vertex: light from the sky, a lamp and a weaker one across,
+// and the lamp's highlight (Blinn 1977).
+static void light_vertex(const mesh_vertex *v, const camera *c, vector light, float rgba[4])
+{
+    vector view = vector_unit(vector_sum(c->eye, -1, v->place));
+    double lamp = fmax(0, vector_dot(v->normal, light));
+    vector across = vector_unit((vector){-light.x, -light.y, 0.4});
+    double fill = fmax(0, vector_dot(v->normal, across));
+    double sky = 0.5 + 0.5 * v->normal.z;
+    double sum = AMBIENT_GROUND + (AMBIENT_SKY - AMBIENT_GROUND) * sky + LAMP * lamp + FILL * fill;
+    double glance = fmax(0, vector_dot(v->normal, vector_unit(vector_add(light, view))));
+    double shine = HIGHLIGHT * v->material.shine * pow(glance, HIGHLIGHT_EDGE);
+    rgba[0] = to_screen(to_linear(v->material.colour.red) * sum + shine);
+    rgba[1] = to_screen(to_linear(v->material.colour.green) * sum + shine);
+    rgba[2] = to_screen(to_linear(v->material.colour.blue) * sum + shine);
+    rgba[3] = 1;
+}
+
+// --- triangles ------------------------------------------------------------------------------
+
+static status make_room(scene_painter *p, const mesh *m, fault *f)
+{
+    if (m->vertex_count > p->vertex_capacity) {
+        free(p->vertices);
+        p->vertices = malloc(m->vertex_count * sizeof *p->vertices);
+        p->vertex_capacity = p->vertices ? m->vertex_count : 0;
+    }
+    if (m->out_of_memory || p->vertex_capacity < m->vertex_count) {
+        return complain_memory(p, f);
+    }
+    return STATUS_OK;
+}
+
+// Lights the vertices and finds their places: clip coordinates whose w is the depth. Returns the
+// pixels that they cover.
+static region project(scene_painter *p, const mesh *m, const camera *c, vector light)
+{
+    double left = p->width, right = 0, top = p->height, bottom = 0;
+    double span = c->farthest - c->nearest;
+    for (size_t i = 0; i < m->vertex_count; i++) {
+        vector at = camera_project(c, m->vertices[i].place);
+        gl_vertex *v = &p->vertices[i];
+        // y stays down: the rows that are read back are then the picture's, from its top
+        v->place[0] = (float)((2 * at.x / c->width - 1) * at.z);
+        v->place[1] = (float)((2 * at.y / c->height - 1) * at.z);
+        v->place[2] =
+            (float)(((c->farthest + c->nearest) * at.z - 2 * c->farthest * c->nearest) / span);
+        v->place[3] = (float)at.z;
+        light_vertex(&m->vertices[i], c, light, v->colour);
+        left = fmin(left, at.x);
+        right = fmax(right, at.x);
+        top = fmin(top, at.y);
+        bottom = fmax(bottom, at.y);
+    }
+    int x = (int)fmax(0, floor(left)), y = (int)fmax(0, floor(top));
+    int x_end = (int)fmin(p->width, ceil(right)), y_end = (int)fmin(p->height, ceil(bottom));
+    return (region){x, y, x_end - x, y_end - y};
+}
+
+// A quantity that is linear over the picture: value at the first corner and growth per sample.
+typedef struct ramp {
+    float start, right, down;
+} ramp;
+
+// A triangle in samples of a region.
+typedef struct flat_triangle {
+    float x[3], y[3], twice_area;
+} flat_triangle;
+
+static ramp ramp_of(const flat_triangle *t, float a, float b, float c)
+{
+    float right = ((b - a) * (t->y[2] - t->y[0]) - (c - a) * (t->y[1] - t->y[0])) / t->twice_area;
+    float down = ((c - a) * (t->x[1] - t->x[0]) - (b - a) * (t->x[2] - t->x[0])) / t->twice_area;
+    return (ramp){a - right * t->x[0] - down * t->y[0], right, down};
+}
+
+static float ramp_at(ramp r, float x, float y)
+{
+    return r.start + r.right * x + r.down * y;
+}
+
+static uint32_t channel(float shade)
+{
+    return shade <= 0 ? 0 : shade >= 1 ? 255 : (uint32_t)(shade * 255 + 0.5F);
+}
+
+static int bounded(float value, int most)
+{
+    return value <= 0 ? 0 : value >= (float)most ? most : (int)value;
+}
+
+// Fills the samples whose centres lie in the triangle and nearer than what is there.
+static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_vertex *const v[3],
+                          int width, int height)
+{
+    ramp share[3], depth, tint[3];
+    for (int k = 0; k < 3; k++) {
+        share[k] = ramp_of(t, k == 0, k == 1, k == 2);
+        tint[k] = ramp_of(t, v[0]->colour[k], v[1]->colour[k], v[2]->colour[k]);
+    }
+    depth = ramp_of(t, v[0]->place[2] / v[0]->place[3], v[1]->place[2] / v[1]->place[3],
+                    v[2]->place[2] / v[2]->place[3]);
+    int top = bounded(fminf(t->y[0], fminf(t->y[1], t->y[2])), height);
+    int bottom = bounded(fmaxf(t->y[0], fmaxf(t->y[1], t->y[2])) + 1, height);
+    int left = bounded(fminf(t->x[0], fminf(t->x[1], t->x[2])), width);
+    int right = bounded(fmaxf(t->x[0], fmaxf(t->x[1], t->x[2])) + 1, width);
+    for (int row = top; row < bottom; row++) {
+        ptrdiff_t at = (ptrdiff_t)row * width + left;
+        float y = (float)row + 0.5F;
+        for (int column = left; column < right; column++, at++) {
+            float x = (float)column + 0.5F, z = ramp_at(depth, x, y);
+            if (ramp_at(share[0], x, y) >= 0 && ramp_at(share[1], x, y) >= 0 &&
+                ramp_at(share[2], x, y) >= 0 && z < p->depths[at]) {
+                p->depths[at] = z;
+                p->samples[at] = 0xFF000000U | channel(ramp_at(tint[0], x, y)) << 16 |
+                                 channel(ramp_at(tint[1], x, y)) << 8 |
+                                 channel(ramp_at(tint[2], x, y));
+            }
+        }
+    }
+}
+
+// Paints without OpenGL: every triangle into a depth buffer of our own.
+static void paint_by_hand(scene_painter *p, const mesh *m, region r)
+{
+    int width = SAMPLES * r.width, height = SAMPLES * r.height;
+    size_t count = (size_t)width * (size_t)height;
+    memset(p->samples, 0, count * sizeof *p->samples);
+    for (size_t i = 0; i < count; i++) {
+        p->depths[i] = 2;
+    }
+    for (size_t i = 0; i + 2 < m->corner_count; i += 3) {
+        const gl_vertex *v[3];
+        flat_triangle t;
+        for (size_t k = 0; k < 3; k++) {
+            v[k] = &p->vertices[m->corners[i + k]];
+            const float *at = v[k]->place;
+            t.x[k] = (at[0] / at[3] + 1) * (float)(p->width * SAMPLES) / 2 - (float)(SAMPLES * r.x);
+            t.y[k] =
+                (at[1] / at[3] + 1) * (float)(p->height * SAMPLES) / 2 - (float)(SAMPLES * r.y);
+        }
+        t.twice_area =
+            (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
+        if (fabsf(t.twice_area) > 1e-6F) {
+            fill_triangle(p, &t, v, width, height);
+        }
+    }
+}
+
+// Two channels at once: the mean of four samples over what was there before.
+static uint32_t mean_over(const uint32_t *upper, const uint32_t *lower, uint32_t before)
+{
+    const uint32_t pair = 0x00FF00FF, half = 0x00020002;
+    uint32_t even =
+        (((upper[0] & pair) + (upper[1] & pair) + (lower[0] & pair) + (lower[1] & pair) + half) >>
+         2) &
+        pair;
+    uint32_t odd = (((upper[0] >> 8 & pair) + (upper[1] >> 8 & pair) + (lower[0] >> 8 & pair) +
+                     (lower[1] >> 8 & pair) + half) >>
+                    2) &
+                   pair;
+    uint32_t left = 255 - (odd >> 16); // what the samples let through
+    if (left == 255) {
+        return before;
+    }
+    uint32_t below_even = ((before & pair) * left + 0x00800080) >> 8 & pair;
+    uint32_t below_odd = ((before >> 8 & 0xFF) * left + 0x80) >> 8;
+    return ((even + below_even) & pair) | ((odd & 0xFF) + below_odd) << 8;
+}
+
+static void lay_over(const scene_painter *p, region r, cairo_surface_t *onto)
+{
+    cairo_surface_flush(onto);
+    unsigned char *data = cairo_image_surface_get_data(onto);
+    ptrdiff_t stride = cairo_image_surface_get_stride(onto), across = (ptrdiff_t)SAMPLES * r.width;
+    for (int row = 0; row < r.height; row++) {
+        uint32_t *to = (uint32_t *)(void *)(data + (r.y + row) * stride) + r.x;
+        const uint32_t *upper = p->samples + SAMPLES * row * across, *lower = upper + across;
+        for (int i = 0; i < r.width; i++) {
+            to[i] = mean_over(upper + SAMPLES * i, lower + SAMPLES * i, to[i]);
+        }
+    }
+    cairo_surface_mark_dirty(onto);
+}
+
+status scene_painter_paint(scene_painter *p, const mesh *m, const camera *c, vector light,
+                           cairo_surface_t *onto, fault *f)
+{
+    status code = make_room(p, m, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    region r = project(p, m, c, light);
+    if (r.width <= 0 || r.height <= 0) {
+        return STATUS_OK;
+    }
+    if (p->gl != NULL) {
+        code = gl_offscreen_draw(p->gl, p->vertices, m->vertex_count, m->corners, m->corner_count,
+                                 SAMPLES * r.x, SAMPLES * r.y, SAMPLES * r.width,
+                                 SAMPLES * r.height, p->samples, f);
+    } else {
+        paint_by_hand(p, m, r);
+    }
+    if (code == STATUS_OK) {
+        lay_over(p, r, onto);
+    }
+    return code;
+}

@@ -1,0 +1,60 @@
+// Pictures of a recorded run: the arm in space, once or at many instants in one picture.
+//
+// The arm swings in the x-y plane; z points up, towards the reader of a plan. The beam is drawn as
+// the curve that starts at the hub along the first link, ends at the tip along the last one and
+// touches every link between them at its middle (a quadratic B-spline over the joints): no bend of
+// it is larger than the links'.
+#pragma once
+
+#include "render/scene/camera.h"
+#include "render/scene/painter.h"
+#include "src/run/run.h"
+
+enum { SCENE_INSTANTS = 32 }; // most instants in one picture
+
+typedef struct scene_options {
+    camera_kind camera;
+    scene_renderer renderer;
+    int width, height; // [pixels]; 0: 1280 x 720
+    bool plain;        // no text
+} scene_options;
+
+typedef struct scene scene;
+
+// Prepares pictures of a run, which must outlive them and have its trace. STATUS_BAD_ARGUMENT for a
+// size out of range or a run without rows, STATUS_CANNOT_READ if the font is missing, else what
+// scene_painter_create says.
+status scene_create(scene **out, const scenario *s, const run_result *result,
+                    const scene_options *options, fault *f);
+void scene_destroy(scene *sc);
+
+// What paints, for metadata.
+const char *scene_renderer_name(const scene *sc);
+
+// Paints the arm at the instants [s], ascending, the last in full colour and earlier ones paler,
+// over the whole image surface (RGB24, of the scene's size).
+status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto, fault *f);
+
+// Instants [s] for a picture of the whole approach: `count` of them, evenly spaced along the tip's
+// path from the start to the largest force of the first pulse (or to the end without a contact).
+void scene_instants(const run_result *result, double *times, int count);
+
+// The joints of the arm at time t [s]: links + 1 places in the plane, hub first, interpolated
+// between rows. Returns the row interpolated likewise.
+sample scene_joints(const trace *t, const parameters *p, double time, vector *joints);
+
+// The beam's curve through the joints (see above), room for scene_curve_length(links) places.
+// Returns how many were written.
+int scene_curve(const vector *joints, int links, vector *curve);
+int scene_curve_length(int links);
+
+// Writes a picture of the instants as PNG, whole or not at all, with scenario, parameters, version
+// and renderer in its metadata. STATUS_BAD_ARGUMENT for an instant outside the run.
+status scene_write(const scenario *s, const run_result *result, const scene_options *options,
+                   const double *times, int count, const char *path, fault *f);
+
+// Tells before long work whether scene_write could write to path.
+status scene_check_path(const char *path, fault *f);
+
+// Every parameter of a scenario in one line, for metadata; free it.
+char *scene_parameters_text(const scenario *s);

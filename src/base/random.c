@@ -1,0 +1,63 @@
+#include "src/base/random.h"
+
+uint64_t splitmix64_next(uint64_t *state)
+{
+    // a counter with an odd step near 2^64 divided by the golden ratio, then a mixing of its bits
+    *state += UINT64_C(0x9e3779b97f4a7c15);
+    uint64_t z = *state;
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return z ^ (z >> 31);
+}
+
+void random_seed(random_generator *g, uint64_t seed)
+{
+    for (int i = 0; i < 4; i++) {
+        g->state[i] = splitmix64_next(&seed);
+    }
+}
+
+static uint64_t rotated_left(uint64_t bits, int count)
+{
+    return bits << count | bits >> (64 - count);
+}
+
+uint64_t random_bits(random_generator *g)
+{
+    uint64_t *s = g->state;
+    uint64_t result = rotated_left(s[1] * 5, 7) * 9;
+    // the linear step: x <- x M over the field of two elements
+    uint64_t shifted = s[1] << 17;
+    s[2] ^= s[0];
+    s[3] ^= s[1];
+    s[1] ^= s[2];
+    s[0] ^= s[3];
+    s[2] ^= shifted;
+    s[3] = rotated_left(s[3], 45);
+    return result;
+}
+
+double random_uniform(random_generator *g)
+{
+    return (double)(random_bits(g) >> 11) * 0x1p-53;
+}
+
+uint64_t random_below(random_generator *g, uint64_t bound)
+{
+    // the first 2^64 mod bound numbers would make small remainders more likely
+    uint64_t uneven = (UINT64_MAX - bound + 1) % bound, bits;
+    do {
+        bits = random_bits(g);
+    } while (bits < uneven);
+    return bits % bound;
+}
+
+void random_permutation(random_generator *g, size_t *order, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t j = (size_t)random_below(g, i + 1);
+        order[i] = i;
+        order[i] = order[j];
+        order[j] = i;
+    }
+}

@@ -1,0 +1,40 @@
+// Files that appear whole or not at all.
+//
+// What is written goes to a temporary file in the target's folder; whole_file_commit brings it to
+// the disk and renames it to the target. "-" is the standard output. A target that exists and is
+// no regular file (a device, a pipe) is written in place. A symbolic link is followed.
+#pragma once
+
+#include <stdio.h>
+
+#include "src/base/status.h"
+
+typedef struct whole_file {
+    FILE *stream;    // write here
+    char *path;      // of the target, links resolved; "-" for the standard output
+    char *temporary; // renamed to path in the end; NULL if the target is written in place
+} whole_file;
+
+// Tells early, before long work, whether path could be written. Creates nothing.
+// STATUS_CANNOT_WRITE, with path and reason in f, if it could not.
+status whole_file_check(const char *path, fault *f);
+
+// Opens path for writing through w->stream. A new file gets its mode from the umask, an existing
+// one keeps its own. On failure nothing is left behind and w needs no further call.
+status whole_file_open(whole_file *w, const char *path, fault *f);
+
+// Checks everything written so far, brings it to the disk and puts the file in its place. If
+// anything failed the target is as it was before and f says why. A reader of the standard output
+// that went away (a closed pipe) had what it wanted and is no failure. Closes w in either case.
+status whole_file_commit(whole_file *w, fault *f);
+
+// Gives up: the target stays as it was. Closes w.
+void whole_file_abandon(whole_file *w);
+
+// Removes the temporaries of all files that are open just now. Safe in a signal handler that is about
+// to end the program.
+void whole_file_remove_unfinished(void);
+
+// Flushes a stream and tells whether all that was ever written to it arrived: 0, or an errno (EPIPE
+// if the reader of a pipe went away).
+int stream_failure(FILE *stream);

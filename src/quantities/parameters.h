@@ -1,0 +1,232 @@
+// Every parameter of a run, and the one table that describes them.
+//
+// The table feeds scenario files, --set, sweeps, `show`, validation messages, the terminal's
+// sliders and the manual. A parameter is added here and nowhere else.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "src/base/status.h"
+
+typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
+typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING } hub_joint_kind;
+typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
+typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
+typedef enum listing_reevaluation { REEVALUATE_RHS, REEVALUATE_LISTING } listing_reevaluation;
+
+typedef struct arm_parameters {
+    int model;            // arm_model_kind
+    int links;            // number of links of the beam, N
+    int hub_joint;        // hub_joint_kind
+    double length;        // beam length, N links together [m]
+    double mass;          // beam mass, N links together [kg]
+    double hub_inertia;   // I1 [kg m2]
+    double link_inertia;  // I2 = I3 about the centre of mass, N = 2 only [kg m2]
+    double k1;            // hub joint spring [N m/rad]
+    double k2;            // joint spring of the two-link beam [N m/rad]; N links: k2 N/2 each
+    double damping_ratio; // structural damping ratio of the first clamped-free mode [-]
+} arm_parameters;
+
+typedef struct motor_parameters {
+    double voltage;          // command before the amplifier [V]
+    double voltage_limit;    // largest command the D/A gives [V]
+    double amplifier_gain;   // [-]
+    double torque_constant;  // kT [N m/A]
+    double back_emf;         // kB [V s/rad]
+    double resistance;       // Ra [ohm]
+    double viscous_friction; // kfr [N m s/rad]
+    double stiction;         // kst, Coulomb friction torque [N m]
+} motor_parameters;
+
+typedef struct wall_parameters {
+    int kind;           // wall_kind
+    double angle;       // direction of the contact point (or the flat wall) from the hub [rad]
+    double restitution; // coefficient of restitution e [-]
+} wall_parameters;
+
+typedef struct method_parameters {
+    int name;               // method_kind
+    double step;            // h [s]
+    double beta;            // Newmark's beta [-]
+    double gamma;           // Newmark's gamma [-]
+    double spectral_radius; // generalised-alpha's rho at infinite frequency [-]
+    double rest_speed;      // approach speed below which an impact is plastic (rest rule) [m/s]
+} method_parameters;
+
+typedef struct printed_parameters {
+    bool spring_counted_twice;      // (2.16) carries k2 (errata B1)
+    bool force_at_link_end;         // contact force acts at l, not at the contact point (B5)
+    bool sign_dead_band;            // sign() uses -1e-2 where it means -1e-5 (C1)
+    bool energy_cross_term;         // energy predictor uses E2 w2 w3 for 2 l e w2 w3 (C2)
+    int reevaluation;               // listing_reevaluation: where C3's term stands
+    bool force_after_release;       // re-evaluates the force after release (C4)
+    bool feed_newmark_acceleration; // next step starts from Newmark's own acceleration (C5)
+    int newton_iterations;          // Newton solves per step
+} printed_parameters;
+
+typedef struct initial_parameters {
+    double angle;    // all bodies [rad]
+    double velocity; // all bodies [rad/s]
+} initial_parameters;
+
+typedef struct run_parameters {
+    double duration; // [s]
+} run_parameters;
+
+enum { PARAMETER_TEXT_SIZE = 128 }; // room for a parameter that is a text, its end included
+
+// In the order of the choices of control.law.
+typedef enum control_law {
+    LAW_NONE, // no rig: the bare arm under motor.voltage
+    LAW_OPEN_LOOP,
+    LAW_HYBRID,
+    LAW_FORCE_PD,
+    LAW_FORCE_INTEGRAL,
+    LAW_REVERSE_TORQUE,
+    LAW_SPEED_LIMIT,
+    LAW_BANG_BANG,
+    LAW_DISCONTINUOUS,
+    LAW_RECOVERING,
+    LAW_OPTIMAL,
+    LAW_PREDICTIVE,
+    LAW_INVERSE_DYNAMICS,
+    LAW_PLUGIN
+} control_law;
+
+typedef struct control_parameters {
+    int law;                           // control_law
+    char plugin[PARAMETER_TEXT_SIZE];  // file of a shared object
+    char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
+    char lock[PARAMETER_TEXT_SIZE];     // mode that the law is held in, "none" if it is free
+    double rate;                       // samples a second [Hz]
+    double delay;                      // from sampling to the command's effect [s]
+    double delay_periods;              // the same in sampling periods, on top of it
+    double jitter;                     // of the sampling instants, whole width [s]
+    int seed;                          // of every random number of the rig
+    double force;                      // commanded force [N]
+    double approach_voltage;           // [V]
+    double kp, kv;                     // gains of (5.24), (5.25), in N m/rad or V/rad, and s
+    int gains;                         // 0 torque, 1 volts, 2 printed (errata B7)
+    int coefficients;                  // 0 corrected, 1 printed (errata B2)
+    double transition_time;            // t_f [s]
+    double contact_threshold;          // force reading that means contact [N]
+    double k2_factor;                  // k2 that the controller believes in, over the arm's
+    char k2_table[PARAMETER_TEXT_SIZE]; // "FORCE:K2 ...", takes the place of the arm's k2 there
+    double wall_error;                 // wall angle that it believes in, minus the wall's [rad]
+    double force_gain;                 // of force errors [V/N]
+    double integral_gain;              // of their integral [V/(N s)]
+    double speed_limit;                // hub velocity of a limited approach [rad/s]
+    double reverse_time;               // how long reverse-torque brakes [s]
+    double force_limit;                // that a predictive approach keeps to [N]
+    double switch_share;               // where bang-bang switches, share of the way to the wall
+    double travel_time;                // of the tip to the wall under inverse-dynamics [s]
+    double arrival_speed;              // of the tip at the wall under inverse-dynamics [m/s]
+} control_parameters;
+
+// In the order of the choices of sensor.force.
+typedef enum force_sensor { FORCE_BY_FSR, FORCE_BY_PIEZO } force_sensor;
+
+typedef struct sensor_parameters {
+    bool ideal;                     // all imperfections of sensors and converters are off
+    int force;                      // force_sensor: whose reading a controller gets as the force
+    int encoder_counts;             // per revolution, 0: continuous
+    double tachometer_gain;         // [V s/rad]
+    double tachometer_ripple;       // amplitude as a share of the reading
+    int tachometer_ripple_count;    // ripples a revolution
+    double tachometer_noise;        // standard deviation [V]
+    double fsr_rise_time;           // 10 % to 90 % [s]
+    double fsr_resistance;          // at 1 N [ohm]
+    double fsr_exponent;            // of the power law
+    double fsr_divider;             // measuring resistor [ohm]
+    double fsr_supply;              // across the divider [V]
+    double fsr_gain;                // of the stage behind it
+    double fsr_saturation;          // force beyond which the resistance falls no further [N]
+    double fsr_noise;               // standard deviation [V]
+    bool piezo;                     // piezoelectric force sensor fitted
+    double piezo_gain;              // [V/N]
+    double piezo_rise_time;         // 10 % to 90 % [s]
+    double piezo_leak_time;         // time constant with which its charge leaks, 0: it stays [s]
+    double piezo_range;             // largest force it shows either way, 0: any [N]
+    double piezo_noise;             // standard deviation [V]
+    bool film;                      // piezo film along the beam fitted
+    double film_gain;               // [V/rad]
+    double film_leak_time;          // time constant with which its charge leaks, 0: it stays [s]
+    double film_noise;              // standard deviation [V]
+    bool accelerometer;             // on the hub, fitted
+    double accelerometer_gain;      // [V s2/rad]
+    double accelerometer_rise_time; // 10 % to 90 % [s]
+    double accelerometer_range;     // largest acceleration it shows either way, 0: any [rad/s2]
+    double accelerometer_noise;     // standard deviation [V]
+    int adc_bits, dac_bits;         // 0: continuous
+    double adc_range;               // either way [V]
+} sensor_parameters;
+
+typedef struct parameters {
+    arm_parameters arm;
+    motor_parameters motor;
+    wall_parameters wall;
+    method_parameters method;
+    printed_parameters printed;
+    initial_parameters initial;
+    run_parameters run;
+    control_parameters control;
+    sensor_parameters sensor;
+    unsigned char set[128]; // set[i] is 1 if parameter i was given, 0 if it is a default
+} parameters;
+
+typedef enum parameter_type {
+    PARAMETER_REAL,
+    PARAMETER_INTEGER,
+    PARAMETER_BOOLEAN,
+    PARAMETER_CHOICE,
+    PARAMETER_TEXT // of at most PARAMETER_TEXT_SIZE - 1 bytes; has no number, no range
+} parameter_type;
+
+typedef struct parameter_info {
+    const char *path; // "arm.k2"
+    const char *unit; // "N m/rad", "" for a pure number
+    parameter_type type;
+    size_t offset; // in struct parameters
+    double default_corrected;
+    double default_printed;
+    double minimum, maximum; // both included
+    const char *choices;     // "rigid|spring" in the order of the enumeration; of a text what it is
+                             // where nothing gives it; else NULL
+    bool timed;              // may be changed during a run
+    const char *description; // one sentence without a full stop
+} parameter_info;
+
+// The table and its length.
+extern const parameter_info parameter_table[];
+extern const int parameter_count;
+
+// Index of a path in the table, or -1.
+int parameter_find(const char *path);
+
+// The path nearest to a misspelt one (for "did you mean"), or NULL if none is near.
+const char *parameter_suggest(const char *path);
+
+// All defaults of the given model (arm_model_kind), nothing marked as set.
+void parameters_defaults(parameters *p, arm_model_kind model);
+
+// Parses text as a value of parameter `index` and stores it, marked as set. A trailing unit equal
+// to the parameter's own is accepted ("0.1 rad"). On a wrong type, a value that is not finite or
+// one out of range nothing is stored and f says what was wrong and what was expected.
+status parameter_set_text(parameters *p, int index, const char *text, fault *f);
+
+// Stores a number (an enumeration's index for a choice, 0 or 1 for a boolean), checked as above. A
+// text takes no number.
+status parameter_set_number(parameters *p, int index, double value, fault *f);
+
+// The value as a number; NaN where an optional parameter has none, 0 for a text.
+double parameter_get(const parameters *p, int index);
+
+// The value as text, as a scenario file would give it, without its unit.
+void parameter_format(const parameters *p, int index, char *text, size_t size);
+
+// Fills what depends on other parameters: defaults that follow arm.model for everything not set,
+// and arm.link_inertia of a uniform link. Checks combinations (arm.link_inertia with N != 2,
+// the printed model with N != 2 ...). Call after the last parameter was set.
+status parameters_resolve(parameters *p, fault *f);

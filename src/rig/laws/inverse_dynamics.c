@@ -1,0 +1,245 @@
+// Computed torque through the inverse of the linear two-link arm, frequency by frequency, after
+// Bayo's method for flexible arms: which torque moves the tip as planned and then makes it press as
+// planned? It is played back open-loop.
+//
+// The arm. With tip angle y = (q2 + q3)/2 as seen from the hub and bend d = q3 - q2 of the two
+// links, contact force f at the tip, and the inertias M11, M12, M22 of both links about the hub,
+// the last link's equation and the sum of both links' are
+//
+//     (M12 + M22) y'' - (M12 - M22)/2 d'' + k2 d = -f l
+//     J y'' + (M22 - M11)/2 d'' + D (y' - d'/2) = torque - friction - 2 f l,  J = M11 + 2 M12 + M22
+//
+// The first has no torque in it. It is what the inverse has to solve for d, for given y and f:
+//
+//     d'' - s^2 d = u,     u = g y'' + h f                                                  (a)
+//     s^2 = 2 k2/(M12 - M22),   g = 2 (M12 + M22)/(M12 - M22),   h = 2 l/(M12 - M22)
+//
+// and the second gives the torque. (+-s are the zeros of the transfer function from torque to tip:
+// one of them unstable, since a tip that is pushed through a bend first goes the other way.)
+//
+// The inverse. At every frequency (a) is a division: a part U exp(iwt) of u takes
+// d = -U exp(iwt)/(w^2 + s^2), which is bounded though (a) integrated forwards is not. The plan
+// consists of three pieces with few frequencies each,
+//
+//     travel   y'' = A sin(wt) + B (1 - cos(wt)),     w = 2 pi/travel_time,    to the wall
+//     rise     f = F/2 (1 - cos(pi t/transition_time)), y at the wall
+//     hold     f = F
+//
+// so that neither a discrete transform nor its padding is needed: summed over all frequencies, the
+// transform of a piece gives the piece's own within it and, from the poles at w = +-is,
+// exp(-s |t - t_k|) before and after each joint t_k of two pieces, with the heights that make d
+// continuous. What runs ahead of a joint is why the method is not causal: the hub starts before the
+// tip, bends the beam for it, and turns on into the press before the tip has arrived.
+//
+// The touch. A tip that arrives with the rate v is stopped by the wall's impulse P, plastically.
+// The plan holds this too: y'' and f contain -v and P times a delta, P being such that the torque
+// contains none: J v + (M22 - M11)/2 (g v - h P) = 2 l P. The rate of d jumps by h P - g v.
+#include <math.h>
+
+#include "src/rig/laws/laws.h"
+
+enum { MODE_TRAVEL, MODE_PRESS };
+static const char *const mode_names[] = {"travel", "press", NULL};
+
+enum { FORCE_WANTED, ARRIVAL_SPEED, TRAVEL_TIME, TRANSITION, THRESHOLD, PARAMETERS };
+static const controller_parameter table[PARAMETERS] = {
+    {"force", "N", 1, 0, 1000, "commanded contact force"},
+    {"arrival_speed", "m/s", 0, 0, 1000, "speed with which the tip is to meet the wall"},
+    {"travel_time", "s", 0.35, 1e-3, 100, "how long the tip moves to the wall"},
+    {"transition_time", "s", 0.35, 1e-3, 100, "how long the force rises"},
+    {"contact_threshold", "N", 0.05, 0, 1000, "force reading that means contact"},
+};
+
+enum { WAIT, TRAVEL, RISE, HOLD }; // pieces of the plan; piece k ends at joint k
+enum { DEPARTURE, TOUCH, FULL_FORCE, JOINTS };
+
+#define PI        3.14159265358979323846
+#define LEAD_IN   8.0  // by which the hub starts before the tip, in times 1/s: 0.03 % are lost
+#define EARLY     1.5  // before its time a touch has to be, in times 1/s, to move the plan on
+#define REST_RATE 1e-3 // planned hub velocities below it need no push against friction [rad/s]
+
+typedef struct inverse_memory {
+    controller_setup rig;
+    double force, threshold;
+    double zero;                          // s [1/s]
+    double per_tip;                       // g
+    double per_force;                     // h [1/(N s2)]
+    double whole_inertia;                 // J [kg m2]
+    double bend_inertia;                  // (M22 - M11)/2 [kg m2]
+    double sine, cosine;                  // A and B [rad/s2]
+    double travel, rise;                  // frequencies w of the two pieces [rad/s]
+    double joint[JOINTS];                 // their times, from the tip's departure on [s]
+    double ahead[JOINTS], behind[JOINTS]; // heights of the exponentials at each joint [rad]
+    double arrival_rate;                  // v [rad/s]
+    double start_angle;                   // at the first sample [rad]
+    double departure;                     // when the tip departs, on the rig's clock [s]
+    bool started;
+} inverse_memory;
+
+// What the plan asks for at one instant; bend and its rate first as the piece's frequencies give
+// them, then with the exponentials.
+typedef struct moment {
+    double tip, tip_rate, tip_acceleration; // y and derivatives [rad], [rad/s], [rad/s2]
+    double force;                           // f [N]
+    double bend, bend_rate;                 // d and its derivative [rad], [rad/s]
+} moment;
+
+// Piece `piece` of the plan at a time since the tip's departure, which may lie at its ends.
+static moment piece_at(const inverse_memory *m, int piece, double time)
+{
+    const double s2 = m->zero * m->zero;
+    if (piece == WAIT) {
+        return (moment){.tip = m->start_angle};
+    }
+    if (piece == TRAVEL) {
+        const double w = m->travel, c = cos(w * time), s = sin(w * time), A = m->sine;
+        const double B = m->cosine, at_w = -m->per_tip / (w * w + s2), at_0 = -m->per_tip / s2;
+        return (moment){
+            .tip =
+                m->start_angle + A / w * (time - s / w) + B * (time * time / 2 - (1 - c) / (w * w)),
+            .tip_rate = A / w * (1 - c) + B * (time - s / w),
+            .tip_acceleration = A * s + B * (1 - c),
+            .bend = at_w * (A * s - B * c) + at_0 * B,
+            .bend_rate = at_w * w * (A * c + B * s),
+        };
+    }
+    moment pressed = {
+        .tip = m->rig.wall_angle, .force = m->force, .bend = -m->per_force * m->force / s2};
+    if (piece == RISE) {
+        const double w = m->rise, t = time - m->joint[TOUCH], half = m->force / 2;
+        const double at_w = -m->per_force / (w * w + s2);
+        pressed.force = half * (1 - cos(w * t));
+        pressed.bend = pressed.bend / 2 - at_w * half * cos(w * t);
+        pressed.bend_rate = at_w * half * w * sin(w * t);
+    }
+    return pressed;
+}
+
+// Heights of the exponentials at the joints: there d is continuous and its rate jumps by `kick`.
+static void join_pieces(inverse_memory *m)
+{
+    double per_impulse = 2 * m->rig.link_length + m->bend_inertia * m->per_force;
+    double impulse =
+        (m->whole_inertia + m->bend_inertia * m->per_tip) * m->arrival_rate / per_impulse;
+    for (int k = 0; k < JOINTS; k++) {
+        moment left = piece_at(m, k, m->joint[k]), right = piece_at(m, k + 1, m->joint[k]);
+        double kick = k == TOUCH ? m->per_force * impulse - m->per_tip * m->arrival_rate : 0;
+        double difference = right.bend - left.bend;
+        double sum = (right.bend_rate - left.bend_rate - kick) / m->zero;
+        m->ahead[k] = (sum + difference) / 2;
+        m->behind[k] = (sum - difference) / 2;
+    }
+}
+
+// The piece that a time since the tip's departure lies in.
+static int piece_of(const inverse_memory *m, double time)
+{
+    int piece = WAIT;
+    while (piece < JOINTS && time >= m->joint[piece]) {
+        piece++;
+    }
+    return piece;
+}
+
+static moment plan_at(const inverse_memory *m, double time)
+{
+    const int piece = piece_of(m, time);
+    moment now = piece_at(m, piece, time);
+    for (int k = 0; k < JOINTS; k++) {
+        double decay = exp(-m->zero * fabs(time - m->joint[k]));
+        now.bend += (k < piece ? m->behind[k] : m->ahead[k]) * decay;
+        now.bend_rate += m->zero * (k < piece ? -m->behind[k] : m->ahead[k]) * decay;
+    }
+    return now;
+}
+
+static double hub_rate(const moment *planned)
+{
+    return planned->tip_rate - planned->bend_rate / 2;
+}
+
+// Torque of the plan at a moment, friction included [N m].
+static double torque_of(const inverse_memory *m, const moment *planned)
+{
+    double bend_acceleration = m->zero * m->zero * planned->bend +
+                               m->per_tip * planned->tip_acceleration +
+                               m->per_force * planned->force;
+    double rate = hub_rate(planned);
+    double friction = rate > REST_RATE ? m->rig.stiction : rate < -REST_RATE ? -m->rig.stiction : 0;
+    return m->whole_inertia * planned->tip_acceleration + m->bend_inertia * bend_acceleration +
+           m->rig.hub_damping * rate + 2 * m->rig.link_length * planned->force + friction;
+}
+
+static const char *start(void *memory, const controller_setup *setup)
+{
+    inverse_memory *m = memory;
+    const double *p = setup->parameters, l = setup->link_length, ml2 = setup->link_mass * l * l;
+    const double m11 = setup->hub_inertia + setup->link_inertia + 1.25 * ml2, m12 = 0.5 * ml2;
+    const double m22 = setup->link_inertia + 0.25 * ml2;
+    if (!(setup->torque_per_volt > 0)) {
+        return "it needs a motor that turns the hub";
+    }
+    if (!(m12 > m22)) {
+        return "the tip's motion has no bounded inverse with a link inertia of m l^2/4 or more";
+    }
+    m->rig = *setup;
+    m->force = p[FORCE_WANTED];
+    m->threshold = p[THRESHOLD];
+    m->zero = sqrt(2 * setup->k2 / (m12 - m22));
+    m->per_tip = 2 * (m12 + m22) / (m12 - m22);
+    m->per_force = 2 * l / (m12 - m22);
+    m->whole_inertia = m11 + 2 * m12 + m22;
+    m->bend_inertia = (m22 - m11) / 2;
+    m->arrival_rate = p[ARRIVAL_SPEED] / (2 * l);
+    m->travel = 2 * PI / p[TRAVEL_TIME];
+    m->rise = PI / p[TRANSITION];
+    m->joint[TOUCH] = p[TRAVEL_TIME];
+    m->joint[FULL_FORCE] = p[TRAVEL_TIME] + p[TRANSITION];
+    return NULL;
+}
+
+// The plan from the hub's angle at the first sample, at rest: y and y' end at the wall and at v.
+static void plan(inverse_memory *m, const controller_input *in)
+{
+    const double T = m->joint[TOUCH], way = m->rig.wall_angle - in->hub_angle;
+    m->started = true;
+    m->start_angle = in->hub_angle;
+    m->departure = in->time + LEAD_IN / m->zero;
+    m->cosine = m->arrival_rate / T;
+    m->sine = (way - m->arrival_rate * T / 2) * m->travel / T;
+    join_pieces(m);
+}
+
+// Playback. A touch well before its time moves the plan on to the touch; nothing else is fed back.
+// (Just before its time the hub is turning into the press already, and the plan is better left
+// alone.) A command holds for a period, whence the torque of the period's middle.
+static void sample(void *memory, const controller_input *in, controller_output *out)
+{
+    inverse_memory *m = memory;
+    if (!m->started) {
+        plan(m, in);
+    }
+    double time = in->time - m->departure;
+    if (time < m->joint[TOUCH] - EARLY / m->zero && in->force > m->threshold) {
+        m->departure = in->time - m->joint[TOUCH];
+        time = m->joint[TOUCH];
+    }
+    moment now = plan_at(m, time);
+    moment held = plan_at(m, time + m->rig.delay + m->rig.period / 2);
+    out->mode = time < m->joint[TOUCH] ? MODE_TRAVEL : MODE_PRESS;
+    out->command = torque_of(m, &held) / m->rig.torque_per_volt;
+    out->desired_angle = now.tip - now.bend / 2;
+    out->desired_velocity = hub_rate(&now);
+    out->force_estimate = now.force;
+}
+
+const controller inverse_dynamics_law = {
+    .interface = CONTROLLER_INTERFACE,
+    .name = "inverse-dynamics",
+    .modes = mode_names,
+    .parameters = table,
+    .parameter_count = PARAMETERS,
+    .memory_size = sizeof(inverse_memory),
+    .start = start,
+    .sample = sample,
+};

@@ -1,0 +1,124 @@
+#include "src/run/trace.h"
+
+#include <math.h>
+#include <string.h>
+
+const char *event_name(event_kind kind)
+{
+    static const char *const names[] = {"impact",   "contact", "release", "stick",
+                                        "reversal", "slip",    "change",  "push"};
+    return names[kind];
+}
+
+static size_t angles_size(int angle_count)
+{
+    return (angle_count > 0 ? (size_t)angle_count : 1) * sizeof(double);
+}
+
+static void find_places(trace *t)
+{
+    t->rows = t->row_array.base;
+    t->angles = t->angle_array.base;
+    t->velocities = t->velocity_array.base;
+    t->events = t->event_array.base;
+}
+
+void trace_init(trace *t, int angle_count)
+{
+    memset(t, 0, sizeof *t);
+    t->angle_count = angle_count;
+    long_array_init(&t->row_array, sizeof(sample));
+    long_array_init(&t->angle_array, angles_size(angle_count));
+    long_array_init(&t->velocity_array, angles_size(angle_count));
+    long_array_init(&t->event_array, sizeof(event));
+}
+
+status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
+{
+    memset(t, 0, sizeof *t);
+    t->angle_count = angle_count;
+    bool reserved = long_array_reserve(&t->row_array, sizeof(sample), least, most) &&
+                    long_array_reserve(&t->angle_array, angles_size(angle_count), least, most) &&
+                    long_array_reserve(&t->velocity_array, angles_size(angle_count), least, most) &&
+                    long_array_reserve(&t->event_array, sizeof(event), least, most);
+    if (!reserved) {
+        trace_finish(t);
+        return STATUS_NO_MEMORY;
+    }
+    find_places(t);
+    return STATUS_OK;
+}
+
+void trace_finish(trace *t)
+{
+    long_array_finish(&t->row_array);
+    long_array_finish(&t->angle_array);
+    long_array_finish(&t->velocity_array);
+    long_array_finish(&t->event_array);
+    memset(t, 0, sizeof *t);
+}
+
+status trace_share(trace *t, const trace *from, size_t rows, size_t events)
+{
+    if (!long_array_share(&t->row_array, &from->row_array, rows) ||
+        !long_array_share(&t->angle_array, &from->angle_array, rows) ||
+        !long_array_share(&t->velocity_array, &from->velocity_array, rows) ||
+        !long_array_share(&t->event_array, &from->event_array, events)) {
+        return STATUS_NO_MEMORY;
+    }
+    t->row_count = rows;
+    t->event_count = events;
+    return STATUS_OK;
+}
+
+// Room for one more row; the places of plain arrays may change.
+static bool make_room(trace *t)
+{
+    bool grown = long_array_grow(&t->row_array, t->row_count + 1) &&
+                 long_array_grow(&t->angle_array, t->row_count + 1) &&
+                 long_array_grow(&t->velocity_array, t->row_count + 1);
+    if (t->row_array.reserved == 0) {
+        find_places(t);
+    }
+    return grown;
+}
+
+status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities)
+{
+    size_t n = (size_t)t->angle_count;
+    bool full = t->row_count >= t->row_array.capacity ||
+                t->row_count >= t->angle_array.capacity ||
+                t->row_count >= t->velocity_array.capacity;
+    if (full && !make_room(t)) {
+        return STATUS_NO_MEMORY;
+    }
+    t->rows[t->row_count] = *row;
+    memcpy(t->angles + t->row_count * n, angles, n * sizeof *angles);
+    memcpy(t->velocities + t->row_count * n, velocities, n * sizeof *velocities);
+    t->row_count++;
+    return STATUS_OK;
+}
+
+status trace_add_event(trace *t, event e)
+{
+    if (t->event_count >= t->event_array.capacity) {
+        if (!long_array_grow(&t->event_array, t->event_count + 1)) {
+            return STATUS_NO_MEMORY;
+        }
+        if (t->event_array.reserved == 0) {
+            find_places(t);
+        }
+    }
+    t->events[t->event_count++] = e;
+    return STATUS_OK;
+}
+
+bool trace_has(const trace *t, int signal)
+{
+    for (size_t i = 0; i < t->row_count; i++) {
+        if (isfinite(signal_value(&t->rows[i], signal))) {
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,57 @@
+// A recorded run: rows of samples, the link angles at each, and the events between them.
+#pragma once
+
+#include "src/base/shared_array.h"
+#include "src/quantities/signals.h"
+#include "src/base/status.h"
+
+typedef enum event_kind {
+    EVENT_IMPACT,  // gap closes with an approach velocity: an impulse acts
+    EVENT_CONTACT, // contact goes on after an impact, or begins without one
+    EVENT_RELEASE, // the contact force reaches zero
+    EVENT_STICK,   // the hub comes to rest and friction holds it
+    EVENT_REVERSAL, // the hub comes to rest and turns back at once
+    EVENT_SLIP,    // the hub breaks away
+    EVENT_CHANGE,  // a scripted change of a parameter
+    EVENT_PUSH,    // a scripted push
+} event_kind;
+
+typedef struct event {
+    double time;    // [s]
+    event_kind kind;
+    double impulse; // impact: of the wall [N s]; push: as scripted; else 0
+    double speed;   // impact: approach speed [m/s]; else 0
+    double loss;    // impact: energy lost [J]; else 0
+    int index;      // change, push: which action of the scenario; else -1
+} event;
+
+// "impact", "contact", ...
+const char *event_name(event_kind kind);
+
+typedef struct trace {
+    sample *rows;
+    double *angles;  // row r: angles[r * angle_count ...], hub first if it has an angle of its own [rad]
+    double *velocities; // the same of their velocities [rad/s]
+    event *events;
+    size_t row_count, event_count;
+    int angle_count;
+    long_array row_array, angle_array, velocity_array, event_array; // where the four above lie
+} trace;
+
+// An empty trace for angle_count link angles a row.
+void trace_init(trace *t, int angle_count);
+// The same in shared arrays (src/base/shared_array.h): for `least` rows and, if there is room, `most`.
+status trace_reserve(trace *t, int angle_count, size_t least, size_t most);
+void trace_finish(trace *t);
+
+// Lets a reserved trace, still empty, begin with the first rows and events of another one, without
+// a copy. STATUS_NO_MEMORY if there is no room.
+status trace_share(trace *t, const trace *from, size_t rows, size_t events);
+
+// Append a row (angles, velocities: angle_count values each) or an event; STATUS_NO_MEMORY if there
+// is no room.
+status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities);
+status trace_add_event(trace *t, event e);
+
+// Whether any row holds a finite value of the signal.
+bool trace_has(const trace *t, int signal);

@@ -1,0 +1,51 @@
+// What the actions of a script set, and to what.
+#include <string.h>
+
+#include "src/scenario/scenario.h"
+#include "src/rig/rig.h"
+
+status action_apply(const action *a, parameters *p, fault *f)
+{
+    if (a->kind != ACTION_SET) {
+        return STATUS_OK;
+    }
+    if (parameter_table[a->parameter].type == PARAMETER_TEXT) {
+        return parameter_set_text(p, a->parameter, a->text, f);
+    }
+    return parameter_set_number(p, a->parameter, a->value, f);
+}
+
+void action_format_value(const action *a, char *text, size_t size)
+{
+    // a value that was checked before formats as a scenario file gives it
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    action_apply(a, &p, NULL);
+    parameter_format(&p, a->parameter, text, size);
+}
+
+parameters scenario_parameters_at(const scenario *s, double time)
+{
+    parameters p = s->parameters;
+    for (int i = 0; i < s->action_count && s->actions[i].time <= time; i++) {
+        action_apply(&s->actions[i], &p, NULL);
+    }
+    return p;
+}
+
+status scenario_check_locks(const scenario *s, const controller *law, fault *f)
+{
+    const int lock = parameter_find("control.lock");
+    int mode;
+    if (law == NULL) {
+        return STATUS_OK;
+    }
+    status code = rig_find_mode(law, s->parameters.control.lock, &mode, f);
+    for (int i = 0; i < s->action_count && code == STATUS_OK; i++) {
+        const action *a = &s->actions[i];
+        if (a->kind == ACTION_SET && a->parameter == lock) {
+            code = rig_find_mode(law, a->text, &mode, f);
+        }
+    }
+    return code;
+}

@@ -1,0 +1,266 @@
+// Scenarios as files: reading one, finding one by name, listing the folder of those that ship.
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "src/scenario/scenario.h"
+#include "src/scenario/yaml_tree.h"
+#include "src/base/words.h"
+
+enum { MAX_FOLDER_DEPTH = 8 }; // stops at links that lead in a circle
+
+static const char suffix[] = ".yaml";
+
+// A growing list of names.
+typedef struct name_list {
+    char **names;
+    int count;
+} name_list;
+
+// Formats onto the heap; NULL without memory.
+__attribute__((format(printf, 1, 2))) static char *text_of(const char *format, ...)
+{
+    char *text;
+    va_list args;
+    va_start(args, format);
+    int length = vasprintf(&text, format, args);
+    va_end(args);
+    return length < 0 ? NULL : text;
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat information;
+    return stat(path, &information) == 0 && S_ISDIR(information.st_mode);
+}
+
+static bool is_file(const char *path)
+{
+    struct stat information;
+    return stat(path, &information) == 0 && !S_ISDIR(information.st_mode);
+}
+
+// ---- reading ------------------------------------------------------------------------------------
+
+static status report_file(const char *path, const char *what, fault_handler report, void *context)
+{
+    char *sentence = text_of("%s:1:1: %s, expected a scenario file", path, what);
+    if (sentence == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    report(context, sentence);
+    free(sentence);
+    return STATUS_CANNOT_READ;
+}
+
+status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
+                     void *context)
+{
+    char what[256];
+    if (is_folder(path)) {
+        return report_file(path, "it is a folder", report, context);
+    }
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        snprintf(what, sizeof what, "cannot be opened (%s)", strerror(errno));
+        return report_file(path, what, report, context);
+    }
+    // one byte more than is allowed, so that the parser sees what is too long
+    size_t room = (size_t)TREE_MAX_BYTES + 1;
+    char *text = malloc(room);
+    size_t length = text != NULL ? fread(text, 1, room, file) : 0;
+    bool failed = ferror(file) != 0;
+    fclose(file);
+    status result = STATUS_NO_MEMORY;
+    if (text == NULL) {
+        report_file(path, "there is no memory to read it", report, context);
+    } else if (failed) {
+        result = report_file(path, "it cannot be read", report, context);
+    } else {
+        result = scenario_parse(s, text, length, path, name, report, context);
+    }
+    free(text);
+    return result;
+}
+
+// ---- the folder ---------------------------------------------------------------------------------
+
+static const char *scenario_folder(void)
+{
+    const char *chosen = getenv("IMPACTLAB_SCENARIOS");
+    if (chosen != NULL && chosen[0] != '\0') {
+        return chosen;
+    }
+    return is_folder(IMPACTLAB_SOURCE_SCENARIOS) ? IMPACTLAB_SOURCE_SCENARIOS
+                                                 : IMPACTLAB_DATA_SCENARIOS;
+}
+
+static bool add_name(name_list *list, const char *name, size_t length)
+{
+    char **grown = realloc(list->names, (size_t)(list->count + 1) * sizeof *grown);
+    if (grown == NULL) {
+        return false;
+    }
+    list->names = grown;
+    grown[list->count] = strndup(name, length);
+    if (grown[list->count] == NULL) {
+        return false;
+    }
+    list->count++;
+    return true;
+}
+
+static bool walk(name_list *list, const char *folder, const char *prefix, int depth);
+
+// Adds one entry of a folder, or what is below it.
+static bool add_entry(name_list *list, const char *folder, const char *prefix, const char *entry,
+                      int depth)
+{
+    char *path = text_of("%s/%s", folder, entry);
+    char *name = text_of("%s%s", prefix, entry);
+    bool good = path != NULL && name != NULL;
+    size_t length = good ? strlen(name) : 0;
+    size_t tail = sizeof suffix - 1;
+    if (good && is_folder(path)) {
+        char *below = text_of("%s/", name);
+        good = below != NULL && (depth >= MAX_FOLDER_DEPTH || walk(list, path, below, depth + 1));
+        free(below);
+    } else if (good && strlen(entry) > tail && strcmp(name + length - tail, suffix) == 0) {
+        good = add_name(list, name, length - tail);
+    }
+    free(path);
+    free(name);
+    return good;
+}
+
+// Adds the scenarios in and below a folder; a folder that cannot be read counts as empty. False
+// without memory.
+static bool walk(name_list *list, const char *folder, const char *prefix, int depth)
+{
+    bool good = true;
+    DIR *directory = opendir(folder);
+    if (directory == NULL) {
+        return true;
+    }
+    for (struct dirent *entry; good && (entry = readdir(directory)) != NULL;) {
+        if (entry->d_name[0] != '.') {
+            good = add_entry(list, folder, prefix, entry->d_name, depth);
+        }
+    }
+    closedir(directory);
+    return good;
+}
+
+// Digits are compared as numbers: fig-3-2 comes before fig-3-10.
+static int compare_names(const void *a, const void *b)
+{
+    return strverscmp(*(char *const *)a, *(char *const *)b);
+}
+
+static void free_names(char **names, int count)
+{
+    for (int i = 0; i < count; i++) {
+        free(names[i]);
+    }
+    free(names);
+}
+
+status scenario_list(char ***names, int *count, fault *f)
+{
+    name_list list = {0};
+    const char *folder = scenario_folder();
+    *names = NULL;
+    *count = 0;
+    if (!is_folder(folder)) {
+        return fault_set(f, STATUS_CANNOT_READ,
+                         "%.500s: no such folder, expected the scenarios there (set "
+                         "IMPACTLAB_SCENARIOS to the folder that holds them)",
+                         folder);
+    }
+    if (!walk(&list, folder, "", 0)) {
+        free_names(list.names, list.count);
+        return fault_set(f, STATUS_NO_MEMORY, "out of memory");
+    }
+    if (list.count > 0) {
+        qsort(list.names, (size_t)list.count, sizeof *list.names, compare_names);
+    }
+    *names = list.names;
+    *count = list.count;
+    return STATUS_OK;
+}
+
+// ---- finding ------------------------------------------------------------------------------------
+
+static status report_unknown(const char *wanted, fault_handler report, void *context)
+{
+    char **names;
+    int count;
+    size_t length = strlen(wanted), tail = sizeof suffix - 1;
+    bool has_suffix = length > tail && strcmp(wanted + length - tail, suffix) == 0;
+    char *stem = strndup(wanted, has_suffix ? length - tail : length);
+    nearest_word near = nearest_begin(stem != NULL ? stem : wanted);
+    scenario_list(&names, &count, NULL);
+    for (int i = 0; i < count; i++) {
+        nearest_try(&near, names[i]);
+    }
+    char *sentence = near.best != NULL
+                         ? text_of("'%s' is neither a scenario nor a file, did you mean '%s'?",
+                                   wanted, near.best)
+                         : text_of("'%s' is neither a scenario nor a file, expected a name that "
+                                   "'impactlab list' shows or the path of a file",
+                                   wanted);
+    free_names(names, count);
+    free(stem);
+    if (sentence == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    report(context, sentence);
+    free(sentence);
+    return STATUS_BAD_ARGUMENT;
+}
+
+// True if name is in the list; *path is then its file, to be freed.
+static bool find_name(const char *wanted, char **path)
+{
+    char **names;
+    int count;
+    bool found = false;
+    *path = NULL;
+    scenario_list(&names, &count, NULL);
+    for (int i = 0; i < count && !found; i++) {
+        if (strcmp(names[i], wanted) == 0) {
+            found = true;
+            *path = text_of("%s/%s%s", scenario_folder(), wanted, suffix);
+        }
+    }
+    free_names(names, count);
+    return *path != NULL;
+}
+
+status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context)
+{
+    char *path;
+    if (find_name(name_or_file, &path)) {
+        status result = scenario_read(s, path, name_or_file, report, context);
+        free(path);
+        return result;
+    }
+    if (is_file(name_or_file)) {
+        return scenario_read(s, name_or_file, NULL, report, context);
+    }
+    path = text_of("%s%s", name_or_file, suffix);
+    status result = STATUS_NO_MEMORY;
+    if (path != NULL && is_file(path)) {
+        result = scenario_read(s, path, NULL, report, context);
+    } else if (path != NULL && is_folder(name_or_file)) {
+        result = scenario_read(s, name_or_file, NULL, report, context);
+    } else if (path != NULL) {
+        result = report_unknown(name_or_file, report, context);
+    }
+    free(path);
+    return result;
+}

@@ -1,0 +1,157 @@
+// Faults of a scenario file with their places, and what its nodes hold.
+#include "src/scenario/reader.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/words.h"
+
+void reader_make_printable(char *text)
+{
+    for (unsigned char *c = (unsigned char *)text; *c != '\0';) {
+        int length = *c < 0x80 ? 1 : *c >= 0xf0 ? 4 : *c >= 0xe0 ? 3 : *c >= 0xc2 ? 2 : 0;
+        int have = length > 0;
+        while (have > 0 && have < length && (c[have] & 0xc0) == 0x80) {
+            have++;
+        }
+        bool control = *c < 0x20 || *c == 0x7f || (*c == 0xc2 && c[1] < 0xa0);
+        if (have < length || length == 0 || control) {
+            *c = '?';
+            c++;
+        } else {
+            c += length;
+        }
+    }
+}
+
+void reader_report_at(reader *r, int line, int column, const char *format, ...)
+{
+    char what[1280];
+    found_fault found = {{line, column}, r->faults, NULL};
+    va_list args;
+    va_start(args, format);
+    vsnprintf(what, sizeof what, format, args);
+    va_end(args);
+    found_fault *grown = realloc(r->found, (size_t)(r->faults + 1) * sizeof *grown);
+    if (grown != NULL) {
+        r->found = grown;
+    }
+    if (grown == NULL ||
+        asprintf(&found.sentence, "%s:%d:%d: %s", r->path, line, column, what) < 0) {
+        r->no_memory = true;
+        return;
+    }
+    reader_make_printable(found.sentence);
+    r->found[r->faults++] = found;
+}
+
+// By the place in the file; equal places in the order found.
+static int compare_places(const void *a, const void *b)
+{
+    const found_fault *x = a, *y = b;
+    int order = (x->at.line > y->at.line) - (x->at.line < y->at.line);
+    order = order ? order : (x->at.column > y->at.column) - (x->at.column < y->at.column);
+    return order ? order : (x->number > y->number) - (x->number < y->number);
+}
+
+void reader_report_all(reader *r, fault_handler report, void *context)
+{
+    if (r->faults > 0) {
+        qsort(r->found, (size_t)r->faults, sizeof *r->found, compare_places);
+    }
+    for (int i = 0; i < r->faults; i++) {
+        report(context, r->found[i].sentence);
+        free(r->found[i].sentence);
+    }
+    free(r->found);
+    r->found = NULL;
+    if (r->no_memory) {
+        report(context, status_text(STATUS_NO_MEMORY));
+    }
+}
+
+bool reader_have_memory(reader *r, const void *memory)
+{
+    if (memory == NULL) {
+        r->no_memory = true;
+    }
+    return memory != NULL;
+}
+
+bool node_is_scalar(const tree_node *node)
+{
+    return node->kind == TREE_SCALAR;
+}
+
+bool node_is_empty(const tree_node *node)
+{
+    return node_is_scalar(node) && node->plain && node->text[0] == '\0';
+}
+
+bool node_is_null(const tree_node *node)
+{
+    return node_is_scalar(node) && node->plain &&
+           (strcmp(node->text, "null") == 0 || strcmp(node->text, "~") == 0);
+}
+
+const char *node_kind_name(const tree_node *node)
+{
+    static const char *const names[] = {"a single value", "a list", "a map of keys"};
+    return node_is_empty(node) ? "empty" : names[node->kind];
+}
+
+const char *reader_key(reader *r, const tree_node *map, const tree_node *child)
+{
+    const tree_node *key = child->key;
+    if (!node_is_scalar(key)) {
+        report_node(r, key, "the key is %s, expected a word", node_kind_name(key));
+        return NULL;
+    }
+    for (const tree_node *other = map->first; other != child; other = other->next) {
+        if (node_is_scalar(other->key) && strcmp(other->key->text, key->text) == 0) {
+            report_node(r, key, "'%.60s' is there twice, expected it once (first at line %d)",
+                        key->text, other->key->line);
+            return NULL;
+        }
+    }
+    return key->text;
+}
+
+bool reader_expect_map(reader *r, const tree_node *node, const char *what, const char *example)
+{
+    if (node->kind != TREE_MAP) {
+        report_node(r, node, "%s is %s, expected keys such as '%s'", what, node_kind_name(node),
+                    example);
+    }
+    return node->kind == TREE_MAP;
+}
+
+bool reader_quantity(reader *r, const tree_node *node, const char *what, const char *unit,
+                     double *value)
+{
+    const char *rest;
+    const char *space = unit[0] != '\0' ? " in " : "";
+    if (!node_is_scalar(node) || node_is_empty(node)) {
+        report_node(r, node, "%s is %s, expected a number%s%s", what, node_kind_name(node), space,
+                    unit);
+        return false;
+    }
+    if (!decimal_read(node->text, value, &rest)) {
+        report_node(r, node, "%s = '%.60s' is not a finite number, expected a number%s%s", what,
+                    node->text, space, unit);
+        return false;
+    }
+    if (*rest != '\0' && strcmp(rest, unit) != 0) {
+        report_node(r, node, "%s = '%.60s' carries '%.20s', expected %s", what, node->text, rest,
+                    unit[0] != '\0' ? unit : "a number without a unit");
+        return false;
+    }
+    if (!isfinite(*value)) {
+        report_node(r, node, "%s = '%.60s' is too large, expected a finite number", what,
+                    node->text);
+        return false;
+    }
+    return true;
+}

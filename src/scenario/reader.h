@@ -1,0 +1,85 @@
+// What the parts of the scenario reader share while one file is read.
+#pragma once
+
+#include "src/scenario/scenario.h"
+#include "src/scenario/yaml_tree.h"
+
+typedef struct place {
+    int line, column; // 0 where the file does not mention it
+} place;
+
+// A fault found, with its place in the file and among the others.
+typedef struct found_fault {
+    place at;
+    int number;
+    char *sentence;
+} found_fault;
+
+// What the functions below share while one file is read.
+typedef struct reader {
+    const char *path;
+    found_fault *found; // faults of them
+    int faults;
+    bool no_memory;
+    scenario *s;
+    place given[sizeof(((parameters *)0)->set)]; // where each parameter's value stands
+    bool duration_known;                         // false if a fault may hide run.duration
+} reader;
+
+// --- faults and nodes: scenario_reader.c
+
+// malloc'ed memory is there, or the reader knows that it is not.
+bool reader_have_memory(reader *r, const void *memory);
+
+// Takes note of a fault at a place of the file; printf-like.
+void reader_report_at(reader *r, int line, int column, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+// The same at a node or its key.
+#define report_node(r, node, ...) reader_report_at(r, (node)->line, (node)->column, __VA_ARGS__)
+
+// Passes all faults on as somebody who goes through the file meets them, and forgets them.
+void reader_report_all(reader *r, fault_handler report, void *context);
+
+// Replaces what could disturb a terminal: control characters and broken UTF-8.
+void reader_make_printable(char *text);
+
+// Whether a node is a single value; nothing at all; the word for nothing (null, ~).
+bool node_is_scalar(const tree_node *node);
+bool node_is_empty(const tree_node *node);
+bool node_is_null(const tree_node *node);
+// "a list", as a sentence names what stands there.
+const char *node_kind_name(const tree_node *node);
+
+// The key of a map's child as text; NULL, after a fault, if it is no word or was there before.
+const char *reader_key(reader *r, const tree_node *map, const tree_node *child);
+
+// True for a map; otherwise a fault that shows an example.
+bool reader_expect_map(reader *r, const tree_node *node, const char *what, const char *example);
+
+// Reads a finite number that may carry its unit ("0.4 s"); false after a fault.
+bool reader_quantity(reader *r, const tree_node *node, const char *what, const char *unit,
+                     double *value);
+
+// --- the parts of a file
+
+// True if the parameter belongs to the group ("arm.k2" to "arm").
+bool parameter_in_group(const char *path, const char *group);
+
+// Whether a word is the name of a group of parameters.
+bool reader_is_group(const char *word);
+
+// The text of a parameter's value; NULL after a fault.
+const char *reader_value_text(reader *r, const tree_node *node, const char *path);
+
+// Reads the values of a group into the scenario.
+void reader_group(reader *r, const tree_node *map, const char *group);
+
+// Resolves the parameters. To report every fault, a blamed one is put back to its default and the
+// rest is resolved again.
+void reader_resolve(reader *r);
+
+// Reads the script's actions; the parameters must have been resolved.
+void reader_script(reader *r, const tree_node *list);
+
+// Reads what is expected of the run.
+void reader_expectations(reader *r, const tree_node *map);

@@ -1,0 +1,145 @@
+// The groups of a scenario file: its parameters.
+#include "src/scenario/reader.h"
+
+#include <string.h>
+
+#include "src/base/words.h"
+
+bool parameter_in_group(const char *path, const char *group)
+{
+    size_t length = strlen(group);
+    return strncmp(path, group, length) == 0 && path[length] == '.';
+}
+
+bool reader_is_group(const char *word)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        if (parameter_in_group(parameter_table[i].path, word)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void report_unknown_parameter(reader *r, const tree_node *key, const char *group)
+{
+    nearest_word near = nearest_begin(key->text);
+    char known[640] = "";
+    for (int i = 0; i < parameter_count; i++) {
+        const char *path = parameter_table[i].path;
+        if (parameter_in_group(path, group)) {
+            size_t used = strlen(known);
+            const char *tail = path + strlen(group) + 1;
+            snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", tail);
+            nearest_try(&near, tail);
+        }
+    }
+    if (near.best != NULL) {
+        report_node(r, key, "unknown key '%.60s' in %s, did you mean '%s'?", key->text, group,
+                    near.best);
+        return;
+    }
+    // a parameter of another group under its own name
+    const char *elsewhere = parameter_suggest(key->text);
+    const char *tail = elsewhere != NULL ? strchr(elsewhere, '.') + 1 : NULL;
+    if (tail != NULL && strcmp(tail, key->text) == 0) {
+        report_node(r, key, "unknown key '%.60s' in %s, did you mean %s?", key->text, group,
+                    elsewhere);
+        return;
+    }
+    report_node(r, key, "unknown key '%.60s' in %s, expected one of %s", key->text, group, known);
+}
+
+const char *reader_value_text(reader *r, const tree_node *node, const char *path)
+{
+    if (!node_is_scalar(node) || node_is_empty(node)) {
+        report_node(r, node, "%s is %s, expected a value", path, node_kind_name(node));
+        return NULL;
+    }
+    return node->text;
+}
+
+void reader_group(reader *r, const tree_node *map, const char *group)
+{
+    fault f;
+    int first = 0;
+    while (!parameter_in_group(parameter_table[first].path, group)) {
+        first++;
+    }
+    char example[64];
+    snprintf(example, sizeof example, "%s: ...", strchr(parameter_table[first].path, '.') + 1);
+    if (!reader_expect_map(r, map, group, example)) {
+        return;
+    }
+    for (const tree_node *child = map->first; child != NULL; child = child->next) {
+        const char *key = reader_key(r, map, child);
+        if (key == NULL) {
+            continue;
+        }
+        char path[128];
+        snprintf(path, sizeof path, "%s.%s", group, key);
+        int index = parameter_find(path);
+        if (index < 0) {
+            report_unknown_parameter(r, child->key, group);
+            continue;
+        }
+        const char *text = reader_value_text(r, child, path);
+        if (text != NULL && parameter_set_text(&r->s->parameters, index, text, &f) != STATUS_OK) {
+            report_node(r, child, "%s", f.text);
+            text = NULL;
+        }
+        if (text != NULL) {
+            r->given[index] = (place){child->line, child->column};
+        }
+    }
+}
+
+// Position of a parameter's path in a sentence, as a whole word; NULL if it is not there.
+static const char *mention(const char *sentence, const char *path)
+{
+    size_t length = strlen(path);
+    for (const char *at = strstr(sentence, path); at != NULL; at = strstr(at + 1, path)) {
+        char next = at[length];
+        bool goes_on = next == '_' || (next >= 'a' && next <= 'z') || (next >= '0' && next <= '9');
+        if (!goes_on) {
+            return at;
+        }
+    }
+    return NULL;
+}
+
+// The parameter given in the file that a sentence mentions first, or -1.
+static int blamed_parameter(const reader *r, const parameters *p, const char *sentence)
+{
+    int blamed = -1;
+    const char *first = NULL;
+    for (int i = 0; i < parameter_count; i++) {
+        const char *at = mention(sentence, parameter_table[i].path);
+        if (at != NULL && p->set[i] && r->given[i].line > 0 && (first == NULL || at < first)) {
+            blamed = i;
+            first = at;
+        }
+    }
+    return blamed;
+}
+
+void reader_resolve(reader *r)
+{
+    fault f;
+    parameters trial = r->s->parameters;
+    while (parameters_resolve(&trial, &f) != STATUS_OK) {
+        int blamed = blamed_parameter(r, &trial, f.text);
+        place at = {1, 1};
+        if (blamed >= 0) {
+            at = r->given[blamed];
+        } else if (r->given[parameter_find("arm.model")].line > 0) {
+            at = r->given[parameter_find("arm.model")];
+        }
+        reader_report_at(r, at.line, at.column, "%s", f.text);
+        if (blamed < 0) {
+            break;
+        }
+        trial.set[blamed] = 0;
+    }
+    r->s->parameters = trial;
+}

@@ -1,0 +1,179 @@
+// The script of a scenario file: changes and pushes at their times.
+#include "src/scenario/reader.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/rig/rig.h"
+#include "src/base/words.h"
+
+// Puts the action behind all that are not later; false without memory.
+static bool add_action(reader *r, action a)
+{
+    scenario *s = r->s;
+    action *grown = realloc(s->actions, (size_t)(s->action_count + 1) * sizeof *grown);
+    if (!reader_have_memory(r, grown)) {
+        return false;
+    }
+    s->actions = grown;
+    int i = s->action_count++;
+    for (; i > 0 && grown[i - 1].time > a.time; i--) {
+        grown[i] = grown[i - 1];
+    }
+    grown[i] = a;
+    return true;
+}
+
+// Reports a lock on a mode that the law does not have. The one at the top of the file is reported
+// on its own.
+static void check_lock(reader *r, const tree_node *node, const action *a)
+{
+    fault f;
+    scenario locked = {.parameters = r->s->parameters};
+    action_apply(a, &locked.parameters, NULL);
+    if (a->parameter == parameter_find("control.lock") &&
+        scenario_check_locks(&locked, controller_of(locked.parameters.control.law), &f) !=
+            STATUS_OK) {
+        report_node(r, node, "%s", f.text);
+    }
+}
+
+static void read_set(reader *r, const tree_node *map, bool timed, double time)
+{
+    if (!reader_expect_map(r, map, "set", "motor.voltage: 2 V")) {
+        return;
+    }
+    for (const tree_node *child = map->first; child != NULL; child = child->next) {
+        fault f;
+        const char *path = reader_key(r, map, child);
+        if (path == NULL) {
+            continue;
+        }
+        int index = parameter_find(path);
+        if (index < 0) {
+            const char *near = parameter_suggest(path);
+            report_node(r, child->key, "unknown parameter '%.60s'%s%s%s", path,
+                        near ? ", did you mean '" : ", expected one that 'show' lists",
+                        near ? near : "", near ? "'?" : "");
+            continue;
+        }
+        if (!parameter_table[index].timed) {
+            report_node(r, child->key,
+                        "%s cannot change during a run, expected it at the top of the file", path);
+            continue;
+        }
+        // a scratch copy checks and converts the value
+        parameters scratch = r->s->parameters;
+        const char *text = reader_value_text(r, child, path);
+        if (text == NULL) {
+            continue;
+        }
+        if (parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
+            report_node(r, child, "%s", f.text);
+        } else if (timed) {
+            action a = {.time = time,
+                        .kind = ACTION_SET,
+                        .parameter = index,
+                        .value = parameter_get(&scratch, index)};
+            if (parameter_table[index].type == PARAMETER_TEXT) {
+                parameter_format(&scratch, index, a.text, sizeof a.text);
+            }
+            check_lock(r, child, &a);
+            add_action(r, a);
+        }
+    }
+}
+
+static void read_push(reader *r, const tree_node *node, bool timed, double time)
+{
+    double impulse;
+    if (r->s->parameters.arm.model == ARM_PRINTED) {
+        report_node(r, node->key,
+                    "push: the printed model takes no pushes, expected 'set' or arm.model = "
+                    "corrected");
+    }
+    if (reader_quantity(r, node, "push", "N s", &impulse) && timed) {
+        add_action(r,
+                   (action){.time = time, .kind = ACTION_PUSH, .parameter = -1, .value = impulse});
+    }
+}
+
+// Reads the instant of an action and checks it against the run's duration.
+static bool read_time(reader *r, const tree_node *node, double *time)
+{
+    double duration = r->s->parameters.run.duration;
+    if (!reader_quantity(r, node, "at", "s", time)) {
+        return false;
+    }
+    if (*time < 0 || (r->duration_known && *time > duration)) {
+        report_node(r, node, "at = %g s is outside the run, expected 0 to %g s (run.duration)",
+                    *time, duration);
+        return false;
+    }
+    return true;
+}
+
+// Finds the time of an action and what it does; NULL for what is missing.
+static void find_action_parts(reader *r, const tree_node *map, const tree_node **at,
+                              const tree_node **deed)
+{
+    for (const tree_node *child = map->first; child != NULL; child = child->next) {
+        const char *key = reader_key(r, map, child);
+        if (key == NULL) {
+            continue;
+        }
+        if (strcmp(key, "at") == 0) {
+            *at = child;
+        } else if (strcmp(key, "set") != 0 && strcmp(key, "push") != 0) {
+            nearest_word near = nearest_begin(key);
+            nearest_try(&near, "at");
+            nearest_try(&near, "set");
+            nearest_try(&near, "push");
+            report_node(r, child->key, "unknown key '%.60s' in an action, %s%s%s", key,
+                        near.best ? "did you mean '" : "expected at, set or push",
+                        near.best ? near.best : "", near.best ? "'?" : "");
+        } else if (*deed != NULL) {
+            report_node(r, child->key,
+                        "'%s' after '%s' in one action, expected one of them (begin a new '- at:')",
+                        key, (*deed)->key->text);
+        } else {
+            *deed = child;
+        }
+    }
+}
+
+static void read_action(reader *r, const tree_node *map)
+{
+    const tree_node *at = NULL, *deed = NULL;
+    double time = 0;
+    if (!reader_expect_map(r, map, "an action", "at: 0.4 s")) {
+        return;
+    }
+    // a misspelt key already explains what is missing
+    int faults = r->faults;
+    find_action_parts(r, map, &at, &deed);
+    if (at == NULL && r->faults == faults) {
+        report_node(r, map, "an action without a time, expected 'at: 0.4 s'");
+    }
+    if (deed == NULL && r->faults == faults) {
+        report_node(r, map, "an action that does nothing, expected 'set:' or 'push:'");
+    }
+    bool timed = at != NULL && read_time(r, at, &time);
+    if (deed != NULL && strcmp(deed->key->text, "set") == 0) {
+        read_set(r, deed, timed, time);
+    } else if (deed != NULL) {
+        read_push(r, deed, timed, time);
+    }
+}
+
+void reader_script(reader *r, const tree_node *list)
+{
+    if (list->kind != TREE_LIST) {
+        report_node(r, list, "script is %s, expected a list of actions '- at: ...'",
+                    node_kind_name(list));
+        return;
+    }
+    for (const tree_node *child = list->first; child != NULL; child = child->next) {
+        read_action(r, child);
+    }
+}

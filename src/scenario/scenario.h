@@ -1,0 +1,84 @@
+// A scenario: parameters, scripted actions and expected results, read from a YAML file.
+#pragma once
+
+#include "src/quantities/parameters.h"
+#include "src/rig/controller.h"
+
+typedef enum action_kind { ACTION_SET, ACTION_PUSH } action_kind;
+
+// Something the file asks for at an instant of the run.
+typedef struct action {
+    double time; // [s]
+    action_kind kind;
+    int parameter; // ACTION_SET: index in parameter_table
+    double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the last link,
+                   // positive towards growing angle [N s]
+    char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new value
+} action;
+
+// A quantity of the run's summary that the file expects.
+typedef struct expectation {
+    char quantity[48]; // key of `run --json`, "first_contact_s"
+    bool is_null;      // expected not to have occurred
+    double value;      // in the quantity's unit
+    double tolerance;  // absolute, in the quantity's unit
+    int line, column;  // where it stands in the file, from 1
+} expectation;
+
+typedef struct scenario {
+    char *name;            // "thesis/fig-3-4", or the path it was read from
+    char *file;            // path of the file
+    char *title;           // one line
+    char *description;     // several sentences, "" if none
+    parameters parameters; // resolved
+    action *actions;       // sorted by time
+    int action_count;
+    expectation *expectations;
+    int expectation_count;
+} scenario;
+
+// Sets the parameter of an ACTION_SET; other actions change none.
+status action_apply(const action *a, parameters *p, fault *f);
+// The value that an ACTION_SET gives, as a scenario file would have it.
+void action_format_value(const action *a, char *text, size_t size);
+
+// The parameters as the script has set them until an instant, that included [s].
+parameters scenario_parameters_at(const scenario *s, double time);
+
+// Whether the law has every mode that control.lock and the script hold it in; else a sentence in f.
+// law: controller_of() before a run, which knows no plug-in; NULL says nothing.
+status scenario_check_locks(const scenario *s, const controller *law, fault *f);
+
+// Called once for each fault in a file, with a whole sentence "file:line:column: what, expected".
+typedef void (*fault_handler)(void *context, const char *sentence);
+
+// Reads and validates the file (layout: docs/scenarios.md). Every fault is reported through
+// `report`; STATUS_BAD_SCENARIO if there was any (STATUS_CANNOT_READ if the file cannot be opened),
+// and then nothing is to be freed. `name` is the scenario's name, NULL to use the path.
+status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
+                     void *context);
+
+// The same from memory; `path` is used in messages only.
+status scenario_parse(scenario *s, const char *text, size_t length, const char *path,
+                      const char *name, fault_handler report, void *context);
+
+void scenario_finish(scenario *s);
+
+// Writes a file that reads back with the same title, description, parameters and script. What it
+// expects is not written: with other parameters it would not hold. Errors stay in the stream.
+void scenario_write(FILE *stream, const scenario *s);
+
+// Applies "PATH=VALUE" (--set) and resolves the parameters anew. If that fails nothing changes and
+// f says why, beginning with "--set PATH=VALUE: ". A run.duration that ends before an action of the
+// script is allowed; the action then does not happen.
+status scenario_override(scenario *s, const char *assignment, fault *f);
+
+// Finds a scenario by the name `list` shows ("thesis/fig-3-4") or by file, as SCENARIO on the
+// command line is meant, and reads it. A file may be given without its ".yaml". STATUS_BAD_ARGUMENT
+// if there is neither; the sentence then names the nearest scenario.
+status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context);
+
+// The names of all scenarios in and below the scenario folder, sorted with numbers as numbers
+// (fig-3-2 before fig-3-10); free each and the array. STATUS_CANNOT_READ if there is no folder.
+// The folder is $IMPACTLAB_SCENARIOS, or the source tree's when built there, or the installed one.
+status scenario_list(char ***names, int *count, fault *f);

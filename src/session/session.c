@@ -1,0 +1,456 @@
+#include "src/session/session.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/run/background_run.h"
+
+#define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
+#define ROW_SPARE     1.5                   // rows of events beside those of the grid
+#define SHORT_WAIT    0.001                 // for the first row of a run that takes long [s]
+
+enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
+
+size_t trace_row_at(const trace *t, double time)
+{
+    size_t low = 0, high = t->row_count; // the first row after `time` lies in [low, high]
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (t->rows[middle].time <= time) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low > 0 ? low - 1 : 0;
+}
+
+// --- the run ----------------------------------------------------------------------------------
+
+static int count_actions(const session *s)
+{
+    int count = s->base.action_count;
+    for (int i = 0; i < s->input_count; i++) {
+        count += s->inputs[i].kind != INPUT_START;
+    }
+    return count;
+}
+
+// Inserts an action behind those that are not later.
+static void insert_action(scenario *to, action a)
+{
+    int at = to->action_count++;
+    for (; at > 0 && to->actions[at - 1].time > a.time; at--) {
+        to->actions[at] = to->actions[at - 1];
+    }
+    to->actions[at] = a;
+}
+
+// The scenario with the inputs in effect. Its actions are the only thing it owns.
+static status build_effective(const session *s, scenario *to, fault *f)
+{
+    *to = s->base;
+    to->expectation_count = 0;
+    to->action_count = 0;
+    to->actions = calloc((size_t)count_actions(s) + 1, sizeof *to->actions);
+    if (to->actions == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+    status code = STATUS_OK;
+    for (int i = 0; i < s->base.action_count; i++) {
+        insert_action(to, s->base.actions[i]);
+    }
+    for (int i = 0; i < s->input_count && code == STATUS_OK; i++) {
+        const session_input *in = &s->inputs[i];
+        if (in->kind == INPUT_START) {
+            code = parameter_set_text(&to->parameters, in->parameter, in->text, f);
+        } else {
+            action a = {.time = in->time,
+                        .kind = in->kind == INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
+                        .parameter = in->parameter,
+                        .value = in->value};
+            snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
+            insert_action(to, a);
+        }
+    }
+    return code == STATUS_OK ? parameters_resolve(&to->parameters, f) : code;
+}
+
+static double expected_rows(const parameters *p)
+{
+    return p->run.duration / p->method.step * ROW_SPARE;
+}
+
+static status check_memory(const parameters *p, fault *f)
+{
+    double rows = expected_rows(p);
+    double bytes =
+        rows * (double)(sizeof(sample) + 2 * sizeof(double) * (size_t)(p->arm.links + 1));
+    if (bytes > MEMORY_BUDGET) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at most "
+                         "%.0f: shorten run.duration or lengthen method.step",
+                         p->run.duration, p->method.step, bytes / (1024 * 1024),
+                         MEMORY_BUDGET / (1024 * 1024));
+    }
+    return STATUS_OK;
+}
+
+// A summary of what is known of an incomplete run: nothing yet.
+static void clear_summary(summary *m)
+{
+    memset(m, 0, sizeof *m);
+    for (int i = 0; i < summary_count; i++) {
+        double none = (double)NAN;
+        memcpy((char *)m + summary_table[i].offset, &none, sizeof none);
+    }
+}
+
+// The largest force so far, which the run's summary has at the end only.
+static void survey_force(session *s)
+{
+    const trace *t = &s->run.trace;
+    size_t end = s->surveyed + ROWS_SURVEYED;
+    for (; s->surveyed < t->row_count && s->surveyed < end; s->surveyed++) {
+        s->run.summary.peak_force_N = fmax(s->run.summary.peak_force_N, t->rows[s->surveyed].force);
+    }
+}
+
+// Takes over the run that was being computed, as far as it went. The cursor may be beyond its end.
+static void take_over(session *s)
+{
+    s->run = computation_finish(s->computing);
+    s->computing = NULL;
+}
+
+// Ends what is being computed; false if there is nothing, or it was just over.
+static bool end_computing(session *s)
+{
+    if (s->computing == NULL) {
+        return false;
+    }
+    computation_stop(s->computing);
+    take_over(s);
+    return s->run.summary.status == STATUS_STOPPED;
+}
+
+// Computes the run of a scenario, and takes it up where the present one can be gone on from. A run
+// that is not there within the session's patience is left to its thread. On failure the present run
+// stays.
+static status start_run(session *s, const scenario *effective, fault *f)
+{
+    run_result run;
+    size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
+    bool take_up = run_take_up(&s->run, &s->effective, effective, rows, &run);
+    computation *c = computation_start(effective, rows, take_up, &run,
+                                       s->has_other ? &s->other : NULL, isinf(s->patience));
+    if (c == NULL) {
+        run_finish(&run);
+        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+    bool over = computation_wait(c, fmin(s->patience, 1e6));
+    while (!over && computation_look(c, &run) == 0) {
+        over = computation_wait(c, SHORT_WAIT);
+    }
+    if (over) {
+        run = computation_finish(c);
+        c = NULL;
+    } else {
+        run.touch = NULL; // the computation's
+        clear_summary(&run.summary);
+        run.history = (run_history){0};
+    }
+    // a run that diverges is worth looking at; one without a single row is not
+    if (run.trace.row_count == 0) {
+        status code = run.summary.status == STATUS_OK ? STATUS_NO_MEMORY : run.summary.status;
+        fault_set(f, code, "%s", run.summary.message);
+        run_finish(&run);
+        return code;
+    }
+    run_finish(&s->run);
+    s->run = run;
+    s->computing = c;
+    s->surveyed = 0;
+    return STATUS_OK;
+}
+
+// Computes the run with the inputs in effect. On failure the present run stays.
+static status compute(session *s, fault *f)
+{
+    scenario effective;
+    status code = build_effective(s, &effective, f);
+    if (code == STATUS_OK) {
+        code = check_memory(&effective.parameters, f);
+    }
+    bool unfinished = end_computing(s);
+    if (code == STATUS_OK) {
+        code = start_run(s, &effective, f);
+    }
+    if (code != STATUS_OK && s->run.trace.row_count == 0) {
+        free(effective.actions);
+        return code; // there is no session yet
+    }
+    if (code != STATUS_OK) {
+        free(effective.actions);
+        if (unfinished && start_run(s, &s->effective, NULL) == STATUS_OK) {
+            s->version++;
+        }
+        session_follow(s);
+        session_seek(s, s->now);
+        return code;
+    }
+    free(s->effective.actions);
+    s->effective = effective;
+    s->version++;
+    session_follow(s);
+    session_seek(s, s->now);
+    s->seen = s->now;
+    return STATUS_OK;
+}
+
+bool session_follow(session *s)
+{
+    if (s->computing == NULL) {
+        return false;
+    }
+    if (computation_wait(s->computing, 0)) {
+        take_over(s);
+        session_seek(s, s->now);
+        return true;
+    }
+    size_t before = s->run.trace.row_count;
+    bool more = computation_look(s->computing, &s->run) > before;
+    survey_force(s);
+    s->row = trace_row_at(&s->run.trace, s->now);
+    return more;
+}
+
+bool session_stop(session *s)
+{
+    bool stopped = end_computing(s);
+    if (s->run.trace.row_count > 0) {
+        session_seek(s, s->now);
+    }
+    return stopped;
+}
+
+status session_go_on(session *s, fault *f)
+{
+    if (s->computing != NULL || s->run.summary.status != STATUS_STOPPED) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the run was not stopped");
+    }
+    double seen = s->seen;
+    status code = start_run(s, &s->effective, f);
+    s->version += code == STATUS_OK;
+    session_follow(s);
+    session_seek(s, s->now);
+    s->seen = fmax(seen, s->now);
+    return code;
+}
+
+status session_open(session *s, scenario *base, double patience, fault *f)
+{
+    memset(s, 0, sizeof *s);
+    s->base = *base;
+    s->patience = patience;
+    status code = compute(s, f);
+    if (code != STATUS_OK) {
+        session_finish(s);
+    }
+    return code;
+}
+
+status session_init(session *s, scenario *base, fault *f)
+{
+    return session_open(s, base, HUGE_VAL, f);
+}
+
+void session_finish(session *s)
+{
+    end_computing(s);
+    session_forget_other(s);
+    run_finish(&s->run);
+    free(s->effective.actions);
+    free(s->inputs);
+    scenario_finish(&s->base);
+    memset(s, 0, sizeof *s);
+}
+
+// --- the cursor -------------------------------------------------------------------------------
+
+const sample *session_sample(const session *s)
+{
+    return &s->run.trace.rows[s->row];
+}
+
+double session_end(const session *s)
+{
+    return s->run.trace.rows[s->run.trace.row_count - 1].time;
+}
+
+void session_seek(session *s, double time)
+{
+    double end = session_end(s);
+    // rows to come may be waited for at an instant the cursor is at already
+    end = s->computing != NULL && s->now > end ? s->now : end;
+    s->now = time > end ? end : time > 0 ? time : 0;
+    s->row = trace_row_at(&s->run.trace, s->now);
+    // an instant beside a row's by rounding is the row's: a change there cuts no stride anew
+    double near = s->run.trace.rows[s->row + (s->row + 1 < s->run.trace.row_count)].time;
+    if (near - s->now < 1e-12 * fmax(1, s->now) && near > s->now) {
+        session_seek(s, near);
+    }
+    s->seen = s->now > s->seen ? s->now : s->seen;
+}
+
+bool session_step(session *s, long rows)
+{
+    long last = (long)s->run.trace.row_count - 1, to = (long)s->row + rows;
+    to = to < 0 ? 0 : to > last ? last : to;
+    bool moved = to != (long)s->row;
+    s->row = (size_t)to;
+    s->now = session_sample(s)->time;
+    s->seen = s->now > s->seen ? s->now : s->seen;
+    return moved;
+}
+
+bool session_step_event(session *s, int direction)
+{
+    const trace *t = &s->run.trace;
+    double found = -1;
+    for (size_t i = 0; i < t->event_count; i++) {
+        double time = t->events[i].time;
+        if (direction > 0 && time > s->now) {
+            found = time;
+            break;
+        }
+        if (direction < 0 && time < s->now) {
+            found = time;
+        }
+    }
+    if (found >= 0) {
+        session_seek(s, found);
+    }
+    return found >= 0;
+}
+
+const event *session_event(const session *s)
+{
+    for (size_t i = 0; i < s->run.trace.event_count; i++) {
+        if (s->run.trace.events[i].time == s->now) {
+            return &s->run.trace.events[i];
+        }
+    }
+    return NULL;
+}
+
+parameters session_parameters_at(const session *s, double time)
+{
+    return scenario_parameters_at(&s->effective, time);
+}
+
+// --- inputs -----------------------------------------------------------------------------------
+
+// Adds an input and computes the run; takes it out again if that fails.
+static status add_input(session *s, const session_input *in, fault *f)
+{
+    if (s->input_count == s->input_capacity) {
+        int capacity = s->input_capacity ? 2 * s->input_capacity : 16;
+        session_input *inputs = realloc(s->inputs, (size_t)capacity * sizeof *inputs);
+        if (inputs == NULL) {
+            return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        }
+        s->inputs = inputs;
+        s->input_capacity = capacity;
+    }
+    session_input replaced = s->inputs[s->input_count];
+    s->inputs[s->input_count++] = *in;
+    status code = compute(s, f);
+    if (code != STATUS_OK) {
+        s->inputs[--s->input_count] = replaced;
+        return code;
+    }
+    s->input_total = s->input_count;
+    return STATUS_OK;
+}
+
+status session_change(session *s, int parameter, const char *text, fault *f)
+{
+    session_input in = {.kind = INPUT_START, .time = s->now, .parameter = parameter};
+    const parameter_info *info = &parameter_table[parameter];
+    if (strlen(text) >= sizeof in.text) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the value of %s is too long", info->path);
+    }
+    snprintf(in.text, sizeof in.text, "%s", text);
+    parameters scratch = session_parameters_at(s, s->now);
+    status code = parameter_set_text(&scratch, parameter, text, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    in.value = parameter_get(&scratch, parameter);
+    if (info->timed && s->now > 0) {
+        in.kind = INPUT_TIMED;
+    }
+    return add_input(s, &in, f);
+}
+
+status session_push(session *s, double impulse, fault *f)
+{
+    session_input in = {.kind = INPUT_PUSH, .time = s->now, .parameter = -1, .value = impulse};
+    if (!isfinite(impulse)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s");
+    }
+    if (s->effective.parameters.arm.model == ARM_PRINTED) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the printed model knows no pushes");
+    }
+    return add_input(s, &in, f);
+}
+
+status session_undo(session *s, fault *f)
+{
+    if (s->input_count == 0) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo");
+    }
+    s->input_count--;
+    status code = compute(s, f);
+    s->input_count += code != STATUS_OK;
+    return code;
+}
+
+status session_redo(session *s, fault *f)
+{
+    if (s->input_count == s->input_total) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo");
+    }
+    s->input_count++;
+    status code = compute(s, f);
+    s->input_count -= code != STATUS_OK;
+    return code;
+}
+
+status session_branch(session *s, fault *f)
+{
+    run_result kept;
+    if (s->computing != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "the run is still being computed: wait for its end, or stop it with Esc");
+    }
+    size_t rows = (size_t)expected_rows(&s->effective.parameters) + 1;
+    status code = run_share(&s->run, rows, &kept);
+    if (code != STATUS_OK) {
+        return fault_set(f, code, "%s", status_text(code));
+    }
+    session_forget_other(s);
+    s->other = kept;
+    s->has_other = true;
+    s->version++;
+    return STATUS_OK;
+}
+
+void session_forget_other(session *s)
+{
+    if (s->has_other) {
+        run_finish(&s->other);
+        s->has_other = false;
+    }
+}

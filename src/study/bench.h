@@ -1,0 +1,58 @@
+// Benchmarks: medians of repeated measurements, and their comparison with stored ones.
+//
+// Times are computing times of this process, which bear a busy machine better than the clock on the
+// wall; only work on several threads is timed by that clock.
+#pragma once
+
+#include <jansson.h>
+
+#include "src/base/status.h"
+
+enum { BENCH_REPETITIONS = 11, BENCH_NAME = 48, BENCH_UNIT = 16 };
+
+// Something that can be measured.
+typedef struct benchmark {
+    const char *name;                           // "arm_n2_us_per_ms"
+    const char *unit;                           // "us/ms"
+    bool more_is_better;                        // a rate instead of a time
+    status (*measure)(double *value, fault *f); // once, in `unit`
+} benchmark;
+
+// What came out of it.
+typedef struct bench_result {
+    char name[BENCH_NAME], unit[BENCH_UNIT];
+    double median, min, max;
+} bench_result;
+
+// The benchmarks of the library; programs add their own.
+extern const benchmark bench_table[];
+extern const int bench_count;
+
+// Computing time of the process so far [s].
+double bench_computing_time(void);
+
+// Seconds that one call of work(context) takes: it is repeated until `least` seconds of computing
+// time have passed. *failed is the first code that is not STATUS_OK, at which it stops.
+double bench_seconds_per_call(status (*work)(void *context), void *context, double least,
+                              status *failed);
+
+// Measures BENCH_REPETITIONS times after a first time that only warms the caches. Where that would
+// take long less has to do: three times after one second, one after twenty.
+status bench_run(const benchmark *b, bench_result *result, fault *f);
+
+// The object of `bench --json`: {"bench": [{"name", "unit", "median", "min", "max"}]}.
+json_t *bench_export(const bench_result *results, int count);
+
+// Reads such a file. *results is to be freed. STATUS_CANNOT_READ if there is none or it is none.
+status bench_read(const char *path, bench_result **results, int *count, fault *f);
+
+// How many times slower `now` is than `before` by the medians; below 1: faster.
+double bench_slowdown(const benchmark *b, const bench_result *now, const bench_result *before);
+
+// Whether that is more than noise: by the medians 15 % slower, and every single measurement slower
+// than the median before.
+bool bench_is_slower(const benchmark *b, const bench_result *now, const bench_result *before);
+
+// Cost of a step of 1 ms of the implicit method (generalised-alpha) on a chain of `links` links:
+// flat wall, 1 V, in free flight and in lasting contact [us].
+status bench_step_cost(int links, double *free_us, double *contact_us, fault *f);

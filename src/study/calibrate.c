@@ -1,0 +1,215 @@
+#include "src/study/calibrate.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/run/export.h"
+#include "src/arm/arm.h"
+#include "src/run/run.h"
+
+#define SHORTEST_PRESS 5.0 // [s]
+#define WINDOW_SHARE   0.4 // of it, its last part, over which the readings are averaged
+
+// --- one press ------------------------------------------------------------------------------
+
+// The scenario under a constant command. It starts where the arm touches the wall: an impact would
+// leave a beam without damping ringing, and the rig off scale.
+static status pressing(const scenario *s, double command, int number, scenario *under, fault *f)
+{
+    *under = *s;
+    parameters *p = &under->parameters;
+    const struct {
+        const char *path;
+        double value;
+    } changes[] = {
+        {"control.law", LAW_OPEN_LOOP},
+        {"control.approach_voltage", command},
+        {"control.seed", (double)(((long)p->control.seed + number) % 2147483648L)},
+        {"initial.angle", p->wall.angle},
+        {"initial.velocity", 0},
+        {"run.duration", fmax(p->run.duration, SHORTEST_PRESS)},
+    };
+    under->action_count = 0;
+    status code = STATUS_OK;
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0] && code == STATUS_OK; i++) {
+        code = parameter_set_number(p, parameter_find(changes[i].path), changes[i].value, f);
+    }
+    return code == STATUS_OK ? parameters_resolve(p, f) : code;
+}
+
+// Mean and standard deviation of readings, each weighed with the time for which it stood.
+typedef struct average {
+    double weight, sum, squares;
+} average;
+
+static void average_add(average *a, double value, double time)
+{
+    a->weight += time;
+    a->sum += time * value;
+    a->squares += time * value * value;
+}
+
+static double average_mean(const average *a)
+{
+    return a->sum / a->weight;
+}
+
+static double average_spread(const average *a)
+{
+    double mean = average_mean(a);
+    return sqrt(fmax(0, a->squares / a->weight - mean * mean));
+}
+
+// K2 of (5.26) with l half the beam [N m/rad].
+static double stiffness(const parameters *p, double force, double angle)
+{
+    return force * (p->arm.length / 2) / (2 * angle);
+}
+
+static void measure(const parameters *p, const trace *t, double command, calibration_point *point)
+{
+    average force[2] = {{0}}, angle[2] = {{0}}, whole_force = {0}, whole_angle = {0};
+    const double wall = p->wall.angle + p->control.wall_error, end = p->run.duration,
+                 window = WINDOW_SHARE * end;
+    for (size_t i = 0; i + 1 < t->row_count; i++) {
+        const sample *row = &t->rows[i];
+        double stood = t->rows[i + 1].time - row->time;
+        if (row->time >= end - window) {
+            int half = row->time >= end - window / 2;
+            average_add(&force[half], row->force_reading, stood);
+            average_add(&angle[half], row->encoder - wall, stood);
+            average_add(&whole_force, row->force_reading, stood);
+            average_add(&whole_angle, row->encoder - wall, stood);
+        }
+    }
+    double k2[2];
+    for (int half = 0; half < 2; half++) {
+        k2[half] = stiffness(p, average_mean(&force[half]), average_mean(&angle[half]));
+    }
+    double f = average_mean(&whole_force), x = average_mean(&whole_angle);
+    *point = (calibration_point){.command = command,
+                                 .force = f,
+                                 .angle = x,
+                                 .k2 = stiffness(p, f, x),
+                                 .force_spread = average_spread(&whole_force),
+                                 .angle_spread = average_spread(&whole_angle),
+                                 .drift = k2[1] / k2[0] - 1};
+}
+
+static status press(const scenario *s, double command, int number, calibration_point *point,
+                    fault *f)
+{
+    run_result result;
+    scenario under;
+    status code = pressing(s, command, number, &under, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = run_scenario(&under, true, &result);
+    if (code != STATUS_OK) {
+        fault_set(f, code, "pressing with %g V failed: %.700s", command, result.summary.message);
+    } else {
+        measure(&under.parameters, &result.trace, command, point);
+        if (!(point->force > 0) || !(point->angle > 0)) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT,
+                             "under %g V the arm does not press: the force sensor reads %.4g N, "
+                             "the encoder %.4g rad beyond the wall; friction alone holds %.3g V",
+                             command, point->force, point->angle,
+                             s->parameters.motor.stiction /
+                                 motor_torque_per_volt(&s->parameters.motor));
+        }
+    }
+    run_finish(&result);
+    return code;
+}
+
+status calibrate(const scenario *s, const double *commands, int count, calibration *c, fault *f)
+{
+    *c = (calibration){0};
+    if (s->parameters.wall.kind == WALL_NONE) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "there is nothing to press against, wall.kind is none");
+    }
+    status code = STATUS_OK;
+    for (int i = 0; i < count && code == STATUS_OK; i++) {
+        code = press(s, commands[i], i, &c->points[i], f);
+        c->count += code == STATUS_OK;
+    }
+    return code;
+}
+
+// --- results --------------------------------------------------------------------------------
+
+status calibration_table(const calibration *c, k2_table *t, fault *f)
+{
+    *t = (k2_table){0};
+    for (int i = 0; i < c->count; i++) {
+        const calibration_point *point = &c->points[i];
+        int at = t->count++;
+        for (; at > 0 && t->force[at - 1] > point->force; at--) {
+            t->force[at] = t->force[at - 1];
+            t->k2[at] = t->k2[at - 1];
+        }
+        t->force[at] = point->force;
+        t->k2[at] = point->k2;
+    }
+    for (int i = 1; i < t->count; i++) {
+        // to the digits that the table is written with
+        if (t->force[i] - t->force[i - 1] < 2e-3 * t->force[i]) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "two commands press alike, with %.4g N, so there is no table by "
+                             "force; expected commands further apart",
+                             t->force[i]);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum { COLUMNS = 8 };
+static const char *const column_keys[COLUMNS] = {
+    "command_V",   "force_N",        "hub_angle_rad",    "k2_Nm_per_rad",
+    "k2_over_arm", "force_spread_N", "angle_spread_rad", "drift_percent"};
+
+static void fill_columns(const calibration_point *p, const scenario *s, double values[COLUMNS])
+{
+    const double row[COLUMNS] = {
+        p->command,      p->force,        p->angle,      p->k2, p->k2 / s->parameters.arm.k2,
+        p->force_spread, p->angle_spread, 100 * p->drift};
+    memcpy(values, row, sizeof row);
+}
+
+json_t *calibration_json(const calibration *c, const scenario *s, const char *table)
+{
+    json_t *object = json_object(), *points = json_array();
+    json_object_set_new(object, "scenario", json_text(s->name));
+    json_object_set_new(object, "k2_table", json_text(table));
+    for (int i = 0; i < c->count; i++) {
+        json_t *point = json_object();
+        double values[COLUMNS];
+        fill_columns(&c->points[i], s, values);
+        for (int k = 0; k < COLUMNS; k++) {
+            json_object_set_new(point, column_keys[k], json_number(values[k]));
+        }
+        json_array_append_new(points, point);
+    }
+    json_object_set_new(object, "points", points);
+    return object;
+}
+
+void calibration_csv(FILE *stream, const calibration *c, const scenario *s)
+{
+    for (int k = 0; k < COLUMNS; k++) {
+        fprintf(stream, "%s%s", k > 0 ? "," : "", column_keys[k]);
+    }
+    fputc('\n', stream);
+    for (int i = 0; i < c->count; i++) {
+        double values[COLUMNS];
+        fill_columns(&c->points[i], s, values);
+        for (int k = 0; k < COLUMNS; k++) {
+            char text[NUMBER_TEXT];
+            number_format(text, values[k]);
+            fprintf(stream, "%s%s", k > 0 ? "," : "", text);
+        }
+        fputc('\n', stream);
+    }
+}

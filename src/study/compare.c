@@ -1,0 +1,358 @@
+#include "src/study/compare.h"
+
+#include <string.h>
+
+#include "src/run/export.h"
+#include "src/predict/best_stop.h"
+#include "src/rig/rig.h"
+#include "src/base/words.h"
+
+enum {
+    PEAK,
+    BEST_PEAK,
+    OVERSHOOT,
+    SETTLING,
+    BEST_SETTLING,
+    IMPACTS,
+    SEPARATIONS,
+    STEADY_ERROR,
+    COMMAND,
+    ENERGY
+};
+
+const compare_quantity compare_quantities[COMPARE_QUANTITIES] = {
+    [PEAK] = {"peak_force_N", "peak", "N"},
+    [BEST_PEAK] = {"best_peak_N", "best peak", "N"},
+    [OVERSHOOT] = {"overshoot_percent", "over", "%"},
+    [SETTLING] = {"settling_time_s", "settled", "s"},
+    [BEST_SETTLING] = {"best_settling_s", "best time", "s"},
+    [IMPACTS] = {"impacts", "impacts", ""},
+    [SEPARATIONS] = {"separations", "separations", ""},
+    [STEADY_ERROR] = {"steady_error_N", "error", "N"},
+    [COMMAND] = {"largest_command_V", "command", "V"},
+    [ENERGY] = {"electrical_energy_J", "energy", "J"},
+};
+
+// --- rows -----------------------------------------------------------------------------------
+
+static const char *law_of(const parameters *p)
+{
+    const controller *law = p->control.law == LAW_NONE ? NULL : controller_of(p->control.law);
+    return law != NULL ? law->name : p->control.law == LAW_PLUGIN ? "plugin" : "none";
+}
+
+// What full knowledge of the state could have made of the run's first impact.
+static void find_best(const scenario *s, const run_result *result, double *peak, double *settling)
+{
+    const summary *m = &result->summary;
+    const parameters *p = &s->parameters;
+    const double *touch = result->touch, command = m->force_command_N;
+    pressed_arm_model model;
+    pressed_state after;
+    *peak = *settling = (double)NAN;
+    if (touch == NULL || s->action_count > 0 || p->wall.restitution > 0 ||
+        !pressed_arm_model_of(p, &model)) {
+        return;
+    }
+    // two bodies: hub and first link are one
+    three_body_state before = {.angle = {touch[0], touch[0], touch[1]},
+                               .velocity = {touch[2], touch[2], touch[3]}};
+    if (pressed_after_impact(p, &before, &after)) {
+        *peak = best_peak(&model, after);
+        if (!isnan(command)) {
+            double allowed = fmax(m->peak_force_N, (1 + SETTLED_BAND) * command);
+            *settling = best_settling(&model, after, command, SETTLED_BAND, allowed);
+        }
+    }
+}
+
+compare_row compare_row_of(const scenario *s, const run_result *result)
+{
+    const summary *m = &result->summary;
+    double command = m->force_command_N, peak, settling;
+    bool commanded = !isnan(command) && command > 0;
+    find_best(s, result, &peak, &settling);
+    return (compare_row){
+        .scenario = s->name,
+        .law = law_of(&s->parameters),
+        .ok = m->status == STATUS_OK,
+        .values = {[PEAK] = m->peak_force_N,
+                   [BEST_PEAK] = peak,
+                   [OVERSHOOT] = commanded ? 100 * m->force_over_command_N / command
+                                           : m->force_overshoot_percent,
+                   [SETTLING] = m->settling_time_s,
+                   [BEST_SETTLING] = settling,
+                   [IMPACTS] = m->impacts,
+                   [SEPARATIONS] = m->separations,
+                   [STEADY_ERROR] = m->steady_error_N,
+                   [COMMAND] = m->largest_command_V,
+                   [ENERGY] = m->electrical_energy_J},
+    };
+}
+
+bool compare_differs(double value, double reference, double tolerance)
+{
+    if (isnan(value) || isnan(reference)) {
+        return isnan(value) != isnan(reference);
+    }
+    return fabs(value - reference) > tolerance * fmax(fabs(value), fabs(reference));
+}
+
+// Whether quantity k of row i differs from the reference's.
+static bool marked(const compare_table *t, int i, int k)
+{
+    return t->against != NULL &&
+           compare_differs(t->rows[i].values[k], t->against[i / t->group].values[k], t->tolerance);
+}
+
+status compare_choose(compare_table *t, const char *keys, fault *f)
+{
+    for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+        t->hidden[k] = true;
+    }
+    for (const char *key = keys;; key++) {
+        size_t length = strcspn(key, ",");
+        char word[64];
+        int found = -1;
+        snprintf(word, sizeof word, "%.*s", (int)length, key);
+        nearest_word near = nearest_begin(word);
+        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+            nearest_try(&near, compare_quantities[k].key);
+            found = strcmp(word, compare_quantities[k].key) == 0 ? k : found;
+        }
+        if (found < 0) {
+            return fault_set(f, STATUS_BAD_ARGUMENT, "there is no column '%s'%s%s%s", word,
+                             near.best ? ", did you mean '" : ", expected keys of --json",
+                             near.best ? near.best : "", near.best ? "'?" : "");
+        }
+        t->hidden[found] = false;
+        key += length;
+        if (*key == '\0') {
+            return STATUS_OK;
+        }
+    }
+}
+
+// --- tables ---------------------------------------------------------------------------------
+
+// Value of a row's varied parameter as a scenario file would give it, without its unit.
+static void format_varied(const compare_table *t, int row, int which, char *text, size_t size)
+{
+    parameters scratch = {0};
+    parameter_set_number(&scratch, t->varied[which], t->rows[row].varied[which], NULL);
+    parameter_format(&scratch, t->varied[which], text, size);
+}
+
+// "peak/N", or "peak [N]" for a page.
+static void format_heading(const char *name, const char *unit, bool page, char *text, size_t size)
+{
+    const char *open = unit[0] == '\0' ? "" : page ? " [" : "/";
+    snprintf(text, size, "%s%s%s%s", name, open, unit, unit[0] != '\0' && page ? "]" : "");
+}
+
+// Heading of a varied parameter: its path without the group, which the columns have no room for.
+static void format_varied_heading(const compare_table *t, int which, bool page, char *text,
+                                  size_t size)
+{
+    const parameter_info *info = &parameter_table[t->varied[which]];
+    format_heading(strchr(info->path, '.') + 1, info->unit, page, text, size);
+}
+
+static int longest(const compare_table *t, bool law)
+{
+    int width = (int)strlen(law ? "law" : "scenario");
+    for (int i = 0; i < t->count; i++) {
+        int length = (int)strlen(law ? t->rows[i].law : t->rows[i].scenario);
+        width = length > width ? length : width;
+    }
+    return width;
+}
+
+static int varied_width(const compare_table *t, int which)
+{
+    char text[PARAMETER_TEXT_SIZE];
+    format_varied_heading(t, which, false, text, sizeof text);
+    int width = (int)strlen(text);
+    for (int i = 0; i < t->count; i++) {
+        format_varied(t, i, which, text, sizeof text);
+        width = (int)strlen(text) > width ? (int)strlen(text) : width;
+    }
+    return width;
+}
+
+static void text_heading(FILE *stream, const compare_table *t, int width, int law)
+{
+    char heading[PARAMETER_TEXT_SIZE];
+    fprintf(stream, "%-*s  %-*s", width, "scenario", law, "law");
+    for (int v = 0; v < t->varied_count; v++) {
+        format_varied_heading(t, v, false, heading, sizeof heading);
+        fprintf(stream, "  %*s", varied_width(t, v), heading);
+    }
+    for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+        const compare_quantity *quantity = &compare_quantities[k];
+        format_heading(quantity->heading, quantity->unit, false, heading, sizeof heading);
+        if (!t->hidden[k]) {
+            fprintf(stream, "  %11s ", heading);
+        }
+    }
+    fputc('\n', stream);
+}
+
+void compare_text(FILE *stream, const compare_table *t)
+{
+    int width = longest(t, false), law = longest(t, true);
+    text_heading(stream, t, width, law);
+    for (int i = 0; i < t->count; i++) {
+        const compare_row *row = &t->rows[i];
+        fprintf(stream, "%-*s  %-*s", width, row->scenario, law, row->law);
+        for (int v = 0; v < t->varied_count; v++) {
+            char text[PARAMETER_TEXT_SIZE];
+            format_varied(t, i, v, text, sizeof text);
+            fprintf(stream, "  %*s", varied_width(t, v), text);
+        }
+        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+            char text[32] = "-";
+            if (!isnan(row->values[k])) {
+                snprintf(text, sizeof text, "%.4g", row->values[k]);
+            }
+            if (!t->hidden[k]) {
+                fprintf(stream, "  %11s%c", text, marked(t, i, k) ? '*' : ' ');
+            }
+        }
+        fprintf(stream, "%s\n", row->ok ? "" : " failed");
+    }
+}
+
+void compare_markdown(FILE *stream, const compare_table *t)
+{
+    char text[PARAMETER_TEXT_SIZE];
+    int columns = 2 + t->varied_count;
+    fputs("| scenario | law |", stream);
+    for (int v = 0; v < t->varied_count; v++) {
+        format_varied_heading(t, v, true, text, sizeof text);
+        fprintf(stream, " %s |", text);
+    }
+    for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+        const compare_quantity *quantity = &compare_quantities[k];
+        format_heading(quantity->heading, quantity->unit, true, text, sizeof text);
+        if (!t->hidden[k]) {
+            fprintf(stream, " %s |", text);
+            columns++;
+        }
+    }
+    fputs("\n|", stream);
+    for (int i = 0; i < columns; i++) {
+        fputs("---|", stream);
+    }
+    fputc('\n', stream);
+    for (int i = 0; i < t->count; i++) {
+        fprintf(stream, "| %s | %s |", t->rows[i].scenario, t->rows[i].law);
+        for (int v = 0; v < t->varied_count; v++) {
+            format_varied(t, i, v, text, sizeof text);
+            fprintf(stream, " %s |", text);
+        }
+        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+            double value = t->rows[i].values[k];
+            if (!t->hidden[k]) {
+                fprintf(stream,
+                        isnan(value)          ? " – |"
+                        : fabs(value) >= 1000 ? " %.0f |"
+                                              : " %.3g |",
+                        value);
+            }
+        }
+        fputc('\n', stream);
+    }
+}
+
+// --- for programs ---------------------------------------------------------------------------
+
+static json_t *varied_object(const compare_table *t, int row)
+{
+    json_t *object = json_object();
+    for (int v = 0; v < t->varied_count; v++) {
+        const parameter_info *info = &parameter_table[t->varied[v]];
+        char text[PARAMETER_TEXT_SIZE];
+        format_varied(t, row, v, text, sizeof text);
+        json_object_set_new(object, info->path,
+                            info->type == PARAMETER_CHOICE ? json_text(text)
+                            : info->type == PARAMETER_BOOLEAN
+                                ? json_boolean(t->rows[row].varied[v])
+                                : json_number(t->rows[row].varied[v]));
+    }
+    return object;
+}
+
+static json_t *row_object(const compare_table *t, int i)
+{
+    const compare_row *row = &t->rows[i];
+    json_t *object = json_object(), *differs = json_array();
+    json_object_set_new(object, "scenario", json_text(row->scenario));
+    json_object_set_new(object, "law", json_text(row->law));
+    if (t->varied_count > 0) {
+        json_object_set_new(object, "varied", varied_object(t, i));
+    }
+    json_object_set_new(object, "status", json_string(row->ok ? "ok" : "failed"));
+    for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+        const char *key = compare_quantities[k].key;
+        json_object_set_new(object, key, json_number(row->values[k]));
+        if (marked(t, i, k)) {
+            json_array_append_new(differs, json_string(key));
+        }
+    }
+    if (t->against != NULL) {
+        json_object_set(object, "differs", differs);
+    }
+    json_decref(differs);
+    return object;
+}
+
+json_t *compare_json(const compare_table *t)
+{
+    json_t *whole = json_object(), *array = json_array();
+    for (int i = 0; i < t->count; i++) {
+        json_array_append_new(array, row_object(t, i));
+    }
+    if (t->against != NULL) {
+        json_object_set_new(whole, "against", json_text(t->against->scenario));
+        json_object_set_new(whole, "tolerance", json_number(t->tolerance));
+    }
+    json_object_set_new(whole, "runs", array);
+    return whole;
+}
+
+void compare_csv(FILE *stream, const compare_table *t)
+{
+    fputs("scenario,law", stream);
+    for (int v = 0; v < t->varied_count; v++) {
+        fprintf(stream, ",%s", parameter_table[t->varied[v]].path);
+    }
+    fputs(",status", stream);
+    for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+        fprintf(stream, ",%s", compare_quantities[k].key);
+    }
+    fputc('\n', stream);
+    for (int i = 0; i < t->count; i++) {
+        const compare_row *row = &t->rows[i];
+        // quotes double in a quoted field
+        fputc('"', stream);
+        for (const char *c = row->scenario; *c != '\0'; c++) {
+            fputs(*c == '"' ? "\"\"" : (const char[]){*c, 0}, stream);
+        }
+        fprintf(stream, "\",%s", row->law);
+        for (int v = 0; v < t->varied_count; v++) {
+            char text[PARAMETER_TEXT_SIZE];
+            format_varied(t, i, v, text, sizeof text);
+            fprintf(stream, ",%s", text);
+        }
+        fprintf(stream, ",%s", row->ok ? "ok" : "failed");
+        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+            char text[NUMBER_TEXT] = "";
+            if (!isnan(row->values[k])) {
+                number_format(text, row->values[k]);
+            }
+            fprintf(stream, ",%s", text);
+        }
+        fputc('\n', stream);
+    }
+}

@@ -1,0 +1,70 @@
+// One row for each of several runs: what a person asks first of a control law.
+#pragma once
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "src/run/run.h"
+
+enum { COMPARE_QUANTITIES = 10, COMPARE_MOST_VARIED = 8 };
+
+typedef struct compare_quantity {
+    const char *key;     // in JSON and CSV, its unit at the end
+    const char *heading; // in the table
+    const char *unit;    // in the table
+} compare_quantity;
+extern const compare_quantity compare_quantities[COMPARE_QUANTITIES];
+
+typedef struct compare_row {
+    const char *scenario;               // its name, borrowed
+    const char *law;                    // control law, borrowed
+    double varied[COMPARE_MOST_VARIED]; // values of the table's varied parameters
+    bool ok;                            // the run reached its end
+    double
+        values[COMPARE_QUANTITIES]; // in the order of compare_quantities; NaN where there is none
+} compare_row;
+
+// Rows to be shown together.
+typedef struct compare_table {
+    const compare_row *rows;
+    int count;
+    const int *varied; // indices of parameters, as in parameter_table; their values differ by row
+    int varied_count;
+    const compare_row *against; // NULL, or references: row i is held against row i / group of these
+    int group;                  // at least 1
+    double tolerance;           // share of the larger value beyond which two of them differ
+    bool hidden[COMPARE_QUANTITIES]; // columns left out, of the tables only
+} compare_table;
+
+// The row of a run; its varied values are the caller's to fill in. Overshoot is that of the peak
+// over the commanded force; without a rig, over the steady force.
+//
+// best_peak_N and best_settling_s are what a controller with full knowledge of the state could do
+// after the run's first impact (src/predict/best_stop.h): the least peak with which it can end in
+// contact; and the least settling time into the band round the commanded force, with a peak not
+// above this run's own (nor below the band). They hold on the corrected arm of two links on a rigid
+// hub, without script, where the first impact was plastic; else they are NaN.
+compare_row compare_row_of(const scenario *s, const run_result *result);
+
+// Whether a value differs from the reference's by more than the tolerance, a share of the larger
+// one. A quantity that only one of them has differs.
+bool compare_differs(double value, double reference, double tolerance);
+
+// Hides all columns but those named in "KEY,KEY...". STATUS_BAD_ARGUMENT, with a sentence in f, for
+// a key that is none.
+status compare_choose(compare_table *t, const char *keys, fault *f);
+
+// Table for people; what differs from the reference is marked with *.
+void compare_text(FILE *stream, const compare_table *t);
+
+// The same as a table of a Markdown page, without marks.
+void compare_markdown(FILE *stream, const compare_table *t);
+
+// {"runs": [{"scenario": ..., "law": ..., "varied": {PATH: value ...} (if there are any), "status":
+// "ok", KEY: number or null ..., "differs": [KEY ...] (with a reference only)}]}. NULL without
+// memory.
+json_t *compare_json(const compare_table *t);
+
+// One header row, one row a run; varied parameters as PATH; a quantity that there is not leaves its
+// field empty.
+void compare_csv(FILE *stream, const compare_table *t);

@@ -1,0 +1,147 @@
+#include "src/study/convergence.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "src/study/bench.h"
+#include "src/run/run.h"
+
+#define ROUNDING       1e-13 // differences below this share of a value tell nothing
+#define REFERENCE_STEP 2e-5  // [s]
+#define LEAST_TIME     0.01  // for which a run's cost is measured [s]
+
+// --- the convergence panel ------------------------------------------------------------------
+
+double observed_order(double coarse, double middle, double fine)
+{
+    double first = coarse - middle, second = middle - fine;
+    double rounding = ROUNDING * fmax(fabs(coarse), fabs(fine));
+    bool told = fabs(first) > rounding && fabs(second) > rounding && first * second > 0 &&
+                fabs(first) > fabs(second);
+    return told ? log2(first / second) : (double)NAN;
+}
+
+static const char *const panel_keys[] = {
+    "first_contact_s", "contact_impulse_Ns", "first_pulse_peak_N", "first_pulse_time_to_peak_s",
+    "first_pulse_s",   "peak_force_N",       "steady_force_N",     "motor_work_J",
+};
+enum { PANEL_KEYS = sizeof panel_keys / sizeof panel_keys[0] };
+
+// Runs the parameters; the summary's numbers stay in *result.
+static status run_with(const scenario *s, const parameters *p, summary *result, fault *f)
+{
+    scenario changed = *s; // borrows everything but the parameters
+    changed.parameters = *p;
+    run_result run;
+    status code = run_scenario(&changed, false, &run);
+    *result = run.summary;
+    run_finish(&run);
+    return code == STATUS_OK
+               ? code
+               : fault_set(f, code, "with a step of %g s: %s", p->method.step, result->message);
+}
+
+status convergence_compute(const scenario *s, convergence_panel *panel, fault *f)
+{
+    summary results[PANEL_STEPS];
+    for (int i = 0; i < PANEL_STEPS; i++) {
+        parameters p = s->parameters;
+        p.method.step = panel->step[i] = ldexp(s->parameters.method.step, -i);
+        status code = run_with(s, &p, &results[i], f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+    panel->row_count = PANEL_KEYS;
+    for (int k = 0; k < PANEL_KEYS; k++) {
+        convergence_row *row = &panel->rows[k];
+        row->key = panel_keys[k];
+        for (int i = 0; i < PANEL_STEPS; i++) {
+            summary_get(&results[i], row->key, &row->value[i]);
+        }
+        row->order = observed_order(row->value[0], row->value[1], row->value[2]);
+    }
+    return STATUS_OK;
+}
+
+// --- error against cost ---------------------------------------------------------------------
+
+const char *const study_methods[STUDY_METHODS] = {"newmark", "generalized-alpha", "event"};
+const char *const study_keys[STUDY_QUANTITIES] = {"first_contact_s", "first_pulse_peak_N",
+                                                  "steady_force_N"};
+static const method_kind method_kinds[STUDY_METHODS] = {METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA,
+                                                        METHOD_EVENT};
+
+typedef struct timed_run {
+    const scenario *scenario;
+    parameters parameters;
+    summary summary;
+    fault fault;
+} timed_run;
+
+static status run_again(void *context)
+{
+    timed_run *r = context;
+    return run_with(r->scenario, &r->parameters, &r->summary, &r->fault);
+}
+
+static void values_of(const summary *s, double values[STUDY_QUANTITIES])
+{
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        summary_get(s, study_keys[k], &values[k]);
+    }
+}
+
+// One run, with its cost. A method that fails at a step has no point there.
+static void study_one(const scenario *s, method_kind method, const double *reference,
+                      study_point *point)
+{
+    timed_run r = {.scenario = s, .parameters = s->parameters};
+    double values[STUDY_QUANTITIES];
+    status code;
+    r.parameters.method.name = (int)method;
+    r.parameters.method.step = point->step;
+    point->cost = bench_seconds_per_call(run_again, &r, LEAST_TIME, &code);
+    values_of(&r.summary, values);
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        point->error[k] = code == STATUS_OK ? fabs(values[k] - reference[k]) : (double)NAN;
+    }
+}
+
+status method_study_compute(const scenario *s, method_study *study, fault *f)
+{
+    static const double mantissas[] = {10, 5, 2};
+    parameters p = s->parameters;
+    summary reference;
+    p.method.name = METHOD_EVENT;
+    p.method.step = study->reference_step = REFERENCE_STEP;
+    status code = run_with(s, &p, &reference, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    values_of(&reference, study->reference);
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        for (int i = 0; i < STUDY_STEPS; i++) {
+            study->points[m][i].step = mantissas[i % 3] / pow(10, 3 + i / 3);
+            study_one(s, method_kinds[m], study->reference, &study->points[m][i]);
+        }
+    }
+    return STATUS_OK;
+}
+
+double method_study_cost(const method_study *study, int method, int k, double error, double *step)
+{
+    double least = (double)NAN;
+    // from the shortest step up, as long as the error stays below
+    for (int i = STUDY_STEPS - 1; i >= 0; i--) {
+        const study_point *point = &study->points[method][i];
+        if (!(point->error[k] <= error)) {
+            break;
+        }
+        if (!(least <= point->cost)) {
+            least = point->cost;
+            *step = point->step;
+        }
+    }
+    return least;
+}

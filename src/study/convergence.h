@@ -1,0 +1,55 @@
+// How results depend on the time step: the convergence panel of a scenario, and error against cost
+// of the methods of time integration.
+#pragma once
+
+#include "src/scenario/scenario.h"
+
+enum { PANEL_STEPS = 3, PANEL_ROWS = 16 };
+
+// A quantity of the summary at steps h, h/2, h/4.
+typedef struct convergence_row {
+    const char *key; // of summary_table, "first_contact_s"
+    double value[PANEL_STEPS];
+    double order; // observed, NaN where it cannot be told
+} convergence_row;
+
+typedef struct convergence_panel {
+    double step[PANEL_STEPS]; // [s]
+    convergence_row rows[PANEL_ROWS];
+    int row_count;
+} convergence_panel;
+
+// log2 of the ratio of two differences: p if the error is C h^p and the steps are halved. NaN if
+// the differences are not above rounding (1e-13 of the value), not of one sign, or do not shrink.
+double observed_order(double coarse, double middle, double fine);
+
+// Runs the scenario at its own method.step, at a half and at a quarter of it.
+status convergence_compute(const scenario *s, convergence_panel *panel, fault *f);
+
+enum { STUDY_METHODS = 3, STUDY_STEPS = 13, STUDY_QUANTITIES = 3 };
+
+typedef struct study_point {
+    double step;                    // h [s]
+    double cost;                    // computing time of the run [s]
+    double error[STUDY_QUANTITIES]; // distance from the reference in the quantity's unit, NaN if
+                                    // the run failed or the quantity did not occur
+} study_point;
+
+typedef struct method_study {
+    double reference_step;              // of the event method [s]
+    double reference[STUDY_QUANTITIES]; // its values
+    study_point points[STUDY_METHODS][STUDY_STEPS];
+} method_study;
+
+// Names of the methods as method.name has them, and keys of the quantities.
+extern const char *const study_methods[STUDY_METHODS];
+extern const char *const study_keys[STUDY_QUANTITIES];
+
+// Runs the scenario with every method at steps from 1e-2 s down to 1e-6 s, and with the event
+// method at 2e-5 s for reference: its error comes from rounding there, not from the step. Takes
+// some seconds for two links and 1 s.
+status method_study_compute(const scenario *s, method_study *study, fault *f);
+
+// The least cost of a method's points whose error in quantity `k` is at most `error`, all shorter
+// steps included [s]; NaN if there is none. *step is the point's step.
+double method_study_cost(const method_study *study, int method, int k, double error, double *step);

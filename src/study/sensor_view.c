@@ -1,0 +1,236 @@
+#include "src/study/sensor_view.h"
+
+#include <math.h>
+
+#include "src/solve/motion.h"
+
+#define RESOLVING 20.0 // fastest rate times step, at most: the event method then steps explicitly
+
+const double sensor_constants[SENSOR_CONSTANTS] = {0.5e-3, 1e-3, 2e-3};
+
+// --- the lag --------------------------------------------------------------------------------
+
+void sensor_lag_start(sensor_lag *s, double time_constant, double time)
+{
+    *s = (sensor_lag){.time_constant = time_constant, .time = time, .peak_time = time};
+}
+
+static void look(sensor_lag *s, double time, double value)
+{
+    if (value > s->peak) {
+        s->peak = value;
+        s->peak_time = time;
+    }
+}
+
+void sensor_lag_impulse(sensor_lag *s, double impulse)
+{
+    s->value += impulse / s->time_constant;
+    look(s, s->time, s->value);
+}
+
+// y(t) = a + b t + c t^2 + d exp(-t / tau), the response to a parabola.
+typedef struct response {
+    double a, b, c, d, rate;
+} response;
+
+static double response_value(const response *r, double t)
+{
+    return r->a + t * (r->b + t * r->c) + r->d * exp(-r->rate * t);
+}
+
+static double response_slope(const response *r, double t)
+{
+    return r->b + 2 * r->c * t - r->rate * r->d * exp(-r->rate * t);
+}
+
+void sensor_lag_force(sensor_lag *s, double length, double first, double last, double mean)
+{
+    if (!(length > 0)) {
+        return;
+    }
+    // f = first + linear t + square t^2 with the given end and mean
+    double square = (3 * (first + last) - 6 * mean) / (length * length);
+    double linear = (last - first) / length - square * length, tau = s->time_constant;
+    response r = {.c = square, .b = linear - 2 * tau * square, .rate = 1 / tau};
+    r.a = first - tau * r.b;
+    r.d = s->value - r.a;
+    if (response_slope(&r, 0) > 0 && response_slope(&r, length) < 0) {
+        double low = 0, high = length;
+        for (int i = 0; i < 60; i++) {
+            double middle = 0.5 * (low + high);
+            if (response_slope(&r, middle) > 0) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        look(s, s->time + low, response_value(&r, low));
+    }
+    s->time += length;
+    s->value = response_value(&r, length);
+    look(s, s->time, s->value);
+}
+
+// --- the run --------------------------------------------------------------------------------
+
+// What a run in progress remembers.
+typedef struct watching {
+    sensor_view *view;
+    sensor_lag lags[SENSOR_CONSTANTS];
+    double touched; // first contact [s], NaN before it
+} watching;
+
+static void watch_stride(watching *w, motion *m)
+{
+    const double *start = m->trial; // where the stride left its beginning
+    double from = start[SLOT_TIME], to = m->state[SLOT_TIME], length = to - from;
+    if (isnan(w->touched) || !(length > 0)) {
+        return;
+    }
+    double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
+                      state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    for (int i = 0; i < SENSOR_CONSTANTS; i++) {
+        sensor_lag_force(&w->lags[i], length, start[SLOT_FORCE], m->state[SLOT_FORCE],
+                         integral / length);
+    }
+    // strides end at MOMENTUM_WINDOW
+    if (to <= w->touched + MOMENTUM_WINDOW * (1 + 1e-9)) {
+        w->view->momentum += integral;
+    }
+}
+
+static void watch_impact(watching *w, const motion *m, const motion_report *report)
+{
+    const double impulse = report->impulse;
+    double now = m->state[SLOT_TIME];
+    if (isnan(w->touched)) {
+        w->touched = now;
+        w->view->impulse = impulse;
+        w->view->speed = report->speed;
+        for (int i = 0; i < SENSOR_CONSTANTS; i++) {
+            sensor_lag_start(&w->lags[i], sensor_constants[i], now);
+        }
+    }
+    for (int i = 0; i < SENSOR_CONSTANTS; i++) {
+        sensor_lag_impulse(&w->lags[i], impulse);
+    }
+    if (now <= w->touched + MOMENTUM_WINDOW) {
+        w->view->momentum += impulse;
+    }
+    w->view->impacts += impulse > 0;
+}
+
+// The next instant a stride must not pass.
+static double next_end(const watching *w, double now, double duration)
+{
+    if (isnan(w->touched)) {
+        return duration;
+    }
+    double early = w->touched + MOMENTUM_WINDOW;
+    return now < early ? early : w->touched + SENSOR_WINDOW;
+}
+
+static status watch_motion(const arm *a, motion *m, double step, double duration, watching *w,
+                           fault *f)
+{
+    double end = duration;
+    while (m->state[SLOT_TIME] < end) {
+        motion_report report;
+        double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
+        status code = motion_stride(a, m, until, step, &report);
+        if (code != STATUS_OK) {
+            return fault_set(f, code, "%d links, at t = %.9g s: %s", a->links, m->failure_time,
+                             status_text(code));
+        }
+        watch_stride(w, m);
+        if (report.event == MOTION_REACHED) {
+            continue;
+        }
+        motion_apply(a, m, &report);
+        if (report.event == MOTION_IMPACT || report.event == MOTION_TOUCH) {
+            bool first = isnan(w->touched);
+            watch_impact(w, m, &report);
+            if (first) {
+                motion_watch(m);
+                end = w->touched + SENSOR_WINDOW;
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+static status check_scenario(const scenario *s, fault *f)
+{
+    if (s->parameters.arm.model == ARM_PRINTED) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "%s: the printed model has no impulses a sensor could see, expected "
+                         "arm.model = corrected",
+                         s->name);
+    }
+    if (s->action_count > 0) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "%s has a script, expected a scenario without actions", s->name);
+    }
+    return STATUS_OK;
+}
+
+status sensor_view_compute(const scenario *s, int links, sensor_view *view, fault *f)
+{
+    parameters p = s->parameters;
+    arm a;
+    *view = (sensor_view){.links = links};
+    status code = check_scenario(s, f);
+    if (code == STATUS_OK) {
+        code = parameter_set_number(&p, parameter_find("arm.links"), links, f);
+    }
+    if (code == STATUS_OK) {
+        code = parameters_resolve(&p, f);
+    }
+    if (code != STATUS_OK) {
+        return code;
+    }
+    arm_init(&a, &p);
+    p.method.name = METHOD_EVENT;
+    p.method.step = fmin(p.method.step, RESOLVING / a.fastest_rate);
+    motion *m = motion_create(&a, &p.method);
+    if (m == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", links);
+    }
+    watching w = {.view = view, .touched = (double)NAN};
+    motion_start(&a, m, p.initial.angle, p.initial.velocity);
+    code = watch_motion(&a, m, p.method.step, p.run.duration, &w, f);
+    if (code == STATUS_OK && isnan(w.touched)) {
+        code =
+            fault_set(f, STATUS_BAD_SCENARIO, "%s: with %d links there is no contact within %g s",
+                      s->name, links, p.run.duration);
+    }
+    view->peak = m->pulse_peak >= 0 ? m->pulse_peak : 0;
+    for (int i = 0; i < SENSOR_CONSTANTS; i++) {
+        view->sensed[i] = w.lags[i].peak;
+        view->delay[i] = w.lags[i].peak_time - w.touched;
+    }
+    motion_destroy(m);
+    return code;
+}
+
+// --- the limit of many links ----------------------------------------------------------------
+
+#define DAWSON_LARGEST 0.5410442246351817 // of Dawson's integral, at 0.9241388730
+
+// K [N s^(1/2)].
+static double beam_constant(const parameters *p, double speed)
+{
+    double bending = p->arm.k2 * p->arm.length / 2, density = p->arm.mass / p->arm.length;
+    return speed * pow(bending, 0.25) * pow(density, 0.75) / sqrt(2 * M_PI);
+}
+
+double sensor_beam_momentum(const parameters *p, double speed, double time)
+{
+    return 2 * beam_constant(p, speed) * sqrt(time);
+}
+
+double sensor_beam_peak(const parameters *p, double speed, double time_constant)
+{
+    return 2 * beam_constant(p, speed) / sqrt(time_constant) * DAWSON_LARGEST;
+}

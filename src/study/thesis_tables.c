@@ -1,0 +1,246 @@
+#include "src/study/thesis_tables.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/run/run.h"
+#include "src/predict/predict.h"
+#include "src/solve/printed_algorithm.h"
+
+// The simulation's row of the printed model is the largest force within this time of first contact,
+// the first pulse and, with the nominal spring, the bounces that belong to it [s].
+#define PRINTED_WINDOW 0.12
+// Long enough for every cell's first pulse [s].
+#define DURATION 1.5
+
+enum { STIFFNESSES = 3, MODELS = 2, QUANTITIES = 5 };
+
+enum quantity { FORCE_ENERGY, FORCE_DYNAMICS, FORCE_SIMULATION, DELAY_DYNAMICS, DELAY_SIMULATION };
+
+static const char *const quantity_names[QUANTITIES] = {"max_force_energy", "max_force_dynamics",
+                                                       "max_force_simulation", "delay_dynamics",
+                                                       "delay_simulation"};
+
+static const double voltages[TABLE_VOLTAGES] = {1, 2, 5, 10};
+
+typedef struct thesis_table {
+    const char *name;
+    double k2_factor;
+    double printed[QUANTITIES][TABLE_VOLTAGES]; // forces [N], delays [s]
+} thesis_table;
+
+static const thesis_table thesis[STIFFNESSES] = {
+    {"4.1",
+     100,
+     {{23.93, 35.87, 58.41, 82.92},
+      {17.92, 27.36, 46.12, 67.76},
+      {17.44, 26.63, 44.28, 65.36},
+      {0.005, 0.005, 0.006, 0.006},
+      {0.005, 0.005, 0.005, 0.005}}},
+    {"4.2",
+     10,
+     {{7.26, 10.79, 17.32, 23.56},
+      {5.82, 9.18, 16.46, 23.23},
+      {5.63, 8.72, 14.73, 22.75},
+      {0.018, 0.019, 0.018, 0.020},
+      {0.016, 0.015, 0.015, 0.015}}},
+    {"4.3",
+     1,
+     {{2.04, 2.95, 4.72, 4.73},
+      {2.05, 3.45, 6.89, 8.57},
+      {1.84, 2.95, 5.22, 7.43},
+      {0.062, 0.063, 0.060, 0.109},
+      {0.048, 0.047, 0.044, 0.033}}},
+};
+
+// What one cell's simulation gives to the table.
+typedef struct cell {
+    bool touched;
+    three_body_state at_touch; // just before contact
+    double peak;               // [N], NaN where there is none
+    double delay;              // of the peak after contact [s]
+} cell;
+
+// Watches the printed simulation: the state of the step before contact is found, and the peak.
+typedef struct watch {
+    cell cell;
+    printed_row previous;
+    double first_contact; // [s]
+} watch;
+
+static bool watch_row(void *context, const printed_row *row)
+{
+    watch *w = context;
+    cell *c = &w->cell;
+    if (row->contact && !c->touched) {
+        c->touched = true;
+        w->first_contact = row->time;
+        memcpy(c->at_touch.angle, w->previous.angle, sizeof c->at_touch.angle);
+        memcpy(c->at_touch.velocity, w->previous.velocity, sizeof c->at_touch.velocity);
+    }
+    w->previous = *row;
+    if (!c->touched) {
+        return true;
+    }
+    double since = row->time - w->first_contact;
+    if (since > PRINTED_WINDOW * (1 + 1e-9)) {
+        return false;
+    }
+    if (row->force > 0 && !(row->force <= c->peak)) {
+        c->peak = row->force;
+        c->delay = since;
+    }
+    return true;
+}
+
+static status simulate_printed(const parameters *p, cell *c, fault *f)
+{
+    watch w = {.cell = *c};
+    status result = printed_run(p, watch_row, NULL, &w, f);
+    *c = w.cell;
+    return result;
+}
+
+// The last row before the jump of the first impact; NULL if there was no impact.
+static const sample *row_before_impact(const trace *t)
+{
+    const sample *before = NULL;
+    for (size_t i = 0; i < t->event_count; i++) {
+        if (t->events[i].kind != EVENT_IMPACT) {
+            continue;
+        }
+        // rows of the same instant stand on both sides of the jump, the first is the one before
+        for (size_t r = 0; r < t->row_count && t->rows[r].time <= t->events[i].time; r++) {
+            if (before == NULL || t->rows[r].time > before->time) {
+                before = &t->rows[r];
+            }
+        }
+        break;
+    }
+    return before;
+}
+
+static status simulate_corrected(const parameters *p, cell *c, fault *f)
+{
+    char name[] = "tables";
+    scenario s = {.name = name, .file = name, .title = name, .description = name, .parameters = *p};
+    run_result result;
+    status outcome = run_scenario(&s, true, &result);
+    if (outcome == STATUS_OK) {
+        const sample *before = row_before_impact(&result.trace);
+        if (before != NULL) {
+            c->touched = true;
+            c->at_touch = (three_body_state){
+                {before->hub_angle, before->first_angle, before->last_angle},
+                {before->hub_velocity, before->first_velocity, before->last_velocity}};
+        }
+        c->peak = result.summary.first_pulse_peak_N;
+        c->delay = result.summary.first_pulse_time_to_peak_s;
+    } else {
+        fault_set(f, outcome, "%s", result.summary.message);
+    }
+    run_finish(&result);
+    return outcome;
+}
+
+// Five numbers of one cell, NaN where the quantity does not occur.
+static status compute_cell(const parameters *p, double value[QUANTITIES], fault *f)
+{
+    cell c = {.touched = false, .peak = (double)NAN, .delay = (double)NAN};
+    prediction energy, dynamics;
+    for (int i = 0; i < QUANTITIES; i++) {
+        value[i] = (double)NAN;
+    }
+    status result =
+        p->arm.model == ARM_PRINTED ? simulate_printed(p, &c, f) : simulate_corrected(p, &c, f);
+    if (result != STATUS_OK || !c.touched) {
+        return result;
+    }
+    value[FORCE_SIMULATION] = c.peak;
+    value[DELAY_SIMULATION] = c.delay;
+    result = predict_energy(p, &c.at_touch, &energy, f);
+    if (result == STATUS_OK) {
+        result = predict_impact_dynamics(p, &c.at_touch, &dynamics, f);
+    }
+    if (result != STATUS_OK) {
+        return result;
+    }
+    value[FORCE_ENERGY] = energy.holds ? energy.force : (double)NAN;
+    value[FORCE_DYNAMICS] = dynamics.holds ? dynamics.force : (double)NAN;
+    value[DELAY_DYNAMICS] = dynamics.holds ? dynamics.delay : (double)NAN;
+    return STATUS_OK;
+}
+
+// One table of one model into five rows.
+static status compute_table(const parameters *defaults, const thesis_table *source,
+                            const char *model, table_row *rows, fault *f)
+{
+    for (int i = 0; i < QUANTITIES; i++) {
+        rows[i] = (table_row){.table = source->name,
+                              .k2_factor = source->k2_factor,
+                              .model = model,
+                              .quantity = quantity_names[i]};
+        memcpy(rows[i].printed, source->printed[i], sizeof rows[i].printed);
+    }
+    for (int v = 0; v < TABLE_VOLTAGES; v++) {
+        parameters p = *defaults;
+        double value[QUANTITIES];
+        p.arm.k2 *= source->k2_factor;
+        p.motor.voltage = voltages[v];
+        p.run.duration = DURATION;
+        fault why = {.text = ""};
+        status result = compute_cell(&p, value, &why);
+        if (result != STATUS_OK) {
+            return fault_set(f, result, "Table %s, %s model, %g V: %.900s", source->name, model,
+                             voltages[v], why.text);
+        }
+        for (int i = 0; i < QUANTITIES; i++) {
+            rows[i].computed[v] = value[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+status tables_compute(thesis_tables *t, fault *f)
+{
+    static const struct {
+        arm_model_kind kind;
+        const char *name;
+    } models[MODELS] = {{ARM_PRINTED, "printed"}, {ARM_CORRECTED, "corrected"}};
+    memset(t, 0, sizeof *t);
+    memcpy(t->voltage, voltages, sizeof t->voltage);
+    for (int k = 0; k < STIFFNESSES; k++) {
+        for (int m = 0; m < MODELS; m++) {
+            parameters p;
+            parameters_defaults(&p, models[m].kind);
+            status result = parameters_resolve(&p, f);
+            if (result == STATUS_OK) {
+                result = compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count, f);
+            }
+            if (result != STATUS_OK) {
+                return result;
+            }
+            t->row_count += QUANTITIES;
+        }
+    }
+    return STATUS_OK;
+}
+
+double tables_mean_error(const thesis_tables *t, const char *model, const char *quantity)
+{
+    double sum = 0;
+    int count = 0;
+    for (int r = 0; r < t->row_count; r++) {
+        const table_row *row = &t->rows[r];
+        if (strcmp(row->model, model) != 0 || strcmp(row->quantity, quantity) != 0) {
+            continue;
+        }
+        for (int v = 0; v < TABLE_VOLTAGES; v++) {
+            if (isfinite(row->computed[v])) {
+                sum += fabs(row->computed[v] / row->printed[v] - 1);
+                count++;
+            }
+        }
+    }
+    return count > 0 ? sum / count : (double)NAN;
+}

@@ -1,0 +1,29 @@
+// Tables 4.1-4.3 of the thesis: printed value, computed value, difference.
+#pragma once
+
+#include "src/quantities/parameters.h"
+#include "src/base/status.h"
+
+enum { TABLE_VOLTAGES = 4 };
+
+typedef struct table_row {
+    const char *table;      // "4.1"
+    double k2_factor;       // times the nominal k2
+    const char *model;      // "printed" or "corrected"
+    const char *quantity;   // "max_force_energy", "max_force_dynamics", "max_force_simulation",
+                            // "delay_dynamics", "delay_simulation"
+    double printed[TABLE_VOLTAGES];  // what the thesis prints [N] or [s]
+    double computed[TABLE_VOLTAGES]; // NaN where the quantity did not occur
+} table_row;
+
+typedef struct thesis_tables {
+    double voltage[TABLE_VOLTAGES]; // [V]
+    table_row rows[3 * 2 * 5];
+    int row_count;
+} thesis_tables;
+
+// Computes all rows, for both models.
+status tables_compute(thesis_tables *t, fault *f);
+
+// Mean |relative error| over the 12 cells of one quantity of one model, NaN cells left out.
+double tables_mean_error(const thesis_tables *t, const char *model, const char *quantity);

@@ -1,0 +1,272 @@
+#include "ui/commands/command.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "render/figures/figures.h"
+#include "render/page/picture_file.h"
+#include "render/plot/study_plot.h"
+#include "src/study/bench.h"
+#include "src/base/words.h"
+
+// --- what the programs add to the library's benchmarks --------------------------------------
+
+static void remove_folder(const char *folder)
+{
+    DIR *open = opendir(folder);
+    for (struct dirent *entry = NULL; open != NULL && (entry = readdir(open)) != NULL;) {
+        char path[4096 + 256];
+        if (entry->d_name[0] != '.') {
+            snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+            unlink(path);
+        }
+    }
+    if (open != NULL) {
+        closedir(open);
+    }
+    rmdir(folder);
+}
+
+// All figures of the thesis as `impactlab figures` draws them, into a folder that is then removed.
+static status measure_figures(double *value, fault *f)
+{
+    const char *place = getenv("TMPDIR");
+    char folder[4000];
+    snprintf(folder, sizeof folder, "%s/impactlab-bench-XXXXXX",
+             place && place[0] ? place : "/tmp");
+    if (mkdtemp(folder) == NULL) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "no folder for the figures can be made as '%s'",
+                         folder);
+    }
+    double start = bench_computing_time();
+    status code = STATUS_OK;
+    for (int i = 0; i < thesis_figure_count && code == STATUS_OK; i++) {
+        code = figure_draw(thesis_figures[i].id, folder, "png", f);
+    }
+    *value = bench_computing_time() - start;
+    remove_folder(folder);
+    return code;
+}
+
+static const benchmark own_table[] = {
+    {"figures_s", "s", false, measure_figures},
+};
+enum { OWN = sizeof own_table / sizeof own_table[0], MOST = 32 };
+
+static int benchmark_count(void)
+{
+    return bench_count + OWN;
+}
+
+static const benchmark *benchmark_at(int i)
+{
+    return i < bench_count ? &bench_table[i] : &own_table[i - bench_count];
+}
+
+// --- results --------------------------------------------------------------------------------
+
+typedef struct baseline {
+    bench_result *results;
+    int count;
+} baseline;
+
+static const bench_result *find_result(const baseline *before, const char *name)
+{
+    for (int i = 0; i < before->count; i++) {
+        if (strcmp(before->results[i].name, name) == 0) {
+            return &before->results[i];
+        }
+    }
+    return NULL;
+}
+
+static void print_head(const baseline *before)
+{
+    printf("%-28s %10s %10s %10s  %-8s", "", "median", "min", "max", "unit");
+    if (before->results != NULL) {
+        printf(" %10s %8s", "baseline", "times");
+    }
+    printf("\n");
+}
+
+static void print_result(const benchmark *b, const bench_result *r, const baseline *before)
+{
+    printf("%-28s %10.4g %10.4g %10.4g  %-8s", r->name, r->median, r->min, r->max, r->unit);
+    const bench_result *then = find_result(before, r->name);
+    if (then != NULL) {
+        printf(" %10.4g %8.2f%s", then->median, bench_slowdown(b, r, then),
+               bench_is_slower(b, r, then) ? "  slower" : "");
+    }
+    printf("\n");
+    fflush(stdout); // the next one takes a while
+}
+
+static int complain_only(const char *name)
+{
+    nearest_word near = nearest_begin(name);
+    for (int i = 0; i < benchmark_count(); i++) {
+        nearest_try(&near, benchmark_at(i)->name);
+    }
+    if (near.best != NULL) {
+        return complain("there is no benchmark '%s', did you mean '%s'?", name, near.best);
+    }
+    return complain("there is no benchmark '%s' (see impactlab bench --help)", name);
+}
+
+// Measures all benchmarks, or the one asked for.
+static int measure_all(const arguments *a, const baseline *before)
+{
+    bench_result results[MOST];
+    int count = 0;
+    bool aloud = summary_wanted(a);
+    for (int i = 0; i < benchmark_count() && count < MOST; i++) {
+        const benchmark *b = benchmark_at(i);
+        fault f = {0};
+        if (a->only != NULL && strcmp(a->only, b->name) != 0) {
+            continue;
+        }
+        if (bench_run(b, &results[count], &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+        if (aloud && count == 0) {
+            print_head(before);
+        }
+        if (aloud) {
+            print_result(b, &results[count], before);
+        }
+        count++;
+    }
+    if (count == 0) {
+        return complain_only(a->only);
+    }
+    return a->json != NULL ? write_json(a->json, bench_export(results, count)) : EXIT_DONE;
+}
+
+// --- the cost of a step over the number of links --------------------------------------------
+
+enum { LENGTHS = 10 }; // 2, 4, 8 ... 1024 links
+
+typedef struct scaling {
+    double links[LENGTHS], free_us[LENGTHS], contact_us[LENGTHS], target_us[LENGTHS];
+} scaling;
+
+#define TARGET_PER_LINK 0.25 // [us]
+
+static status measure_scaling(scaling *s, bool aloud, fault *f)
+{
+    if (aloud) {
+        printf("\n%-8s %16s %16s   us for an implicit step of 1 ms\n", "links", "free flight",
+               "contact");
+    }
+    for (int i = 0; i < LENGTHS; i++) {
+        int links = 2 << i;
+        s->links[i] = links;
+        s->target_us[i] = TARGET_PER_LINK * links;
+        status code = bench_step_cost(links, &s->free_us[i], &s->contact_us[i], f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        if (aloud) {
+            printf("%-8d %16.4g %16.4g   (%.3f and %.3f a link)\n", links, s->free_us[i],
+                   s->contact_us[i], s->free_us[i] / links, s->contact_us[i] / links);
+            fflush(stdout);
+        }
+    }
+    return STATUS_OK;
+}
+
+static int plot_scaling(const arguments *a)
+{
+    scaling s;
+    fault f = {0};
+    char software[64];
+    if (measure_scaling(&s, summary_wanted(a), &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    const figure_series series[] = {
+        {.name = "free",
+         .label = "free flight",
+         .x = s.links,
+         .y = s.free_us,
+         .count = LENGTHS,
+         .colour = 0,
+         .marker = MARKER_CIRCLE},
+        {.name = "contact",
+         .label = "contact",
+         .x = s.links,
+         .y = s.contact_us,
+         .count = LENGTHS,
+         .colour = 5,
+         .marker = MARKER_SQUARE},
+        {.name = "target",
+         .label = "0.25 µs a link",
+         .x = s.links,
+         .y = s.target_us,
+         .count = LENGTHS,
+         .colour = 7,
+         .secondary = true},
+    };
+    const figure_panel panel = {.name = "step",
+                                .label = "time for a step of 1 ms",
+                                .unit = "µs",
+                                .series = series,
+                                .series_count = 3};
+    snprintf(software, sizeof software, "impactlab %s", lab_version());
+    const figure fig = {.title = "Cost of an implicit step over the number of links",
+                        .x_name = "links",
+                        .x_label = "links",
+                        .x_unit = "",
+                        .panels = &panel,
+                        .panel_count = 1,
+                        .width = 120,
+                        .height = 90,
+                        .software = software,
+                        .parameters = "impactlab bench --plot"};
+    return study_plot_write(&fig, a->plot, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+}
+
+static int bench(const arguments *a)
+{
+    baseline before = {NULL, 0};
+    fault f = {0};
+    int result = check_output(a->json);
+    if (result == EXIT_DONE && a->plot != NULL && picture_check_path(a->plot, &f) != STATUS_OK) {
+        result = complain_fault(&f);
+    }
+    if (result == EXIT_DONE && a->baseline != NULL &&
+        bench_read(a->baseline, &before.results, &before.count, &f) != STATUS_OK) {
+        result = complain_fault(&f);
+    }
+    if (result == EXIT_DONE) {
+        result = measure_all(a, &before);
+    }
+    if (result == EXIT_DONE && a->plot != NULL) {
+        result = plot_scaling(a);
+    }
+    free(before.results);
+    return result;
+}
+
+const command bench_command = {
+    .name = "bench",
+    .operands = "",
+    .options = "OBLjq",
+    .summary = "How fast the lab computes on this machine",
+    .help =
+        "Medians of repeated measurements, in computing time of one processor\n(of the batch: by "
+        "the clock).\n\n"
+        "  arm_n2_us_per_ms            two links, 1 s of 1 V into the wall, nothing recorded\n"
+        "  rig_n2_us_per_ms            the same under the hybrid law with its noisy sensors, 200 Hz\n"
+        "  arm_n128_free_us_per_ms     128 links in free flight, implicit steps of 1 ms\n"
+        "  arm_n128_contact_us_per_ms  128 links pressing on the wall, the same steps\n"
+        "  batch_n2_steps_per_s        steps of many runs of two links, on all processors\n"
+        "  predict_us                  one prediction of the peak force, two links\n"
+        "  tables_s                    Tables 4.1 to 4.3 of the thesis\n"
+        "  figures_s                   the figures of the thesis as PNG\n\n"
+        "The first four are microseconds of computing per simulated millisecond. --baseline marks "
+        "as slower\nwhat takes 15 % longer than before and did so in every measurement. --plot "
+        "then draws the time of a\nstep over the number of links, 2 to 1024.\n",
+    .run = bench,
+};

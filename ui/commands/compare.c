@@ -1,0 +1,215 @@
+#include "ui/commands/command.h"
+
+#include <stdlib.h>
+
+#include "src/study/compare.h"
+#include "src/study/sweep.h"
+#include "src/base/words.h"
+
+enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
+
+// The scenarios named on the command line, and then the one that they are held against. Each runs
+// once for each combination of varied values; rows lie by combination, in it by scenario.
+typedef struct comparison {
+    scenario *scenarios;
+    sweep *sweeps; // of each, where something is varied
+    int opened, swept, operands;
+    int combinations;
+    compare_row *rows;    // operands of each combination
+    compare_row *against; // one of each combination
+    int varied[COMPARE_MOST_VARIED];
+    bool failed;
+} comparison;
+
+static void finish(comparison *c)
+{
+    for (int i = 0; i < c->swept; i++) {
+        sweep_finish(&c->sweeps[i]);
+    }
+    for (int i = 0; i < c->opened; i++) {
+        scenario_finish(&c->scenarios[i]);
+    }
+    free(c->sweeps);
+    free(c->scenarios);
+    free(c->rows);
+    free(c->against);
+}
+
+// The grid of a scenario's combinations.
+static int open_sweep(comparison *c, const arguments *a, int i)
+{
+    fault f = {0};
+    sweep_request request = {.vary = a->varies, .vary_count = a->vary_count};
+    if (sweep_init(&c->sweeps[i], &c->scenarios[i], &request, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    c->swept++;
+    size_t rows = c->sweeps[i].run_count * (size_t)c->operands;
+    if (rows > MOST_ROWS) {
+        return complain("%zu rows are too many for a table, expected at most %d", rows, MOST_ROWS);
+    }
+    c->combinations = (int)c->sweeps[i].run_count;
+    for (int k = 0; k < c->sweeps[i].axis_count; k++) {
+        c->varied[k] = c->sweeps[i].axes[k].parameter;
+    }
+    return EXIT_DONE;
+}
+
+static int open_all(comparison *c, const arguments *a)
+{
+    int count = a->operand_count + (a->against != NULL), result = EXIT_DONE;
+    c->operands = a->operand_count;
+    c->combinations = 1;
+    c->scenarios = calloc((size_t)count, sizeof *c->scenarios);
+    c->sweeps = calloc((size_t)count, sizeof *c->sweeps);
+    if (c->scenarios == NULL || c->sweeps == NULL) {
+        complain("out of memory");
+        return EXIT_FAILED;
+    }
+    for (int i = 0; i < count && result == EXIT_DONE; i++) {
+        const char *name = i < a->operand_count ? a->operands[i] : a->against;
+        result = open_scenario(&c->scenarios[i], name, a);
+        c->opened += result == EXIT_DONE;
+        if (result == EXIT_DONE && a->vary_count > 0) {
+            result = open_sweep(c, a, i);
+        }
+    }
+    if (result == EXIT_DONE) {
+        size_t combinations = c->swept > 0 ? c->sweeps[0].run_count : 1;
+        c->rows = calloc(combinations * (size_t)a->operand_count, sizeof *c->rows);
+        c->against = calloc(combinations, sizeof *c->against);
+        if (c->rows == NULL || c->against == NULL) {
+            complain("out of memory");
+            result = EXIT_FAILED;
+        }
+    }
+    return result;
+}
+
+// The row of scenario i under one combination. A run that fails keeps its row and is complained
+// about.
+static compare_row run_one(comparison *c, int i, int combination)
+{
+    run_result result;
+    fault f = {0};
+    scenario s = c->scenarios[i];
+    compare_row row = {0};
+    if (c->swept > 0 && sweep_scenario(&c->sweeps[i], (size_t)combination, &s, &f) != STATUS_OK) {
+        complain_fault(&f); // values that do not go together were refused before
+        c->failed = true;
+    }
+    if (run_scenario(&s, false, &result) != STATUS_OK) {
+        complain("%s failed: %s", s.name, result.summary.message);
+        c->failed = true;
+    }
+    row = compare_row_of(&s, &result);
+    for (int k = 0; c->swept > 0 && k < c->sweeps[i].axis_count; k++) {
+        row.varied[k] = sweep_value(&c->sweeps[i], (size_t)combination, k);
+    }
+    run_finish(&result);
+    return row;
+}
+
+static void run_all(comparison *c)
+{
+    for (int combination = 0; combination < c->combinations; combination++) {
+        for (int i = 0; i < c->operands; i++) {
+            c->rows[combination * c->operands + i] = run_one(c, i, combination);
+        }
+        if (c->opened > c->operands) {
+            c->against[combination] = run_one(c, c->operands, combination);
+        }
+    }
+}
+
+static int write_table(const char *path, const compare_table *t,
+                       void (*write)(FILE *stream, const compare_table *t))
+{
+    whole_file file;
+    fault f = {0};
+    status code = whole_file_open(&file, path, &f);
+    if (code == STATUS_OK) {
+        write(file.stream, t);
+        code = whole_file_commit(&file, &f);
+    }
+    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+}
+
+// A tolerance in percent as a share; false if it is none.
+static bool read_tolerance(const char *text, double *share)
+{
+    const char *rest = "";
+    double percent = 5;
+    if (text != NULL && (!decimal_read(text, &percent, &rest) || *rest != '\0' || percent < 0)) {
+        return false;
+    }
+    *share = percent / 100;
+    return true;
+}
+
+static int write_results(const arguments *a, const comparison *c, compare_table *t)
+{
+    int result = c->failed ? EXIT_FAILED : EXIT_DONE;
+    t->rows = c->rows;
+    t->count = c->combinations * c->operands;
+    t->group = c->operands;
+    t->varied = c->varied;
+    t->varied_count = a->vary_count;
+    t->against = a->against != NULL ? c->against : NULL;
+    if (a->json != NULL && write_json(a->json, compare_json(t)) != EXIT_DONE) {
+        result = EXIT_FAILED;
+    }
+    if (a->csv != NULL && write_table(a->csv, t, compare_csv) != EXIT_DONE) {
+        result = EXIT_FAILED;
+    }
+    if (a->markdown != NULL && write_table(a->markdown, t, compare_markdown) != EXIT_DONE) {
+        result = EXIT_FAILED;
+    }
+    if (summary_wanted(a)) {
+        compare_text(stdout, t);
+        if (t->against != NULL) {
+            printf("\n* differs from %s by more than %g %%\n", t->against->scenario,
+                   100 * t->tolerance);
+        }
+    }
+    return result;
+}
+
+static int compare(const arguments *a)
+{
+    comparison c = {0};
+    compare_table table = {0};
+    fault f = {0};
+    if (!read_tolerance(a->tolerance, &table.tolerance)) {
+        return complain("--tolerance %s is wrong, expected a number of percent from 0",
+                        a->tolerance);
+    }
+    if (a->columns != NULL && compare_choose(&table, a->columns, &f) != STATUS_OK) {
+        return complain("--columns %s: %s", a->columns, f.text);
+    }
+    int result = check_output(a->json);
+    result = result == EXIT_DONE ? check_output(a->csv) : result;
+    result = result == EXIT_DONE ? check_output(a->markdown) : result;
+    result = result == EXIT_DONE ? open_all(&c, a) : result;
+    if (result == EXIT_DONE) {
+        run_all(&c);
+        result = write_results(a, &c, &table);
+    }
+    finish(&c);
+    return result;
+}
+
+const command compare_command = {
+    .name = "compare",
+    .operands = "SCENARIO...",
+    .options = "svjCXHAtq",
+    .summary = "Several scenarios in one table",
+    .help = "One row a run: peak force, its overshoot over the commanded force, settling time, "
+            "impacts,\nseparations, steady error, largest command and electrical energy. Best peak "
+            "and best time are\nwhat a controller could have made of the first impact if it knew "
+            "the whole state, pressing no\nharder than the run did. --set holds for all of them; "
+            "--vary, as sweep takes it, runs each of\nthem for every combination of values.\n",
+    .least = 1,
+    .most = MOST_SCENARIOS,
+    .run = compare,
+};

@@ -1,0 +1,244 @@
+#include "ui/commands/command.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/plot/figure_file.h"
+#include "render/plot/trace_plot.h"
+#include "src/study/convergence.h"
+
+static json_t *panel_object(const scenario *s, const convergence_panel *panel)
+{
+    json_t *object = json_object(), *steps = json_array(), *rows = json_array();
+    json_object_set_new(object, "scenario", json_text(s->name));
+    for (int i = 0; i < PANEL_STEPS; i++) {
+        json_array_append_new(steps, json_number(panel->step[i]));
+    }
+    json_object_set_new(object, "step_s", steps);
+    for (int k = 0; k < panel->row_count; k++) {
+        const convergence_row *row = &panel->rows[k];
+        json_t *line = json_object(), *values = json_array();
+        for (int i = 0; i < PANEL_STEPS; i++) {
+            json_array_append_new(values, json_number(row->value[i]));
+        }
+        json_object_set_new(line, "quantity", json_string(row->key));
+        json_object_set_new(line, "values", values);
+        json_object_set_new(line, "order", json_number(row->order));
+        json_array_append_new(rows, line);
+    }
+    json_object_set_new(object, "convergence", rows);
+    return object;
+}
+
+// Whether steps make no difference beyond rounding.
+static bool all_digits_agree(const convergence_row *row)
+{
+    double spread = fmax(fabs(row->value[0] - row->value[1]), fabs(row->value[1] - row->value[2]));
+    return spread <= 1e-9 * fabs(row->value[2]);
+}
+
+static void print_panel(const scenario *s, const convergence_panel *panel)
+{
+    char step[PANEL_STEPS][32], method[32];
+    parameter_format(&s->parameters, parameter_find("method.name"), method, sizeof method);
+    printf("%s: %s\nmethod %s\n\n  %-26s", s->name, s->title, method, "step [s]");
+    for (int i = 0; i < PANEL_STEPS; i++) {
+        snprintf(step[i], sizeof step[i], "%g", panel->step[i]);
+        printf(" %15s", step[i]);
+    }
+    printf("   %s\n", "order");
+    for (int k = 0; k < panel->row_count; k++) {
+        const convergence_row *row = &panel->rows[k];
+        char label[64];
+        const char *unit;
+        key_label(row->key, label, sizeof label, &unit);
+        printf("  %-26s", label);
+        for (int i = 0; i < PANEL_STEPS; i++) {
+            if (isnan(row->value[i])) {
+                printf(" %15s", "-");
+            } else {
+                printf(" %15.10g", row->value[i]);
+            }
+        }
+        printf(" %-4s", unit);
+        if (all_digits_agree(row)) {
+            printf("agree\n");
+        } else if (isnan(row->order)) {
+            printf("-\n");
+        } else {
+            printf("%.2f\n", row->order);
+        }
+    }
+    printf("\n  order p: the error falls as (step)^p, from the differences of the three columns;\n"
+           "  agree: equal to nine digits; -: cannot be told\n");
+}
+
+// --- the force at the three steps -----------------------------------------------------------
+
+typedef struct three_runs {
+    scenario scenario[PANEL_STEPS]; // borrow all but the step from the command's scenario
+    run_result result[PANEL_STEPS];
+} three_runs;
+
+static status run_all(const scenario *s, const convergence_panel *panel, three_runs *r, fault *f)
+{
+    for (int i = 0; i < PANEL_STEPS; i++) {
+        r->scenario[i] = *s;
+        r->scenario[i].parameters.method.step = panel->step[i];
+        status code = run_scenario(&r->scenario[i], true, &r->result[i]);
+        if (code != STATUS_OK) {
+            return fault_set(f, code, "%s", r->result[i].summary.message);
+        }
+    }
+    return STATUS_OK;
+}
+
+// The force less that of the finest run, at the instants both have: x and y have room for as many
+// values as the coarser trace has rows. Returns their number. Rows of the same instant have the
+// same time to the last bit, since halving a step is exact.
+static size_t difference(const trace *coarse, const trace *fine, double *x, double *y)
+{
+    size_t count = 0, j = 0;
+    for (size_t i = 0; i < coarse->row_count; i++) {
+        double time = coarse->rows[i].time;
+        while (j < fine->row_count && fine->rows[j].time < time) {
+            j++;
+        }
+        if (j < fine->row_count && fine->rows[j].time == time) {
+            x[count] = time;
+            y[count++] = coarse->rows[i].force - fine->rows[j].force;
+        }
+    }
+    return count;
+}
+
+static status draw(const three_runs *r, double *work[4], const char *path, fault *f)
+{
+    static const int colours[PANEL_STEPS] = {1, 0, 6};
+    static const char *const names[PANEL_STEPS] = {"h", "h/2", "h/4"};
+    const trace *finest = &r->result[PANEL_STEPS - 1].trace;
+    char label[PANEL_STEPS][48], software[64], title[256];
+    figure_series force[PANEL_STEPS], less[PANEL_STEPS - 1];
+    for (int i = 0; i < PANEL_STEPS; i++) {
+        const trace *t = &r->result[i].trace;
+        snprintf(label[i], sizeof label[i], "<i>h</i> = %g ms",
+                 1e3 * r->scenario[i].parameters.method.step);
+        force[i] = (figure_series){.name = names[i],
+                                   .label = label[i],
+                                   .x = &t->rows[0].time,
+                                   .y = &t->rows[0].force,
+                                   .count = t->row_count,
+                                   .stride = sizeof(sample),
+                                   .colour = colours[i]};
+        if (i < PANEL_STEPS - 1) {
+            size_t count = difference(t, finest, work[2 * i], work[2 * i + 1]);
+            less[i] = (figure_series){.name = names[i],
+                                      .label = label[i],
+                                      .x = work[2 * i],
+                                      .y = work[2 * i + 1],
+                                      .count = count,
+                                      .colour = colours[i]};
+        }
+    }
+    const figure_panel panels[] = {
+        {.name = "force",
+         .label = "contact force <i>f</i>",
+         .unit = "N",
+         .series = force,
+         .series_count = PANEL_STEPS,
+         .with_zero = true},
+        {.name = "difference",
+         .label = "less the finest",
+         .unit = "N",
+         .series = less,
+         .series_count = PANEL_STEPS - 1,
+         .with_zero = true},
+    };
+    snprintf(software, sizeof software, "impactlab %s", lab_version());
+    snprintf(title, sizeof title, "%s: the same run at three steps", r->scenario[0].name);
+    const figure fig = {.title = title,
+                        .x_name = "time",
+                        .x_label = "time",
+                        .x_unit = "s",
+                        .panels = panels,
+                        .panel_count = 2,
+                        .software = software};
+    return figure_write(&fig, path, f);
+}
+
+// The same with the memory it takes.
+static status draw_runs(const three_runs *r, const char *path, fault *f)
+{
+    double *work[4] = {NULL};
+    bool room = true;
+    for (int i = 0; i < 4; i++) {
+        work[i] = malloc((r->result[i / 2].trace.row_count + 1) * sizeof(double));
+        room = room && work[i] != NULL;
+    }
+    status code = room ? draw(r, work, path, f)
+                       : fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    for (int i = 0; i < 4; i++) {
+        free(work[i]);
+    }
+    return code;
+}
+
+static status plot(const scenario *s, const convergence_panel *panel, const char *path, fault *f)
+{
+    three_runs *r = calloc(1, sizeof *r);
+    if (r == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+    status code = run_all(s, panel, r, f);
+    if (code == STATUS_OK) {
+        code = draw_runs(r, path, f);
+    }
+    for (int i = 0; i < PANEL_STEPS; i++) {
+        run_finish(&r->result[i]);
+    }
+    free(r);
+    return code;
+}
+
+static int converge(const arguments *a)
+{
+    scenario s;
+    convergence_panel panel;
+    fault f = {0};
+    int result = check_output(a->json);
+    if (result == EXIT_DONE && a->plot != NULL && picture_check_path(a->plot, &f) != STATUS_OK) {
+        result = complain_fault(&f);
+    }
+    if (result == EXIT_DONE) {
+        result = open_scenario(&s, a->operands[0], a);
+    }
+    if (result != EXIT_DONE) {
+        return result;
+    }
+    if (convergence_compute(&s, &panel, &f) != STATUS_OK) {
+        result = complain_fault(&f);
+    } else {
+        if (a->json != NULL) {
+            result = write_json(a->json, panel_object(&s, &panel));
+        }
+        if (summary_wanted(a)) {
+            print_panel(&s, &panel);
+        }
+        if (result == EXIT_DONE && a->plot != NULL && plot(&s, &panel, a->plot, &f) != STATUS_OK) {
+            result = complain_fault(&f);
+        }
+    }
+    scenario_finish(&s);
+    return result;
+}
+
+const command converge_command = {
+    .name = "converge",
+    .operands = "SCENARIO",
+    .options = "sjpq",
+    .summary = "Run at the steps h, h/2, h/4 and tell the observed orders",
+    .help = "h is the scenario's method.step. --plot draws the contact force at the three steps.\n",
+    .least = 1,
+    .most = 1,
+    .run = converge,
+};

@@ -1,0 +1,94 @@
+#include "ui/commands/command.h"
+
+#include <string.h>
+
+#include "render/figures/figures.h"
+#include "src/base/words.h"
+#include "ui/commands/figure_options.h"
+
+#define DEFAULT_FOLDER  "figures"
+#define DEFAULT_FORMATS "png"
+
+// Reads a number from low to high; *value stays if text is NULL.
+static int read_number(const char *option, const char *text, double low, double high, double *value)
+{
+    double number;
+    const char *rest;
+    if (text == NULL) {
+        return EXIT_DONE;
+    }
+    if (!decimal_read(text, &number, &rest) || *rest != '\0' || !(number >= low) ||
+        !(number <= high)) {
+        return complain("--%s %s: expected a number from %g to %g", option, text, low, high);
+    }
+    *value = number;
+    return EXIT_DONE;
+}
+
+int read_figure_options(const arguments *a, figure_options *o)
+{
+    *o = (figure_options){.theme = a->mono   ? THEME_MONO
+                                   : a->dark ? THEME_DARK
+                                             : THEME_COLOUR,
+                          .overlay = a->overlay};
+    if (a->mono && a->dark) {
+        return complain("--mono and --dark cannot go together");
+    }
+    int code = read_number("width", a->width, 60, 400, &o->width_mm);
+    return code == EXIT_DONE ? read_number("dpi", a->dpi, 30, 1200, &o->dpi) : code;
+}
+
+// Whether every ID names a figure; says which does not.
+static int check_ids(const arguments *a)
+{
+    for (int i = 0; i < a->operand_count; i++) {
+        nearest_word near = nearest_begin(a->operands[i]);
+        if (thesis_figure_find(a->operands[i]) != NULL) {
+            continue;
+        }
+        for (int k = 0; k < thesis_figure_count; k++) {
+            nearest_try(&near, thesis_figures[k].id);
+        }
+        return complain("there is no figure '%s', did you mean '%s'? (impactlab figures --help "
+                        "lists all)",
+                        a->operands[i], near.best ? near.best : thesis_figures[0].id);
+    }
+    return EXIT_DONE;
+}
+
+static int figures(const arguments *a)
+{
+    figure_options options;
+    const char *folder = a->output ? a->output : DEFAULT_FOLDER;
+    const char *formats = a->format ? a->format : DEFAULT_FORMATS;
+    int count = a->operand_count > 0 ? a->operand_count : thesis_figure_count;
+    int code = check_ids(a);
+    code = code == EXIT_DONE ? read_figure_options(a, &options) : code;
+    for (int i = 0; i < count && code == EXIT_DONE; i++) {
+        const thesis_figure *drawn =
+            a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : &thesis_figures[i];
+        fault f = {0};
+        if (figure_draw_as(drawn->id, &options, folder, formats, &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+        if (!a->quiet) {
+            printf("%-10s  %s/%s  %s\n", drawn->id, folder, drawn->file, drawn->caption);
+        }
+    }
+    return code;
+}
+
+const command figures_command = {
+    .name = "figures",
+    .operands = "[ID]...",
+    .options = "ofYMDWiq",
+    .summary = "Draw the figures and tables of the thesis",
+    .help = "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a CSV of "
+            "what is\ndrawn stands beside each.\n\n"
+            "IDs are the thesis's numbers: 2.1 to 2.6, 3.1 to 3.11, 4.1 to 4.6, 5.1 to 5.7, T2.1, "
+            "T3.1, T3.2,\nT4.1 to T4.3; errors: how near those come out; beta-gamma: the map of "
+            "Newmark's "
+            "parameters.\n",
+    .most = 1 << 20,
+    .run = figures,
+};

@@ -1,0 +1,29 @@
+#include "ui/commands/command.h"
+
+#include "render/figures/report.h"
+
+#define DEFAULT_FOLDER "report"
+
+static int report(const arguments *a)
+{
+    fault f = {0};
+    const char *folder = a->output ? a->output : DEFAULT_FOLDER;
+    if (report_write(folder, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (!a->quiet) {
+        printf("%s/report.html\n%s/report.pdf\n", folder, folder);
+    }
+    return EXIT_DONE;
+}
+
+const command report_command = {
+    .name = "report",
+    .operands = "",
+    .options = "oq",
+    .summary = "All figures and tables as one web page and one PDF",
+    .help = "Into the folder 'report' unless -o says otherwise. The page needs no other file and "
+            "no network. Under\neach item stand its scenario, its model and the command that "
+            "makes it again.\n",
+    .run = report,
+};

@@ -1,0 +1,231 @@
+#include "ui/commands/command.h"
+
+#include "render/page/picture_file.h"
+#include "render/plot/trace_plot.h"
+
+#include <math.h>
+
+#include "src/arm/arm.h"
+#include "src/quantities/parameters.h"
+#include "ui/commands/run_progress.h"
+#include "ui/commands/scene_request.h"
+
+enum { EVENTS_SHOWN = 16 };
+
+// The value of a parameter as text; text has 128 bytes.
+static const char *value_text(const parameters *p, const char *path, char *text)
+{
+    parameter_format(p, parameter_find(path), text, 128);
+    return text;
+}
+
+static void print_heading(const scenario *s)
+{
+    char model[128], joint[128], wall[128], method[128];
+    const parameters *p = &s->parameters;
+    printf("%s: %s\n", s->name, s->title);
+    printf("%s model, %d link%s, %s hub, %s wall, %g V, method %s, h = %g s, %g s\n\n",
+           value_text(p, "arm.model", model), p->arm.links, p->arm.links == 1 ? "" : "s",
+           value_text(p, "arm.hub_joint", joint),
+           p->wall.kind == WALL_NONE ? "no" : value_text(p, "wall.kind", wall), p->motor.voltage,
+           value_text(p, "method.name", method), p->method.step, p->run.duration);
+}
+
+static void print_quantities(const summary *m)
+{
+    for (int i = 0; i < summary_count; i++) {
+        char label[64];
+        const char *unit;
+        double value = (double)NAN;
+        summary_get(m, summary_table[i].key, &value);
+        key_label(summary_table[i].key, label, sizeof label, &unit);
+        if (isnan(value)) {
+            printf("  %-28s           -\n", label);
+        } else if (unit[0] == '\0') {
+            printf("  %-28s  %10.0f\n", label, value);
+        } else {
+            printf("  %-28s  %10.5g %s\n", label, value, unit);
+        }
+    }
+}
+
+static void print_event(const scenario *s, const event *e)
+{
+    printf("  %10.6f s  %s", e->time, event_name(e->kind));
+    if (e->kind == EVENT_IMPACT) {
+        printf("   %.4g N s at %.4g m/s, %.4g J lost", e->impulse, e->speed, e->loss);
+    } else if (e->kind == EVENT_PUSH) {
+        printf("     %.4g N s", e->impulse);
+    } else if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
+        char value[128];
+        const action *a = &s->actions[e->index];
+        action_format_value(a, value, sizeof value);
+        printf("   %s = %s", parameter_table[a->parameter].path, value);
+    }
+    printf("\n");
+}
+
+static void print_events(const scenario *s, const trace *t)
+{
+    size_t shown = t->event_count > EVENTS_SHOWN ? EVENTS_SHOWN : t->event_count;
+    if (shown == 0) {
+        return;
+    }
+    printf("\nEvents:\n");
+    for (size_t i = 0; i < shown; i++) {
+        print_event(s, &t->events[i]);
+    }
+    if (shown < t->event_count) {
+        printf("  ... and %zu more (--json lists all)\n", t->event_count - shown);
+    }
+}
+
+static void print_expectations(const scenario *s, const summary *m)
+{
+    bool ticks = terminal_has_utf8();
+    if (s->expectation_count == 0) {
+        return;
+    }
+    printf("\nExpected:\n");
+    for (int i = 0; i < s->expectation_count; i++) {
+        const expectation *e = &s->expectations[i];
+        char label[64], found[64], wanted[64];
+        const char *unit, *space;
+        double value = (double)NAN;
+        summary_get(m, e->quantity, &value);
+        key_label(e->quantity, label, sizeof label, &unit);
+        space = unit[0] ? " " : "";
+        bool met = e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance;
+        snprintf(found, sizeof found, isnan(value) ? "none" : "%.5g%s%s", value, space, unit);
+        snprintf(wanted, sizeof wanted, e->is_null ? "none" : "%g within %g", e->value,
+                 e->tolerance);
+        printf("  %s %s: %s (expected %s)\n",
+               met ? (ticks ? "\u2713" : "ok ") : (ticks ? "\u2717" : "NOT MET"), label, found,
+               wanted);
+    }
+}
+
+static int write_csv(const char *path, const scenario *s, const run_result *result)
+{
+    whole_file file;
+    fault f = {0};
+    status code = whole_file_open(&file, path, &f);
+    if (code == STATUS_OK) {
+        export_csv(file.stream, &result->trace, s->parameters.arm.links);
+        code = whole_file_commit(&file, &f);
+    }
+    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+}
+
+// The larger of two exit statuses: what went wrong once stays wrong.
+static int worse(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+// Writes every file that was asked for. One that fails does not keep the others from being written.
+static int write_results(const arguments *a, const scenario *s, const run_result *result)
+{
+    int code = EXIT_DONE;
+    if (a->json != NULL) {
+        code = worse(code, write_json(a->json, export_run(s, result)));
+    }
+    if (a->csv != NULL) {
+        code = worse(code, write_csv(a->csv, s, result));
+    }
+    if (a->plot != NULL) {
+        fault f = {0};
+        if (plot_run(s, result, a->plot, &f) != STATUS_OK) {
+            code = worse(code, complain_fault(&f));
+        }
+    }
+    if (a->scene != NULL) {
+        code = worse(code, write_scene(a, s, result));
+    }
+    return code;
+}
+
+// Whether what is asked for can be done at all, before anything is computed.
+static int check_request(const arguments *a)
+{
+    fault f = {0};
+    if (a->plot != NULL && picture_check_path(a->plot, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    int result = worse(check_output(a->json), worse(check_output(a->csv), check_output(a->plot)));
+    return worse(result, check_scene(a));
+}
+
+// What the amplifier makes of a voltage beyond its limit changes the run: say so.
+static void note_limited_voltage(const parameters *p)
+{
+    if (p->control.law == LAW_NONE && fabs(p->motor.voltage) > p->motor.voltage_limit) {
+        fprintf(stderr,
+                "impactlab: note: motor.voltage = %g V is beyond motor.voltage_limit: the "
+                "amplifier gets %g V\n",
+                p->motor.voltage, motor_limited_voltage(&p->motor));
+    }
+}
+
+static int run_and_report(const arguments *a, scenario *s)
+{
+    run_result result;
+    bool keep_trace = a->csv != NULL || a->plot != NULL || a->scene != NULL;
+    status code = run_with_progress(s, keep_trace, &result);
+    int exit_status = write_results(a, s, &result);
+    if (summary_wanted(a)) {
+        print_heading(s);
+        print_quantities(&result.summary);
+        print_events(s, &result.trace);
+        print_expectations(s, &result.summary);
+    }
+    if (code != STATUS_OK) {
+        complain("%s failed: %s", s->name,
+                 result.summary.message[0] ? result.summary.message : status_text(code));
+        exit_status = worse(exit_status, EXIT_FAILED);
+    } else if (result.summary.message[0] != '\0') {
+        fprintf(stderr, "impactlab: note: %s\n", result.summary.message);
+    }
+    note_limited_voltage(&s->parameters);
+    if (code == STATUS_OK && run_check_expectations(s, &result, report_to_stderr, NULL) > 0) {
+        exit_status = worse(exit_status, EXIT_FAILED);
+    }
+    run_finish(&result);
+    if (code == STATUS_STOPPED) {
+        run_progress_leave();
+    }
+    return exit_status;
+}
+
+static int run(const arguments *a)
+{
+    scenario s;
+    int result = check_request(a);
+    if (result == EXIT_DONE) {
+        result = open_scenario(&s, a->operands[0], a);
+    }
+    if (result != EXIT_DONE) {
+        return result;
+    }
+    // what the file expects is said of its own parameters, not of changed ones
+    if (a->set_count > 0) {
+        s.expectation_count = 0;
+    }
+    result = run_and_report(a, &s);
+    scenario_finish(&s);
+    return result;
+}
+
+const command run_command = {
+    .name = "run",
+    .operands = "SCENARIO",
+    .options = "sjcpSTGKZq",
+    .summary = "Simulate a scenario and sum it up",
+    .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
+            "checked unless\n--set changed something. A run that fails still writes what it has "
+            "until then.\nThe scene shows the arm at every --at, or from the start to the peak "
+            "force of the first pulse.\n",
+    .least = 1,
+    .most = 1,
+    .run = run,
+};

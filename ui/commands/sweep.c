@@ -1,0 +1,387 @@
+// impactlab sweep: a run for each of many parameter values.
+#include "ui/commands/command.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "render/plot/sweep_plot.h"
+#include "src/study/sweep_store.h"
+#include "src/base/words.h"
+
+enum { ROWS_SHOWN = 40, BAR_LENGTH = 24 };
+
+static volatile sig_atomic_t signal_caught;
+static volatile time_t time_caught;
+
+// The first signal lets the runs in hand finish; one that comes a second or more later ends the
+// program. One that follows at once is the same again: timeout and some shells send it both to the
+// program and to its group.
+static void catch_signal(int number)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (signal_caught == 0) {
+        signal_caught = number;
+        time_caught = now.tv_sec;
+    } else if (now.tv_sec > time_caught + 1) {
+        signal(number, SIG_DFL);
+        raise(number);
+    }
+}
+
+static void catch_signals(void)
+{
+    struct sigaction caught = {.sa_handler = catch_signal};
+    sigemptyset(&caught.sa_mask);
+    sigaction(SIGINT, &caught, NULL);
+    sigaction(SIGTERM, &caught, NULL);
+}
+
+// --- the request ----------------------------------------------------------------------------
+
+// Reads a whole number from low to high; *value stays if text is NULL.
+static int read_whole(const char *option, const char *text, uint64_t low, uint64_t high,
+                      uint64_t *value)
+{
+    if (text == NULL) {
+        return EXIT_DONE;
+    }
+    char *end;
+    errno = 0;
+    unsigned long long number = strtoull(text, &end, 10);
+    if (!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
+        number > high) {
+        return complain("%s %s: expected a whole number from %llu to %llu", option, text,
+                        (unsigned long long)low, (unsigned long long)high);
+    }
+    *value = number;
+    return EXIT_DONE;
+}
+
+static int read_sampling(const char *text, sweep_sampling *sampling)
+{
+    *sampling = SWEEP_GRID;
+    for (int i = SWEEP_GRID; text != NULL && i <= SWEEP_LATIN; i++) {
+        if (strcmp(text, sweep_sampling_name((sweep_sampling)i)) == 0) {
+            *sampling = (sweep_sampling)i;
+            return EXIT_DONE;
+        }
+    }
+    return text == NULL ? EXIT_DONE : complain("--sample %s: expected grid, random or latin", text);
+}
+
+static int check_quantity(const char *key)
+{
+    nearest_word near = nearest_begin(key);
+    for (int i = 0; i < summary_count; i++) {
+        if (strcmp(summary_table[i].key, key) == 0) {
+            return EXIT_DONE;
+        }
+        nearest_try(&near, summary_table[i].key);
+    }
+    if (near.best != NULL) {
+        return complain("--quantity %s: there is no such quantity, did you mean %s?", key,
+                        near.best);
+    }
+    return complain("--quantity %s: there is no such quantity (impactlab run --json lists them)",
+                    key);
+}
+
+// What the command line asks for, read.
+typedef struct order {
+    const arguments *arguments;
+    const char *quantity;
+    int jobs;
+    sweep_request request;
+    scenario scenario;
+    sweep sweep;
+} order;
+
+static int processors(void)
+{
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : count > SWEEP_MOST_JOBS ? SWEEP_MOST_JOBS : (int)count;
+}
+
+static int read_options(order *o, const arguments *a)
+{
+    uint64_t runs = 0, jobs = (uint64_t)processors();
+    memset(o, 0, sizeof *o);
+    o->arguments = a;
+    o->quantity = a->quantity ? a->quantity : "peak_force_N";
+    o->request.vary = a->varies;
+    o->request.vary_count = a->vary_count;
+    int code = read_sampling(a->sample, &o->request.sampling);
+    code = code ? code : read_whole("--runs", a->runs, 1, SWEEP_MOST_RUNS, &runs);
+    code = code ? code : read_whole("--seed", a->seed, 0, UINT64_MAX, &o->request.seed);
+    code = code ? code : read_whole("--jobs", a->jobs, 1, SWEEP_MOST_JOBS, &jobs);
+    code = code ? code : check_quantity(o->quantity);
+    o->request.runs = (size_t)runs;
+    o->jobs = (int)jobs;
+    return code;
+}
+
+// Reads the scenario and what is varied, and looks at everything that can be wrong beforehand.
+static int prepare(order *o, const arguments *a)
+{
+    fault f = {0};
+    int code = read_options(o, a);
+    code = code ? code : check_output(a->csv);
+    code = code ? code : open_scenario(&o->scenario, a->operands[0], a);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    if (sweep_init(&o->sweep, &o->scenario, &o->request, &f) != STATUS_OK) {
+        code = complain_fault(&f);
+    } else if (a->plot != NULL && sweep_plot_check(&o->sweep, a->plot, &f) != STATUS_OK) {
+        code = complain_fault(&f);
+        sweep_finish(&o->sweep);
+    }
+    if (code != EXIT_DONE) {
+        scenario_finish(&o->scenario);
+    }
+    return code;
+}
+
+// --- progress -------------------------------------------------------------------------------
+
+// "0:07", "3:20:00"
+static void format_duration(char *text, size_t size, double seconds)
+{
+    long whole = seconds < 3.6e8 ? lround(seconds) : 359999999;
+    if (whole < 3600) {
+        snprintf(text, size, "%ld:%02ld", whole / 60, whole % 60);
+    } else {
+        snprintf(text, size, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+    }
+}
+
+// The progress bar: a line on the terminal that is written over.
+static void show_progress(void *context, const sweep_progress *p)
+{
+    char bar[BAR_LENGTH + 1], left[32] = "", failed[32] = "", line[160];
+    (void)context;
+    int filled = p->total > 0 ? (int)(BAR_LENGTH * p->done / p->total) : 0;
+    for (int i = 0; i < BAR_LENGTH; i++) {
+        bar[i] = i < filled ? '=' : ' ';
+    }
+    bar[BAR_LENGTH] = '\0';
+    if (p->done_now > 0) {
+        char time[24];
+        double rate = (double)p->done_now / p->elapsed_s;
+        format_duration(time, sizeof time, (double)(p->total - p->done) / rate);
+        snprintf(left, sizeof left, ", %s left", time);
+    }
+    if (p->failed > 0) {
+        snprintf(failed, sizeof failed, ", %zu failed", p->failed);
+    }
+    snprintf(line, sizeof line, "[%s] %3zu %%  %zu of %zu runs%s%s", bar, 100 * p->done / p->total,
+             p->done, p->total, failed, left);
+    fprintf(stderr, "\r%-78.78s", line);
+}
+
+static void clear_progress(void)
+{
+    fprintf(stderr, "\r%78s\r", "");
+}
+
+// --- results --------------------------------------------------------------------------------
+
+static int write_csv(const order *o, sweep_store *store)
+{
+    whole_file file;
+    fault f = {0};
+    if (whole_file_open(&file, o->arguments->csv, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (sweep_store_csv(store, file.stream, &f) != STATUS_OK) {
+        whole_file_abandon(&file);
+        return complain_fault(&f);
+    }
+    return whole_file_commit(&file, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+}
+
+static int write_plot(const order *o, const double *values)
+{
+    fault f = {0};
+    sweep_picture picture = {.sweep = &o->sweep, .key = o->quantity, .values = values};
+    return sweep_plot_write(&picture, o->arguments->plot, &f) == STATUS_OK ? EXIT_DONE
+                                                                           : complain_fault(&f);
+}
+
+// "motor.voltage = 2 V, method.name = event" of a run.
+static void print_values(const sweep *s, size_t run)
+{
+    for (int i = 0; i < s->axis_count; i++) {
+        const parameter_info *info = &parameter_table[s->axes[i].parameter];
+        char text[128];
+        sweep_value_text(s, run, i, text, sizeof text);
+        printf("%s%s = %s%s%s", i > 0 ? ", " : "", info->path, text, info->unit[0] ? " " : "",
+               info->unit);
+    }
+}
+
+// One line for the smallest or largest value.
+static void print_extreme(const sweep *s, const char *word, const double *values, size_t run,
+                          const char *unit)
+{
+    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], unit[0] ? " " : "", unit, run + 1);
+    print_values(s, run);
+    printf("\n");
+}
+
+static void print_table(const order *o, const double *values)
+{
+    size_t shown = o->sweep.run_count < ROWS_SHOWN ? o->sweep.run_count : ROWS_SHOWN;
+    for (size_t run = 0; run < shown; run++) {
+        printf("  %10.5g  ", values[run]);
+        print_values(&o->sweep, run);
+        printf("\n");
+    }
+    if (shown < o->sweep.run_count) {
+        printf("  ... and %zu more (--csv writes all)\n", o->sweep.run_count - shown);
+    }
+}
+
+static void print_summary(const order *o, const double *values, size_t failed,
+                          const sweep_progress *p)
+{
+    const sweep *s = &o->sweep;
+    const arguments *a = o->arguments;
+    char label[64];
+    const char *unit;
+    size_t low = s->run_count, high = s->run_count;
+    for (size_t run = 0; run < s->run_count; run++) {
+        if (isfinite(values[run])) {
+            low = low == s->run_count || values[run] < values[low] ? run : low;
+            high = high == s->run_count || values[run] > values[high] ? run : high;
+        }
+    }
+    key_label(o->quantity, label, sizeof label, &unit);
+    printf("%s: %zu run%s (%s), %zu failed", o->scenario.name, s->run_count,
+           s->run_count == 1 ? "" : "s", sweep_sampling_name(s->sampling), failed);
+    if (p->done_now < p->total) {
+        printf(", %zu were there already", p->total - p->done_now);
+    }
+    printf("\n%s%s%s%s\n", label, unit[0] ? " [" : "", unit, unit[0] ? "]" : "");
+    if (a->csv == NULL && a->db == NULL && a->plot == NULL) {
+        print_table(o, values);
+    }
+    if (low == s->run_count) {
+        printf("  did not occur in any run\n");
+        return;
+    }
+    print_extreme(s, "smallest", values, low, unit);
+    print_extreme(s, "largest", values, high, unit);
+}
+
+// Writes what was asked for, from the store. One file that fails does not keep back the other.
+static int report_results(const order *o, sweep_store *store, const sweep_progress *p)
+{
+    const arguments *a = o->arguments;
+    fault f = {0};
+    size_t failed = 0;
+    int code = EXIT_DONE, plotted = EXIT_DONE;
+    double *values = malloc(o->sweep.run_count * sizeof *values);
+    if (values == NULL) {
+        fault_set(&f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        return complain_fault(&f);
+    }
+    if (sweep_store_quantity(store, o->quantity, values, &failed, &f) != STATUS_OK) {
+        free(values);
+        return complain_fault(&f);
+    }
+    code = a->csv != NULL ? write_csv(o, store) : EXIT_DONE;
+    plotted = a->plot != NULL ? write_plot(o, values) : EXIT_DONE;
+    code = plotted > code ? plotted : code;
+    if (summary_wanted(a)) {
+        print_summary(o, values, failed, p);
+    }
+    free(values);
+    if (failed == o->sweep.run_count) {
+        complain("all %zu runs failed; the message of each is in its row", failed);
+        code = code > EXIT_FAILED ? code : EXIT_FAILED;
+    }
+    return code;
+}
+
+// Ended by a signal: says what there is and how to go on.
+static int report_stop(const order *o, const sweep_progress *p)
+{
+    const char *db = o->arguments->db;
+    if (db != NULL) {
+        complain("stopped: %zu of %zu runs are done and kept in '%s'; the same command goes on "
+                 "from there",
+                 p->done, p->total, db);
+    } else {
+        complain("stopped: %zu of %zu runs were done, nothing is kept; with --db FILE.sqlite a "
+                 "sweep can be continued",
+                 p->done, p->total);
+    }
+    return 128 + signal_caught;
+}
+
+static int compute(const order *o, sweep_store *store)
+{
+    fault f = {0};
+    sweep_progress progress;
+    bool bar = isatty(STDERR_FILENO) && !o->arguments->quiet;
+    sweep_options options = {
+        .jobs = o->jobs, .stop = &signal_caught, .report = bar ? show_progress : NULL};
+    catch_signals();
+    status code = sweep_run(&o->sweep, store, &options, &progress, &f);
+    if (bar) {
+        clear_progress();
+    }
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (progress.done < progress.total) {
+        return report_stop(o, &progress);
+    }
+    return report_results(o, store, &progress);
+}
+
+static int sweep_command_run(const arguments *a)
+{
+    order o;
+    fault f = {0};
+    sweep_store *store;
+    int code = prepare(&o, a);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    if (sweep_store_open(&store, a->db, &o.sweep, &f) == STATUS_OK) {
+        code = compute(&o, store);
+        sweep_store_close(store);
+    } else {
+        code = complain_fault(&f);
+    }
+    sweep_finish(&o.sweep);
+    scenario_finish(&o.scenario);
+    return code;
+}
+
+const command sweep_command = {
+    .name = "sweep",
+    .operands = "SCENARIO",
+    .options = "svmneJdCPQq",
+    .summary = "A run for each of many parameter values",
+    .help =
+        "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them evenly in the "
+        "logarithm,\nPATH=v1,v2,v3 takes those (words too: method.name=event,newmark). Several "
+        "--vary give every\ncombination, the last one changing fastest. With --sample random or "
+        "latin, --runs N values are drawn\nfrom each PATH=a:b or list.\n\n"
+        "With --db a sweep that was interrupted goes on where it stopped when the same command "
+        "is given again.\nCtrl-C finishes the runs in hand and keeps them (exit status 130). "
+        "Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",
+    .least = 1,
+    .most = 1,
+    .run = sweep_command_run,
+};

@@ -1,0 +1,79 @@
+#include "ui/terminal/escape_sequence.h"
+
+#include <stdio.h>
+
+enum { WHEEL = 64, DRAG = 32, SHIFT = 4, META = 8, CONTROL = 16, OLD_RELEASE = 3, OLD_OFFSET = 32 };
+
+static sequence_result mouse(int button, int column, int row, bool pressed, mouse_report *report)
+{
+    int plain = button & ~(SHIFT | META | CONTROL);
+    *report = (mouse_report){.x = column - 1,
+                             .y = row - 1,
+                             .shift = (button & SHIFT) != 0,
+                             .control = (button & CONTROL) != 0};
+    if (plain == WHEEL || plain == WHEEL + 1) {
+        report->kind = plain == WHEEL ? MOUSE_WHEEL_UP : MOUSE_WHEEL_DOWN;
+        return pressed ? SEQUENCE_MOUSE : SEQUENCE_OVER;
+    }
+    if (plain != 0 && plain != DRAG && plain != OLD_RELEASE) {
+        return SEQUENCE_OVER;
+    }
+    report->kind = !pressed || plain == OLD_RELEASE ? MOUSE_RELEASE
+                   : plain == DRAG                  ? MOUSE_DRAG
+                                                    : MOUSE_PRESS;
+    return SEQUENCE_MOUSE;
+}
+
+static sequence_result end(escape_sequence *e, int last, mouse_report *report)
+{
+    int button, column, row;
+    char rest;
+    e->text[e->length] = '\0';
+    e->state = SEQUENCE_NONE;
+    bool is_report = (last == 'M' || last == 'm') &&
+                     sscanf(e->text, "<%d;%d;%d%c", &button, &column, &row, &rest) == 3;
+    return is_report ? mouse(button, column, row, last == 'M', report) : SEQUENCE_OVER;
+}
+
+static sequence_result take_parameter(escape_sequence *e, int character, mouse_report *report)
+{
+    if (character == 'M' && e->length == 0) {
+        e->state = SEQUENCE_OLD_MOUSE;
+        return SEQUENCE_GOES_ON;
+    }
+    if (character < ' ' || character > 0x7e) {
+        // broken off: a control character or another escape begins something new
+        e->state = SEQUENCE_NONE;
+        return SEQUENCE_OTHER_KEY;
+    }
+    if (character >= 0x40) {
+        return end(e, character, report);
+    }
+    // one that is longer than any we know loses its end
+    if (e->length + 1 < (int)sizeof e->text) {
+        e->text[e->length++] = (char)character;
+    }
+    return SEQUENCE_GOES_ON;
+}
+
+sequence_result escape_sequence_take(escape_sequence *e, int character, mouse_report *report)
+{
+    if (e->state == SEQUENCE_ESCAPED && (character == '[' || character == 'O')) {
+        e->state = SEQUENCE_BRACKET;
+        e->length = 0;
+        return SEQUENCE_GOES_ON;
+    }
+    if (e->state == SEQUENCE_BRACKET) {
+        return take_parameter(e, character, report);
+    }
+    if (e->state == SEQUENCE_OLD_MOUSE) {
+        e->text[e->length++] = (char)(character - OLD_OFFSET);
+        if (e->length < 3) {
+            return SEQUENCE_GOES_ON;
+        }
+        e->state = SEQUENCE_NONE;
+        return mouse(e->text[0] & 0x7f, e->text[1], e->text[2], true, report);
+    }
+    e->state = SEQUENCE_NONE;
+    return SEQUENCE_OTHER_KEY;
+}

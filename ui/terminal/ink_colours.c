@@ -1,0 +1,181 @@
+#include "ui/terminal/ink_colours.h"
+
+#include <math.h>
+
+// As many colours as can be told apart with 4.6 of contrast on both grounds, also without the
+// sensitivity for red or for green, near the hues of Okabe and Ito 2008.
+static const rgb dark[INK_COUNT] = {
+    [INK_DIM] = {160, 160, 160},
+    [INK_FRAME] = {128, 128, 128},
+    [INK_ARM] = {135, 215, 255},
+    [INK_HUB] = {255, 215, 175},
+    [INK_WALL] = {188, 188, 188},
+    [INK_FORCE] = {255, 150, 40},
+    [INK_EVENT] = {255, 215, 0},
+    [INK_CURSOR] = {95, 255, 255},
+    [INK_WARNING] = {255, 110, 110},
+    [INK_OTHER] = {180, 145, 255},
+    [INK_SERIES_0] = {24, 191, 255},
+    {247, 189, 30},
+    {0, 171, 115},
+    {126, 233, 255},
+    {255, 125, 189},
+    {255, 96, 11},
+    {204, 248, 183},
+    {255, 255, 30},
+};
+static const rgb light[INK_COUNT] = {
+    [INK_DIM] = {92, 92, 92},
+    [INK_FRAME] = {128, 128, 128},
+    [INK_ARM] = {0, 85, 165},
+    [INK_HUB] = {120, 80, 0},
+    [INK_WALL] = {80, 80, 80},
+    [INK_FORCE] = {175, 70, 0},
+    [INK_EVENT] = {140, 75, 0},
+    [INK_CURSOR] = {0, 105, 110},
+    [INK_WARNING] = {195, 0, 20},
+    [INK_OTHER] = {115, 60, 200},
+    [INK_SERIES_0] = {39, 115, 184},
+    {137, 102, 22},
+    {0, 86, 73},
+    {17, 70, 197},
+    {125, 36, 137},
+    {140, 36, 0},
+    {36, 0, 0},
+    {87, 116, 111},
+};
+
+bool ink_rgb(lab_theme theme, ink i, rgb *colour)
+{
+    *colour = theme == COLOURS_LIGHT ? light[i] : dark[i];
+    return theme != COLOURS_MONO && i != INK_TEXT && i != INK_TITLE && i != INK_SELECTED;
+}
+
+const rgb *theme_grounds(lab_theme theme)
+{
+    static const rgb grounds[2][2] = {{{0, 0, 0}, {40, 44, 52}},
+                                      {{255, 255, 255}, {253, 246, 227}}};
+    return grounds[theme == COLOURS_LIGHT];
+}
+
+// --- measures ---------------------------------------------------------------------------------
+
+static double linear(unsigned char value)
+{
+    double share = value / 255.0;
+    return share <= 0.04045 ? share / 12.92 : pow((share + 0.055) / 1.055, 2.4);
+}
+
+static double luminance(rgb c)
+{
+    return 0.2126 * linear(c.red) + 0.7152 * linear(c.green) + 0.0722 * linear(c.blue);
+}
+
+double rgb_contrast(rgb a, rgb b)
+{
+    double one = luminance(a) + 0.05, other = luminance(b) + 0.05;
+    return fmax(one, other) / fmin(one, other);
+}
+
+// Ottosson 2020
+static void oklab(rgb c, double lab[3])
+{
+    double r = linear(c.red), g = linear(c.green), b = linear(c.blue);
+    double l = cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
+    double m = cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
+    double s = cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
+    lab[0] = 0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s;
+    lab[1] = 1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s;
+    lab[2] = 0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s;
+}
+
+double rgb_distance(rgb a, rgb b)
+{
+    double x[3], y[3];
+    oklab(a, x);
+    oklab(b, y);
+    return hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
+}
+
+// --- terminals with fewer colours -------------------------------------------------------------
+
+rgb colour_16(int index)
+{
+    // of the PC's text mode, whose bright and dark colours are the furthest apart
+    int on = index & 8 ? 255 : 170, off = index & 8 ? 85 : 0;
+    rgb c = {(unsigned char)(index & 1 ? on : off), (unsigned char)(index & 2 ? on : off),
+             (unsigned char)(index & 4 ? on : off)};
+    if (index == 3) {
+        c.green = 85; // brown
+    }
+    return c;
+}
+
+rgb colour_256(int index)
+{
+    static const unsigned char levels[6] = {0, 95, 135, 175, 215, 255};
+    if (index < 16) {
+        return colour_16(index);
+    }
+    if (index >= 232) {
+        unsigned char grey = (unsigned char)(8 + 10 * (index - 232));
+        return (rgb){grey, grey, grey};
+    }
+    index -= 16;
+    return (rgb){levels[index / 36], levels[index / 6 % 6], levels[index % 6]};
+}
+
+static bool is_grey(rgb c)
+{
+    return c.red == c.green && c.green == c.blue;
+}
+
+// The nearest of the colours from `first` to `last` that has enough contrast on the grounds and is
+// none of those taken (bits); a grey may stand for a colour if `greys`. -1 if there is none.
+static int nearest(lab_theme theme, ink i, int first, int last, rgb (*colour)(int), int grounds,
+                   unsigned taken, bool greys)
+{
+    // lines need less contrast than text
+    double least = i == INK_FRAME ? 3 : 4.5, distance = (double)INFINITY;
+    rgb wanted;
+    int best = -1;
+    if (!ink_rgb(theme, i, &wanted)) {
+        return -1;
+    }
+    greys = greys || is_grey(wanted);
+    for (int index = first; index <= last; index++) {
+        rgb c = colour(index);
+        // no colour for what has none, and the other way round where there are some
+        bool readable =
+            (is_grey(c) ? greys : !is_grey(wanted)) && (index >= 16 || !(taken >> index & 1));
+        for (int g = 0; g < grounds; g++) {
+            readable = readable && rgb_contrast(c, theme_grounds(theme)[g]) >= least;
+        }
+        if (readable && rgb_distance(c, wanted) < distance) {
+            best = index;
+            distance = rgb_distance(c, wanted);
+        }
+    }
+    return best;
+}
+
+int ink_256(lab_theme theme, ink i)
+{
+    // the first 16 are whatever the user has made of them
+    return nearest(theme, i, 16, 255, colour_256, 2, 0, true);
+}
+
+int ink_16(lab_theme theme, ink i)
+{
+    unsigned taken = 0;
+    int best = -1;
+    // curves differ as long as there are colours
+    for (int k = i < INK_SERIES_0 ? (int)i : INK_SERIES_0; k <= (int)i; k++) {
+        best = nearest(theme, (ink)k, 0, 15, colour_16, 1, taken, false);
+        best = best < 0 ? nearest(theme, (ink)k, 0, 15, colour_16, 1, taken, true) : best;
+        best = best < 0 ? nearest(theme, (ink)k, 0, 15, colour_16, 1, 0, true) : best;
+        taken |= best < 0 ? 0 : 1u << best;
+    }
+    // black and white are the text's own, which the user may have exchanged
+    return best == 0 || best == 7 || best == 15 ? -1 : best;
+}

@@ -1,0 +1,104 @@
+#include "ui/terminal/paint.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <wchar.h>
+
+#include "ui/terminal/ink_colours.h"
+
+// Bytes on their way to the terminal.
+typedef struct outlet {
+    char bytes[8192];
+    size_t used;
+} outlet;
+
+static void send(outlet *o)
+{
+    for (size_t sent = 0; sent < o->used;) {
+        ssize_t count = write(STDOUT_FILENO, o->bytes + sent, o->used - sent);
+        if (count > 0) {
+            sent += (size_t)count;
+        } else if (count < 0 && errno == EAGAIN) {
+            struct pollfd room = {STDOUT_FILENO, POLLOUT, 0};
+            poll(&room, 1, 1000);
+        } else if (count == 0 || errno != EINTR) {
+            break; // the terminal is gone, which reading will find out
+        }
+    }
+    o->used = 0;
+}
+
+static void put(outlet *o, const char *text)
+{
+    size_t length = strlen(text);
+    if (o->used + length > sizeof o->bytes) {
+        send(o);
+    }
+    memcpy(o->bytes + o->used, text, length);
+    o->used += length;
+}
+
+// The sequence that selects an ink.
+static void put_ink(outlet *o, ink i, lab_theme theme, colour_depth depth)
+{
+    char text[64] = "";
+    rgb c;
+    int index = depth == DEPTH_256 ? ink_256(theme, i) : depth == DEPTH_16 ? ink_16(theme, i) : -1;
+    bool coloured = ink_rgb(theme, i, &c) && depth != DEPTH_MONO;
+    // many terminals show bold dark colours as bright ones, which nobody can read on light ground
+    bool faint = theme == COLOURS_LIGHT && depth == DEPTH_16 && coloured;
+    bool bold = (i == INK_TITLE || i == INK_EVENT || i == INK_WARNING) && !faint;
+    if (coloured && depth == DEPTH_TRUE) {
+        snprintf(text, sizeof text, ";38;2;%d;%d;%d", c.red, c.green, c.blue);
+    } else if (coloured && depth == DEPTH_256 && index >= 0) {
+        snprintf(text, sizeof text, ";38;5;%d", index);
+    } else if (coloured && depth == DEPTH_16 && index >= 0) {
+        snprintf(text, sizeof text, ";%d", index < 8 ? 30 + index : 90 + index - 8);
+    }
+    put(o, "\033[0");
+    put(o, bold ? ";1" : i == INK_SELECTED ? ";7" : "");
+    put(o, text);
+    put(o, "m");
+}
+
+void paint_cells(const screen *s, screen *shown, glyph_set glyphs, lab_theme theme,
+                 colour_depth depth, bool whole)
+{
+    static outlet o;
+    int at_x = -1, at_y = -1, colour = -1;
+    // a terminal that knows synchronised output shows the frame at once, others ignore it
+    put(&o, "\033[?2026h");
+    for (int y = 0; y < s->height; y++) {
+        for (int x = 0; x < s->width; x++) {
+            long i = (long)y * s->width + x;
+            cell c = s->cells[i], *old = &shown->cells[i];
+            bool blank = c.glyph == ' ' && c.ink != INK_SELECTED;
+            bool same = whole ? blank : c.glyph == old->glyph && c.ink == old->ink;
+            *old = c;
+            // the last cell may scroll the screen; it is worth nothing
+            if (same || (x == s->width - 1 && y == s->height - 1)) {
+                continue;
+            }
+            char text[32];
+            if (at_x != x || at_y != y) {
+                snprintf(text, sizeof text, "\033[%d;%dH", y + 1, x + 1);
+                put(&o, text);
+            }
+            if (colour != (int)c.ink) {
+                put_ink(&o, c.ink, theme, depth);
+                colour = (int)c.ink;
+            }
+            uint32_t glyph = glyph_in_set(c.glyph, glyphs);
+            // what takes no cell or two would break the grid
+            glyph_encode(wcwidth((wchar_t)glyph) == 1 ? glyph : '?', text);
+            put(&o, text);
+            at_x = x + 1;
+            at_y = y;
+        }
+    }
+    put(&o, "\033[0m\033[?2026l");
+    send(&o);
+}

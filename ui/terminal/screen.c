@@ -1,0 +1,284 @@
+#include "ui/terminal/screen.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BRAILLE = 0x2800 };
+
+bool screen_resize(screen *s, int width, int height)
+{
+    width = width < 1 ? 1 : width;
+    height = height < 1 ? 1 : height;
+    cell *cells = calloc((size_t)width * (size_t)height, sizeof *cells);
+    if (cells == NULL) {
+        return false;
+    }
+    free(s->cells);
+    *s = (screen){.width = width, .height = height, .cells = cells};
+    screen_clear(s);
+    return true;
+}
+
+void screen_finish(screen *s)
+{
+    free(s->cells);
+    *s = (screen){0};
+}
+
+void screen_clear(screen *s)
+{
+    for (long i = 0; i < (long)s->width * s->height; i++) {
+        s->cells[i] = (cell){' ', INK_TEXT};
+    }
+}
+
+static cell *cell_at(screen *s, int x, int y)
+{
+    bool inside = x >= 0 && y >= 0 && x < s->width && y < s->height;
+    return inside ? &s->cells[(long)y * s->width + x] : NULL;
+}
+
+void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour)
+{
+    cell *c = cell_at(s, x, y);
+    if (c != NULL) {
+        *c = (cell){glyph, colour};
+    }
+}
+
+uint32_t glyph_decode(const char **text)
+{
+    const unsigned char *t = (const unsigned char *)*text;
+    int more = t[0] >= 0xf0 ? 3 : t[0] >= 0xe0 ? 2 : t[0] >= 0xc0 ? 1 : 0;
+    uint32_t glyph = more == 0 ? t[0] : t[0] & (0x3fu >> more);
+    for (int i = 1; i <= more; i++) {
+        if ((t[i] & 0xc0) != 0x80) {
+            *text += 1;
+            return '?';
+        }
+        glyph = glyph << 6 | (t[i] & 0x3fu);
+    }
+    *text += more + 1;
+    bool stray = more == 0 && t[0] >= 0x80;
+    bool control = glyph < ' ' || (glyph >= 0x7f && glyph < 0xa0);
+    return stray || control ? '?' : glyph;
+}
+
+int screen_text(screen *s, int x, int y, int room, ink colour, const char *text)
+{
+    int taken = 0;
+    while (*text != '\0' && taken < room) {
+        screen_put(s, x + taken, y, glyph_decode(&text), colour);
+        taken++;
+    }
+    return taken;
+}
+
+int screen_print(screen *s, int x, int y, int room, ink colour, const char *format, ...)
+{
+    char text[1024];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    return screen_text(s, x, y, room, colour, text);
+}
+
+int text_wrap(const char *text, int width, text_line *lines, int most, bool *split)
+{
+    int count = 0;
+    bool broken = false;
+    text += strspn(text, " ");
+    while (*text != '\0' && count < most) {
+        const char *at = text, *end = text;
+        // up to the last word that is not beyond the width
+        for (int cells = 0; *at != '\0' && cells < width; cells++) {
+            bool blank = glyph_decode(&at) == ' ';
+            end = !blank && (*at == ' ' || *at == '\0') ? at : end;
+        }
+        if (end == text) {
+            end = at;
+            broken = true;
+        }
+        lines[count++] = (text_line){text, (int)(end - text)};
+        text = end + strspn(end, " ");
+    }
+    if (split != NULL) {
+        *split = broken || *text != '\0';
+    }
+    return count;
+}
+
+void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title)
+{
+    int right = x + width - 1, bottom = y + height - 1;
+    for (int row = y; row <= bottom; row++) {
+        for (int column = x; column <= right; column++) {
+            bool side = column == x || column == right, level = row == y || row == bottom;
+            screen_put(s, column, row,
+                       level  ? 0x2500
+                       : side ? 0x2502
+                              : ' ',
+                       level || side ? colour : INK_TEXT);
+        }
+    }
+    screen_put(s, x, y, 0x250c, colour);
+    screen_put(s, right, y, 0x2510, colour);
+    screen_put(s, x, bottom, 0x2514, colour);
+    screen_put(s, right, bottom, 0x2518, colour);
+    if (title[0] != '\0' && width > 6) {
+        int taken = screen_text(s, x + 3, y, width - 6, INK_TITLE, title);
+        screen_put(s, x + 2, y, ' ', colour);
+        screen_put(s, x + 3 + taken, y, ' ', colour);
+    }
+}
+
+void screen_tint(screen *s, int x, int y, int width, int height, ink colour)
+{
+    for (int row = y; row < y + height; row++) {
+        for (int column = x; column < x + width; column++) {
+            cell *c = cell_at(s, column, row);
+            if (c != NULL) {
+                c->ink = colour;
+            }
+        }
+    }
+}
+
+// --- dots -------------------------------------------------------------------------------------
+
+void canvas_dot(const canvas *c, long across, long down, ink colour)
+{
+    static const unsigned char bits[4][2] = {
+        {0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+    if (across < 0 || down < 0 || across >= 2L * c->width || down >= 4L * c->height) {
+        return;
+    }
+    cell *at = cell_at(c->screen, c->x + (int)(across / 2), c->y + (int)(down / 4));
+    if (at != NULL) {
+        bool dots = at->glyph >= BRAILLE && at->glyph < BRAILLE + 256;
+        at->glyph = (dots ? at->glyph : (uint32_t)BRAILLE) | bits[down % 4][across % 2];
+        at->ink = colour;
+    }
+}
+
+// Cuts the line to the part between low and high along one coordinate; false if nothing is left.
+static bool clip(double low, double high, double a, double b, double *from, double *to)
+{
+    if (a == b) {
+        return a >= low && a <= high;
+    }
+    double enter = (low - a) / (b - a), leave = (high - a) / (b - a);
+    *from = fmax(*from, fmin(enter, leave));
+    *to = fmin(*to, fmax(enter, leave));
+    return *from <= *to;
+}
+
+void canvas_line(const canvas *c, double x0, double y0, double x1, double y1, ink colour)
+{
+    double from = 0, to = 1;
+    if (!isfinite(x0 + y0 + x1 + y1) || !clip(-1, 2 * c->width, x0, x1, &from, &to) ||
+        !clip(-1, 4 * c->height, y0, y1, &from, &to)) {
+        return;
+    }
+    double dx = x1 - x0, dy = y1 - y0;
+    long dots = (long)ceil(fmax(fabs(dx), fabs(dy)) * (to - from));
+    for (long i = 0; i <= dots; i++) {
+        double at = dots > 0 ? from + (to - from) * (double)i / (double)dots : from;
+        canvas_dot(c, lround(x0 + at * dx), lround(y0 + at * dy), colour);
+    }
+}
+
+// --- glyphs -----------------------------------------------------------------------------------
+
+// The dots as a quarter-block character.
+static uint32_t quadrants(uint32_t dots)
+{
+    static const uint32_t blocks[16] = {' ',    0x2598, 0x259d, 0x2580, 0x2596, 0x258c,
+                                        0x259e, 0x259b, 0x2597, 0x259a, 0x2590, 0x259c,
+                                        0x2584, 0x2599, 0x259f, 0x2588};
+    int upper_left = (dots & 0x03) != 0, upper_right = (dots & 0x18) != 0;
+    int lower_left = (dots & 0x44) != 0, lower_right = (dots & 0xa0) != 0;
+    return blocks[upper_left | upper_right << 1 | lower_left << 2 | lower_right << 3];
+}
+
+// The dots as the ASCII character that is most like them.
+static uint32_t ascii_dots(uint32_t dots)
+{
+    bool row[4] = {dots & 0x09, dots & 0x12, dots & 0x24, dots & 0xc0};
+    bool left = (dots & 0x47) != 0, right = (dots & 0xb8) != 0;
+    int rows = row[0] + row[1] + row[2] + row[3];
+    if (rows >= 3) {
+        return left && right && rows == 4 ? '#' : '|';
+    }
+    if (rows == 2) {
+        return row[0] && row[1] ? '"' : row[2] && row[3] ? '.' : row[1] && row[2] ? '=' : ':';
+    }
+    return row[0] ? (left && right ? '~' : '\'') : row[3] ? (left && right ? '_' : '.') : '-';
+}
+
+static uint32_t ascii_glyph(uint32_t glyph)
+{
+    static const struct {
+        uint32_t glyph;
+        char ascii;
+    } twins[] = {{0x2500, '-'}, {0x2502, '|'}, {0x250c, '+'}, {0x2510, '+'}, {0x2514, '+'},
+                 {0x2518, '+'}, {0x25b6, '>'}, {0x25c0, '<'}, {0x25b2, '^'}, {0x25bc, 'v'},
+                 {0x25cf, 'o'}, {0x25c6, '*'}, {0x2592, '%'}, {0x0394, 'd'}, {0x2016, '='},
+                 {0x00d7, 'x'}, {0x2025, '~'}, {0x25b8, '>'}, {0x2506, ':'}, {0x2524, '+'},
+                 {0x252c, '+'}, {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'}};
+    for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++) {
+        if (twins[i].glyph == glyph) {
+            return (uint32_t)twins[i].ascii;
+        }
+    }
+    return '?';
+}
+
+uint32_t glyph_in_set(uint32_t glyph, glyph_set set)
+{
+    bool dots = glyph >= BRAILLE && glyph < BRAILLE + 256;
+    if (set == GLYPHS_ASCII && glyph >= 0x80) {
+        return dots ? ascii_dots(glyph - BRAILLE) : ascii_glyph(glyph);
+    }
+    return set == GLYPHS_BLOCKS && dots ? quadrants(glyph - BRAILLE) : glyph;
+}
+
+void glyph_encode(uint32_t glyph, char *text)
+{
+    if (glyph < 0x80) {
+        *text++ = (char)glyph;
+    } else if (glyph < 0x800) {
+        *text++ = (char)(0xc0 | glyph >> 6);
+        *text++ = (char)(0x80 | (glyph & 0x3f));
+    } else if (glyph < 0x10000) {
+        *text++ = (char)(0xe0 | glyph >> 12);
+        *text++ = (char)(0x80 | (glyph >> 6 & 0x3f));
+        *text++ = (char)(0x80 | (glyph & 0x3f));
+    } else {
+        *text++ = (char)(0xf0 | (glyph >> 18 & 0x07));
+        *text++ = (char)(0x80 | (glyph >> 12 & 0x3f));
+        *text++ = (char)(0x80 | (glyph >> 6 & 0x3f));
+        *text++ = (char)(0x80 | (glyph & 0x3f));
+    }
+    *text = '\0';
+}
+
+void screen_dump(const screen *s, glyph_set set, FILE *stream)
+{
+    for (int y = 0; y < s->height; y++) {
+        const cell *row = s->cells + (long)y * s->width;
+        int length = s->width;
+        while (length > 0 && row[length - 1].glyph == ' ') {
+            length--;
+        }
+        for (int x = 0; x < length; x++) {
+            char text[5];
+            glyph_encode(glyph_in_set(row[x].glyph, set), text);
+            fputs(text, stream);
+        }
+        fputc('\n', stream);
+    }
+}

@@ -1,9 +1,0 @@
-// Cells written to the terminal without ncurses, in colours that it has no numbers for.
-#pragma once
-
-#include "ui/screen.h"
-
-// Writes the cells that differ from `shown` (all of them if `whole`; the terminal is empty then)
-// and takes them into it. Both screens have the same size.
-void paint_cells(const screen *s, screen *shown, glyph_set glyphs, lab_theme theme,
-                 colour_depth depth, bool whole);
