@@ -11,12 +11,10 @@
 #include "ui/terminal/terminal.h"
 
 static const command *const command_table[] = {
-    &lab_command,
-    &list_command,   &show_command,    &check_command,   &run_command,
-    &tables_command, &figures_command, &animate_command, &predict_command,
-    &modes_command,  &sweep_command,  &compare_command,   &bench_command,
-    &converge_command, &study_command, &report_command,
-    &calibrate_command,
+    &lab_command,    &list_command,      &show_command,    &check_command,    &run_command,
+    &tables_command, &figures_command,   &animate_command, &predict_command,  &modes_command,
+    &sweep_command,  &compare_command,   &bench_command,   &converge_command, &study_command,
+    &report_command, &calibrate_command,
 };
 enum { COMMANDS = sizeof command_table / sizeof command_table[0] };
 

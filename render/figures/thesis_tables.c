@@ -348,8 +348,9 @@ status table_errors(const char *title, const figure_options *o, artwork *out, fa
         g_free(printed);
         g_free(corrected);
     }
-    t->caption = g_strdup("Mean size of the difference from the thesis over the cells of a row that "
-                          "have a value, three stiffnesses at four voltages.");
+    t->caption =
+        g_strdup("Mean size of the difference from the thesis over the cells of a row that "
+                 "have a value, three stiffnesses at four voltages.");
     *out = artwork_of_table(t);
     return STATUS_OK;
 }

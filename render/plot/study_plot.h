@@ -1,9 +1,9 @@
 // Figures of studies: curves over logarithmic axes, panels side by side.
 //
-// The description is that of render/plot/plot.h, of which these parts count: title, caption, x_label,
-// x_unit, size, theme, and of every panel its label, unit and series. All axes are logarithmic; a
-// point that is not above zero is left out. The legend is that of the first panel, in a row above.
-// A `secondary` series is a guide: thin, dashed and without markers.
+// The description is that of render/plot/plot.h, of which these parts count: title, caption,
+// x_label, x_unit, size, theme, and of every panel its label, unit and series. All axes are
+// logarithmic; a point that is not above zero is left out. The legend is that of the first panel,
+// in a row above. A `secondary` series is a guide: thin, dashed and without markers.
 #pragma once
 
 #include "render/plot/plot.h"

@@ -31,8 +31,8 @@ status whole_file_commit(whole_file *w, fault *f);
 // Gives up: the target stays as it was. Closes w.
 void whole_file_abandon(whole_file *w);
 
-// Removes the temporaries of all files that are open just now. Safe in a signal handler that is about
-// to end the program.
+// Removes the temporaries of all files that are open just now. Safe in a signal handler that is
+// about to end the program.
 void whole_file_remove_unfinished(void);
 
 // Flushes a stream and tells whether all that was ever written to it arrived: 0, or an errno (EPIPE

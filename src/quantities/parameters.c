@@ -9,15 +9,15 @@
 #include "src/quantities/k2_table.h"
 #include "src/base/words.h"
 
-#define AT(field)  offsetof(parameters, field)
-#define REAL       PARAMETER_REAL
-#define INTEGER    PARAMETER_INTEGER
-#define BOOLEAN    PARAMETER_BOOLEAN
-#define CHOICE     PARAMETER_CHOICE
-#define TEXT       PARAMETER_TEXT
-#define DERIVED    (double)NAN // the default follows from other parameters, see parameters_resolve
-#define TIMED      true
-#define NOT_TIMED  false
+#define AT(field) offsetof(parameters, field)
+#define REAL      PARAMETER_REAL
+#define INTEGER   PARAMETER_INTEGER
+#define BOOLEAN   PARAMETER_BOOLEAN
+#define CHOICE    PARAMETER_CHOICE
+#define TEXT      PARAMETER_TEXT
+#define DERIVED   (double)NAN // the default follows from other parameters, see parameters_resolve
+#define TIMED     true
+#define NOT_TIMED false
 
 // k1 with which the printed model reproduces the thesis's tables. The thesis prints
 // 169 468 N m/rad, with which its own algorithm at h = 1 ms chatters; 90 lies in the range
@@ -163,8 +163,8 @@ const parameter_info parameter_table[] = {
      NOT_TIMED, "gain of the integrated force error"},
     {"control.speed_limit", "rad/s", REAL, AT(control.speed_limit), 0.3, 0.3, 0, 1000, NULL,
      NOT_TIMED, "speed-limit: hub velocity of the approach"},
-    {"control.reverse_time", "s", REAL, AT(control.reverse_time), 0.02, 0.02, 0, 10, NULL, NOT_TIMED,
-     "reverse-torque: how long the motor pulls back after contact"},
+    {"control.reverse_time", "s", REAL, AT(control.reverse_time), 0.02, 0.02, 0, 10, NULL,
+     NOT_TIMED, "reverse-torque: how long the motor pulls back after contact"},
     {"control.switch_share", "", REAL, AT(control.switch_share), 0.5, 0.5, 0, 1, NULL, NOT_TIMED,
      "bang-bang: share of the way to the wall at which the command is reversed"},
     {"control.force_limit", "N", REAL, AT(control.force_limit), 2, 2, 0, 1000, NULL, NOT_TIMED,
@@ -524,14 +524,16 @@ status parameters_resolve(parameters *p, fault *f)
         p->arm.link_inertia = m * l * l / 12; // uniform rod (errata B3)
     }
     if (p->wall.kind != WALL_NONE && p->initial.angle > p->wall.angle) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "initial.angle = %g rad lies behind the wall, expected at most wall.angle = "
-                         "%g rad",
-                         p->initial.angle, p->wall.angle);
+        return fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "initial.angle = %g rad lies behind the wall, expected at most wall.angle = "
+            "%g rad",
+            p->initial.angle, p->wall.angle);
     }
     if (p->control.law == LAW_PLUGIN && p->control.plugin[0] == '\0') {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "control.law = plugin needs the file of a shared object in control.plugin");
+        return fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "control.law = plugin needs the file of a shared object in control.plugin");
     }
     if (p->control.delay * p->control.rate > 1) {
         return fault_set(f, STATUS_BAD_SCENARIO,
@@ -549,9 +551,10 @@ status parameters_resolve(parameters *p, fault *f)
         return STATUS_BAD_SCENARIO;
     }
     if (p->control.jitter * p->control.rate > 0.5) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "control.jitter = %g s is more than half the period of %g s (control.rate)",
-                         p->control.jitter, 1 / p->control.rate);
+        return fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "control.jitter = %g s is more than half the period of %g s (control.rate)",
+            p->control.jitter, 1 / p->control.rate);
     }
     status sensible = resolve_piezo(p, f);
     if (sensible != STATUS_OK) {

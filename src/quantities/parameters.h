@@ -96,33 +96,33 @@ typedef enum control_law {
 } control_law;
 
 typedef struct control_parameters {
-    int law;                           // control_law
-    char plugin[PARAMETER_TEXT_SIZE];  // file of a shared object
+    int law;                            // control_law
+    char plugin[PARAMETER_TEXT_SIZE];   // file of a shared object
     char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
     char lock[PARAMETER_TEXT_SIZE];     // mode that the law is held in, "none" if it is free
-    double rate;                       // samples a second [Hz]
-    double delay;                      // from sampling to the command's effect [s]
-    double delay_periods;              // the same in sampling periods, on top of it
-    double jitter;                     // of the sampling instants, whole width [s]
-    int seed;                          // of every random number of the rig
-    double force;                      // commanded force [N]
-    double approach_voltage;           // [V]
-    double kp, kv;                     // gains of (5.24), (5.25), in N m/rad or V/rad, and s
-    int gains;                         // 0 torque, 1 volts, 2 printed (errata B7)
-    int coefficients;                  // 0 corrected, 1 printed (errata B2)
-    double transition_time;            // t_f [s]
-    double contact_threshold;          // force reading that means contact [N]
-    double k2_factor;                  // k2 that the controller believes in, over the arm's
+    double rate;                        // samples a second [Hz]
+    double delay;                       // from sampling to the command's effect [s]
+    double delay_periods;               // the same in sampling periods, on top of it
+    double jitter;                      // of the sampling instants, whole width [s]
+    int seed;                           // of every random number of the rig
+    double force;                       // commanded force [N]
+    double approach_voltage;            // [V]
+    double kp, kv;                      // gains of (5.24), (5.25), in N m/rad or V/rad, and s
+    int gains;                          // 0 torque, 1 volts, 2 printed (errata B7)
+    int coefficients;                   // 0 corrected, 1 printed (errata B2)
+    double transition_time;             // t_f [s]
+    double contact_threshold;           // force reading that means contact [N]
+    double k2_factor;                   // k2 that the controller believes in, over the arm's
     char k2_table[PARAMETER_TEXT_SIZE]; // "FORCE:K2 ...", takes the place of the arm's k2 there
-    double wall_error;                 // wall angle that it believes in, minus the wall's [rad]
-    double force_gain;                 // of force errors [V/N]
-    double integral_gain;              // of their integral [V/(N s)]
-    double speed_limit;                // hub velocity of a limited approach [rad/s]
-    double reverse_time;               // how long reverse-torque brakes [s]
-    double force_limit;                // that a predictive approach keeps to [N]
-    double switch_share;               // where bang-bang switches, share of the way to the wall
-    double travel_time;                // of the tip to the wall under inverse-dynamics [s]
-    double arrival_speed;              // of the tip at the wall under inverse-dynamics [m/s]
+    double wall_error;                  // wall angle that it believes in, minus the wall's [rad]
+    double force_gain;                  // of force errors [V/N]
+    double integral_gain;               // of their integral [V/(N s)]
+    double speed_limit;                 // hub velocity of a limited approach [rad/s]
+    double reverse_time;                // how long reverse-torque brakes [s]
+    double force_limit;                 // that a predictive approach keeps to [N]
+    double switch_share;                // where bang-bang switches, share of the way to the wall
+    double travel_time;                 // of the tip to the wall under inverse-dynamics [s]
+    double arrival_speed;               // of the tip at the wall under inverse-dynamics [m/s]
 } control_parameters;
 
 // In the order of the choices of sensor.force.

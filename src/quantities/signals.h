@@ -7,46 +7,46 @@
 
 // One recorded row: the state at an instant and what belongs to that very state.
 typedef struct sample {
-    double time;                // t [s]
-    double hub_angle;           // theta1 [rad]
-    double first_angle;         // theta2, first link [rad]
-    double last_angle;          // theta3, last link [rad]
-    double hub_velocity;        // [rad/s]
-    double first_velocity;      // [rad/s]
-    double last_velocity;       // [rad/s]
-    double hub_acceleration;    // [rad/s2]
-    double first_acceleration;  // [rad/s2]
-    double last_acceleration;   // [rad/s2]
-    double gap;                 // distance of the contact point from the arm [m]
-    double gap_velocity;        // [m/s]
-    double force;               // contact force, impulses excluded [N]
-    double impulse;             // of the impact at this very instant [N s]
-    double contact;             // 1 while in contact, else 0
-    double sticking;            // 1 while the hub sticks, else 0
-    double voltage;             // command to the amplifier [V]
-    double motor_torque;        // kT/Ra times amplified command, before back EMF [N m]
-    double friction_torque;     // Coulomb friction at the hub, as it acts [N m]
-    double kinetic_energy;      // [J]
-    double strain_energy;       // [J]
-    double motor_work;          // done by motor_torque since the start [J]
-    double external_work;       // done by pushes since the start [J]
-    double viscous_loss;        // back EMF and viscous friction [J]
-    double friction_loss;       // Coulomb friction [J]
-    double damping_loss;        // structural damping [J]
-    double impact_loss;         // [J]
-    double energy_residual;     // what the ledger does not account for [J]
+    double time;               // t [s]
+    double hub_angle;          // theta1 [rad]
+    double first_angle;        // theta2, first link [rad]
+    double last_angle;         // theta3, last link [rad]
+    double hub_velocity;       // [rad/s]
+    double first_velocity;     // [rad/s]
+    double last_velocity;      // [rad/s]
+    double hub_acceleration;   // [rad/s2]
+    double first_acceleration; // [rad/s2]
+    double last_acceleration;  // [rad/s2]
+    double gap;                // distance of the contact point from the arm [m]
+    double gap_velocity;       // [m/s]
+    double force;              // contact force, impulses excluded [N]
+    double impulse;            // of the impact at this very instant [N s]
+    double contact;            // 1 while in contact, else 0
+    double sticking;           // 1 while the hub sticks, else 0
+    double voltage;            // command to the amplifier [V]
+    double motor_torque;       // kT/Ra times amplified command, before back EMF [N m]
+    double friction_torque;    // Coulomb friction at the hub, as it acts [N m]
+    double kinetic_energy;     // [J]
+    double strain_energy;      // [J]
+    double motor_work;         // done by motor_torque since the start [J]
+    double external_work;      // done by pushes since the start [J]
+    double viscous_loss;       // back EMF and viscous friction [J]
+    double friction_loss;      // Coulomb friction [J]
+    double damping_loss;       // structural damping [J]
+    double impact_loss;        // [J]
+    double energy_residual;    // what the ledger does not account for [J]
     // on the rig, as of its last sample; NaN without one
-    double encoder;             // hub angle as read [rad]
-    double tachometer;          // hub velocity as read [rad/s]
-    double force_reading;       // contact force as the FSR reads it [N]
-    double piezo_force;         // contact force as the piezoelectric sensor reads it [N]
-    double film;                // bending as the piezo film reads it [rad]
-    double accelerometer;       // hub acceleration as read [rad/s2]
-    double command;             // what the controller asked for [V]
-    double controller_mode;     // index of its mode
-    double desired_angle;       // of the hub [rad]
-    double desired_velocity;    // of the hub [rad/s]
-    double calculated_force;    // what the controller takes the contact force to be [N]
+    double encoder;          // hub angle as read [rad]
+    double tachometer;       // hub velocity as read [rad/s]
+    double force_reading;    // contact force as the FSR reads it [N]
+    double piezo_force;      // contact force as the piezoelectric sensor reads it [N]
+    double film;             // bending as the piezo film reads it [rad]
+    double accelerometer;    // hub acceleration as read [rad/s2]
+    double command;          // what the controller asked for [V]
+    double controller_mode;  // index of its mode
+    double desired_angle;    // of the hub [rad]
+    double desired_velocity; // of the hub [rad/s]
+    double calculated_force; // what the controller takes the contact force to be [N]
 } sample;
 
 typedef enum line_style { LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT } line_style;
@@ -59,8 +59,8 @@ typedef struct signal_info {
     const char *description; // one sentence without a full stop
     int colour;              // slot in the palette, 0-7
     line_style style;
-    size_t offset;           // in struct sample
-    bool optional;           // of a sensor that need not be there: no column where nothing is recorded
+    size_t offset; // in struct sample
+    bool optional; // of a sensor that need not be there: no column where nothing is recorded
 } signal_info;
 
 extern const signal_info signal_table[];

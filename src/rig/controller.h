@@ -50,7 +50,7 @@ typedef struct controller_input {
     double piezo_force;      // piezoelectric force sensor [N]
     double bending;          // piezo film: last link's angle minus the first's [rad]
     double hub_acceleration; // accelerometer [rad/s2]
-    int wanted_mode;     // index in controller.modes it is to be in; -1: it chooses itself
+    int wanted_mode;         // index in controller.modes it is to be in; -1: it chooses itself
 } controller_input;
 
 // What a controller answers.

@@ -12,31 +12,31 @@
 // The result of a run. A quantity that did not occur is NaN (null in JSON).
 typedef struct summary {
     status status;
-    char message[1024];             // what stopped the run, or a remark; "" if there is none
-    char method[32];                // the method in fact used, "Runge-Kutta 8"
+    char message[1024]; // what stopped the run, or a remark; "" if there is none
+    char method[32];    // the method in fact used, "Runge-Kutta 8"
     double first_contact_s;
-    double contact_impulse_Ns;      // impulse of the first impact
-    double first_pulse_peak_N;      // largest force from first contact to first release
+    double contact_impulse_Ns; // impulse of the first impact
+    double first_pulse_peak_N; // largest force from first contact to first release
     double first_pulse_time_to_peak_s;
-    double first_pulse_s;           // length of the first pulse; NaN if it never ends
-    double peak_force_N;            // largest force of the whole run
-    double time_to_peak_s;          // after first contact
+    double first_pulse_s;  // length of the first pulse; NaN if it never ends
+    double peak_force_N;   // largest force of the whole run
+    double time_to_peak_s; // after first contact
     double impacts;
     double separations;             // episodes after first contact with a gap above 1 um
     double steady_force_N;          // mean over the last 0.1 s
     double force_overshoot_percent; // of peak_force_N over steady_force_N
-    double settling_time_s;         // from first contact until within 5 % of steady_force_N for good
+    double settling_time_s; // from first contact until within 5 % of steady_force_N for good
     double max_penetration_m;
     double motor_work_J;
-    double energy_residual_J;       // largest absolute value over the run
+    double energy_residual_J; // largest absolute value over the run
     // on the rig only, else NaN
-    double force_command_N;         // control.force
-    double force_over_command_N;    // peak_force_N - force_command_N
-    double steady_error_N;          // steady_force_N - force_command_N
-    double largest_command_V;       // in magnitude, as the D/A put it out
-    double electrical_energy_J;     // that the amplifier fed into the motor
-    double steps;                   // time steps taken
-    double wall_time_s;             // computing time
+    double force_command_N;      // control.force
+    double force_over_command_N; // peak_force_N - force_command_N
+    double steady_error_N;       // steady_force_N - force_command_N
+    double largest_command_V;    // in magnitude, as the D/A put it out
+    double electrical_energy_J;  // that the amplifier fed into the motor
+    double steps;                // time steps taken
+    double wall_time_s;          // computing time
 } summary;
 
 // Keys of the summary in the order of `run --json`, with the offset of each number.
@@ -80,7 +80,7 @@ typedef struct run_options {
     run_monitor *monitor; // NULL: nobody looks on
     size_t rows_expected; // if not 0, rows and events stay where they are and can be shared, and
                           // the result has a history; needs keep_trace
-    bool take_up; // *result was prepared by run_take_up: go on from there
+    bool take_up;         // *result was prepared by run_take_up: go on from there
 } run_options;
 
 // Simulates the scenario. Returns STATUS_OK, or what stopped the run: then summary.message says
@@ -101,8 +101,8 @@ bool run_take_up(const run_result *from, const scenario *old, const scenario *s,
 // A second result of the same run that shares all rows. STATUS_NO_MEMORY if there is no room.
 status run_share(const run_result *from, size_t rows_expected, run_result *result);
 
-// Numbers of chunks (src/base/shared_array.h) that the rows, angles, events and strides of two results
-// both begin with.
+// Numbers of chunks (src/base/shared_array.h) that the rows, angles, events and strides of two
+// results both begin with.
 typedef struct run_likeness {
     size_t rows, angles, velocities, events, strides;
 } run_likeness;

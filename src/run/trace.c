@@ -86,8 +86,7 @@ static bool make_room(trace *t)
 status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities)
 {
     size_t n = (size_t)t->angle_count;
-    bool full = t->row_count >= t->row_array.capacity ||
-                t->row_count >= t->angle_array.capacity ||
+    bool full = t->row_count >= t->row_array.capacity || t->row_count >= t->angle_array.capacity ||
                 t->row_count >= t->velocity_array.capacity;
     if (full && !make_room(t)) {
         return STATUS_NO_MEMORY;

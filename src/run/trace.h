@@ -6,18 +6,18 @@
 #include "src/base/status.h"
 
 typedef enum event_kind {
-    EVENT_IMPACT,  // gap closes with an approach velocity: an impulse acts
-    EVENT_CONTACT, // contact goes on after an impact, or begins without one
-    EVENT_RELEASE, // the contact force reaches zero
-    EVENT_STICK,   // the hub comes to rest and friction holds it
+    EVENT_IMPACT,   // gap closes with an approach velocity: an impulse acts
+    EVENT_CONTACT,  // contact goes on after an impact, or begins without one
+    EVENT_RELEASE,  // the contact force reaches zero
+    EVENT_STICK,    // the hub comes to rest and friction holds it
     EVENT_REVERSAL, // the hub comes to rest and turns back at once
-    EVENT_SLIP,    // the hub breaks away
-    EVENT_CHANGE,  // a scripted change of a parameter
-    EVENT_PUSH,    // a scripted push
+    EVENT_SLIP,     // the hub breaks away
+    EVENT_CHANGE,   // a scripted change of a parameter
+    EVENT_PUSH,     // a scripted push
 } event_kind;
 
 typedef struct event {
-    double time;    // [s]
+    double time; // [s]
     event_kind kind;
     double impulse; // impact: of the wall [N s]; push: as scripted; else 0
     double speed;   // impact: approach speed [m/s]; else 0
@@ -30,7 +30,8 @@ const char *event_name(event_kind kind);
 
 typedef struct trace {
     sample *rows;
-    double *angles;  // row r: angles[r * angle_count ...], hub first if it has an angle of its own [rad]
+    double *
+        angles; // row r: angles[r * angle_count ...], hub first if it has an angle of its own [rad]
     double *velocities; // the same of their velocities [rad/s]
     event *events;
     size_t row_count, event_count;
@@ -40,7 +41,8 @@ typedef struct trace {
 
 // An empty trace for angle_count link angles a row.
 void trace_init(trace *t, int angle_count);
-// The same in shared arrays (src/base/shared_array.h): for `least` rows and, if there is room, `most`.
+// The same in shared arrays (src/base/shared_array.h): for `least` rows and, if there is room,
+// `most`.
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most);
 void trace_finish(trace *t);
 

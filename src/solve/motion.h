@@ -52,8 +52,8 @@ typedef struct motion {
 
     // how the smooth motion is advanced
     const struct stepper *stepper;
-    double nominal_step;                  // method.step [s]
-    bool brief;                           // explicit: the stride takes the method of order 6
+    double nominal_step; // method.step [s]
+    bool brief;          // explicit: the stride takes the method of order 6
     double cut; // an instant at which a stride ends without being made for it [s]; HUGE_VAL: none
     double alpha_m, alpha_f, beta, gamma; // implicit steppers' coefficients [-]
 

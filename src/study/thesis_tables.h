@@ -7,11 +7,11 @@
 enum { TABLE_VOLTAGES = 4 };
 
 typedef struct table_row {
-    const char *table;      // "4.1"
-    double k2_factor;       // times the nominal k2
-    const char *model;      // "printed" or "corrected"
-    const char *quantity;   // "max_force_energy", "max_force_dynamics", "max_force_simulation",
-                            // "delay_dynamics", "delay_simulation"
+    const char *table;    // "4.1"
+    double k2_factor;     // times the nominal k2
+    const char *model;    // "printed" or "corrected"
+    const char *quantity; // "max_force_energy", "max_force_dynamics", "max_force_simulation",
+                          // "delay_dynamics", "delay_simulation"
     double printed[TABLE_VOLTAGES];  // what the thesis prints [N] or [s]
     double computed[TABLE_VOLTAGES]; // NaN where the quantity did not occur
 } table_row;

@@ -25,10 +25,10 @@ typedef struct arguments {
     const char *only, *baseline;                             // of bench; NULL if not given
     const char *width, *dpi, *overlay;                       // of figures; NULL if not given
     bool mono, dark;                                         // of figures
-    const char *against, *tolerance; // of compare; NULL if not given
-    const char *markdown, *columns;  // of compare; NULL if not given
-    const char *gl, *camera, *size;  // of scenes; NULL if not given
-    const char *fps, *seconds, *slow; // of films; NULL if not given
+    const char *against, *tolerance;                         // of compare; NULL if not given
+    const char *markdown, *columns;                          // of compare; NULL if not given
+    const char *gl, *camera, *size;                          // of scenes; NULL if not given
+    const char *fps, *seconds, *slow;                        // of films; NULL if not given
     const char *keys, *script, *glyphs, *theme, *colours; // of the terminal lab; NULL if not given
     bool quiet;
 } arguments;
@@ -45,8 +45,8 @@ typedef struct command {
 
 extern const command list_command, show_command, check_command, run_command, tables_command,
     figures_command, animate_command, predict_command, modes_command, sweep_command, bench_command,
-    compare_command, lab_command, calibrate_command,
-    converge_command, study_command, report_command;
+    compare_command, lab_command, calibrate_command, converge_command, study_command,
+    report_command;
 
 // Prints "impactlab: " and the sentence to stderr. Returns EXIT_BAD_ARGUMENTS.
 int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));

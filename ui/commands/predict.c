@@ -70,10 +70,9 @@ static void predict_all(const scenario *s, const run_result *result, const sampl
     for (int i = 0; i < PREDICTORS; i++) {
         outcomes[i] = (outcome){.fault = {.code = STATUS_OK}};
         outcome *o = &outcomes[i];
-        o->fault.code =
-            predictors[i].predict != NULL
-                ? predictors[i].predict(&now, &state, &o->prediction, &o->fault)
-                : predict_by_linearised_arm(&now, result, &o->prediction, &o->fault);
+        o->fault.code = predictors[i].predict != NULL
+                            ? predictors[i].predict(&now, &state, &o->prediction, &o->fault)
+                            : predict_by_linearised_arm(&now, result, &o->prediction, &o->fault);
     }
 }
 
