@@ -1,0 +1,65 @@
+#!/bin/bash
+# The house as the includes show it: every arrow points down, and no module stands in a circle.
+#
+#   test_architecture.sh SOURCE_ROOT
+#
+# A module is a .c with its .h. The rooms of each floor are listed from the lowest up; a file may
+# include its own room and what stands before it in the list, nothing else of the project.
+set -euo pipefail
+cd "$1"
+
+rooms="src/base src/quantities src/arm src/solve src/rig src/rig/laws src/predict src/scenario
+    src/run src/session src/study src/api
+    render/page render/plot render/scene render/figures
+    ui/terminal ui/explorer ui/commands ui"
+
+# "module room header-module header-room" of each include of the project's own files
+list_includes() {
+    find src render ui -name '*.[ch]' -print0 | xargs -0 grep -HE '^ *# *include "' |
+        sed -E 's/^([^:]*):[^"]*"([^"]*)".*/\1 \2/' |
+        while read -r file header; do
+            echo "${file%.[ch]} ${file%/*} ${header%.[ch]} ${header%/*}"
+        done
+}
+
+includes=$(list_includes)
+arrows=$(wc -l <<<"$includes")
+if [ "$arrows" -lt 200 ]; then
+    echo "only $arrows includes were found, so this test sees nothing"
+    exit 1
+fi
+
+awk -v rooms="$rooms" '
+    BEGIN {
+        count = split(rooms, list, /[ \n]+/)
+        for (i = 1; i <= count; i++) rank[list[i]] = i
+        # the laws are written against the header of a controller alone; the rig holds their list
+        allowed["src/rig src/rig/laws"] = 1
+    }
+    # a file in no known room, or a header that is not named by its whole path
+    !($2 in rank) { print $1 ": stands in no room that the test knows: " $2; wrong = 1; next }
+    !($4 in rank) { print $1 ": includes \"" $3 "\", expected a path from the top"; wrong = 1; next }
+    rank[$4] > rank[$2] && !(($2 " " $4) in allowed) {
+        print $1 ": includes " $3 ", an arrow upward from " $2 " to " $4; wrong = 1
+    }
+    $1 != $3 { arrow[$1] = arrow[$1] " " $3; module[$1] = module[$3] = 1 }
+
+    # depth first: a module met again while it is open closes a circle
+    function visit(name, path,    next_modules, n, i) {
+        state[name] = "open"
+        n = split(arrow[name], next_modules, " ")
+        for (i = 1; i <= n; i++) {
+            if (state[next_modules[i]] == "open") {
+                print "a circle of includes: " path " -> " next_modules[i]; wrong = 1
+            } else if (state[next_modules[i]] == "") {
+                visit(next_modules[i], path " -> " next_modules[i])
+            }
+        }
+        state[name] = "done"
+    }
+    END {
+        for (name in module) if (state[name] == "") visit(name, name)
+        exit wrong
+    }' <<<"$includes"
+
+echo "$arrows includes, all of them downward, no circle"
