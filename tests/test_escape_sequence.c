@@ -7,7 +7,7 @@
 
 typedef struct meant {
     sequence_result result;
-    mouse_report mouse;
+    pointer_event mouse;
     int taken; // characters after the escape
 } meant;
 
@@ -32,25 +32,25 @@ static void test_mouse_reports_are_understood(void **state)
     (void)state;
     meant m = feed_fresh("[<0;45;30M");
     assert_int_equal(m.result, SEQUENCE_MOUSE);
-    assert_int_equal(m.mouse.kind, MOUSE_PRESS);
+    assert_int_equal(m.mouse.kind, POINTER_PRESS);
     assert_int_equal(m.mouse.x, 44);
     assert_int_equal(m.mouse.y, 29);
-    assert_int_equal(feed_fresh("[<32;1;1M").mouse.kind, MOUSE_DRAG);
-    assert_int_equal(feed_fresh("[<0;45;30m").mouse.kind, MOUSE_RELEASE);
+    assert_int_equal(feed_fresh("[<32;1;1M").mouse.kind, POINTER_DRAG);
+    assert_int_equal(feed_fresh("[<0;45;30m").mouse.kind, POINTER_RELEASE);
     m = feed_fresh("[<16;1;1M");
-    assert_int_equal(m.mouse.kind, MOUSE_PRESS);
+    assert_int_equal(m.mouse.kind, POINTER_PRESS);
     assert_true(m.mouse.control && !m.mouse.shift);
     m = feed_fresh("[<68;10;10M");
     assert_int_equal(m.result, SEQUENCE_MOUSE);
-    assert_int_equal(m.mouse.kind, MOUSE_WHEEL_UP);
+    assert_int_equal(m.mouse.kind, POINTER_WHEEL_UP);
     assert_true(m.mouse.shift && !m.mouse.control);
-    assert_int_equal(feed_fresh("[<65;10;10M").mouse.kind, MOUSE_WHEEL_DOWN);
+    assert_int_equal(feed_fresh("[<65;10;10M").mouse.kind, POINTER_WHEEL_DOWN);
     m = feed_fresh("[M !\"");
     assert_int_equal(m.result, SEQUENCE_MOUSE);
-    assert_int_equal(m.mouse.kind, MOUSE_PRESS);
+    assert_int_equal(m.mouse.kind, POINTER_PRESS);
     assert_int_equal(m.mouse.x, 0);
     assert_int_equal(m.mouse.y, 1);
-    assert_int_equal(feed_fresh("[M#!\"").mouse.kind, MOUSE_RELEASE);
+    assert_int_equal(feed_fresh("[M#!\"").mouse.kind, POINTER_RELEASE);
 }
 
 static void test_what_means_nothing_is_passed_over(void **state)

@@ -18,7 +18,7 @@ static void test_measures_agree_with_known_values(void **state)
     assert_int_equal(colour_256(255).blue, 238);
 }
 
-static double least_contrast(lab_theme theme, rgb c)
+static double least_contrast(colour_theme theme, rgb c)
 {
     return fmin(rgb_contrast(c, theme_grounds(theme)[0]), rgb_contrast(c, theme_grounds(theme)[1]));
 }
@@ -30,22 +30,23 @@ static void test_every_ink_can_be_read_on_its_ground(void **state)
         for (int i = 0; i < INK_COUNT; i++) {
             rgb c;
             double least = i == INK_FRAME ? 3 : 4.5;
-            if (!ink_rgb((lab_theme)theme, (ink)i, &c)) {
-                assert_int_equal(ink_256((lab_theme)theme, (ink)i), -1);
-                assert_int_equal(ink_16((lab_theme)theme, (ink)i), -1);
+            if (!ink_rgb((colour_theme)theme, (ink)i, &c)) {
+                assert_int_equal(ink_256((colour_theme)theme, (ink)i), -1);
+                assert_int_equal(ink_16((colour_theme)theme, (ink)i), -1);
                 continue;
             }
-            if (least_contrast((lab_theme)theme, c) < least) {
+            if (least_contrast((colour_theme)theme, c) < least) {
                 fail_msg("ink %d of theme %d: contrast %.2f", i, theme,
-                         least_contrast((lab_theme)theme, c));
+                         least_contrast((colour_theme)theme, c));
             }
-            int near = ink_256((lab_theme)theme, (ink)i), basic = ink_16((lab_theme)theme, (ink)i);
+            int near = ink_256((colour_theme)theme, (ink)i),
+                basic = ink_16((colour_theme)theme, (ink)i);
             assert_in_range(near, 16, 255);
-            assert_true(least_contrast((lab_theme)theme, colour_256(near)) >= least);
+            assert_true(least_contrast((colour_theme)theme, colour_256(near)) >= least);
             check_below(rgb_distance(colour_256(near), c), 0.09);
             assert_true(basic < 16);
             assert_true(basic < 0 || rgb_contrast(colour_16(basic),
-                                                  theme_grounds((lab_theme)theme)[0]) >= least);
+                                                  theme_grounds((colour_theme)theme)[0]) >= least);
         }
     }
 }
@@ -89,8 +90,8 @@ static void test_curves_are_told_apart_by_everybody(void **state)
         for (int i = INK_SERIES_0; i < INK_COUNT; i++) {
             for (int j = INK_SERIES_0; j < i; j++) {
                 rgb a, b;
-                ink_rgb((lab_theme)theme, (ink)i, &a);
-                ink_rgb((lab_theme)theme, (ink)j, &b);
+                ink_rgb((colour_theme)theme, (ink)i, &a);
+                ink_rgb((colour_theme)theme, (ink)j, &b);
                 for (int eye = 0; eye < 3; eye++) {
                     double apart =
                         rgb_distance(seen_without(a, eyes[eye]), seen_without(b, eyes[eye]));
@@ -101,10 +102,10 @@ static void test_curves_are_told_apart_by_everybody(void **state)
                 }
                 // with fewer colours they are at least not the same; on light ground 16 have only
                 // seven that can be read, text's own among them
-                assert_true(theme == COLOURS_LIGHT ||
-                            ink_16((lab_theme)theme, (ink)i) != ink_16((lab_theme)theme, (ink)j));
-                assert_int_not_equal(ink_256((lab_theme)theme, (ink)i),
-                                     ink_256((lab_theme)theme, (ink)j));
+                assert_true(theme == COLOURS_LIGHT || ink_16((colour_theme)theme, (ink)i) !=
+                                                          ink_16((colour_theme)theme, (ink)j));
+                assert_int_not_equal(ink_256((colour_theme)theme, (ink)i),
+                                     ink_256((colour_theme)theme, (ink)j));
             }
         }
     }

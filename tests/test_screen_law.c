@@ -178,9 +178,9 @@ static void test_the_log_names_modes(void **state)
     // a click on a line goes there
     for (int i = 0; i < l.spot_count; i++) {
         if (l.spots[i].part == PART_LOG) {
-            lab_point(&l, (lab_pointer){.kind = POINTER_PRESS,
-                                        .x = l.spots[i].x + 3,
-                                        .y = l.spots[i].y + 2 - l.spots[i].index});
+            lab_point(&l, (pointer_event){.kind = POINTER_PRESS,
+                                          .x = l.spots[i].x + 3,
+                                          .y = l.spots[i].y + 2 - l.spots[i].index});
         }
     }
     check_close(l.session.now, 0.295, 0);

@@ -5,7 +5,7 @@
 
 static void point(lab *l, pointer_kind kind, int x, int y)
 {
-    lab_point(l, (lab_pointer){.kind = kind, .x = x, .y = y});
+    lab_point(l, (pointer_event){.kind = kind, .x = x, .y = y});
     free(picture(l, 120, 40, GLYPHS_BRAILLE));
 }
 
@@ -65,7 +65,7 @@ static void test_the_wheel_zooms_where_it_points(void **state)
     lab_window(&l, &from, &to);
     check_close(to - from, pow(0.8, 5), 1e-9);
     check_close((0.3 - from) / (to - from), 0.3, 0.02);
-    lab_point(&l, (lab_pointer){.kind = POINTER_WHEEL_DOWN, .x = x, .y = c.y + 3, .shift = true});
+    lab_point(&l, (pointer_event){.kind = POINTER_WHEEL_DOWN, .x = x, .y = c.y + 3, .shift = true});
     check_close(l.from, from + 0.1 * (to - from), 1e-9);
     for (int i = 0; i < 9; i++) {
         point(&l, POINTER_WHEEL_DOWN, x, c.y + 3);
@@ -193,9 +193,9 @@ static void test_random_pointing_does_no_harm(void **state)
     static const char *const pages[] = {"",           "?",       "<Esc>o", "<Esc>c",
                                         "<Esc><Tab>", "<Esc>:x", "<Esc>w"};
     for (int i = 0; i < 3000; i++) {
-        lab_pointer p = {(pointer_kind)random_below(&r, 5), (int)random_below(&r, 130) - 5,
-                         (int)random_below(&r, 50) - 5, random_below(&r, 2) != 0,
-                         random_below(&r, 2) != 0};
+        pointer_event p = {(pointer_kind)random_below(&r, 5), (int)random_below(&r, 130) - 5,
+                           (int)random_below(&r, 50) - 5, random_below(&r, 2) != 0,
+                           random_below(&r, 2) != 0};
         lab_point(&l, p);
         if (i % 10 == 0) {
             press(&l, pages[random_below(&r, sizeof pages / sizeof pages[0])]);

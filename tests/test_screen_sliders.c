@@ -5,7 +5,7 @@
 
 static void point(lab *l, pointer_kind kind, int x, int y)
 {
-    lab_point(l, (lab_pointer){.kind = kind, .x = x, .y = y});
+    lab_point(l, (pointer_event){.kind = kind, .x = x, .y = y});
     free(picture(l, 120, 40, GLYPHS_BRAILLE));
 }
 

@@ -95,17 +95,11 @@ static int run_off_screen(lab *l, const arguments *a)
 
 static void take_input(lab *l, terminal_input in)
 {
-    if (in.kind == INPUT_KEY) {
+    if (in.kind == TERMINAL_KEY) {
         lab_key(l, in.code);
-    } else if (in.kind == INPUT_MOUSE) {
-        static const pointer_kind kinds[] = {
-            [MOUSE_PRESS] = POINTER_PRESS,           [MOUSE_DRAG] = POINTER_DRAG,
-            [MOUSE_RELEASE] = POINTER_RELEASE,       [MOUSE_WHEEL_UP] = POINTER_WHEEL_UP,
-            [MOUSE_WHEEL_DOWN] = POINTER_WHEEL_DOWN,
-        };
-        const mouse_report *m = &in.mouse;
-        lab_point(l, (lab_pointer){kinds[m->kind], m->x, m->y, m->shift, m->control});
-    } else if (in.kind == INPUT_RESIZE) {
+    } else if (in.kind == TERMINAL_POINTER) {
+        lab_point(l, in.pointer);
+    } else if (in.kind == TERMINAL_RESIZE) {
         l->redraw = true;
     }
 }
@@ -147,8 +141,8 @@ static void run_on_terminal(lab *l)
             dirty = true;
         }
         last = now;
-        dirty |= in.kind != INPUT_NONE;
-        leave = in.kind == INPUT_LEAVE;
+        dirty |= in.kind != TERMINAL_NONE;
+        leave = in.kind == TERMINAL_LEAVE;
         take_input(l, in);
     }
     screen_finish(&s);

@@ -139,7 +139,7 @@ bool act_set_theme(lab *l, const char *argument)
     static const char *const words[] = {"dark", "light", "mono"};
     int value = (int)l->theme;
     bool done = take_choice(l, argument, words, COLOUR_THEMES, &value);
-    l->theme = (lab_theme)value;
+    l->theme = (colour_theme)value;
     return done;
 }
 

@@ -5,6 +5,7 @@
 #include "src/predict/predict.h"
 #include "src/rig/rig.h"
 #include "ui/terminal/key_codes.h"
+#include "ui/terminal/pointer.h"
 #include "ui/terminal/screen.h"
 
 enum { EXTREMES_BLOCK = 64, LAB_SIGNALS = 64 };
@@ -46,21 +47,6 @@ typedef enum lab_part {
     PART_LIST, // index: the first line shown
     PART_COMPARISON
 } lab_part;
-
-typedef enum pointer_kind {
-    POINTER_PRESS,
-    POINTER_DRAG,
-    POINTER_RELEASE,
-    POINTER_WHEEL_UP,
-    POINTER_WHEEL_DOWN
-} pointer_kind;
-
-// What the mouse did, at which cell.
-typedef struct lab_pointer {
-    pointer_kind kind;
-    int x, y;
-    bool shift, control;
-} lab_pointer;
 
 // Where a part was drawn last [cells].
 typedef struct lab_spot {
@@ -155,7 +141,7 @@ typedef struct lab {
     char message[1024];
     bool warning; // the message is one
     glyph_set glyphs;
-    lab_theme theme;
+    colour_theme theme;
     colour_depth depth;
     bool mouse;
     int fault_at; // where the line that failed last is wrong: characters before that
@@ -212,7 +198,7 @@ void lab_key(lab *l, int key);
 // "<C-l>"). False, with what is wrong in f, at a name that is none.
 bool lab_keys(lab *l, const char *text, fault *f);
 // The mouse did something.
-void lab_point(lab *l, lab_pointer p);
+void lab_point(lab *l, pointer_event p);
 // A click or a drag at a cell, or the wheel (-1 up, 1 down), where no part takes it in its own way.
 void lab_click(lab *l, int x, int y);
 void lab_wheel(lab *l, int direction);

@@ -62,7 +62,7 @@ static void press_in_log(lab *l, const lab_spot *s, int y)
     }
 }
 
-static void press(lab *l, lab_pointer p)
+static void press(lab *l, pointer_event p)
 {
     lab_spot s = part_at(l, p.x, p.y);
     l->grabbed = s;
@@ -91,7 +91,7 @@ static void press(lab *l, lab_pointer p)
     }
 }
 
-static void drag(lab *l, lab_pointer p)
+static void drag(lab *l, pointer_event p)
 {
     if (!l->holding) {
         press(l, p);
@@ -116,7 +116,7 @@ static void drag(lab *l, lab_pointer p)
     }
 }
 
-static void turn_wheel(lab *l, lab_pointer p)
+static void turn_wheel(lab *l, pointer_event p)
 {
     int direction = p.kind == POINTER_WHEEL_UP ? -1 : 1;
     double from, to;
@@ -165,7 +165,7 @@ static void turn_wheel(lab *l, lab_pointer p)
     }
 }
 
-void lab_point(lab *l, lab_pointer p)
+void lab_point(lab *l, pointer_event p)
 {
     switch (p.kind) {
     case POINTER_PRESS:

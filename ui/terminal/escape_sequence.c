@@ -4,27 +4,27 @@
 
 enum { WHEEL = 64, DRAG = 32, SHIFT = 4, META = 8, CONTROL = 16, OLD_RELEASE = 3, OLD_OFFSET = 32 };
 
-static sequence_result mouse(int button, int column, int row, bool pressed, mouse_report *report)
+static sequence_result mouse(int button, int column, int row, bool pressed, pointer_event *report)
 {
     int plain = button & ~(SHIFT | META | CONTROL);
-    *report = (mouse_report){.x = column - 1,
-                             .y = row - 1,
-                             .shift = (button & SHIFT) != 0,
-                             .control = (button & CONTROL) != 0};
+    *report = (pointer_event){.x = column - 1,
+                              .y = row - 1,
+                              .shift = (button & SHIFT) != 0,
+                              .control = (button & CONTROL) != 0};
     if (plain == WHEEL || plain == WHEEL + 1) {
-        report->kind = plain == WHEEL ? MOUSE_WHEEL_UP : MOUSE_WHEEL_DOWN;
+        report->kind = plain == WHEEL ? POINTER_WHEEL_UP : POINTER_WHEEL_DOWN;
         return pressed ? SEQUENCE_MOUSE : SEQUENCE_OVER;
     }
     if (plain != 0 && plain != DRAG && plain != OLD_RELEASE) {
         return SEQUENCE_OVER;
     }
-    report->kind = !pressed || plain == OLD_RELEASE ? MOUSE_RELEASE
-                   : plain == DRAG                  ? MOUSE_DRAG
-                                                    : MOUSE_PRESS;
+    report->kind = !pressed || plain == OLD_RELEASE ? POINTER_RELEASE
+                   : plain == DRAG                  ? POINTER_DRAG
+                                                    : POINTER_PRESS;
     return SEQUENCE_MOUSE;
 }
 
-static sequence_result end(escape_sequence *e, int last, mouse_report *report)
+static sequence_result end(escape_sequence *e, int last, pointer_event *report)
 {
     int button, column, row;
     char rest;
@@ -35,7 +35,7 @@ static sequence_result end(escape_sequence *e, int last, mouse_report *report)
     return is_report ? mouse(button, column, row, last == 'M', report) : SEQUENCE_OVER;
 }
 
-static sequence_result take_parameter(escape_sequence *e, int character, mouse_report *report)
+static sequence_result take_parameter(escape_sequence *e, int character, pointer_event *report)
 {
     if (character == 'M' && e->length == 0) {
         e->state = SEQUENCE_OLD_MOUSE;
@@ -56,7 +56,7 @@ static sequence_result take_parameter(escape_sequence *e, int character, mouse_r
     return SEQUENCE_GOES_ON;
 }
 
-sequence_result escape_sequence_take(escape_sequence *e, int character, mouse_report *report)
+sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_event *report)
 {
     if (e->state == SEQUENCE_ESCAPED && (character == '[' || character == 'O')) {
         e->state = SEQUENCE_BRACKET;

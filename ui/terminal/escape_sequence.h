@@ -3,7 +3,7 @@
 // never waits: a sequence that comes in pieces is gone on with when the next one is there.
 #pragma once
 
-#include <stdbool.h>
+#include "ui/terminal/pointer.h"
 
 typedef enum sequence_state {
     SEQUENCE_NONE,
@@ -25,21 +25,6 @@ typedef enum sequence_result {
     SEQUENCE_OTHER_KEY // the escape stood alone, this character is the next key
 } sequence_result;
 
-// What the mouse did, at a cell counted from 0.
-typedef enum mouse_kind {
-    MOUSE_PRESS,
-    MOUSE_DRAG,
-    MOUSE_RELEASE,
-    MOUSE_WHEEL_UP,
-    MOUSE_WHEEL_DOWN
-} mouse_kind;
-
-typedef struct mouse_report {
-    mouse_kind kind;
-    int x, y;
-    bool shift, control;
-} mouse_report;
-
 // Takes the next character of a sequence that has begun (state SEQUENCE_ESCAPED). With
 // SEQUENCE_MOUSE the report says what the mouse did.
-sequence_result escape_sequence_take(escape_sequence *e, int character, mouse_report *report);
+sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_event *report);

@@ -45,13 +45,13 @@ static const rgb light[INK_COUNT] = {
     {87, 116, 111},
 };
 
-bool ink_rgb(lab_theme theme, ink i, rgb *colour)
+bool ink_rgb(colour_theme theme, ink i, rgb *colour)
 {
     *colour = theme == COLOURS_LIGHT ? light[i] : dark[i];
     return theme != COLOURS_MONO && i != INK_TEXT && i != INK_TITLE && i != INK_SELECTED;
 }
 
-const rgb *theme_grounds(lab_theme theme)
+const rgb *theme_grounds(colour_theme theme)
 {
     static const rgb grounds[2][2] = {{{0, 0, 0}, {40, 44, 52}},
                                       {{255, 255, 255}, {253, 246, 227}}};
@@ -132,7 +132,7 @@ static bool is_grey(rgb c)
 
 // The nearest of the colours from `first` to `last` that has enough contrast on the grounds and is
 // none of those taken (bits); a grey may stand for a colour if `greys`. -1 if there is none.
-static int nearest(lab_theme theme, ink i, int first, int last, rgb (*colour)(int), int grounds,
+static int nearest(colour_theme theme, ink i, int first, int last, rgb (*colour)(int), int grounds,
                    unsigned taken, bool greys)
 {
     // lines need less contrast than text
@@ -159,13 +159,13 @@ static int nearest(lab_theme theme, ink i, int first, int last, rgb (*colour)(in
     return best;
 }
 
-int ink_256(lab_theme theme, ink i)
+int ink_256(colour_theme theme, ink i)
 {
     // the first 16 are whatever the user has made of them
     return nearest(theme, i, 16, 255, colour_256, 2, 0, true);
 }
 
-int ink_16(lab_theme theme, ink i)
+int ink_16(colour_theme theme, ink i)
 {
     unsigned taken = 0;
     int best = -1;

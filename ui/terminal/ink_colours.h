@@ -9,14 +9,14 @@ typedef struct rgb {
 } rgb;
 
 // The colour of an ink; false where it is the terminal's own for text.
-bool ink_rgb(lab_theme theme, ink i, rgb *colour);
+bool ink_rgb(colour_theme theme, ink i, rgb *colour);
 // The same as one of 256 colours, or of 16, as near to it as still can be read; -1 for the
 // terminal's own.
-int ink_256(lab_theme theme, ink i);
-int ink_16(lab_theme theme, ink i);
+int ink_256(colour_theme theme, ink i);
+int ink_16(colour_theme theme, ink i);
 
 // Grounds that a theme is made for, two: the plainest one and the least contrasting usual one.
-const rgb *theme_grounds(lab_theme theme);
+const rgb *theme_grounds(colour_theme theme);
 
 // What terminals show for one of 256 colours, as far as they agree, or for one of 16.
 rgb colour_256(int index);

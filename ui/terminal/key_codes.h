@@ -2,7 +2,7 @@
 #pragma once
 
 // Keys that are no characters; characters are their Unicode number.
-enum lab_key_code {
+enum key_code {
     KEY_CODE_FIRST = 0x110000,
     KEY_CODE_LEFT,
     KEY_CODE_RIGHT,

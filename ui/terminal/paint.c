@@ -42,7 +42,7 @@ static void put(outlet *o, const char *text)
 }
 
 // The sequence that selects an ink.
-static void put_ink(outlet *o, ink i, lab_theme theme, colour_depth depth)
+static void put_ink(outlet *o, ink i, colour_theme theme, colour_depth depth)
 {
     char text[64] = "";
     rgb c;
@@ -64,7 +64,7 @@ static void put_ink(outlet *o, ink i, lab_theme theme, colour_depth depth)
     put(o, "m");
 }
 
-void paint_cells(const screen *s, screen *shown, glyph_set glyphs, lab_theme theme,
+void paint_cells(const screen *s, screen *shown, glyph_set glyphs, colour_theme theme,
                  colour_depth depth, bool whole)
 {
     static outlet o;

@@ -5,5 +5,5 @@
 
 // Writes the cells that differ from `shown` (all of them if `whole`; the terminal is empty then)
 // and takes them into it. Both screens have the same size.
-void paint_cells(const screen *s, screen *shown, glyph_set glyphs, lab_theme theme,
+void paint_cells(const screen *s, screen *shown, glyph_set glyphs, colour_theme theme,
                  colour_depth depth, bool whole);

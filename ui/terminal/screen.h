@@ -29,7 +29,7 @@ typedef enum ink {
 typedef enum glyph_set { GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII, GLYPH_SETS } glyph_set;
 
 // What the inks look like on the terminal.
-typedef enum lab_theme { COLOURS_DARK, COLOURS_LIGHT, COLOURS_MONO, COLOUR_THEMES } lab_theme;
+typedef enum colour_theme { COLOURS_DARK, COLOURS_LIGHT, COLOURS_MONO, COLOUR_THEMES } colour_theme;
 
 // How many colours the terminal is taken to have.
 typedef enum colour_depth {

@@ -26,7 +26,7 @@ static struct {
     struct termios saved; // as it was
     int wake[2];          // signals write here
     screen shown;         // what the terminal has
-    lab_theme theme;      // whose colours are set
+    colour_theme theme;   // whose colours are set
     colour_depth depth;
     bool bright[INK_COUNT]; // inks that are bold for want of bright colours
     bool colours, themed, mouse, has_mouse;
@@ -299,33 +299,34 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
     bool escaped = tty.sequence.state == SEQUENCE_ESCAPED;
     sequence_result result = SEQUENCE_OTHER_KEY;
     if (kind == OK && (escaped || seconds_now() - tty.sequence_time < SEQUENCE_TIME)) {
-        result = escape_sequence_take(&tty.sequence, (int)key, &in->mouse);
+        result = escape_sequence_take(&tty.sequence, (int)key, &in->pointer);
     }
     tty.sequence_time = seconds_now();
     if (result == SEQUENCE_OTHER_KEY) {
         tty.sequence.state = SEQUENCE_NONE;
-        *in = (terminal_input){.kind = escaped ? INPUT_KEY : INPUT_NONE, .code = KEY_CODE_ESCAPE};
+        *in = (terminal_input){.kind = escaped ? TERMINAL_KEY : TERMINAL_NONE,
+                               .code = KEY_CODE_ESCAPE};
         return false;
     }
-    in->kind = result == SEQUENCE_MOUSE ? INPUT_MOUSE : INPUT_NONE;
+    in->kind = result == SEQUENCE_MOUSE ? TERMINAL_POINTER : TERMINAL_NONE;
     return true;
 }
 
-// What has come already; INPUT_NONE if that is nothing, or not yet all of a sequence.
+// What has come already; TERMINAL_NONE if that is nothing, or not yet all of a sequence.
 static terminal_input pending_input(void)
 {
-    terminal_input in = {.kind = INPUT_NONE};
+    terminal_input in = {.kind = TERMINAL_NONE};
     wint_t key = 0;
     int kind;
     while ((kind = get_wch(&key)) != ERR) {
         if (tty.sequence.state != SEQUENCE_NONE) {
             if (take_sequence(key, kind, &in)) {
-                if (in.kind != INPUT_NONE) {
+                if (in.kind != TERMINAL_NONE) {
                     return in;
                 }
                 continue;
             }
-            if (in.kind != INPUT_NONE) {
+            if (in.kind != TERMINAL_NONE) {
                 // the key after the escape is the next one
                 if (kind == KEY_CODE_YES) {
                     ungetch((int)key);
@@ -337,19 +338,19 @@ static terminal_input pending_input(void)
         }
         if (kind == KEY_CODE_YES) {
             return key == KEY_RESIZE
-                       ? (terminal_input){.kind = INPUT_RESIZE}
-                       : (terminal_input){.kind = INPUT_KEY, .code = key_of_curses((int)key)};
+                       ? (terminal_input){.kind = TERMINAL_RESIZE}
+                       : (terminal_input){.kind = TERMINAL_KEY, .code = key_of_curses((int)key)};
         }
         if (key != KEY_CODE_ESCAPE) {
-            return (terminal_input){.kind = INPUT_KEY, .code = (int)key};
+            return (terminal_input){.kind = TERMINAL_KEY, .code = (int)key};
         }
         tty.sequence.state = SEQUENCE_ESCAPED;
     }
     if (tty.sequence.state == SEQUENCE_ESCAPED) {
         tty.sequence.state = SEQUENCE_NONE;
-        return (terminal_input){.kind = INPUT_KEY, .code = KEY_CODE_ESCAPE};
+        return (terminal_input){.kind = TERMINAL_KEY, .code = KEY_CODE_ESCAPE};
     }
-    return (terminal_input){.kind = INPUT_NONE};
+    return (terminal_input){.kind = TERMINAL_NONE};
 }
 
 // Takes the bytes that signals left, and the terminal's new size.
@@ -360,18 +361,18 @@ static terminal_input after_signal(void)
     while (read(tty.wake[0], bytes, sizeof bytes) > 0) {
     }
     if (leaving != 0) {
-        return (terminal_input){.kind = INPUT_LEAVE};
+        return (terminal_input){.kind = TERMINAL_LEAVE};
     }
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
         resizeterm(size.ws_row, size.ws_col);
     }
-    return (terminal_input){.kind = INPUT_RESIZE};
+    return (terminal_input){.kind = TERMINAL_RESIZE};
 }
 
 terminal_input terminal_wait(double seconds)
 {
     terminal_input in = pending_input();
-    if (in.kind != INPUT_NONE) {
+    if (in.kind != TERMINAL_NONE) {
         return in;
     }
     struct pollfd watched[2] = {{STDIN_FILENO, POLLIN, 0}, {tty.wake[0], POLLIN, 0}};
@@ -383,13 +384,13 @@ terminal_input terminal_wait(double seconds)
         in = pending_input();
         // readable, but there is nothing: its other end was closed
         int waiting = 0;
-        bool ended = in.kind == INPUT_NONE && ioctl(STDIN_FILENO, FIONREAD, &waiting) == 0 &&
+        bool ended = in.kind == TERMINAL_NONE && ioctl(STDIN_FILENO, FIONREAD, &waiting) == 0 &&
                      waiting == 0 && watched[0].revents & (POLLHUP | POLLERR);
-        in.kind = ended ? INPUT_LEAVE : in.kind;
+        in.kind = ended ? TERMINAL_LEAVE : in.kind;
         return in;
     }
     if (ready > 0) {
-        in.kind = INPUT_LEAVE;
+        in.kind = TERMINAL_LEAVE;
     }
     return in;
 }
@@ -423,7 +424,7 @@ bool terminal_is_light(void)
     return last != NULL && (strcmp(last, ";7") == 0 || strcmp(last, ";15") == 0);
 }
 
-static void set_colours(lab_theme theme, colour_depth depth)
+static void set_colours(colour_theme theme, colour_depth depth)
 {
     for (int i = 0; i < INK_COUNT && tty.colours; i++) {
         int index = depth == DEPTH_256 ? ink_256(theme, (ink)i) : ink_16(theme, (ink)i);
@@ -497,7 +498,7 @@ static void show_by_curses(const screen *s, glyph_set glyphs, bool coloured, boo
     (void)ignored;
 }
 
-void terminal_show(const screen *s, glyph_set glyphs, lab_theme theme, colour_depth depth,
+void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
                    bool whole)
 {
     bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;

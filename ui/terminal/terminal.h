@@ -8,17 +8,17 @@
 #include "ui/terminal/screen.h"
 
 typedef enum terminal_input_kind {
-    INPUT_NONE,   // the time is over
-    INPUT_KEY,    // code: the key
-    INPUT_MOUSE,  // mouse: what it did
-    INPUT_RESIZE, // the size has changed, or the screen must be drawn anew
-    INPUT_LEAVE   // a signal asks to leave, or the terminal is gone
+    TERMINAL_NONE,    // the time is over
+    TERMINAL_KEY,     // code: the key
+    TERMINAL_POINTER, // pointer: what the mouse did
+    TERMINAL_RESIZE,  // the size has changed, or the screen must be drawn anew
+    TERMINAL_LEAVE    // a signal asks to leave, or the terminal is gone
 } terminal_input_kind;
 
 typedef struct terminal_input {
     terminal_input_kind kind;
     int code;
-    mouse_report mouse;
+    pointer_event pointer;
 } terminal_input;
 
 // Whether standard input and output are a terminal that can place its cursor; f says why not.
@@ -36,7 +36,7 @@ void terminal_size(int *width, int *height);
 terminal_input terminal_wait(double seconds);
 
 // Shows the cells; only what has changed is sent. `whole`: everything anew.
-void terminal_show(const screen *s, glyph_set glyphs, lab_theme theme, colour_depth depth,
+void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
                    bool whole);
 
 // How many colours the terminal has by what its description and the environment say: never
