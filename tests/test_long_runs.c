@@ -219,7 +219,7 @@ static void test_runs_end_with_their_session(void **state)
         session_finish(&s);
         check_below(seconds_now() - before, 1);
     }
-    assert_int_equal(long_array_memory(), 0);
+    assert_int_equal(shared_array_memory(), 0);
 }
 
 static void check_shared_rows(const char *name)
@@ -227,18 +227,18 @@ static void check_shared_rows(const char *name)
     session s;
     fault f = {0};
     open_session(&s, name, "60", HUGE_VAL);
-    size_t alone = long_array_memory(), chunk = ARRAY_CHUNK, arrays = 5;
+    size_t alone = shared_array_memory(), chunk = ARRAY_CHUNK, arrays = 5;
     assert_true(s.run.trace.row_count >= 60000);
     for (int i = 0; i < 8; i++) {
         session_seek(&s, 59 + 0.1 * i);
         assert_int_equal(session_branch(&s, &f), STATUS_OK);
         change(&s, "arm.k2", i % 2 ? "7.5" : "6.5");
         // two runs with the same rows but for the last second and chunks that are not full
-        assert_true(long_array_memory() < alone + alone / 60 + 2 * arrays * chunk);
+        assert_true(shared_array_memory() < alone + alone / 60 + 2 * arrays * chunk);
     }
     assert_as_from_the_start(&s);
     session_finish(&s);
-    assert_int_equal(long_array_memory(), 0);
+    assert_int_equal(shared_array_memory(), 0);
 }
 
 static void test_branches_share_the_rows_before_them(void **state)

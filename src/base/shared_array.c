@@ -90,7 +90,7 @@ static void leave_chunk(uint32_t chunk)
     pthread_mutex_unlock(&pool.lock);
 }
 
-size_t long_array_memory(void)
+size_t shared_array_memory(void)
 {
     pthread_mutex_lock(&pool.lock);
     size_t used = pool.count - pool.unused_count;
@@ -99,7 +99,7 @@ size_t long_array_memory(void)
 }
 
 // Puts a chunk behind the end of a array, which has room for its number. On failure it is left.
-static bool map_chunk(long_array *c, uint32_t chunk)
+static bool map_chunk(shared_array *c, uint32_t chunk)
 {
     char *at = (char *)c->base + c->chunk_count * ARRAY_CHUNK;
     void *mapped = MAP_FAILED;
@@ -116,7 +116,7 @@ static bool map_chunk(long_array *c, uint32_t chunk)
     return true;
 }
 
-static bool reserve_number(long_array *c)
+static bool reserve_number(shared_array *c)
 {
     if (c->chunk_count < c->chunk_capacity) {
         return true;
@@ -133,9 +133,9 @@ static bool reserve_number(long_array *c)
 
 // --- arrays ----------------------------------------------------------------------------------
 
-void long_array_init(long_array *c, size_t size)
+void shared_array_init(shared_array *c, size_t size)
 {
-    *c = (long_array){.size = size};
+    *c = (shared_array){.size = size};
 }
 
 static size_t whole_chunks(size_t elements, size_t size)
@@ -143,9 +143,9 @@ static size_t whole_chunks(size_t elements, size_t size)
     return (elements * size / ARRAY_CHUNK + 1) * ARRAY_CHUNK;
 }
 
-bool long_array_reserve(long_array *c, size_t size, size_t least, size_t most)
+bool shared_array_reserve(shared_array *c, size_t size, size_t least, size_t most)
 {
-    long_array_init(c, size);
+    shared_array_init(c, size);
     for (; most >= least; most /= 2) {
         size_t reserved = whole_chunks(most, size);
         void *base =
@@ -159,7 +159,7 @@ bool long_array_reserve(long_array *c, size_t size, size_t least, size_t most)
     return false;
 }
 
-static bool grow_plain(long_array *c, size_t count)
+static bool grow_plain(shared_array *c, size_t count)
 {
     size_t capacity = c->capacity ? 2 * c->capacity : LEAST_ELEMENTS;
     capacity = capacity < count ? count : capacity;
@@ -172,7 +172,7 @@ static bool grow_plain(long_array *c, size_t count)
     return true;
 }
 
-bool long_array_grow(long_array *c, size_t count)
+bool shared_array_grow(shared_array *c, size_t count)
 {
     if (c->reserved == 0) {
         return count <= c->capacity || grow_plain(c, count);
@@ -186,7 +186,7 @@ bool long_array_grow(long_array *c, size_t count)
     return true;
 }
 
-bool long_array_share(long_array *c, const long_array *from, size_t count)
+bool shared_array_share(shared_array *c, const shared_array *from, size_t count)
 {
     size_t bytes = count * c->size, shared = bytes / ARRAY_CHUNK;
     if (from->reserved == 0) {
@@ -202,7 +202,7 @@ bool long_array_share(long_array *c, const long_array *from, size_t count)
         }
     }
     size_t done = shared * ARRAY_CHUNK;
-    if (!long_array_grow(c, count)) {
+    if (!shared_array_grow(c, count)) {
         return false;
     }
     if (bytes > done) {
@@ -211,7 +211,7 @@ bool long_array_share(long_array *c, const long_array *from, size_t count)
     return true;
 }
 
-size_t long_array_same_chunks(const long_array *a, const long_array *b, size_t count)
+size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, size_t count)
 {
     size_t most = a->size == b->size && b->reserved > 0 ? count * a->size / ARRAY_CHUNK : 0;
     size_t same = 0;
@@ -228,7 +228,7 @@ size_t long_array_same_chunks(const long_array *a, const long_array *b, size_t c
     return same;
 }
 
-void long_array_merge(long_array *c, const long_array *with, size_t chunks)
+void shared_array_merge(shared_array *c, const shared_array *with, size_t chunks)
 {
     for (size_t i = 0; i < chunks; i++) {
         uint32_t old = c->chunks[i], shared = with->chunks[i];
@@ -246,7 +246,7 @@ void long_array_merge(long_array *c, const long_array *with, size_t chunks)
     }
 }
 
-void long_array_finish(long_array *c)
+void shared_array_finish(shared_array *c)
 {
     if (c->reserved > 0) {
         munmap(c->base, c->reserved);
@@ -257,5 +257,5 @@ void long_array_finish(long_array *c)
         free(c->base);
     }
     free(c->chunks);
-    *c = (long_array){0};
+    *c = (shared_array){0};
 }

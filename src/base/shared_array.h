@@ -13,38 +13,38 @@
 
 enum { ARRAY_CHUNK = 128 * 1024 }; // [bytes]
 
-typedef struct long_array {
+typedef struct shared_array {
     void *base;      // of the elements
     size_t size;     // of one element [bytes]
     size_t capacity; // elements that there is memory for
     size_t reserved; // address space of a shared array [bytes]; 0: a plain one
     uint32_t *chunks;
     size_t chunk_count, chunk_capacity;
-} long_array;
+} shared_array;
 
 // An empty plain array of elements of `size` bytes.
-void long_array_init(long_array *c, size_t size);
+void shared_array_init(shared_array *c, size_t size);
 
 // An empty shared array for `least` elements, and up to `most` if there is that much address
 // space. False if it cannot be had; then there is nothing to be freed.
-bool long_array_reserve(long_array *c, size_t size, size_t least, size_t most);
+bool shared_array_reserve(shared_array *c, size_t size, size_t least, size_t most);
 
 // Makes room for `count` elements; false without memory, then the array is as before.
-bool long_array_grow(long_array *c, size_t count);
+bool shared_array_grow(shared_array *c, size_t count);
 
 // Lets a shared array, still empty, begin with the first `count` elements of another: all chunks
 // that these fill are shared, the rest is copied. False without memory.
-bool long_array_share(long_array *c, const long_array *from, size_t count);
+bool shared_array_share(shared_array *c, const shared_array *from, size_t count);
 
 // How many chunks two shared arrays begin with have the same bytes, of those that their first
 // `count` elements fill.
-size_t long_array_same_chunks(const long_array *a, const long_array *b, size_t count);
+size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, size_t count);
 
 // Lets an array have that many of another one's chunks instead of its own, which have the same
 // bytes. Nobody else may be reading it.
-void long_array_merge(long_array *c, const long_array *with, size_t chunks);
+void shared_array_merge(shared_array *c, const shared_array *with, size_t chunks);
 
-void long_array_finish(long_array *c); // one of zeroes is allowed
+void shared_array_finish(shared_array *c); // one of zeroes is allowed
 
 // Memory behind all shared arrays of the program, chunks that several have counted once [bytes].
-size_t long_array_memory(void);
+size_t shared_array_memory(void);

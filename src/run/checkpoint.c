@@ -14,8 +14,8 @@ status recording_open_history(recording *r, const motion *m, fault *f)
     if (!r->keeps_history || h->strides.reserved > 0) {
         return STATUS_OK;
     }
-    bool reserved = long_array_reserve(&h->strides, sizeof(force_stride), expected, most) &&
-                    long_array_reserve(&h->snapshots, size, expected / 64, most);
+    bool reserved = shared_array_reserve(&h->strides, sizeof(force_stride), expected, most) &&
+                    shared_array_reserve(&h->snapshots, size, expected / 64, most);
     return reserved ? STATUS_OK
                     : fault_set(f, STATUS_NO_MEMORY, "no address space for %zu rows", expected);
 }
@@ -32,7 +32,7 @@ bool recording_take_snapshot(recording *r, const motion *m, double last_event)
     if (t->row_count < before + SNAPSHOT_ROWS) {
         return true;
     }
-    if (!long_array_grow(&h->snapshots, h->snapshot_count + 1)) {
+    if (!shared_array_grow(&h->snapshots, h->snapshot_count + 1)) {
         return false;
     }
     run_snapshot *kept = run_snapshot_at(h, h->snapshot_count++);

@@ -6,8 +6,8 @@
 status recording_add_stride(recording *r, force_stride stride)
 {
     if (r->count == r->capacity) {
-        long_array *c = r->keeps_history ? &r->result->history.strides : &r->own_strides;
-        if (!long_array_grow(c, r->count + 1)) {
+        shared_array *c = r->keeps_history ? &r->result->history.strides : &r->own_strides;
+        if (!shared_array_grow(c, r->count + 1)) {
             return STATUS_NO_MEMORY;
         }
         r->strides = c->base;

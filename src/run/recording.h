@@ -17,8 +17,8 @@ typedef struct recording {
     bool keeps_history; // and not only what is needed until the end
     parameters now;     // parameters as changed by the script so far
     int next_action;
-    long_array own_strides; // where the next lies unless it is in the history
-    force_stride *strides;  // the force all along
+    shared_array own_strides; // where the next lies unless it is in the history
+    force_stride *strides;    // the force all along
     size_t count, capacity;
     double integral_at_window; // of the force, where the steady force's window begins [N s]
     long grid_row;             // number of the next row of the grid

@@ -59,10 +59,10 @@ static bool share(const run_result *from, size_t rows, size_t events, size_t str
         trace_share(&result->trace, &from->trace, rows, events) == STATUS_OK;
     if (shared && old->strides.reserved > 0) {
         shared =
-            long_array_reserve(&own->strides, old->strides.size, rows_expected, most) &&
-            long_array_share(&own->strides, &old->strides, strides) &&
-            long_array_reserve(&own->snapshots, old->snapshots.size, rows_expected / 64, most) &&
-            long_array_share(&own->snapshots, &old->snapshots, snapshots);
+            shared_array_reserve(&own->strides, old->strides.size, rows_expected, most) &&
+            shared_array_share(&own->strides, &old->strides, strides) &&
+            shared_array_reserve(&own->snapshots, old->snapshots.size, rows_expected / 64, most) &&
+            shared_array_share(&own->snapshots, &old->snapshots, snapshots);
         own->stride_count = strides;
         own->snapshot_count = snapshots;
     }
@@ -134,18 +134,19 @@ run_likeness run_compare_rows(const run_result *result, const run_result *like)
     size_t events = fewer(a->event_count, b->event_count);
     size_t strides = fewer(h->stride_count, k->stride_count);
     return (run_likeness){
-        .rows = long_array_same_chunks(&a->row_array, &b->row_array, rows),
-        .angles = long_array_same_chunks(&a->angle_array, &b->angle_array, rows),
-        .velocities = long_array_same_chunks(&a->velocity_array, &b->velocity_array, rows),
-        .events = long_array_same_chunks(&a->event_array, &b->event_array, events),
-        .strides = long_array_same_chunks(&h->strides, &k->strides, strides)};
+        .rows = shared_array_same_chunks(&a->row_array, &b->row_array, rows),
+        .angles = shared_array_same_chunks(&a->angle_array, &b->angle_array, rows),
+        .velocities = shared_array_same_chunks(&a->velocity_array, &b->velocity_array, rows),
+        .events = shared_array_same_chunks(&a->event_array, &b->event_array, events),
+        .strides = shared_array_same_chunks(&h->strides, &k->strides, strides)};
 }
 
 void run_merge(run_result *result, const run_result *like, const run_likeness *same)
 {
-    long_array_merge(&result->trace.row_array, &like->trace.row_array, same->rows);
-    long_array_merge(&result->trace.angle_array, &like->trace.angle_array, same->angles);
-    long_array_merge(&result->trace.velocity_array, &like->trace.velocity_array, same->velocities);
-    long_array_merge(&result->trace.event_array, &like->trace.event_array, same->events);
-    long_array_merge(&result->history.strides, &like->history.strides, same->strides);
+    shared_array_merge(&result->trace.row_array, &like->trace.row_array, same->rows);
+    shared_array_merge(&result->trace.angle_array, &like->trace.angle_array, same->angles);
+    shared_array_merge(&result->trace.velocity_array, &like->trace.velocity_array,
+                       same->velocities);
+    shared_array_merge(&result->trace.event_array, &like->trace.event_array, same->events);
+    shared_array_merge(&result->history.strides, &like->history.strides, same->strides);
 }

@@ -79,7 +79,7 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
                    .now = s->parameters};
     fault f = {STATUS_OK, ""};
     double start = computing_time();
-    long_array_init(&r.own_strides, sizeof(force_stride));
+    shared_array_init(&r.own_strides, sizeof(force_stride));
     if (!options->take_up) {
         memset(result, 0, sizeof *result);
         summary_clear(&result->summary);
@@ -97,15 +97,15 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
         snprintf(result->summary.message, sizeof result->summary.message, "%s", f.text);
     }
     result->summary.wall_time_s = computing_time() - start;
-    long_array_finish(&r.own_strides);
+    shared_array_finish(&r.own_strides);
     return code;
 }
 
 void run_finish(run_result *result)
 {
     trace_finish(&result->trace);
-    long_array_finish(&result->history.strides);
-    long_array_finish(&result->history.snapshots);
+    shared_array_finish(&result->history.strides);
+    shared_array_finish(&result->history.snapshots);
     free(result->touch);
     result->touch = NULL;
 }

@@ -53,8 +53,8 @@ bool summary_get(const summary *s, const char *key, double *value);
 
 // What a run that can be taken up again keeps besides its rows, see run_take_up.
 typedef struct run_history {
-    long_array strides;   // the force all along
-    long_array snapshots; // of the motion, every few hundred rows
+    shared_array strides;   // the force all along
+    shared_array snapshots; // of the motion, every few hundred rows
     size_t stride_count, snapshot_count;
 } run_history;
 

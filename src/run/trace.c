@@ -27,20 +27,21 @@ void trace_init(trace *t, int angle_count)
 {
     memset(t, 0, sizeof *t);
     t->angle_count = angle_count;
-    long_array_init(&t->row_array, sizeof(sample));
-    long_array_init(&t->angle_array, angles_size(angle_count));
-    long_array_init(&t->velocity_array, angles_size(angle_count));
-    long_array_init(&t->event_array, sizeof(event));
+    shared_array_init(&t->row_array, sizeof(sample));
+    shared_array_init(&t->angle_array, angles_size(angle_count));
+    shared_array_init(&t->velocity_array, angles_size(angle_count));
+    shared_array_init(&t->event_array, sizeof(event));
 }
 
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
 {
     memset(t, 0, sizeof *t);
     t->angle_count = angle_count;
-    bool reserved = long_array_reserve(&t->row_array, sizeof(sample), least, most) &&
-                    long_array_reserve(&t->angle_array, angles_size(angle_count), least, most) &&
-                    long_array_reserve(&t->velocity_array, angles_size(angle_count), least, most) &&
-                    long_array_reserve(&t->event_array, sizeof(event), least, most);
+    bool reserved =
+        shared_array_reserve(&t->row_array, sizeof(sample), least, most) &&
+        shared_array_reserve(&t->angle_array, angles_size(angle_count), least, most) &&
+        shared_array_reserve(&t->velocity_array, angles_size(angle_count), least, most) &&
+        shared_array_reserve(&t->event_array, sizeof(event), least, most);
     if (!reserved) {
         trace_finish(t);
         return STATUS_NO_MEMORY;
@@ -51,19 +52,19 @@ status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
 
 void trace_finish(trace *t)
 {
-    long_array_finish(&t->row_array);
-    long_array_finish(&t->angle_array);
-    long_array_finish(&t->velocity_array);
-    long_array_finish(&t->event_array);
+    shared_array_finish(&t->row_array);
+    shared_array_finish(&t->angle_array);
+    shared_array_finish(&t->velocity_array);
+    shared_array_finish(&t->event_array);
     memset(t, 0, sizeof *t);
 }
 
 status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 {
-    if (!long_array_share(&t->row_array, &from->row_array, rows) ||
-        !long_array_share(&t->angle_array, &from->angle_array, rows) ||
-        !long_array_share(&t->velocity_array, &from->velocity_array, rows) ||
-        !long_array_share(&t->event_array, &from->event_array, events)) {
+    if (!shared_array_share(&t->row_array, &from->row_array, rows) ||
+        !shared_array_share(&t->angle_array, &from->angle_array, rows) ||
+        !shared_array_share(&t->velocity_array, &from->velocity_array, rows) ||
+        !shared_array_share(&t->event_array, &from->event_array, events)) {
         return STATUS_NO_MEMORY;
     }
     t->row_count = rows;
@@ -74,9 +75,9 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 // Room for one more row; the places of plain arrays may change.
 static bool make_room(trace *t)
 {
-    bool grown = long_array_grow(&t->row_array, t->row_count + 1) &&
-                 long_array_grow(&t->angle_array, t->row_count + 1) &&
-                 long_array_grow(&t->velocity_array, t->row_count + 1);
+    bool grown = shared_array_grow(&t->row_array, t->row_count + 1) &&
+                 shared_array_grow(&t->angle_array, t->row_count + 1) &&
+                 shared_array_grow(&t->velocity_array, t->row_count + 1);
     if (t->row_array.reserved == 0) {
         find_places(t);
     }
@@ -101,7 +102,7 @@ status trace_add_row(trace *t, const sample *row, const double *angles, const do
 status trace_add_event(trace *t, event e)
 {
     if (t->event_count >= t->event_array.capacity) {
-        if (!long_array_grow(&t->event_array, t->event_count + 1)) {
+        if (!shared_array_grow(&t->event_array, t->event_count + 1)) {
             return STATUS_NO_MEMORY;
         }
         if (t->event_array.reserved == 0) {

@@ -36,7 +36,7 @@ typedef struct trace {
     event *events;
     size_t row_count, event_count;
     int angle_count;
-    long_array row_array, angle_array, velocity_array, event_array; // where the four above lie
+    shared_array row_array, angle_array, velocity_array, event_array; // where the four above lie
 } trace;
 
 // An empty trace for angle_count link angles a row.
