@@ -47,12 +47,13 @@ static void print_prediction(const parameters *p, const run_result *result)
 {
     arm a;
     prediction out = {0};
-    if (result->touch == NULL) {
+    if (result->before_impact == NULL) {
         return;
     }
     arm_init(&a, p);
     motion *m = motion_create(&a, &p->method);
-    status code = predict_linearised(&a, m, result->touch, result->touch + a.dof, &out);
+    status code =
+        predict_linearised(&a, m, result->before_impact, result->before_impact + a.dof, &out);
     printf("predicted %d %a %a %a\n", (int)code, out.force, out.delay, out.impulse);
     motion_destroy(m);
 }

@@ -274,8 +274,8 @@ static double peak_of_touch(const char *angle, double *tip_speed)
     snprintf(setting, sizeof setting, "wall.angle=%s", angle);
     assert_int_equal(scenario_override(&s, setting, &f), STATUS_OK);
     assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
-    assert_non_null(r.touch);
-    *tip_speed = 0.5 * (r.touch[2] + r.touch[3]);
+    assert_non_null(r.before_impact);
+    *tip_speed = 0.5 * (r.before_impact[2] + r.before_impact[3]);
     double peak = r.summary.peak_force_N;
     run_finish(&r);
     scenario_finish(&s);

@@ -1,4 +1,4 @@
-// Runs that take long: computed beside the session, stopped, gone on with, taken up from another
+// Runs that take long: computed beside the session, stopped, gone on with, resumed from another
 // run's rows, which are then kept once.
 #include "tests/check.h"
 
@@ -84,15 +84,15 @@ static void assert_as_from_the_start(const session *s)
     }
     assert_string_equal(s->run.summary.message, whole.summary.message);
     assert_int_equal(s->run.summary.status, whole.summary.status);
-    assert_true((s->run.touch == NULL) == (whole.touch == NULL));
-    if (whole.touch != NULL) {
-        assert_int_equal(s->run.touch_size, whole.touch_size);
-        assert_memory_equal(s->run.touch, whole.touch, whole.touch_size);
+    assert_true((s->run.before_impact == NULL) == (whole.before_impact == NULL));
+    if (whole.before_impact != NULL) {
+        assert_int_equal(s->run.before_impact_size, whole.before_impact_size);
+        assert_memory_equal(s->run.before_impact, whole.before_impact, whole.before_impact_size);
     }
     run_finish(&whole);
 }
 
-static void test_a_run_taken_up_is_the_run_from_the_start(void **state)
+static void a_resumed_run_is_the_run_from_the_start(void **state)
 {
     (void)state;
     static const char *const names[] = {
@@ -254,7 +254,7 @@ static void test_branches_share_the_rows_before_them(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_run_taken_up_is_the_run_from_the_start),
+        cmocka_unit_test(a_resumed_run_is_the_run_from_the_start),
         cmocka_unit_test(test_a_long_run_is_looked_at_while_it_is_computed),
         cmocka_unit_test(test_a_change_supersedes_a_run_being_computed),
         cmocka_unit_test(test_a_run_is_stopped_and_gone_on_with),

@@ -107,7 +107,7 @@ static void test_a_lower_voltage_before_contact_hits_less_hard(void **state)
     sample before = *session_sample(&s);
     assert_int_equal(session_branch(&s, &f), STATUS_OK);
     change(&s, "motor.voltage", "0.5");
-    assert_int_equal(s.inputs[0].kind, INPUT_TIMED);
+    assert_int_equal(s.inputs[0].kind, SESSION_INPUT_TIMED);
     check_below(s.run.summary.first_pulse_peak_N, hard);
     // what was before the change is what it was, and the run branched from is still there
     check_close(session_sample(&s)->last_angle, before.last_angle, 1e-9);

@@ -519,7 +519,7 @@ static status take_first_impact(diagram *d, const char *name, double *speed, fau
     code = STATUS_BAD_SCENARIO;
     for (size_t i = 0; i < t->event_count && code != STATUS_OK; i++) {
         if (t->events[i].kind == EVENT_IMPACT) {
-            const double *touch = run.result.touch;
+            const double *touch = run.result.before_impact;
             code = STATUS_OK;
             *speed = t->events[i].speed;
             d->impulse = t->events[i].impulse;

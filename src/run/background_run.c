@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <time.h>
 
-struct computation {
+struct background_run {
     scenario scenario;
     run_options options;
     run_monitor monitor;
-    run_result like;   // shared with another run, or empty
-    run_likeness same; // the result's and its beginning
-    run_result result; // the thread's until it is over; the places of its rows never change
+    run_result other;   // shared with another run, or empty
+    shared_chunks same; // the result's and its beginning
+    run_result result;  // the thread's until it is over; the places of its rows never change
     pthread_t thread;
     bool threaded;
     pthread_mutex_t lock;
@@ -21,9 +21,9 @@ struct computation {
 
 static void *compute(void *argument)
 {
-    computation *c = argument;
+    background_run *c = argument;
     run_scenario_with(&c->scenario, &c->options, &c->result);
-    c->same = run_compare_rows(&c->result, &c->like);
+    c->same = run_compare_rows(&c->result, &c->other);
     pthread_mutex_lock(&c->lock);
     c->over = true;
     pthread_cond_signal(&c->ended);
@@ -33,7 +33,7 @@ static void *compute(void *argument)
 
 // Starts the thread with all signals blocked but those that a crash raises in it: the others are
 // for the thread that waits for input.
-static bool start_thread(computation *c)
+static bool start_thread(background_run *c)
 {
     static const int own[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL};
     sigset_t blocked, before;
@@ -47,10 +47,10 @@ static bool start_thread(computation *c)
     return started;
 }
 
-computation *computation_start(const scenario *s, size_t rows_expected, bool take_up,
-                               run_result *begun, const run_result *like, bool at_once)
+background_run *background_run_start(const scenario *s, size_t rows_expected, bool resume,
+                                     run_result *begun, const run_result *other, bool at_once)
 {
-    computation *c = calloc(1, sizeof *c);
+    background_run *c = calloc(1, sizeof *c);
     if (c == NULL) {
         return NULL;
     }
@@ -58,12 +58,12 @@ computation *computation_start(const scenario *s, size_t rows_expected, bool tak
     c->options = (run_options){.keep_trace = true,
                                .monitor = &c->monitor,
                                .rows_expected = rows_expected,
-                               .take_up = take_up};
-    if (take_up) {
+                               .resume = resume};
+    if (resume) {
         c->result = *begun;
     }
-    if (like != NULL && run_share(like, rows_expected, &c->like) != STATUS_OK) {
-        c->like = (run_result){0}; // then rows are kept twice
+    if (other != NULL && run_share(other, rows_expected, &c->other) != STATUS_OK) {
+        c->other = (run_result){0}; // then rows are kept twice
     }
     pthread_condattr_t clock;
     pthread_condattr_init(&clock);
@@ -78,7 +78,7 @@ computation *computation_start(const scenario *s, size_t rows_expected, bool tak
     return c;
 }
 
-bool computation_wait(computation *c, double seconds)
+bool background_run_wait(background_run *c, double seconds)
 {
     struct timespec until;
     clock_gettime(CLOCK_MONOTONIC, &until);
@@ -99,7 +99,7 @@ bool computation_wait(computation *c, double seconds)
     return over;
 }
 
-size_t computation_look(computation *c, run_result *view)
+size_t background_run_look(background_run *c, run_result *view)
 {
     size_t rows = atomic_load_explicit(&c->monitor.rows, memory_order_acquire);
     if (rows > 0) {
@@ -115,25 +115,25 @@ size_t computation_look(computation *c, run_result *view)
     return rows;
 }
 
-double computation_time(computation *c)
+double background_run_time(background_run *c)
 {
     return atomic_load_explicit(&c->monitor.time, memory_order_relaxed);
 }
 
-void computation_stop(computation *c)
+void background_run_stop(background_run *c)
 {
     atomic_store_explicit(&c->monitor.stop, true, memory_order_relaxed);
 }
 
-run_result computation_finish(computation *c)
+run_result background_run_finish(background_run *c)
 {
     if (c->threaded) {
         pthread_join(c->thread, NULL);
     }
     run_result result = c->result;
     // here, where the caller reads no rows
-    run_merge(&result, &c->like, &c->same);
-    run_finish(&c->like);
+    run_merge(&result, &c->other, &c->same);
+    run_finish(&c->other);
     pthread_mutex_destroy(&c->lock);
     pthread_cond_destroy(&c->ended);
     free(c);

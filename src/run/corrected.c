@@ -1,11 +1,11 @@
-// A run of the corrected arm: strides, events, script, samples of the rig, rows.
+// A run of the corrected arm: steps, events, script, samples of the rig, rows.
 #include "src/run/recording.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define SHORTEST_MEAN       1e-9 // a stride shorter than this has the mean of its ends [s]
+#define SHORTEST_MEAN       1e-9 // a step shorter than this has the mean of its ends [s]
 #define TINY_ENERGY         1e-9 // below it nothing is called unstable [J]
 #define TINY_TURN           1e-2 // nor below what the motor does in this turn [rad]
 #define WRONG_ENERGY        0.1  // share of the energy turned over that may not be unaccounted for
@@ -143,14 +143,14 @@ static void strike(recording *r, const motion *m, const motion_report *report)
 static status pass_event(recording *r, const arm *a, motion *m, motion_report *report)
 {
     status failed = record_row(r, a, m, m->state, 0);
-    if (report->event == MOTION_IMPACT && r->result->touch == NULL) {
+    if (report->event == MOTION_IMPACT && r->result->before_impact == NULL) {
         size_t size = 2 * (size_t)m->dof * sizeof(double); // velocities stand behind the angles
-        r->result->touch = malloc(size);
-        if (r->result->touch == NULL) {
+        r->result->before_impact = malloc(size);
+        if (r->result->before_impact == NULL) {
             return STATUS_NO_MEMORY;
         }
-        memcpy(r->result->touch, state_angles(m, m->state), size);
-        r->result->touch_size = size;
+        memcpy(r->result->before_impact, state_angles(m, m->state), size);
+        r->result->before_impact_size = size;
     }
     motion_apply(a, m, report);
     strike(r, m, report);
@@ -208,7 +208,7 @@ static status act(recording *r, arm *a, motion *m, fault *f)
 }
 
 // Lets another command take effect: the torque jumps, and with it accelerations and force.
-static status take_command(recording *r, arm *a, motion *m)
+static status apply_command(recording *r, arm *a, motion *m)
 {
     bool contact = m->state[SLOT_CONTACT] != 0;
     double now = m->state[SLOT_TIME];
@@ -248,10 +248,10 @@ static status control(recording *r, arm *a, motion *m, fault *f)
     }
     sensed_motion sensed = sense(a, m, m->state);
     status s = rig_act(r->rig, now, &sensed, &changed, f);
-    return s == STATUS_OK && changed ? take_command(r, a, m) : s;
+    return s == STATUS_OK && changed ? apply_command(r, a, m) : s;
 }
 
-// Records the rows of the grid that lie within the stride just made, and steps over one at its end.
+// Records the rows of the grid that lie within the step just made, and steps over one at its end.
 static status record_grid(recording *r, const arm *a, motion *m, bool at_event)
 {
     const double step = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
@@ -276,9 +276,9 @@ static status record_grid(recording *r, const arm *a, motion *m, bool at_event)
     }
 }
 
-// Whether the gap was a separation at any instant of the stride just made. A whole flight may lie
-// within one stride, so the end says little: look where the gap stops growing.
-static bool stride_separated(const arm *a, motion *m)
+// Whether the gap was a separation at any instant of the step just made. A whole flight may lie
+// within one step, so the end says little: look where the gap stops growing.
+static bool step_separated(const arm *a, motion *m)
 {
     double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
     if (m->state[SLOT_GAP] > SEPARATION_GAP) {
@@ -302,15 +302,15 @@ static bool stride_separated(const arm *a, motion *m)
     return false;
 }
 
-// Books the stride just made: force, separation, ledger, rows.
-static status book_stride(recording *r, const arm *a, motion *m, bool at_event)
+// Books the step just made: force, separation, ledger, rows.
+static status book_step(recording *r, const arm *a, motion *m, bool at_event)
 {
-    const double *start = m->trial; // where the stride left its beginning
+    const double *start = m->trial; // where the step left its beginning
     double length = m->state[SLOT_TIME] - start[SLOT_TIME];
     double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
                       state_quadratures(m, m->trial)[QUADRATURE_FORCE];
     if (!isnan(r->result->summary.first_contact_s) && !r->separated) {
-        r->separated = stride_separated(a, m);
+        r->separated = step_separated(a, m);
     }
     // an arm held still has the energy it had
     status s = motion_held_still(m) ? STATUS_OK : audit(r, a, m);
@@ -322,8 +322,8 @@ static status book_stride(recording *r, const arm *a, motion *m, bool at_event)
         sensors_follow(&r->rig->sensors, length, &first, &last, mean);
     }
     if (s == STATUS_OK && length > 0) {
-        s = recording_add_stride(r, (force_stride){start[SLOT_TIME], m->state[SLOT_TIME],
-                                                   start[SLOT_FORCE], m->state[SLOT_FORCE], mean});
+        s = recording_add_step(r, (force_step){start[SLOT_TIME], m->state[SLOT_TIME],
+                                               start[SLOT_FORCE], m->state[SLOT_FORCE], mean});
     }
     return s == STATUS_OK ? record_grid(r, a, m, at_event) : s;
 }
@@ -335,7 +335,7 @@ static status travel(recording *r, const arm *a, motion *m, double until, fault 
     int at_once = 0;
     while (m->state[SLOT_TIME] < fmin(until, m->cut)) {
         motion_report report;
-        if (!recording_take_snapshot(r, m, last_event)) {
+        if (!recording_checkpoint(r, m, last_event)) {
             return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
         }
         status s = motion_stride(a, m, until, r->now.method.step, &report);
@@ -345,7 +345,7 @@ static status travel(recording *r, const arm *a, motion *m, double until, fault 
                 m->failure_time, m->state[SLOT_TIME], status_text(s), m->stepper->name);
         }
         bool at_event = report.event != MOTION_REACHED;
-        s = book_stride(r, a, m, at_event);
+        s = book_step(r, a, m, at_event);
         if (s == STATUS_OK && at_event) {
             s = pass_event(r, a, m, &report);
             at_once = m->state[SLOT_TIME] - last_event < 1e-13 ? at_once + 1 : 0;
@@ -372,14 +372,14 @@ static status travel(recording *r, const arm *a, motion *m, double until, fault 
     return STATUS_OK;
 }
 
-// The next instant that strides are made for: the rig's, or the end.
+// The next instant that steps are made for: the rig's, or the end.
 static double next_stop(const recording *r)
 {
     double stop = r->scenario->parameters.run.duration;
     return r->rig != NULL ? fmin(stop, rig_next_time(r->rig)) : stop;
 }
 
-// The next instant at which strides are cut without being made for it: an action, the start of the
+// The next instant at which steps are cut without being made for it: an action, the start of the
 // window over which the steady force is taken. What comes before does not depend on it.
 static double next_cut(const recording *r, double window, double now)
 {
@@ -423,8 +423,8 @@ status run_corrected(recording *r, fault *f)
     summary *s = &r->result->summary;
     double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
     status failed = recording_open_history(r, m, f);
-    if (failed == STATUS_OK && r->options.take_up) {
-        recording_take_up(r, &a, m);
+    if (failed == STATUS_OK && r->options.resume) {
+        recording_resume(r, &a, m);
     } else if (failed == STATUS_OK) {
         failed = begin_corrected(r, &a, m, f);
     }

@@ -78,9 +78,9 @@ static bool observe_printed(void *context, const printed_row *row)
         .energy_residual = (double)NAN,
     };
     recording_add_rig_signals(r, &sampled);
-    double before = r->count > 0 ? r->strides[r->count - 1].last : 0;
-    double start = r->count > 0 ? r->strides[r->count - 1].end : row->time;
-    force_stride stride = {start, row->time, before, row->force, (before + row->force) / 2};
+    double before = r->count > 0 ? r->steps[r->count - 1].last : 0;
+    double start = r->count > 0 ? r->steps[r->count - 1].end : row->time;
+    force_step step = {start, row->time, before, row->force, (before + row->force) / 2};
     if (r->rig != NULL) {
         sensed_motion last = {.angle = row->angle[0],
                               .velocity = row->velocity[0],
@@ -89,14 +89,14 @@ static bool observe_printed(void *context, const printed_row *row)
                               .bending_rate = row->velocity[2] - row->velocity[1],
                               .force = row->force};
         sensed_motion first = r->count > 0 ? r->after_step : last;
-        sensors_follow(&r->rig->sensors, row->time - start, &first, &last, stride.mean);
+        sensors_follow(&r->rig->sensors, row->time - start, &first, &last, step.mean);
         r->after_step = last;
     }
     if (r->rig_status == STATUS_OK && recording_asked_to_stop(r)) {
         r->rig_status = fault_set(r->rig_fault, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
                                   status_text(STATUS_STOPPED));
     }
-    return r->rig_status == STATUS_OK && recording_add_stride(r, stride) == STATUS_OK &&
+    return r->rig_status == STATUS_OK && recording_add_step(r, step) == STATUS_OK &&
            (!r->keep_trace ||
             recording_add_row(r, &sampled, row->angle, row->velocity) == STATUS_OK);
 }
@@ -135,11 +135,11 @@ static void refine_sampled_peak(const recording *r, double *force, double *since
 {
     double at = r->result->summary.first_contact_s + *since;
     for (size_t i = 1; i + 1 < r->count; i++) {
-        if (r->strides[i].end != at) {
+        if (r->steps[i].end != at) {
             continue;
         }
-        double before = r->strides[i - 1].last, after = r->strides[i + 1].last;
-        double h = r->strides[i].end - r->strides[i - 1].end;
+        double before = r->steps[i - 1].last, after = r->steps[i + 1].last;
+        double h = r->steps[i].end - r->steps[i - 1].end;
         double second = before - 2 * *force + after, slope = (after - before) / 2;
         bool inside = before > 0 && after > 0 && second < 0; // not at the edge of a pulse
         if (inside && fabs(slope) <= -second) {
@@ -180,8 +180,8 @@ status run_printed(recording *r, fault *f)
     if (s == STATUS_OK && r->count > 0) {
         double window = p->run.duration - STEADY_WINDOW, total = 0, weight = 0;
         for (size_t i = 1; i < r->count; i++) {
-            if (r->strides[i].end > window) {
-                total += r->strides[i].last;
+            if (r->steps[i].end > window) {
+                total += r->steps[i].last;
                 weight++;
             }
         }

@@ -1,20 +1,20 @@
-// Rows, strides and the summary of a run in progress, whichever model it is of.
+// Rows, steps and the summary of a run in progress, whichever model it is of.
 #include "src/run/recording.h"
 
 #include <math.h>
 
-status recording_add_stride(recording *r, force_stride stride)
+status recording_add_step(recording *r, force_step step)
 {
     if (r->count == r->capacity) {
-        shared_array *c = r->keeps_history ? &r->result->history.strides : &r->own_strides;
+        shared_array *c = r->keeps_history ? &r->result->history.steps : &r->own_steps;
         if (!shared_array_grow(c, r->count + 1)) {
             return STATUS_NO_MEMORY;
         }
-        r->strides = c->base;
+        r->steps = c->base;
         r->capacity = c->capacity;
     }
-    r->strides[r->count++] = stride;
-    r->result->history.stride_count = r->keeps_history ? r->count : 0;
+    r->steps[r->count++] = step;
+    r->result->history.step_count = r->keeps_history ? r->count : 0;
     return STATUS_OK;
 }
 
@@ -55,11 +55,11 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     return s == STATUS_OK ? s : fault_set(f, s, "no address space for %zu rows", expected);
 }
 
-// The last instant within a stride at which the force is `edge`, as a share of it; -1 if none.
-static double last_crossing(const force_stride *stride, double edge)
+// The last instant within a step at which the force is `edge`, as a share of it; -1 if none.
+static double last_crossing(const force_step *step, double edge)
 {
-    double curve = 3 * (stride->first + stride->last) - 6 * stride->mean;
-    double slope = stride->last - stride->first - curve, offset = stride->first - edge;
+    double curve = 3 * (step->first + step->last) - 6 * step->mean;
+    double slope = step->last - step->first - curve, offset = step->first - edge;
     double latest = -1;
     if (fabs(curve) < 1e-12 * (fabs(slope) + fabs(offset))) {
         double s = slope != 0 ? -offset / slope : -1;
@@ -73,25 +73,24 @@ static double last_crossing(const force_stride *stride, double edge)
     return latest;
 }
 
-// Time after which the force stays within the band round `final` for good, each stride taken as the
+// Time after which the force stays within the band round `final` for good, each step taken as the
 // parabola through its ends with its mean; NaN if the run ends outside.
 static double settled_since(const recording *r, double final)
 {
     double band = SETTLED_BAND * fabs(final);
     for (size_t i = r->count; i-- > 0;) {
-        const force_stride *stride = &r->strides[i];
-        double upper = last_crossing(stride, final + band),
-               lower = last_crossing(stride, final - band);
+        const force_step *step = &r->steps[i];
+        double upper = last_crossing(step, final + band), lower = last_crossing(step, final - band);
         double left = fmax(upper, lower);
-        if (fabs(stride->last - final) > band) {
-            // outside at its end: inside only from the next stride's start on
-            return i + 1 == r->count ? (double)NAN : stride->end;
+        if (fabs(step->last - final) > band) {
+            // outside at its end: inside only from the next step's start on
+            return i + 1 == r->count ? (double)NAN : step->end;
         }
         if (left >= 0) {
-            return stride->start + left * (stride->end - stride->start);
+            return step->start + left * (step->end - step->start);
         }
     }
-    return r->count > 0 ? r->strides[0].start : (double)NAN;
+    return r->count > 0 ? r->steps[0].start : (double)NAN;
 }
 
 void recording_add_rig_signals(const recording *r, sample *row)

@@ -1,4 +1,4 @@
-// What the two kinds of run share while they are in progress: the rows, the forces of all strides,
+// What the two kinds of run share while they are in progress: the rows, the forces of all steps,
 // the rig, and the summary that comes of them.
 #pragma once
 
@@ -17,8 +17,8 @@ typedef struct recording {
     bool keeps_history; // and not only what is needed until the end
     parameters now;     // parameters as changed by the script so far
     int next_action;
-    shared_array own_strides; // where the next lies unless it is in the history
-    force_stride *strides;    // the force all along
+    shared_array own_steps; // where the next lies unless it is in the history
+    force_step *steps;      // the force all along
     size_t count, capacity;
     double integral_at_window; // of the force, where the steady force's window begins [N s]
     long grid_row;             // number of the next row of the grid
@@ -31,8 +31,8 @@ typedef struct recording {
     status rig_status;
 } recording;
 
-// Keeps the force over a stride. STATUS_NO_MEMORY.
-status recording_add_stride(recording *r, force_stride stride);
+// Keeps the force over a step. STATUS_NO_MEMORY.
+status recording_add_step(recording *r, force_step step);
 
 // Whether whoever watches the run wants it to stop.
 bool recording_asked_to_stop(const recording *r);
@@ -64,17 +64,17 @@ void recording_finish_rig_summary(recording *r, double hub_angle);
 // last STEADY_WINDOW of the run [N s].
 void recording_finish_summary(recording *r, double force_integral);
 
-// --- snapshots: run_snapshot.c
+// --- checkpoints: checkpoint.c
 
 // Prepares the history of a run that keeps one. STATUS_NO_MEMORY, with a sentence in f.
 status recording_open_history(recording *r, const motion *m, fault *f);
 
-// Keeps the state at the beginning of a stride, if the last time is some rows ago. Not right after
-// an event: how many come at once is not part of a snapshot. False without memory.
-bool recording_take_snapshot(recording *r, const motion *m, double last_event);
+// Keeps the state at the beginning of a step, if the last time is some rows ago. Not right after
+// an event: how many come at once is not part of a checkpoint. False without memory.
+bool recording_checkpoint(recording *r, const motion *m, double last_event);
 
-// Goes back to the last snapshot of a result that run_take_up has prepared.
-void recording_take_up(recording *r, arm *a, motion *m);
+// Goes back to the last checkpoint of a result that run_resume has prepared.
+void recording_resume(recording *r, arm *a, motion *m);
 
 // --- the two kinds of run: run_corrected.c, run_printed.c
 

@@ -4,7 +4,7 @@
 
 #include "src/run/checkpoint.h"
 
-#define MARGIN 1e-3 // of a step: how much before a difference a stride must have begun
+#define MARGIN 1e-3 // of a step: how much before a difference a step must have begun
 
 static bool same_parameter(const parameters *a, const parameters *b, int i)
 {
@@ -28,7 +28,7 @@ static double same_until(const scenario *a, const scenario *b)
         if (i != duration) {
             return -1;
         }
-        // strides are cut where the steady force's window begins
+        // steps are cut where the steady force's window begins
         double shorter = fmin(a->parameters.run.duration, b->parameters.run.duration);
         until = fmax(0, shorter - STEADY_WINDOW);
     }
@@ -47,9 +47,9 @@ static double same_until(const scenario *a, const scenario *b)
     return until;
 }
 
-// Shares the first rows, events, strides and snapshots.
-static bool share(const run_result *from, size_t rows, size_t events, size_t strides,
-                  size_t snapshots, size_t rows_expected, run_result *result)
+// Shares the first rows, events, steps and checkpoints.
+static bool share(const run_result *from, size_t rows, size_t events, size_t steps,
+                  size_t checkpoints, size_t rows_expected, run_result *result)
 {
     const run_history *old = &from->history;
     run_history *own = &result->history;
@@ -57,48 +57,48 @@ static bool share(const run_result *from, size_t rows, size_t events, size_t str
     bool shared =
         trace_reserve(&result->trace, from->trace.angle_count, rows_expected, most) == STATUS_OK &&
         trace_share(&result->trace, &from->trace, rows, events) == STATUS_OK;
-    if (shared && old->strides.reserved > 0) {
-        shared =
-            shared_array_reserve(&own->strides, old->strides.size, rows_expected, most) &&
-            shared_array_share(&own->strides, &old->strides, strides) &&
-            shared_array_reserve(&own->snapshots, old->snapshots.size, rows_expected / 64, most) &&
-            shared_array_share(&own->snapshots, &old->snapshots, snapshots);
-        own->stride_count = strides;
-        own->snapshot_count = snapshots;
+    if (shared && old->steps.reserved > 0) {
+        shared = shared_array_reserve(&own->steps, old->steps.size, rows_expected, most) &&
+                 shared_array_share(&own->steps, &old->steps, steps) &&
+                 shared_array_reserve(&own->checkpoints, old->checkpoints.size, rows_expected / 64,
+                                      most) &&
+                 shared_array_share(&own->checkpoints, &old->checkpoints, checkpoints);
+        own->step_count = steps;
+        own->checkpoint_count = checkpoints;
     }
     return shared;
 }
 
-static bool copy_touch(const run_result *from, run_result *result)
+static bool copy_before_impact(const run_result *from, run_result *result)
 {
-    result->touch = malloc(from->touch_size + 1);
-    if (result->touch != NULL) {
-        memcpy(result->touch, from->touch, from->touch_size);
-        result->touch_size = from->touch_size;
+    result->before_impact = malloc(from->before_impact_size + 1);
+    if (result->before_impact != NULL) {
+        memcpy(result->before_impact, from->before_impact, from->before_impact_size);
+        result->before_impact_size = from->before_impact_size;
     }
-    return result->touch != NULL;
+    return result->before_impact != NULL;
 }
 
-bool run_take_up(const run_result *from, const scenario *old, const scenario *s,
-                 size_t rows_expected, run_result *result)
+bool run_resume(const run_result *from, const scenario *old, const scenario *s,
+                size_t rows_expected, run_result *result)
 {
     memset(result, 0, sizeof *result);
     const run_history *h = &from->history;
-    if (h->snapshot_count == 0) {
+    if (h->checkpoint_count == 0) {
         return false;
     }
     double until = same_until(old, s) - MARGIN * s->parameters.method.step;
     size_t count = 0;
-    while (count < h->snapshot_count && run_snapshot_at(h, count)->time < until) {
+    while (count < h->checkpoint_count && checkpoint_at(h, count)->time < until) {
         count++;
     }
     if (count == 0) {
         return false;
     }
-    const run_snapshot *last = run_snapshot_at(h, count - 1);
+    const checkpoint *last = checkpoint_at(h, count - 1);
     bool taken =
-        share(from, last->rows, last->events, last->strides, count, rows_expected, result) &&
-        (!last->touched || copy_touch(from, result));
+        share(from, last->rows, last->events, last->force_steps, count, rows_expected, result) &&
+        (!last->impacted || copy_before_impact(from, result));
     if (!taken) {
         run_finish(result);
         return false;
@@ -111,9 +111,9 @@ status run_share(const run_result *from, size_t rows_expected, run_result *resul
 {
     memset(result, 0, sizeof *result);
     const trace *t = &from->trace;
-    bool done = share(from, t->row_count, t->event_count, from->history.stride_count,
-                      from->history.snapshot_count, rows_expected, result) &&
-                (from->touch == NULL || copy_touch(from, result));
+    bool done = share(from, t->row_count, t->event_count, from->history.step_count,
+                      from->history.checkpoint_count, rows_expected, result) &&
+                (from->before_impact == NULL || copy_before_impact(from, result));
     result->summary = from->summary;
     if (!done) {
         run_finish(result);
@@ -126,27 +126,27 @@ static size_t fewer(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-run_likeness run_compare_rows(const run_result *result, const run_result *like)
+shared_chunks run_compare_rows(const run_result *result, const run_result *other)
 {
-    const trace *a = &result->trace, *b = &like->trace;
-    const run_history *h = &result->history, *k = &like->history;
+    const trace *a = &result->trace, *b = &other->trace;
+    const run_history *h = &result->history, *k = &other->history;
     size_t rows = fewer(a->row_count, b->row_count);
     size_t events = fewer(a->event_count, b->event_count);
-    size_t strides = fewer(h->stride_count, k->stride_count);
-    return (run_likeness){
+    size_t steps = fewer(h->step_count, k->step_count);
+    return (shared_chunks){
         .rows = shared_array_same_chunks(&a->row_array, &b->row_array, rows),
         .angles = shared_array_same_chunks(&a->angle_array, &b->angle_array, rows),
         .velocities = shared_array_same_chunks(&a->velocity_array, &b->velocity_array, rows),
         .events = shared_array_same_chunks(&a->event_array, &b->event_array, events),
-        .strides = shared_array_same_chunks(&h->strides, &k->strides, strides)};
+        .steps = shared_array_same_chunks(&h->steps, &k->steps, steps)};
 }
 
-void run_merge(run_result *result, const run_result *like, const run_likeness *same)
+void run_merge(run_result *result, const run_result *other, const shared_chunks *same)
 {
-    shared_array_merge(&result->trace.row_array, &like->trace.row_array, same->rows);
-    shared_array_merge(&result->trace.angle_array, &like->trace.angle_array, same->angles);
-    shared_array_merge(&result->trace.velocity_array, &like->trace.velocity_array,
+    shared_array_merge(&result->trace.row_array, &other->trace.row_array, same->rows);
+    shared_array_merge(&result->trace.angle_array, &other->trace.angle_array, same->angles);
+    shared_array_merge(&result->trace.velocity_array, &other->trace.velocity_array,
                        same->velocities);
-    shared_array_merge(&result->trace.event_array, &like->trace.event_array, same->events);
-    shared_array_merge(&result->history.strides, &like->history.strides, same->strides);
+    shared_array_merge(&result->trace.event_array, &other->trace.event_array, same->events);
+    shared_array_merge(&result->history.steps, &other->history.steps, same->steps);
 }

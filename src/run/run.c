@@ -79,8 +79,8 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
                    .now = s->parameters};
     fault f = {STATUS_OK, ""};
     double start = computing_time();
-    shared_array_init(&r.own_strides, sizeof(force_stride));
-    if (!options->take_up) {
+    shared_array_init(&r.own_steps, sizeof(force_step));
+    if (!options->resume) {
         memset(result, 0, sizeof *result);
         summary_clear(&result->summary);
     }
@@ -97,17 +97,17 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
         snprintf(result->summary.message, sizeof result->summary.message, "%s", f.text);
     }
     result->summary.wall_time_s = computing_time() - start;
-    shared_array_finish(&r.own_strides);
+    shared_array_finish(&r.own_steps);
     return code;
 }
 
 void run_finish(run_result *result)
 {
     trace_finish(&result->trace);
-    shared_array_finish(&result->history.strides);
-    shared_array_finish(&result->history.snapshots);
-    free(result->touch);
-    result->touch = NULL;
+    shared_array_finish(&result->history.steps);
+    shared_array_finish(&result->history.checkpoints);
+    free(result->before_impact);
+    result->before_impact = NULL;
 }
 
 int run_check_expectations(const scenario *s, const run_result *result, fault_handler report,

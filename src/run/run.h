@@ -51,20 +51,20 @@ extern const int summary_count;
 // A summary's number by key; false if there is no such key.
 bool summary_get(const summary *s, const char *key, double *value);
 
-// What a run that can be taken up again keeps besides its rows, see run_take_up.
+// What a run that can be resumed keeps besides its rows, see run_resume.
 typedef struct run_history {
-    shared_array strides;   // the force all along
-    shared_array snapshots; // of the motion, every few hundred rows
-    size_t stride_count, snapshot_count;
+    shared_array steps;       // the force all along
+    shared_array checkpoints; // of the motion, every few hundred rows
+    size_t step_count, checkpoint_count;
 } run_history;
 
 typedef struct run_result {
     summary summary;
-    trace trace;   // rows at every step and on both sides of every event; empty if not asked for
-    double *touch; // corrected model: angles[dof], then velocities[dof], at the instant before the
-                   // first impact [rad], [rad/s]; NULL if there was none
-    size_t touch_size;   // [bytes]
-    run_history history; // empty unless asked for
+    trace trace; // rows at every step and on both sides of every event; empty if not asked for
+    double *before_impact;     // corrected model: angles[dof], then velocities[dof], at the instant
+                               // before the first impact [rad], [rad/s]; NULL if there was none
+    size_t before_impact_size; // [bytes]
+    run_history history;       // empty unless asked for
 } run_result;
 
 // What another thread may know about a run, and tell it. All zero at the start.
@@ -80,7 +80,7 @@ typedef struct run_options {
     run_monitor *monitor; // NULL: nobody looks on
     size_t rows_expected; // if not 0, rows and events stay where they are and can be shared, and
                           // the result has a history; needs keep_trace
-    bool take_up;         // *result was prepared by run_take_up: go on from there
+    bool resume;          // *result was prepared by run_resume: go on from there
 } run_options;
 
 // Simulates the scenario. Returns STATUS_OK, or what stopped the run: then summary.message says
@@ -92,24 +92,24 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
 void run_finish(run_result *result);
 
 // Lets `result` begin with what `from`, a run of the scenario `old`, has in common with a run of
-// `s`, up to its last snapshot before they differ: without a copy and to the last bit. False if
+// `s`, up to its last checkpoint before they differ: without a copy and to the last bit. False if
 // there is nothing in common or no memory; then `result` is empty and the run is one from the
-// start. Only runs of the corrected model without a controller have snapshots.
-bool run_take_up(const run_result *from, const scenario *old, const scenario *s,
-                 size_t rows_expected, run_result *result);
+// start. Only runs of the corrected model without a controller have checkpoints.
+bool run_resume(const run_result *from, const scenario *old, const scenario *s,
+                size_t rows_expected, run_result *result);
 
 // A second result of the same run that shares all rows. STATUS_NO_MEMORY if there is no room.
 status run_share(const run_result *from, size_t rows_expected, run_result *result);
 
-// Numbers of chunks (src/base/shared_array.h) that the rows, angles, events and strides of two
+// Numbers of chunks (src/base/shared_array.h) that the rows, angles, events and steps of two
 // results both begin with.
-typedef struct run_likeness {
-    size_t rows, angles, velocities, events, strides;
-} run_likeness;
+typedef struct shared_chunks {
+    size_t rows, angles, velocities, events, steps;
+} shared_chunks;
 
-// Compares two shared results; result takes the chunks of `like` instead of its own equal ones.
-run_likeness run_compare_rows(const run_result *result, const run_result *like);
-void run_merge(run_result *result, const run_result *like, const run_likeness *same);
+// Compares two shared results; result takes the chunks of `other` instead of its own equal ones.
+shared_chunks run_compare_rows(const run_result *result, const run_result *other);
+void run_merge(run_result *result, const run_result *other, const shared_chunks *same);
 
 // Compares the summary with the scenario's expectations. Returns the number of those not met and
 // reports each as "file:line:column: quantity is ..., expected ...".

@@ -31,7 +31,7 @@ static int count_actions(const session *s)
 {
     int count = s->base.action_count;
     for (int i = 0; i < s->input_count; i++) {
-        count += s->inputs[i].kind != INPUT_START;
+        count += s->inputs[i].kind != SESSION_INPUT_START;
     }
     return count;
 }
@@ -62,11 +62,11 @@ static status build_effective(const session *s, scenario *to, fault *f)
     }
     for (int i = 0; i < s->input_count && code == STATUS_OK; i++) {
         const session_input *in = &s->inputs[i];
-        if (in->kind == INPUT_START) {
+        if (in->kind == SESSION_INPUT_START) {
             code = parameter_set_text(&to->parameters, in->parameter, in->text, f);
         } else {
             action a = {.time = in->time,
-                        .kind = in->kind == INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
+                        .kind = in->kind == SESSION_INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
                         .parameter = in->parameter,
                         .value = in->value};
             snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
@@ -117,9 +117,9 @@ static void survey_force(session *s)
 }
 
 // Takes over the run that was being computed, as far as it went. The cursor may be beyond its end.
-static void take_over(session *s)
+static void collect_run(session *s)
 {
-    s->run = computation_finish(s->computing);
+    s->run = background_run_finish(s->computing);
     s->computing = NULL;
 }
 
@@ -129,34 +129,34 @@ static bool end_computing(session *s)
     if (s->computing == NULL) {
         return false;
     }
-    computation_stop(s->computing);
-    take_over(s);
+    background_run_stop(s->computing);
+    collect_run(s);
     return s->run.summary.status == STATUS_STOPPED;
 }
 
-// Computes the run of a scenario, and takes it up where the present one can be gone on from. A run
+// Computes the run of a scenario, and resumes the present one where it can. A run
 // that is not there within the session's patience is left to its thread. On failure the present run
 // stays.
 static status start_run(session *s, const scenario *effective, fault *f)
 {
     run_result run;
     size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
-    bool take_up = run_take_up(&s->run, &s->effective, effective, rows, &run);
-    computation *c = computation_start(effective, rows, take_up, &run,
-                                       s->has_other ? &s->other : NULL, isinf(s->patience));
+    bool resume = run_resume(&s->run, &s->effective, effective, rows, &run);
+    background_run *c = background_run_start(effective, rows, resume, &run,
+                                             s->has_other ? &s->other : NULL, isinf(s->patience));
     if (c == NULL) {
         run_finish(&run);
         return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
     }
-    bool over = computation_wait(c, fmin(s->patience, 1e6));
-    while (!over && computation_look(c, &run) == 0) {
-        over = computation_wait(c, SHORT_WAIT);
+    bool over = background_run_wait(c, fmin(s->patience, 1e6));
+    while (!over && background_run_look(c, &run) == 0) {
+        over = background_run_wait(c, SHORT_WAIT);
     }
     if (over) {
-        run = computation_finish(c);
+        run = background_run_finish(c);
         c = NULL;
     } else {
-        run.touch = NULL; // the computation's
+        run.before_impact = NULL; // the background run's
         clear_summary(&run.summary);
         run.history = (run_history){0};
     }
@@ -213,13 +213,13 @@ bool session_follow(session *s)
     if (s->computing == NULL) {
         return false;
     }
-    if (computation_wait(s->computing, 0)) {
-        take_over(s);
+    if (background_run_wait(s->computing, 0)) {
+        collect_run(s);
         session_seek(s, s->now);
         return true;
     }
     size_t before = s->run.trace.row_count;
-    bool more = computation_look(s->computing, &s->run) > before;
+    bool more = background_run_look(s->computing, &s->run) > before;
     survey_force(s);
     s->row = trace_row_at(&s->run.trace, s->now);
     return more;
@@ -295,7 +295,7 @@ void session_seek(session *s, double time)
     end = s->computing != NULL && s->now > end ? s->now : end;
     s->now = time > end ? end : time > 0 ? time : 0;
     s->row = trace_row_at(&s->run.trace, s->now);
-    // an instant beside a row's by rounding is the row's: a change there cuts no stride anew
+    // an instant beside a row's by rounding is the row's: a change there cuts no step anew
     double near = s->run.trace.rows[s->row + (s->row + 1 < s->run.trace.row_count)].time;
     if (near - s->now < 1e-12 * fmax(1, s->now) && near > s->now) {
         session_seek(s, near);
@@ -376,7 +376,7 @@ static status add_input(session *s, const session_input *in, fault *f)
 
 status session_change(session *s, int parameter, const char *text, fault *f)
 {
-    session_input in = {.kind = INPUT_START, .time = s->now, .parameter = parameter};
+    session_input in = {.kind = SESSION_INPUT_START, .time = s->now, .parameter = parameter};
     const parameter_info *info = &parameter_table[parameter];
     if (strlen(text) >= sizeof in.text) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "the value of %s is too long", info->path);
@@ -389,14 +389,15 @@ status session_change(session *s, int parameter, const char *text, fault *f)
     }
     in.value = parameter_get(&scratch, parameter);
     if (info->timed && s->now > 0) {
-        in.kind = INPUT_TIMED;
+        in.kind = SESSION_INPUT_TIMED;
     }
     return add_input(s, &in, f);
 }
 
 status session_push(session *s, double impulse, fault *f)
 {
-    session_input in = {.kind = INPUT_PUSH, .time = s->now, .parameter = -1, .value = impulse};
+    session_input in = {
+        .kind = SESSION_INPUT_PUSH, .time = s->now, .parameter = -1, .value = impulse};
     if (!isfinite(impulse)) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s");
     }

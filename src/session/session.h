@@ -10,20 +10,20 @@
 // is over `run` shows the rows there are, session_follow brings more, and `computing` is not NULL.
 // The cursor may then stand at an instant that has no row yet: `row` is the last one there is.
 //
-// Rows before a change are those of the unchanged run to the last bit: no stride is chosen for an
+// Rows before a change are those of the unchanged run to the last bit: no step is chosen for an
 // input, one that goes beyond it is cut.
 #pragma once
 
 #include "src/run/run.h"
 
-struct computation;
+struct background_run;
 
 enum { SESSION_INPUT_TEXT = 160 };
 
 typedef enum session_input_kind {
-    INPUT_START, // another value from the start
-    INPUT_TIMED, // another value from `time` on
-    INPUT_PUSH   // an impulse at the tip
+    SESSION_INPUT_START, // another value from the start
+    SESSION_INPUT_TIMED, // another value from `time` on
+    SESSION_INPUT_PUSH   // an impulse at the tip
 } session_input_kind;
 
 typedef struct session_input {
@@ -46,9 +46,9 @@ typedef struct session {
     size_t row;       // the last row whose time is not after `now`
     double seen;      // the latest instant the cursor has been at since the last change [s]
     unsigned version; // counts the computed runs
-    struct computation *computing; // the run, if it is not complete
-    double patience;               // for how long a change waits for its run [s]
-    size_t surveyed;               // rows whose force is in the summary of an incomplete run
+    struct background_run *computing; // the run, if it is not complete
+    double patience;                  // for how long a change waits for its run [s]
+    size_t surveyed;                  // rows whose force is in the summary of an incomplete run
 } session;
 
 // Takes over the scenario (also on failure) and computes its run. A run that fails numerically is

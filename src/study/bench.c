@@ -339,10 +339,11 @@ static status measure_predict(double *value, fault *f)
     }
     run_result result;
     code = run_scenario(&s, false, &result);
-    touching t = {.q = result.touch, .w = result.touch ? result.touch + 2 : NULL};
+    touching t = {.q = result.before_impact,
+                  .w = result.before_impact ? result.before_impact + 2 : NULL};
     arm_init(&t.arm, &s.parameters);
     t.motion = motion_create(&t.arm, &s.parameters.method);
-    if (t.motion == NULL || result.touch == NULL) {
+    if (t.motion == NULL || result.before_impact == NULL) {
         code = STATUS_NO_MEMORY;
     }
     if (code == STATUS_OK) {

@@ -46,7 +46,7 @@ static void find_best(const scenario *s, const run_result *result, double *peak,
 {
     const summary *m = &result->summary;
     const parameters *p = &s->parameters;
-    const double *touch = result->touch, command = m->force_command_N;
+    const double *touch = result->before_impact, command = m->force_command_N;
     pressed_arm_model model;
     pressed_state after;
     *peak = *settling = (double)NAN;

@@ -48,7 +48,7 @@ static three_body_state state_of(const sample *row)
 static status predict_by_linearised_arm(const parameters *p, const run_result *result,
                                         prediction *out, fault *f)
 {
-    if (result->touch == NULL) {
+    if (result->before_impact == NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "for the corrected model only");
     }
     arm a;
@@ -57,7 +57,8 @@ static status predict_by_linearised_arm(const parameters *p, const run_result *r
     if (work == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
     }
-    status code = predict_linearised(&a, work, result->touch, result->touch + a.dof, out);
+    status code =
+        predict_linearised(&a, work, result->before_impact, result->before_impact + a.dof, out);
     motion_destroy(work);
     return code == STATUS_OK ? code : fault_set(f, code, "%s", status_text(code));
 }

@@ -18,7 +18,7 @@ bool lab_change(lab *l, int parameter, const char *text)
     const session_input *in = &s->inputs[s->input_count - 1];
     if (s->run.summary.status != STATUS_OK) {
         lab_say(l, true, "the run stops: %s", s->run.summary.message);
-    } else if (in->kind == INPUT_TIMED) {
+    } else if (in->kind == SESSION_INPUT_TIMED) {
         lab_say(l, false, "%s = %s %s from %.4f s on", info->path, text, info->unit, in->time);
     } else {
         lab_say(l, false, "%s = %s %s from the start", info->path, text, info->unit);

@@ -73,7 +73,7 @@ static bool locked_just_now(const session *s)
         return false;
     }
     const session_input *last = &s->inputs[s->input_count - 1];
-    return last->kind == INPUT_TIMED && last->time == s->now &&
+    return last->kind == SESSION_INPUT_TIMED && last->time == s->now &&
            last->parameter == parameter_find("control.lock");
 }
 
