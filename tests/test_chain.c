@@ -97,7 +97,7 @@ static double largest_residual(const arm *a, double *q, const double *w, const d
             sum += mass(a, q, i, j) * alpha[j];
         }
         if (i == 0) {
-            sum += a->hub_damping * w[0] - a->motor_torque - r->friction;
+            sum += a->motor.damping * w[0] - a->motor.torque - r->friction;
         }
         largest = fmax(largest, fabs(sum));
     }
@@ -130,8 +130,8 @@ static void satisfies_the_lagrangian(void **state)
     for (int links = 1; links <= 10; links++) {
         for (int choice = 0; choice < 2 * 3 * 3 * 2; choice++) {
             arm a = make_arm(links, hubs[choice % 2], walls[choice / 2 % 3]);
-            contact_mode mode = {choice / 18 == 1 && a.wall != WALL_NONE,
-                                 frictions[choice / 6 % 3]};
+            contact_state mode = {choice / 18 == 1 && a.wall != WALL_NONE,
+                                  frictions[choice / 6 % 3]};
             if (a.dof == 1 && mode.contact) {
                 continue; // tested below
             }
@@ -145,7 +145,7 @@ static void satisfies_the_lagrangian(void **state)
             if (mode.friction == HUB_STICK) {
                 check_close(alpha[0], 0, 0);
             } else {
-                check_close(r.friction, -mode.friction * a.stiction, 0);
+                check_close(r.friction, -mode.friction * a.motor.stiction, 0);
             }
             if (a.wall != WALL_NONE) {
                 double second = numeric_second_rate(&a, q, w, alpha);
@@ -198,9 +198,9 @@ static void one_link_on_a_rigid_hub_is_held_by_the_wall(void **state)
     double q[1] = {0.1}, w[1] = {0}, alpha[1];
     chain_link work[1];
     chain_reaction r;
-    chain_accelerations(&a, work, q, w, (contact_mode){true, HUB_STICK}, alpha, &r);
+    chain_accelerations(&a, work, q, w, (contact_state){true, HUB_STICK}, alpha, &r);
     check_close(alpha[0], 0, 1e-12);
-    check_close(r.force, a.motor_torque / 1.0, 1e-12); // moment balance about the hub
+    check_close(r.force, a.motor.torque / 1.0, 1e-12); // moment balance about the hub
     check_close(r.friction, 0, 0);
 }
 

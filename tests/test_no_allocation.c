@@ -53,7 +53,7 @@ static passage go_through(const char *const *settings)
     bool pushed = false;
     while (m->state[SLOT_TIME] < p.run.duration) {
         double until = pushed ? p.run.duration : 0.5 * p.run.duration;
-        assert_int_equal(motion_stride(&a, m, until, p.method.step, &report), STATUS_OK);
+        assert_int_equal(motion_step(&a, m, until, p.method.step, &report), STATUS_OK);
         seen.strides++;
         seen.events[report.event]++;
         double middle = 0.5 * (m->trial[SLOT_TIME] + m->state[SLOT_TIME]);

@@ -132,7 +132,8 @@ static double energy_defect(const printed_arm *a, motion_state m)
         rate_of_gap += gradient[i] * m.w[i];
     }
     double rate = (energy(a, after, faster) - energy(a, before, slower)) / (2 * h);
-    double drive = a->motor_torque - a->hub_damping * m.w[0] - copysign(a->stiction, m.w[0]);
+    double drive =
+        a->motor.torque - a->motor.damping * m.w[0] - copysign(a->motor.stiction, m.w[0]);
     return rate - drive * m.w[0] + m.force * rate_of_gap;
 }
 
@@ -259,7 +260,7 @@ static void constants_are_those_of_the_thesis(void **state)
 {
     (void)state;
     printed_arm a = arm_with(63);
-    check_close(a.motor_torque, 0.4377, 5e-5); // 1 V
+    check_close(a.motor.torque, 0.4377, 5e-5); // 1 V
     check_close(a.link_mass, 0.20054, 1e-12);
     check_close(a.centre, 0.25, 1e-12);
     check_close(a.wall_x, cos(0.1), 1e-12);

@@ -1,29 +1,15 @@
 #include "src/arm/arm.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "src/arm/chain.h"
 
-double motor_torque_per_volt(const motor_parameters *m)
+void arm_set_voltage(arm *a, double volts)
 {
-    return m->amplifier_gain * m->torque_constant / m->resistance;
-}
-
-double motor_damping(const motor_parameters *m)
-{
-    return m->viscous_friction + m->torque_constant * m->back_emf / m->resistance;
-}
-
-double motor_limited_voltage(const motor_parameters *m)
-{
-    return fmax(-m->voltage_limit, fmin(m->voltage, m->voltage_limit));
-}
-
-void arm_set_voltage(arm *a, const motor_parameters *m, double volts)
-{
-    double limited = fmax(-m->voltage_limit, fmin(volts, m->voltage_limit));
-    a->motor_torque = motor_torque_per_volt(m) * limited;
+    assert(a != NULL && isfinite(volts));
+    motor_set_voltage(&a->motor, volts);
 }
 
 // First frequency of the straight chain clamped at the hub, from inverse iteration on
@@ -80,9 +66,9 @@ static double first_clamped_frequency(const arm *a)
 static double highest_frequency(const arm *source)
 {
     enum { LONGEST = 1025, SWEEPS = 60 };
-    static const contact_mode free_mode = {false, HUB_FORWARD};
+    static const contact_state free_mode = {false, HUB_FORWARD};
     arm a = *source;
-    a.motor_torque = a.hub_damping = a.stiction = a.joint_damping = a.hub_joint_damping = 0;
+    a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping = a.hub_joint_damping = 0;
     a.wall = WALL_NONE;
     chain_link work[LONGEST];
     double q[LONGEST], w[LONGEST], alpha[LONGEST], value = 0;
@@ -128,7 +114,7 @@ static double fastest_rate(const arm *a)
     double decay = ratio > 1 ? w * (ratio + sqrt(ratio * ratio - 1)) : 0;
     double reach = a->link_length * (a->hub_spring ? 0 : 1);
     double hub = a->hub_inertia + a->link_mass * reach * reach / 12;
-    decay = fmax(decay, hub > 0 ? a->hub_damping / hub : 0);
+    decay = fmax(decay, hub > 0 ? a->motor.damping / hub : 0);
     return fmax(w, decay_weight * decay);
 }
 
@@ -145,9 +131,7 @@ void arm_init(arm *a, const parameters *p)
     a->hub_inertia = p->arm.hub_inertia;
     a->hub_stiffness = a->hub_spring ? p->arm.k1 : 0;
     a->joint_stiffness = p->arm.k2 * a->links / 2;
-    a->motor_torque = motor_torque_per_volt(&p->motor) * motor_limited_voltage(&p->motor);
-    a->hub_damping = motor_damping(&p->motor);
-    a->stiction = p->motor.stiction;
+    motor_init(&a->motor, &p->motor);
     a->wall = (wall_kind)p->wall.kind;
     a->wall_cos = cos(p->wall.angle);
     a->wall_sin = sin(p->wall.angle);

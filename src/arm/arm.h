@@ -9,7 +9,7 @@
 // acts with the generalised force -J^T f, J = dg/dq, f >= 0.
 #pragma once
 
-#include "src/quantities/parameters.h"
+#include "src/arm/motor.h"
 
 typedef struct arm {
     int links; // N
@@ -24,9 +24,7 @@ typedef struct arm {
     double joint_stiffness;   // of each inner joint, k2 N/2 [N m/rad]
     double hub_joint_damping; // structural damping of the hub spring [N m s/rad]
     double joint_damping;     // structural damping of each inner joint [N m s/rad]
-    double motor_torque;      // kT/Ra times the amplified, limited command [N m]
-    double hub_damping;       // back EMF and viscous friction [N m s/rad]
-    double stiction;          // Coulomb friction torque at the hub [N m]
+    motor_model motor;        // with the command in force
     wall_kind wall;
     double wall_cos, wall_sin; // direction of the wall [-]
     double wall_x, wall_y;     // contact point (a, b) [m]
@@ -36,18 +34,10 @@ typedef struct arm {
     double fastest_rate;       // the same or, if faster, weighted decays: sets the steps [1/s]
 } arm;
 
-// Derives the constants from resolved parameters (corrected model). Cost grows linearly with N.
+// Derives the constants from resolved parameters (corrected model); the command is motor.voltage.
+// Cost grows linearly with N.
 void arm_init(arm *a, const parameters *p);
 
-// Another command [V], limited as the D/A limits it, at the cost of a multiplication; all else
-// stays.
-void arm_set_voltage(arm *a, const motor_parameters *m, double volts);
-
-// Torque of the motor per volt of command, gain kT / Ra [N m/V].
-double motor_torque_per_volt(const motor_parameters *m);
-
-// Damping torque per hub velocity, viscous friction plus back EMF kT kB / Ra [N m s/rad].
-double motor_damping(const motor_parameters *m);
-
-// The command after the D/A's limit [V].
-double motor_limited_voltage(const motor_parameters *m);
+// Puts another command [V] in force, at the cost of a multiplication; all else stays. The arm of a
+// run under a controller is at the controller's command, whatever motor.voltage says.
+void arm_set_voltage(arm *a, double volts);

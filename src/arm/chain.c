@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
-                         contact_mode mode, double *alpha, chain_reaction *reaction)
+                         contact_state mode, double *alpha, chain_reaction *reaction)
 {
     if (a->links == 2 && !a->hub_spring) {
         chain_sweep(a, 2, false, mode.contact, true, work, q, w, mode, alpha, reaction);

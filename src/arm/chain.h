@@ -34,10 +34,10 @@ typedef struct chain_link {
 typedef enum hub_friction { HUB_STICK = 0, HUB_FORWARD = 1, HUB_BACKWARD = -1 } hub_friction;
 
 // What holds at an instant: the wall touched or not, the hub stuck or sliding which way.
-typedef struct contact_mode {
+typedef struct contact_state {
     bool contact;
     hub_friction friction;
-} contact_mode;
+} contact_state;
 
 typedef struct chain_reaction {
     double force;            // f, zero without contact [N]
@@ -54,7 +54,7 @@ typedef struct chain_reaction {
 // friction is what that takes. With one link on a rigid hub a touched wall already holds the hub:
 // friction is then taken as zero.
 void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
-                         contact_mode mode, double *alpha, chain_reaction *reaction);
+                         contact_state mode, double *alpha, chain_reaction *reaction);
 
 // Penetration g [m], its rate [m/s] (either may be NULL).
 void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate);

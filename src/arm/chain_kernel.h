@@ -48,7 +48,7 @@ KERNEL wall_geometry wall_geometry_at(const arm *a, double x, double y, double v
 // that they can be compile-time constants. Without `gap` the reaction's gap and its derivatives are
 // left out in free flight. The derivation stands in chain.h.
 KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool gap,
-                        chain_link *link, const double *q, const double *w, contact_mode mode,
+                        chain_link *link, const double *q, const double *w, contact_state mode,
                         double *alpha, chain_reaction *reaction)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
@@ -79,8 +79,8 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     const bool stuck = mode.friction == HUB_STICK && !held;
 
     // motor, damping and sliding friction at the hub
-    const double sliding = held ? 0 : -mode.friction * a->stiction;
-    double hub = a->motor_torque - a->hub_damping * w[0] + sliding;
+    const double sliding = held ? 0 : -mode.friction * a->motor.stiction;
+    double hub = a->motor.torque - a->motor.damping * w[0] + sliding;
     double hub_joint = 0, damping_power = 0;
     if (hub_spring) {
         double rate = omega[0] - w[0];
@@ -205,6 +205,6 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     } else if (stuck) {
         reaction->friction = -(root_free + force * root_unit);
     }
-    reaction->viscous_power = a->hub_damping * w[0] * w[0];
+    reaction->viscous_power = a->motor.damping * w[0] * w[0];
     reaction->damping_power = damping_power;
 }

@@ -16,9 +16,7 @@ void printed_arm_init(printed_arm *a, const parameters *p)
     a->hub_inertia = p->arm.hub_inertia;
     a->k1 = p->arm.k1;
     a->k2 = p->arm.k2;
-    a->hub_damping = motor_damping(&p->motor);
-    a->stiction = p->motor.stiction;
-    a->motor_torque = motor_torque_per_volt(&p->motor) * motor_limited_voltage(&p->motor);
+    motor_init(&a->motor, &p->motor);
     a->has_wall = p->wall.kind != WALL_NONE;
     a->wall_x = p->arm.length * cos(p->wall.angle);
     a->wall_y = p->arm.length * sin(p->wall.angle);
@@ -76,8 +74,9 @@ void printed_residual(const printed_arm *a, const double q[3], const double w[3]
     mass_terms t = mass_terms_at(a, q);
     double bend = q[2] - q[1], hub_bend = q[1] - q[0], both, last;
     force_levers(a, q, &both, &last);
-    residual[0] = a->hub_inertia * alpha[0] - a->k1 * hub_bend + a->hub_damping * w[0] +
-                  a->stiction * printed_sign(w[0], a->switches.sign_dead_band) - a->motor_torque;
+    residual[0] = a->hub_inertia * alpha[0] - a->k1 * hub_bend + a->motor.damping * w[0] +
+                  a->motor.stiction * printed_sign(w[0], a->switches.sign_dead_band) -
+                  a->motor.torque;
     residual[1] = a->k1 * hub_bend + t.m22 * alpha[1] + t.m23 * alpha[2] -
                   t.coupling * t.s * (w[2] * w[2] - w[1] * w[1]) + force * both;
     if (a->switches.spring_counted_twice) {
@@ -122,7 +121,7 @@ void printed_newmark_jacobian(const printed_arm *a, newmark_slopes slopes, const
     double bend3 = -ps * alpha[1] + pc * w[1] * w[1] + a->k2;
 
     memset(jacobian, 0, 16 * sizeof(double));
-    jacobian[0][0] = a->hub_inertia * da + a->k1 + a->hub_damping * dv;
+    jacobian[0][0] = a->hub_inertia * da + a->k1 + a->motor.damping * dv;
     jacobian[0][1] = -a->k1;
     jacobian[1][0] = -a->k1;
     jacobian[1][1] = a->k1 + t.m22 * da + 2 * ps * w[1] * dv - bend2;

@@ -20,7 +20,7 @@
 
 #include <stdbool.h>
 
-#include "src/quantities/parameters.h"
+#include "src/arm/motor.h"
 
 enum { PRINTED_BODIES = 3, PRINTED_EQUATIONS = 4 };
 
@@ -31,9 +31,7 @@ typedef struct printed_arm {
     double link_inertia;   // I2 = I3 about the centre of mass [kg m2]
     double hub_inertia;    // I1 [kg m2]
     double k1, k2;         // [N m/rad]
-    double hub_damping;    // kfr + kT kB/Ra [N m s/rad]
-    double stiction;       // kst [N m]
-    double motor_torque;   // kT/Ra times the amplified, limited command [N m]
+    motor_model motor;     // kfr + kT kB/Ra, kst, and the command in force
     bool has_wall;         // false: never in contact
     double wall_x, wall_y; // contact point (a, b) [m]
     printed_parameters switches;

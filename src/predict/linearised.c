@@ -102,7 +102,7 @@ static double oscillation_stop(const oscillation *o)
 typedef struct pressed_arm {
     const arm *a;
     chain_link links[2];
-    contact_mode mode;
+    contact_state mode;
     double force, acceleration; // at the state last evaluated
 } pressed_arm;
 
@@ -139,7 +139,7 @@ static void pressed_tangents(const arm *a, const double *q, double *c, double *k
     double own = a->link_inertia + m * l * l / 4, bend = ratio - 1;
     double mass = a->hub_inertia + own + m * l * l + own * ratio * ratio +
                   m * l * l * cos(q[1] - q[0]) * ratio;
-    *c = (a->hub_damping + a->joint_damping * bend * bend) / mass;
+    *c = (a->motor.damping + a->joint_damping * bend * bend) / mass;
     *k = a->joint_stiffness * bend * bend / mass;
 }
 
@@ -237,7 +237,7 @@ static void path_peak(pressed_arm *p, const pressed_path *path, double first, pr
 
 // d(alpha, force)/d(q, w) at the touch by central differences, in contact with the given mode.
 // matrix: (2n+1)^2 of z' = A z, z = (q - q0, w, 1); output[2n+1]: force = output z.
-static void linearise(const arm *a, chain_link *links, contact_mode mode, const double *q,
+static void linearise(const arm *a, chain_link *links, contact_state mode, const double *q,
                       const double *w, double *matrix, double *output, double *scratch)
 {
     const int n = a->dof, size = 2 * n + 1;
@@ -322,7 +322,7 @@ static void exponential(const double *matrix, int size, double h, double *result
 }
 
 // Follows force(t) with the propagator from the touch to its first peak that ends the pulse's rise.
-static status many_link_peak(const arm *a, chain_link *links, contact_mode mode, const double *q,
+static status many_link_peak(const arm *a, chain_link *links, contact_state mode, const double *q,
                              const double *w, double first_force, prediction *out)
 {
     enum { MOST_SAMPLES = 20000 };
@@ -388,7 +388,7 @@ status predict_linearised(const arm *a, motion *work, const double *q, const dou
     for (int i = 0; i < n; i++) {
         after[i] = w[i] + (jump.impulse > 0 ? after[i] : 0);
     }
-    contact_mode mode = {true, after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD};
+    contact_state mode = {true, after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD};
     chain_accelerations(&touched, work->links, q, after, mode, alpha, &r);
     out->holds = jump.impulse >= 0 && r.force > 0;
     if (!out->holds) {

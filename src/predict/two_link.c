@@ -34,7 +34,8 @@ void two_link_at(two_link *t, const parameters *p, two_link_form form, double an
     double bend = angle3 - angle2, c = cos(bend);
     t->length = l;
     t->centre = e;
-    t->motor_torque = motor_torque_per_volt(&p->motor) * motor_limited_voltage(&p->motor);
+    t->motor_torque =
+        motor_torque_per_volt(&p->motor) * motor_limited_voltage(&p->motor, p->motor.voltage);
     t->hub_damping = motor_damping(&p->motor);
     t->m32 = m * l * e * c;
     t->m33 = m * e * e + inertia;

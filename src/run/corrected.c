@@ -18,7 +18,7 @@ static status audit(recording *r, const arm *a, motion *m)
     const double *state = m->state;
     double residual = motion_energy_residual(a, m, m->state);
     double turned_over = fabs(state[SLOT_MOTOR_WORK]) + fabs(state[SLOT_EXTERNAL_WORK]) +
-                         m->start_energy + fabs(a->motor_torque) * TINY_TURN + TINY_ENERGY;
+                         m->start_energy + fabs(a->motor.torque) * TINY_TURN + TINY_ENERGY;
     summary *s = &r->result->summary;
     s->energy_residual_J = fmax(s->energy_residual_J, fabs(residual));
     // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
@@ -51,8 +51,8 @@ static status record_row(recording *r, const arm *a, motion *m, double *state, d
         .impulse = impulse,
         .contact = state[SLOT_CONTACT],
         .sticking = state[SLOT_FRICTION] == HUB_STICK,
-        .voltage = motor_limited_voltage(&r->now.motor),
-        .motor_torque = a->motor_torque,
+        .voltage = a->motor.voltage,
+        .motor_torque = a->motor.torque,
         .friction_torque = state[SLOT_FRICTION_TORQUE],
         .kinetic_energy = chain_kinetic_energy(a, q, w),
         .strain_energy = chain_strain_energy(a, q),
@@ -214,8 +214,8 @@ static status apply_command(recording *r, arm *a, motion *m)
     double now = m->state[SLOT_TIME];
     recording_book_electrical_energy(r, now, state_angles(m, m->state)[0]);
     r->now.motor.voltage = r->rig->applied;
-    double before = a->motor_torque;
-    arm_set_voltage(a, &r->now.motor, r->rig->applied);
+    double before = a->motor.torque;
+    arm_set_voltage(a, r->rig->applied);
     motion_retorque(a, m, before);
     status failed = STATUS_OK;
     if (contact && m->state[SLOT_CONTACT] == 0) {
@@ -338,7 +338,7 @@ static status travel(recording *r, const arm *a, motion *m, double until, fault 
         if (!recording_checkpoint(r, m, last_event)) {
             return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
         }
-        status s = motion_stride(a, m, until, r->now.method.step, &report);
+        status s = motion_step(a, m, until, r->now.method.step, &report);
         if (s != STATUS_OK) {
             return fault_set(
                 f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",

@@ -113,10 +113,8 @@ void recording_add_rig_signals(const recording *r, sample *row)
 void recording_book_electrical_energy(recording *r, double time, double hub_angle)
 {
     const motor_parameters *motor = &r->now.motor;
-    double volts = motor->amplifier_gain * motor_limited_voltage(motor);
-    r->result->summary.electrical_energy_J +=
-        volts / motor->resistance *
-        (volts * (time - r->command_time) - motor->back_emf * (hub_angle - r->command_angle));
+    r->result->summary.electrical_energy_J += motor_electrical_energy(
+        motor, motor->voltage, time - r->command_time, hub_angle - r->command_angle);
     r->command_time = time;
     r->command_angle = hub_angle;
 }

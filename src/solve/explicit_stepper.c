@@ -75,7 +75,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
                           int n, int links, bool hub_spring, bool contact)
 {
     const int length = 2 * n + QUADRATURE_COUNT;
-    const contact_mode mode = state_mode(m->state);
+    const contact_state mode = contact_state_of(m->state);
     const double *y0 = state_angles(m, m->state);
     double *y = state_angles(m, m->trial);
     double *rate = m->stages; // rate[i * length]: derivative of the smooth part in stage i

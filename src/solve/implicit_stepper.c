@@ -190,12 +190,12 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
         double right1 = -lever_force - l * (c * ey - s * ex) + torque1;
         if (first + k == 0) {
             // the first link turns with the hub
-            pivot += a->hub_inertia * t.beta + a->hub_damping * t.gamma;
+            pivot += a->hub_inertia * t.beta + a->motor.damping * t.gamma;
             right -=
-                a->hub_inertia * alpha + a->hub_damping * omega - a->motor_torque - it->sliding;
+                a->hub_inertia * alpha + a->motor.damping * omega - a->motor.torque - it->sliding;
             if (it->stuck) {
                 it->excess =
-                    -residual - a->hub_inertia * alpha - a->hub_damping * omega + a->motor_torque;
+                    -residual - a->hub_inertia * alpha - a->motor.damping * omega + a->motor.torque;
                 right = right1 = 0;
             }
         }
@@ -224,11 +224,11 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
     }
     dq[0] = unit[0] = 0;
     if (a->hub_spring && it->stuck) {
-        it->excess = a->motor_torque + outer;
+        it->excess = a->motor.torque + outer;
     } else if (a->hub_spring) {
-        double pivot = a->hub_inertia * t.beta + a->hub_damping * t.gamma - yy;
-        double residual =
-            a->hub_inertia * al[0] + a->hub_damping * w[0] - a->motor_torque - it->sliding - outer;
+        double pivot = a->hub_inertia * t.beta + a->motor.damping * t.gamma - yy;
+        double residual = a->hub_inertia * al[0] + a->motor.damping * w[0] - a->motor.torque -
+                          it->sliding - outer;
         dq[0] = (torque0 - residual) / pivot;
         unit[0] = torque1 / pivot;
     }
@@ -358,7 +358,7 @@ static void keep_balance(const arm *a, motion *m, const iterate *it)
     trial[SLOT_GAP] = -g;
     trial[SLOT_GAP_RATE] = -rate;
     trial[SLOT_GAP_ACCELERATION] = 0; // asked for only at events, which evaluate it
-    trial[SLOT_VISCOUS_POWER] = a->hub_damping * w[0] * w[0];
+    trial[SLOT_VISCOUS_POWER] = a->motor.damping * w[0] * w[0];
     for (int k = 1; k < a->dof; k++) {
         double bend = w[k] - w[k - 1];
         power += (k == a->first ? a->hub_joint_damping : a->joint_damping) * bend * bend;
@@ -398,12 +398,12 @@ static bool makes_energy(const arm *a, const motion *m)
             chain_kinetic_energy(a, q, state_velocities(m, state)) + chain_strain_energy(a, q);
     }
     double turned = state_angles(m, m->trial)[0] - state_angles(m, m->state)[0];
-    return energy[1] - energy[0] > fmax(a->motor_torque * turned, 0) + 1e-3 * energy[0] + 1e-9;
+    return energy[1] - energy[0] > fmax(a->motor.torque * turned, 0) + 1e-3 * energy[0] + 1e-9;
 }
 
 static status step(const arm *a, motion *m, double h)
 {
-    const contact_mode mode = state_mode(m->state);
+    const contact_state mode = contact_state_of(m->state);
     const bool resolved = !motion_unresolved(a, m);
     coefficients k = {m->alpha_m, m->alpha_f, m->beta, m->gamma};
     if (!resolved && (mode.contact || m->state[SLOT_JUMPED] != 0)) {
@@ -416,7 +416,7 @@ static status step(const arm *a, motion *m, double h)
                   .contact = mode.contact,
                   .stuck = mode.friction == HUB_STICK,
                   .velocity_level = !resolved,
-                  .sliding = -mode.friction * a->stiction};
+                  .sliding = -mode.friction * a->motor.stiction};
     status s = solve_step(a, m, h, &k, &it);
     if (s != STATUS_OK) {
         return s;

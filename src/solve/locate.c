@@ -19,7 +19,7 @@ static double watch_value(const arm *a, const motion *m, const double *state, wa
     case WATCH_HUB:
         return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
     case WATCH_STICTION:
-        return a->stiction - fabs(state[SLOT_FRICTION_TORQUE]);
+        return a->motor.stiction - fabs(state[SLOT_FRICTION_TORQUE]);
     }
     return 1;
 }
@@ -43,7 +43,7 @@ static bool watch_active(const arm *a, const motion *m, watch w)
     case WATCH_FORCE:
         return contact;
     case WATCH_HUB:
-        return !stuck && !held && a->stiction > 0;
+        return !stuck && !held && a->motor.stiction > 0;
     case WATCH_STICTION:
         return stuck && !held;
     }
@@ -101,7 +101,7 @@ static double suspected_dip(const arm *a, const motion *m, double h, watch w, do
     double d0, d1;
     if (!watch_slopes(m, h, w, &d0, &d1)) {
         // near the limit of friction the middle of the step is worth a look
-        return fmin(v0, v1) < 0.2 * a->stiction ? 0.5 : -1;
+        return fmin(v0, v1) < 0.2 * a->motor.stiction ? 0.5 : -1;
     }
     double s = cubic_dip(v0, v1, d0, d1);
     if (s <= 1e-6 || s >= 1) { // a dip right at the start is the edge it starts from

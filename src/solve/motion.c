@@ -99,7 +99,7 @@ void motion_evaluate(const arm *a, motion *m, double *state)
 {
     chain_reaction r;
     chain_accelerations(a, m->links, state_angles(m, state), state_velocities(m, state),
-                        state_mode(state), state_accelerations(m, state), &r);
+                        contact_state_of(state), state_accelerations(m, state), &r);
     state[SLOT_FORCE] = r.force;
     state[SLOT_FRICTION_TORQUE] = r.friction;
     state[SLOT_GAP_ACCELERATION] = r.gap_acceleration;
@@ -113,7 +113,7 @@ void motion_evaluate(const arm *a, motion *m, double *state)
 
 bool motion_held_still(const motion *m)
 {
-    contact_mode mode = state_mode(m->state);
+    contact_state mode = contact_state_of(m->state);
     int holds = mode.contact + (mode.friction == HUB_STICK);
     return m->dof == 1 ? holds > 0 : holds >= m->dof;
 }
@@ -123,7 +123,7 @@ bool motion_held_still(const motion *m)
 static double violation(const arm *a, const motion *m, const double *state, bool touching,
                         bool hub_rests)
 {
-    contact_mode mode = state_mode(state);
+    contact_state mode = contact_state_of(state);
     double worst = 0;
     if (mode.contact) {
         worst = fmax(worst, -state[SLOT_FORCE]);
@@ -131,7 +131,7 @@ static double violation(const arm *a, const motion *m, const double *state, bool
         worst = fmax(worst, -state[SLOT_GAP_ACCELERATION]);
     }
     if (mode.friction == HUB_STICK) {
-        worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->stiction);
+        worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction);
     } else if (hub_rests) {
         worst = fmax(worst, -mode.friction * state[SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT]);
     }
@@ -149,11 +149,11 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     const hub_friction *at_rest = event == MOTION_SLIP ? sliding_first : sticking_first;
     double *state = m->state;
     double hub_velocity = state_velocities(m, state)[0];
-    bool hub_rests = hub_velocity == 0 && a->stiction > 0;
+    bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
     hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
     int choices = hub_rests ? 3 : 1, ways = touching ? 2 : 1;
     double least = 0;
-    contact_mode best = {false, sliding};
+    contact_state best = {false, sliding};
 
     for (int i = 0; i < ways * choices; i++) {
         bool second = i >= choices;
@@ -163,10 +163,10 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
         double v = violation(a, m, state, touching, hub_rests);
         if (i == 0 || v < least) {
             least = v;
-            best = state_mode(state);
+            best = contact_state_of(state);
         }
         if (v <= FORCE_TOLERANCE / 1000) {
-            best = state_mode(state);
+            best = contact_state_of(state);
             break;
         }
     }
@@ -223,7 +223,7 @@ double motion_energy_residual(const arm *a, const motion *m, double *state)
 
 void motion_project(const arm *a, motion *m, double *state)
 {
-    bool locked = state_mode(state).friction == HUB_STICK;
+    bool locked = contact_state_of(state).friction == HUB_STICK;
     if (m->dof == 1 || (fabs(state[SLOT_GAP]) <= PROJECTION_GAP &&
                         fabs(state[SLOT_GAP_RATE]) <= PROJECTION_RATE)) {
         return;
@@ -265,8 +265,8 @@ status motion_try_step(const arm *a, motion *m, double h)
         return s;
     }
     double turned = state_angles(m, trial)[0] - state_angles(m, m->state)[0];
-    trial[SLOT_MOTOR_WORK] += a->motor_torque * turned;
-    trial[SLOT_FRICTION_LOSS] += trial[SLOT_FRICTION] * a->stiction * turned;
+    trial[SLOT_MOTOR_WORK] += a->motor.torque * turned;
+    trial[SLOT_FRICTION_LOSS] += trial[SLOT_FRICTION] * a->motor.stiction * turned;
     double sum = trial[SLOT_FORCE];
     for (int i = 0; i < 2 * m->dof; i++) {
         sum += state_angles(m, trial)[i];
@@ -348,7 +348,7 @@ static status cut_stride(const arm *a, motion *m, double step, status tried, dou
     return s == STATUS_OK ? s : try_stride(a, m, h, first, any);
 }
 
-status motion_stride(const arm *a, motion *m, double until, double step, motion_report *report)
+status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     *report = (motion_report){.event = MOTION_REACHED};
     double wanted = stride_length(a, m, until - m->state[SLOT_TIME], step), h = wanted;
@@ -379,7 +379,7 @@ status motion_advance(const arm *a, motion *m, double until, double step, motion
     status s = STATUS_OK;
     *report = (motion_report){.event = MOTION_REACHED};
     while (s == STATUS_OK && report->event == MOTION_REACHED && m->state[SLOT_TIME] < until) {
-        s = motion_stride(a, m, until, step, report);
+        s = motion_step(a, m, until, step, report);
     }
     return s;
 }
@@ -440,7 +440,7 @@ static void resolve_coarsely(const arm *a, motion *m, motion_report *report)
     } else if (report->event == MOTION_SLIP) {
         bool forward = state[SLOT_FRICTION_TORQUE] < 0; // friction resists the way the hub goes
         state[SLOT_FRICTION] = forward ? HUB_FORWARD : HUB_BACKWARD;
-        state[SLOT_FRICTION_TORQUE] = forward ? -a->stiction : a->stiction;
+        state[SLOT_FRICTION_TORQUE] = forward ? -a->motor.stiction : a->motor.stiction;
     }
     report->holds = state[SLOT_CONTACT] != 0;
     state[SLOT_JUMPED] = 1;
@@ -500,9 +500,9 @@ void motion_retorque(const arm *a, motion *m, double before)
         return; // an instant's accelerations say nothing: the next step finds out
     }
     double *state = m->state;
-    const bool sticks = state_mode(state).friction == HUB_STICK;
-    double friction = state[SLOT_FRICTION_TORQUE] - (a->motor_torque - before);
-    if (sticks && m->dof > 1 && fabs(friction) < a->stiction * (1 - 1e-9)) {
+    const bool sticks = contact_state_of(state).friction == HUB_STICK;
+    double friction = state[SLOT_FRICTION_TORQUE] - (a->motor.torque - before);
+    if (sticks && m->dof > 1 && fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
         state[SLOT_FRICTION_TORQUE] = friction; // takes up what the motor does, the rest stays
         return;
     }

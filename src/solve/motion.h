@@ -107,9 +107,9 @@ static inline double *state_algorithmic(const motion *m, double *state)
 {
     return state + SLOT_COUNT + 3 * m->dof + QUADRATURE_COUNT;
 }
-static inline contact_mode state_mode(const double *state)
+static inline contact_state contact_state_of(const double *state)
 {
-    return (contact_mode){state[SLOT_CONTACT] != 0, (hub_friction)(int)state[SLOT_FRICTION]};
+    return (contact_state){state[SLOT_CONTACT] != 0, (hub_friction)(int)state[SLOT_FRICTION]};
 }
 
 // Length of the smooth part of the state: angles, velocities, quadratures.
@@ -154,7 +154,7 @@ typedef struct motion_report {
 // cut only if no event comes before it. So what happens before the cut, to the last bit, is what
 // happens without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
 // state is then the last good one.
-status motion_stride(const arm *a, motion *m, double until, double step, motion_report *report);
+status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
 
 // Strides until `until` or the first event.
 status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report);

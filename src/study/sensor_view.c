@@ -138,7 +138,7 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
     while (m->state[SLOT_TIME] < end) {
         motion_report report;
         double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
-        status code = motion_stride(a, m, until, step, &report);
+        status code = motion_step(a, m, until, step, &report);
         if (code != STATUS_OK) {
             return fault_set(f, code, "%d links, at t = %.9g s: %s", a->links, m->failure_time,
                              status_text(code));

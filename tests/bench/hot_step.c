@@ -15,7 +15,7 @@ static status go(const arm *a, motion *m, double until)
     status code = STATUS_OK;
     while (code == STATUS_OK && m->state[SLOT_TIME] < until) {
         motion_report report;
-        code = motion_stride(a, m, until, STEP, &report);
+        code = motion_step(a, m, until, STEP, &report);
         if (code == STATUS_OK && report.event != MOTION_REACHED) {
             motion_apply(a, m, &report);
         }

@@ -163,7 +163,7 @@ static void note_limited_voltage(const parameters *p)
         fprintf(stderr,
                 "impactlab: note: motor.voltage = %g V is beyond motor.voltage_limit: the "
                 "amplifier gets %g V\n",
-                p->motor.voltage, motor_limited_voltage(&p->motor));
+                p->motor.voltage, motor_limited_voltage(&p->motor, p->motor.voltage));
     }
 }
 

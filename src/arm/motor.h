@@ -1,0 +1,43 @@
+// The drive at the hub: D/A converter, amplifier and DC motor, as constants derived from the
+// parameters, and the command it is at.
+//
+// The converter limits the commanded voltage u, the amplifier multiplies it, and with the
+// armature's inductance left out the motor gives
+//
+//     torque = gain kT / Ra u - (kfr + kT kB / Ra) w - Coulomb friction.
+//
+// `motor.voltage` among the parameters is the command of an arm without a controller, and the one
+// every arm starts with. The command in force is `voltage` here: a controller changes it from
+// sample to sample, and leaves the parameter alone.
+#pragma once
+
+#include "src/quantities/parameters.h"
+
+typedef struct motor_model {
+    double voltage_limit;   // of the D/A converter [V]
+    double torque_per_volt; // of the command [N m/V]
+    double damping;         // viscous friction and back EMF [N m s/rad]
+    double stiction;        // Coulomb friction torque, kst [N m]
+    double voltage;         // command in force, as the converter limits it [V]
+    double torque;          // that it gives before back EMF and friction [N m]
+} motor_model;
+
+// Derives the constants from resolved parameters; the command is `motor.voltage`.
+void motor_init(motor_model *m, const motor_parameters *p);
+
+// Another command [V], which the converter limits; costs a multiplication.
+void motor_set_voltage(motor_model *m, double volts);
+
+// A command after the limit of the D/A converter [V].
+double motor_limited_voltage(const motor_parameters *p, double volts);
+
+// Torque per volt of command, gain kT / Ra [N m/V].
+double motor_torque_per_volt(const motor_parameters *p);
+
+// Damping torque per hub velocity, viscous friction plus back EMF, kfr + kT kB / Ra [N m s/rad].
+double motor_damping(const motor_parameters *p);
+
+// What the amplifier feeds into the motor [J] while a command [V] is in force for `duration` [s]
+// and the hub turns by `turn` [rad]: the integral of V (V - kB w) / Ra, V = gain x limited command.
+double motor_electrical_energy(const motor_parameters *p, double volts, double duration,
+                               double turn);
