@@ -1,25 +1,13 @@
 #include "src/solve/printed_algorithm.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
-#include "src/arm/printed_arm.h"
 #include "src/base/dense.h"
 
 // Below this force contact is given up at the next step [N].
 #define RELEASE_FORCE 1e-6
-
-// What Table 3.2 carries from step to step.
-typedef struct algorithm_state {
-    double time;                // [s]
-    double angle[3];            // [rad]
-    double velocity[3];         // [rad/s]
-    double fed_acceleration[3]; // what the next step starts from [rad/s2]
-    double newmark_force;       // the constraint's force in Newmark's own system, a first guess [N]
-    double force;               // as re-evaluated [N]
-    bool in_contact;            // the constraint is to be enforced in the coming step
-    int contact_steps;          // steps since contact began, zero only before the first of them
-} algorithm_state;
 
 // The end of a step that may yet be refused.
 typedef struct step_result {
@@ -31,16 +19,16 @@ typedef struct step_result {
 } step_result;
 
 // Velocities and accelerations that Newmark's approximation (3.6), (3.7) gives for angles q at the
-// end of a step that started from s.
-static void newmark_rates(const method_parameters *m, const algorithm_state *s, const double q[3],
-                          double w[3], double alpha[3])
+// end of a step that starts from m->row.
+static void newmark_rates(const printed_motion *m, const double q[3], double w[3], double alpha[3])
 {
-    double h = m->step;
+    const printed_row *from = &m->row;
+    double h = m->method.step, beta = m->method.beta, gamma = m->method.gamma;
     for (int i = 0; i < 3; i++) {
         double free =
-            s->angle[i] + h * s->velocity[i] + h * h * (0.5 - m->beta) * s->fed_acceleration[i];
-        alpha[i] = (q[i] - free) / (h * h * m->beta);
-        w[i] = s->velocity[i] + h * ((1 - m->gamma) * s->fed_acceleration[i] + m->gamma * alpha[i]);
+            from->angle[i] + h * from->velocity[i] + h * h * (0.5 - beta) * m->fed_acceleration[i];
+        alpha[i] = (q[i] - free) / (h * h * beta);
+        w[i] = from->velocity[i] + h * ((1 - gamma) * m->fed_acceleration[i] + gamma * alpha[i]);
     }
 }
 
@@ -49,18 +37,20 @@ static void newmark_rates(const method_parameters *m, const algorithm_state *s, 
 // early once residual or change are nil. The first guess, unchanged angles, implies velocities of
 // about (1 - gamma/beta) times the old ones, of the wrong sign: with a single Newton step the
 // friction of (2.15) would push the hub on, so that at least two are needed.
-static status solve_step(const printed_arm *a, const parameters *p, const algorithm_state *s,
-                         step_result *r)
+static status solve_step(const printed_motion *m, step_result *r)
 {
-    const double tolerance = 1e-6;
-    const method_parameters *m = &p->method;
-    newmark_slopes slopes = {1 / (m->beta * m->step * m->step), m->gamma / (m->beta * m->step)};
+    const double tolerance = 1e-6, h = m->method.step;
+    const printed_arm *a = &m->arm;
+    const double *start = m->row.angle;
+    newmark_slopes slopes = {1 / (m->method.beta * h * h), m->method.gamma / (m->method.beta * h)};
     int n = r->constrained ? 4 : 3;
-    double x[4] = {s->angle[0], s->angle[1], s->angle[2], r->constrained ? s->newmark_force : 0};
+    double x[4] = {start[0], start[1], start[2], r->constrained ? m->newmark_force : 0};
 
-    for (int iteration = 0; iteration < p->printed.newton_iterations; iteration++) {
+    for (int iteration = 0; iteration < a->switches.newton_iterations; iteration++) {
         double w[3], alpha[3], residual[4], full[4][4], matrix[16], error = 0, change = 0;
-        newmark_rates(m, s, x, w, alpha);
+
+        // the system at the present guess
+        newmark_rates(m, x, w, alpha);
         printed_residual(a, x, w, alpha, x[3], residual);
         printed_newmark_jacobian(a, slopes, x, w, alpha, x[3], full);
         for (int i = 0; i < n; i++) {
@@ -74,6 +64,8 @@ static status solve_step(const printed_arm *a, const parameters *p, const algori
         if (error <= tolerance) {
             break;
         }
+
+        // its correction
         if (!dense_solve(n, matrix, residual)) {
             return STATUS_SINGULAR;
         }
@@ -85,70 +77,70 @@ static status solve_step(const printed_arm *a, const parameters *p, const algori
             break;
         }
     }
+
     memcpy(r->angle, x, sizeof r->angle);
     r->newmark_force = r->constrained ? x[3] : 0;
-    newmark_rates(m, s, r->angle, r->velocity, r->newmark_acceleration);
+    newmark_rates(m, r->angle, r->velocity, r->newmark_acceleration);
     return STATUS_OK;
 }
 
 // Chooses the system to solve as the listing does: the constraint stays as long as the force is
 // positive, and in any case for the first step of a contact.
-static void choose_mode(algorithm_state *s, step_result *r)
+static void choose_system(printed_motion *m, step_result *r)
 {
-    r->constrained = s->in_contact && (s->force > RELEASE_FORCE || s->contact_steps == 0);
+    r->constrained = m->in_contact && (m->force > RELEASE_FORCE || m->contact_steps == 0);
     if (r->constrained) {
-        s->contact_steps++;
+        m->contact_steps++;
         return;
     }
     // the step of the release itself keeps its count: it may not begin a new contact
-    if (!s->in_contact) {
-        s->contact_steps = 0;
+    if (!m->in_contact) {
+        m->contact_steps = 0;
     }
-    s->in_contact = false;
-    s->newmark_force = 0;
+    m->in_contact = false;
+    m->newmark_force = 0;
 }
 
 // Accelerations and force from (2.15)-(2.17) and (3.13), the second run of the thesis's strategy.
 // With `force_after_release` the listing's own condition, which looks at the last force and not at
 // the contact, so that a force may outlive it.
-static status reevaluate(const printed_arm *a, algorithm_state *s, step_result *r)
+static status reevaluate(printed_motion *m, step_result *r)
 {
     bool wanted = r->constrained;
-    if (a->switches.force_after_release) {
-        wanted = s->force > 0 || s->contact_steps == 1;
+    if (m->arm.switches.force_after_release) {
+        wanted = m->force > 0 || m->contact_steps == 1;
     }
     memcpy(r->acceleration, r->newmark_acceleration, sizeof r->acceleration);
     if (!wanted) {
-        s->force = 0;
+        m->force = 0;
         return STATUS_OK;
     }
-    if (!printed_reevaluate(a, r->angle, r->velocity, r->acceleration, &s->force)) {
+    if (!printed_reevaluate(&m->arm, r->angle, r->velocity, r->acceleration, &m->force)) {
         return STATUS_SINGULAR;
     }
-    s->force = fmax(s->force, 0);
+    m->force = fmax(m->force, 0);
     return STATUS_OK;
 }
 
 // One time step of Table 3.2 into *r. A step that ends behind the wall is taken back and done again
 // with the constraint.
-static status take_step(const printed_arm *a, const parameters *p, algorithm_state *s,
-                        step_result *r)
+static status try_step(printed_motion *m, step_result *r)
 {
     for (;;) {
-        choose_mode(s, r);
-        status result = solve_step(a, p, s, r);
+        choose_system(m, r);
+        status result = solve_step(m, r);
         if (result == STATUS_OK) {
-            result = reevaluate(a, s, r);
+            result = reevaluate(m, r);
         }
         if (result != STATUS_OK) {
             return result;
         }
-        bool touched = !s->in_contact && s->contact_steps == 0 && a->has_wall &&
-                       printed_penetration(a, r->angle) >= 0;
+        bool touched = !m->in_contact && m->contact_steps == 0 && m->arm.has_wall &&
+                       printed_penetration(&m->arm, r->angle) >= 0;
         if (!touched) {
             return STATUS_OK;
         }
-        s->in_contact = true;
+        m->in_contact = true;
     }
 }
 
@@ -171,66 +163,101 @@ static const char *not_finite(const step_result *r, double force)
     return isfinite(force) ? NULL : "the contact force";
 }
 
-static void accept_step(const parameters *p, const step_result *r, algorithm_state *s)
+static double gap_at(const printed_arm *a, const double angle[3])
 {
-    const double *fed =
-        p->printed.feed_newmark_acceleration ? r->newmark_acceleration : r->acceleration;
-    memcpy(s->angle, r->angle, sizeof s->angle);
-    memcpy(s->velocity, r->velocity, sizeof s->velocity);
-    memcpy(s->fed_acceleration, fed, sizeof s->fed_acceleration);
-    s->newmark_force = r->newmark_force;
+    return a->has_wall ? -printed_penetration(a, angle) : HUGE_VAL;
 }
 
-static printed_row row_of(const printed_arm *a, const algorithm_state *s, const step_result *r)
+// The step's end is what the next one starts from.
+static void accept_step(printed_motion *m, const step_result *r, double time)
 {
-    printed_row row = {.time = s->time, .force = s->force, .contact = r->constrained};
-    memcpy(row.angle, r->angle, sizeof row.angle);
-    memcpy(row.velocity, r->velocity, sizeof row.velocity);
-    memcpy(row.acceleration, r->acceleration, sizeof row.acceleration);
-    memcpy(row.newmark_acceleration, r->newmark_acceleration, sizeof row.newmark_acceleration);
-    row.gap = a->has_wall ? -printed_penetration(a, r->angle) : HUGE_VAL;
-    return row;
+    const double *fed =
+        m->arm.switches.feed_newmark_acceleration ? r->newmark_acceleration : r->acceleration;
+    memcpy(m->fed_acceleration, fed, sizeof m->fed_acceleration);
+    m->newmark_force = r->newmark_force;
+    m->steps++;
+
+    printed_row *row = &m->row;
+    memcpy(row->angle, r->angle, sizeof row->angle);
+    memcpy(row->velocity, r->velocity, sizeof row->velocity);
+    memcpy(row->acceleration, r->acceleration, sizeof row->acceleration);
+    memcpy(row->newmark_acceleration, r->newmark_acceleration, sizeof row->newmark_acceleration);
+    row->time = time;
+    row->force = m->force;
+    row->contact = r->constrained;
+    row->gap = gap_at(&m->arm, row->angle);
+}
+
+void printed_motion_start(printed_motion *m, const parameters *p)
+{
+    assert(m != NULL && p != NULL && p->method.step > 0);
+    memset(m, 0, sizeof *m);
+    printed_motion_rebind(m, p);
+    m->step_count = lround(p->run.duration / p->method.step);
+    for (int i = 0; i < 3; i++) {
+        m->row.angle[i] = p->initial.angle;
+        m->row.velocity[i] = p->initial.velocity;
+    }
+    m->row.gap = gap_at(&m->arm, m->row.angle);
+}
+
+void printed_motion_rebind(printed_motion *m, const parameters *p)
+{
+    assert(m != NULL && p != NULL);
+    printed_arm_init(&m->arm, p);
+    m->method = p->method;
+}
+
+void printed_motion_set_voltage(printed_motion *m, double volts)
+{
+    assert(m != NULL && isfinite(volts));
+    motor_set_voltage(&m->arm.motor, volts);
+}
+
+bool printed_motion_ended(const printed_motion *m)
+{
+    assert(m != NULL);
+    return m->steps >= m->step_count;
+}
+
+status printed_motion_step(printed_motion *m, fault *f)
+{
+    assert(m != NULL && !printed_motion_ended(m));
+    const double start = m->row.time, end = (double)(m->steps + 1) * m->method.step;
+    step_result r;
+
+    status result = try_step(m, &r);
+    if (result != STATUS_OK) {
+        return fault_set(f, result, "the equations of the step from t = %.9g s %s contact %s",
+                         start, r.constrained ? "in" : "without",
+                         result == STATUS_SINGULAR ? "are singular"
+                                                   : "have a residual that is not finite");
+    }
+    const char *name = not_finite(&r, m->force);
+    if (name != NULL) {
+        return fault_set(f, STATUS_NOT_FINITE,
+                         "%s is not finite after the step from t = %.9g s to t = %.9g s", name,
+                         start, end);
+    }
+    accept_step(m, &r, end);
+    return STATUS_OK;
 }
 
 status printed_run(const parameters *given, printed_observer observe, printed_script script,
                    void *context, fault *f)
 {
     parameters p = *given;
-    printed_arm a;
-    printed_arm_init(&a, &p);
-    algorithm_state s = {.time = 0};
-    step_result r = {.constrained = false};
-    for (int i = 0; i < 3; i++) {
-        s.angle[i] = r.angle[i] = p.initial.angle;
-        s.velocity[i] = r.velocity[i] = p.initial.velocity;
-    }
-    // as listed, the first step starts from zero acceleration whatever the motor does
-    printed_row row = row_of(&a, &s, &r);
-    bool go_on = observe(context, &row);
-
-    long steps = lround(p.run.duration / p.method.step);
-    for (long step = 0; go_on && step < steps; step++) {
+    printed_motion m;
+    status result = STATUS_OK;
+    printed_motion_start(&m, &p);
+    bool go_on = observe(context, &m.row);
+    while (go_on && result == STATUS_OK && !printed_motion_ended(&m)) {
         if (script != NULL) {
-            script(context, s.time, &p);
-            printed_arm_init(&a, &p);
+            script(context, m.row.time, &p);
+            printed_motion_rebind(&m, &p);
         }
-        status result = take_step(&a, &p, &s, &r);
-        if (result != STATUS_OK) {
-            return fault_set(f, result, "the equations of the step from t = %.9g s %s contact %s",
-                             s.time, r.constrained ? "in" : "without",
-                             result == STATUS_SINGULAR ? "are singular"
-                                                       : "have a residual that is not finite");
-        }
-        const char *name = not_finite(&r, s.force);
-        if (name != NULL) {
-            return fault_set(f, STATUS_NOT_FINITE,
-                             "%s is not finite after the step from t = %.9g s to t = %.9g s", name,
-                             s.time, (double)(step + 1) * p.method.step);
-        }
-        s.time = (double)(step + 1) * p.method.step;
-        accept_step(&p, &r, &s);
-        row = row_of(&a, &s, &r);
-        go_on = observe(context, &row);
+        result = printed_motion_step(&m, f);
+        go_on = result == STATUS_OK && observe(context, &m.row);
     }
-    return STATUS_OK;
+    return result;
 }
