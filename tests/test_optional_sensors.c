@@ -32,14 +32,14 @@ static double piezo(sensors *s, double force)
 
 static double film(sensors *s, double bending)
 {
-    return sensors_read(s, &(sensed_motion){.bending = bending}).bending;
+    return sensors_read(s, &(sensed_motion){.bending = bending}).film;
 }
 
 static double accelerometer(sensors *s, double acceleration)
 {
     sensed_motion m = {.acceleration = acceleration};
     m.velocity = isnan(s->seen_velocity) ? 0 : s->seen_velocity;
-    return sensors_read(s, &m).acceleration;
+    return sensors_read(s, &m).accelerometer;
 }
 
 // --- whether they are there -----------------------------------------------------------------
@@ -49,8 +49,8 @@ static void sensors_not_fitted_read_nothing(void **state)
     (void)state;
     sensors s = fresh_sensors(NULL);
     sensor_reading r = sensors_read(&s, &(sensed_motion){.force = 1, .bending = 1});
-    assert_true(isnan(r.piezo_force) && isnan(r.bending) && isnan(r.acceleration));
-    assert_false(isnan(r.fsr_force));
+    assert_true(isnan(r.piezo_force) && isnan(r.film) && isnan(r.accelerometer));
+    assert_false(isnan(r.force_reading));
 }
 
 static void choice_of_the_piezo_fits_it(void **state)
@@ -96,8 +96,8 @@ static void ideal_sensors_tell_the_truth(void **state)
     m.velocity += 1;
     sensor_reading r = sensors_read(&s, &m);
     check_relative(r.piezo_force, 98.7654, 1e-14);
-    check_relative(r.bending, 2.345678, 1e-14);
-    check_relative(r.acceleration, -1234.567, 1e-14);
+    check_relative(r.film, 2.345678, 1e-14);
+    check_relative(r.accelerometer, -1234.567, 1e-14);
 }
 
 // --- converter, range, noise ----------------------------------------------------------------
@@ -187,7 +187,7 @@ static void each_noise_is_its_own(void **state)
     double product[6] = {0};
     for (int i = 0; i < COUNT; i++) {
         sensor_reading r = sensors_read(&s, &(sensed_motion){.force = 0});
-        double v[4] = {r.velocity, r.piezo_force, r.bending, r.acceleration};
+        double v[4] = {r.tachometer, r.piezo_force, r.film, r.accelerometer};
         for (int a = 0, k = 0; a < 4; a++) {
             for (int b = a + 1; b < 4; b++, k++) {
                 product[k] += v[a] * v[b] / COUNT;
@@ -325,11 +325,11 @@ static void accelerometer_feels_a_jump(void **state)
         fresh_sensors(SETTINGS(QUIET, "sensor.adc_range=1000", "sensor.accelerometer_range=0"));
     const sensed_motion before = {.velocity = 0.8}, after = {.velocity = 0.5};
     sensors_follow(&s, 0.01, &before, &before, 0);
-    double last = sensors_read(&s, &after).acceleration, gained = 0;
+    double last = sensors_read(&s, &after).accelerometer, gained = 0;
     check_relative(last, -0.3 / tau, 1e-12);
     for (int i = 0; i < 5000; i++) {
         sensors_follow(&s, h, &after, &after, 0);
-        double now = sensors_read(&s, &after).acceleration;
+        double now = sensors_read(&s, &after).accelerometer;
         gained += h * (last + now) / 2;
         last = now;
     }
@@ -452,16 +452,16 @@ static void controller_gets_what_is_fitted(void **state)
 {
     (void)state;
     see(SETTINGS("control.law=open-loop"));
-    assert_true(isnan(got.piezo_force) && isnan(got.bending) && isnan(got.hub_acceleration));
+    assert_true(isnan(got.piezo_force) && isnan(got.film) && isnan(got.accelerometer));
     check_close(got.force, 1.5, 0.1);
     see(SETTINGS("control.law=open-loop", ALL_FITTED));
     check_close(got.force, 1.5, 0.1); // the FSR's
     check_close(got.piezo_force, 1.5 * exp(-1), 0.05);
-    check_close(got.bending, -0.2 * exp(-5), 0.01);
-    assert_false(isnan(got.hub_acceleration));
+    check_close(got.film, -0.2 * exp(-5), 0.01);
+    assert_false(isnan(got.accelerometer));
     see(SETTINGS("control.law=open-loop", "sensor.force=piezo"));
     check_close(got.force, 1.5 * exp(-1), 0.05);
-    assert_true(isnan(got.bending) && isnan(got.hub_acceleration));
+    assert_true(isnan(got.film) && isnan(got.accelerometer));
 }
 
 static void ideal_force_sensors_are_alike(void **state)

@@ -30,10 +30,10 @@ static void encoder_steps_by_one_count(void **state)
     (void)state;
     sensors s = fresh_sensors(SETTINGS("sensor.encoder_counts=500"), 1);
     const double count = 2 * PI / 500;
-    double last = read_hub(&s, -0.1, 0, 0).angle;
+    double last = read_hub(&s, -0.1, 0, 0).encoder;
     int steps = 0;
     for (double angle = -0.1; angle < 0.1; angle += count / 50) {
-        double read = read_hub(&s, angle, 0, 0).angle;
+        double read = read_hub(&s, angle, 0, 0).encoder;
         check_close(read, angle, count / 2 * (1 + 1e-9));
         check_close(read / count, round(read / count), 1e-9);
         if (read != last) {
@@ -138,9 +138,9 @@ static void noise_has_its_spread_and_follows_its_seed(void **state)
     const int count = 40000;
     int same = 0;
     for (int i = 0; i < count; i++) {
-        double v = read_hub(&s, 0, 0.5, 1).velocity - 0.5;
-        assert_true(read_hub(&twin, 0, 0.5, 1).velocity - 0.5 == v);
-        same += read_hub(&other, 0, 0.5, 1).velocity - 0.5 == v;
+        double v = read_hub(&s, 0, 0.5, 1).tachometer - 0.5;
+        assert_true(read_hub(&twin, 0, 0.5, 1).tachometer - 0.5 == v);
+        same += read_hub(&other, 0, 0.5, 1).tachometer - 0.5 == v;
         sum += v;
         squares += v * v;
     }
@@ -156,8 +156,8 @@ static void ripple_follows_the_shaft(void **state)
     sensors s = fresh_sensors(
         SETTINGS("sensor.tachometer_noise=0", "sensor.adc_bits=0", "sensor.tachometer_ripple=0.05"),
         1);
-    check_close(read_hub(&s, 0.5 * PI / 79, 2, 0).velocity, 2.1, 1e-9);
-    check_close(read_hub(&s, 1.5 * PI / 79, 2, 0).velocity, 1.9, 1e-9);
+    check_close(read_hub(&s, 0.5 * PI / 79, 2, 0).tachometer, 2.1, 1e-9);
+    check_close(read_hub(&s, 1.5 * PI / 79, 2, 0).tachometer, 1.9, 1e-9);
 }
 
 static void ideal_sensors_tell_the_truth(void **state)
@@ -165,9 +165,9 @@ static void ideal_sensors_tell_the_truth(void **state)
     (void)state;
     sensors s = fresh_sensors(SETTINGS("sensor.ideal=true"), 1);
     sensor_reading r = read_hub(&s, 0.1234567, -1.2345678, 3.456789);
-    check_close(r.angle, 0.1234567, 0);
-    check_close(r.velocity, -1.2345678, 1e-12);
-    check_close(r.fsr_force, 3.456789, 1e-12);
+    check_close(r.encoder, 0.1234567, 0);
+    check_close(r.tachometer, -1.2345678, 1e-12);
+    check_close(r.force_reading, 3.456789, 1e-12);
 }
 
 // --- the loop -------------------------------------------------------------------------------
@@ -226,8 +226,8 @@ static void a_command_a_period_late_goes_out_with_the_next_sample(void **state)
             if (r->samples == samples) {
                 continue; // only a command took effect
             }
-            assert_true(r->applied == latest || samples == 0);
-            assert_true(r->pending != r->applied);
+            assert_true(r->voltage == latest || samples == 0);
+            assert_true(r->pending != r->voltage);
             latest = r->pending;
         }
         rig_destroy(r);

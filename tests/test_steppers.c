@@ -212,7 +212,7 @@ static double distance_to_event_method(const char *links, const char *wall, cons
         angle[side] = state_angles(m, m->state)[a.dof - 1];
         if (m->state[SLOT_CONTACT] != 0) {
             check_close(m->state[SLOT_GAP], 0, 1e-12);
-            check_close(m->state[SLOT_GAP_RATE], 0, 1e-11);
+            check_close(m->state[SLOT_GAP_VELOCITY], 0, 1e-11);
         }
         motion_destroy(m);
     }

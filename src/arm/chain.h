@@ -40,12 +40,12 @@ typedef struct contact_state {
 } contact_state;
 
 typedef struct chain_reaction {
-    double force;            // f, zero without contact [N]
-    double friction;         // Coulomb friction torque on the hub [N m]
-    double gap, gap_rate;    // of the contact point, infinite and zero without a wall [m], [m/s]
-    double gap_acceleration; // second derivative of the gap, zero in contact [m/s2]
-    double viscous_power;    // lost to back EMF and viscous friction [W]
-    double damping_power;    // lost in the springs' structural damping [W]
+    double force;             // f, zero without contact [N]
+    double friction;          // Coulomb friction torque on the hub [N m]
+    double gap, gap_velocity; // of the contact point, infinite and zero without a wall [m], [m/s]
+    double gap_acceleration;  // second derivative of the gap, zero in contact [m/s2]
+    double viscous_power;     // lost to back EMF and viscous friction [W]
+    double damping_power;     // lost in the springs' structural damping [W]
 } chain_reaction;
 
 // Accelerations alpha[dof] at angles q[dof] and velocities w[dof] under the given mode, and the

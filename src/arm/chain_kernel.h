@@ -193,7 +193,7 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     if (gap) {
         reaction->gap_acceleration = -rate2;
         reaction->gap = a->wall == WALL_NONE ? HUGE_VAL : -wall.g;
-        reaction->gap_rate = -(wall.ex * vx + wall.ey * vy + last * omega[N - 1]);
+        reaction->gap_velocity = -(wall.ex * vx + wall.ey * vy + last * omega[N - 1]);
     }
     reaction->friction = sliding;
     if (hub_spring) {

@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 // Version of this interface; a controller carries the one it was compiled with.
-enum { CONTROLLER_INTERFACE = 2 };
+enum { CONTROLLER_INTERFACE = 3 };
 
 // A number that a user may give a controller. Built-in names are those of `control.NAME`, a
 // plug-in's further ones are given in control.settings as NAME=VALUE.
@@ -38,28 +38,30 @@ typedef struct controller_setup {
     const double *parameters; // values in the order of controller.parameters
 } controller_setup;
 
-// What the sensors read at a sample. Numbers are in physical units, through the nominal curves of
-// the sensors; noise, quantisation, lag and saturation are in them.
+// What the sensors read at a sample, under the names of the recorded signals. Numbers are in
+// physical units, through the nominal curves of the sensors; noise, quantisation, lag and
+// saturation are in them.
 typedef struct controller_input {
-    double time;         // since the start [s]
-    double hub_angle;    // encoder [rad]
-    double hub_velocity; // tachometer [rad/s]
-    double force;        // of the sensor that sensor.force names [N]
-    double applied;      // command at present in effect, after the D/A [V]
+    double time;       // since the start [s]
+    double encoder;    // hub angle [rad]
+    double tachometer; // hub velocity [rad/s]
+    double force;      // contact force, by the sensor that sensor.force names [N]
+    double voltage;    // command at present in effect, after the D/A [V]
     // sensors that need not be there; NaN where they are not fitted
-    double piezo_force;      // piezoelectric force sensor [N]
-    double bending;          // piezo film: last link's angle minus the first's [rad]
-    double hub_acceleration; // accelerometer [rad/s2]
-    int wanted_mode;         // index in controller.modes it is to be in; -1: it chooses itself
+    double piezo_force;   // contact force, by the piezoelectric sensor [N]
+    double film;          // bending, last link's angle minus the first's, by the piezo film [rad]
+    double accelerometer; // hub acceleration [rad/s2]
+    int wanted_mode;      // index in controller.modes it is to be in; -1: it chooses itself
 } controller_input;
 
-// What a controller answers.
+// What a controller answers. The last three are recorded under their names, the others as the
+// signals `command` and `controller_mode`.
 typedef struct controller_output {
     double command;          // [V]; beyond the limit it saturates, not finite it ends the run
     int mode;                // index in controller.modes
     double desired_angle;    // of the hub, NaN if it has none [rad]
     double desired_velocity; // of the hub, NaN if it has none [rad/s]
-    double force_estimate;   // what it takes the contact force to be, NaN if it does not [N]
+    double calculated_force; // what it takes the contact force to be, NaN if it does not [N]
 } controller_output;
 
 typedef struct controller {

@@ -254,7 +254,7 @@ status rig_create(rig **created, const parameters *p, fault *f)
     r->effect_time = HUGE_VAL;
     r->output = (controller_output){.desired_angle = (double)NAN,
                                     .desired_velocity = (double)NAN,
-                                    .force_estimate = (double)NAN};
+                                    .calculated_force = (double)NAN};
     sensors_init(&r->sensors, &p->sensor, p->control.seed);
     random_seed(&r->clock, ~(uint64_t)p->control.seed);
     r->law = controller_of(p->control.law);
@@ -293,8 +293,8 @@ double rig_next_time(const rig *r)
 
 static void apply(rig *r, bool *changed)
 {
-    *changed = *changed || r->pending != r->applied;
-    r->applied = r->pending;
+    *changed = *changed || r->pending != r->voltage;
+    r->voltage = r->pending;
     r->effect_time = HUGE_VAL;
 }
 
@@ -303,26 +303,26 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     const sensor_reading *read = &r->reading;
     r->reading = sensors_read(&r->sensors, now);
     controller_input input = {.time = time,
-                              .hub_angle = read->angle,
-                              .hub_velocity = read->velocity,
+                              .encoder = read->encoder,
+                              .tachometer = read->tachometer,
                               .force = r->sensors.p.force == FORCE_BY_PIEZO ? read->piezo_force
-                                                                            : read->fsr_force,
-                              .applied = r->applied,
+                                                                            : read->force_reading,
+                              .voltage = r->voltage,
                               .piezo_force = read->piezo_force,
-                              .bending = read->bending,
-                              .hub_acceleration = read->acceleration,
+                              .film = read->film,
+                              .accelerometer = read->accelerometer,
                               .wanted_mode = r->lock};
     controller_output *out = &r->output;
     *out = (controller_output){.desired_angle = (double)NAN,
                                .desired_velocity = (double)NAN,
-                               .force_estimate = (double)NAN};
+                               .calculated_force = (double)NAN};
     r->law->sample(r->memory, &input, out);
     if (!isfinite(out->command)) {
         return fault_set(
             f, STATUS_NOT_FINITE,
             "at t = %.9g s the controller '%s' gave the command %g V, expected a finite "
             "number; its sensors read %.6g rad, %.6g rad/s and %.6g N",
-            time, r->law->name, out->command, input.hub_angle, input.hub_velocity, input.force);
+            time, r->law->name, out->command, input.encoder, input.tachometer, input.force);
     }
     r->pending = converter_value(out->command, r->sensors.p.dac_bits, r->voltage_limit);
     r->largest_command = fmax(r->largest_command, fabs(r->pending));

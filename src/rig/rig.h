@@ -22,7 +22,7 @@ typedef struct rig {
     double pending;               // that command, after the D/A [V]
     long samples;                 // taken so far
     random_generator clock;       // of the jitter
-    double applied;               // command in effect [V]
+    double voltage;               // command in effect [V]
     sensor_reading reading;       // of the last sample
     controller_output output;     // of the last sample
     double largest_command;       // in magnitude, as put out [V]
@@ -51,7 +51,7 @@ int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, 
 double rig_next_time(const rig *r);
 
 // What is due at `time` [s], with the sensors seeing `now`. *changed: another command took effect,
-// r->applied, or the controller went into another mode. STATUS_NOT_FINITE, with a sentence in f, if
+// r->voltage, or the controller went into another mode. STATUS_NOT_FINITE, with a sentence in f, if
 // the controller answers with a command that is not finite.
 status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f);
 

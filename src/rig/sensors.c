@@ -248,11 +248,11 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
     double tachometer =
         convert(s, &s->noise, p->tachometer_gain * now->velocity * ripple, p->tachometer_noise);
     double fsr = convert(s, &s->noise, fsr_volts(p, lag_output(&s->fsr, now->force)), p->fsr_noise);
-    return (sensor_reading){.angle = read_encoder(s, now->angle),
-                            .velocity = tachometer / p->tachometer_gain,
-                            .fsr_force = fsr_force(p, fsr),
+    return (sensor_reading){.encoder = read_encoder(s, now->angle),
+                            .tachometer = tachometer / p->tachometer_gain,
+                            .force_reading = fsr_force(p, fsr),
                             .piezo_force = p->piezo ? read_piezo(s, now->force) : (double)NAN,
-                            .bending = p->film ? read_film(s, now->bending) : (double)NAN,
-                            .acceleration =
+                            .film = p->film ? read_film(s, now->bending) : (double)NAN,
+                            .accelerometer =
                                 p->accelerometer ? read_accelerometer(s, now) : (double)NAN};
 }

@@ -47,14 +47,15 @@ typedef struct sensors {
     double seen_velocity; // of the hub when the accelerometer last looked [rad/s], NaN before
 } sensors;
 
-// What the sensors read: volts read back through their nominal curves. NaN where one is not fitted.
+// What the sensors read, under the names of the recorded signals: volts read back through their
+// nominal curves. NaN where one is not fitted.
 typedef struct sensor_reading {
-    double angle;        // encoder [rad]
-    double velocity;     // tachometer [rad/s]
-    double fsr_force;    // FSR [N]
-    double piezo_force;  // piezoelectric force sensor [N]
-    double bending;      // piezo film [rad]
-    double acceleration; // accelerometer, of the hub [rad/s2]
+    double encoder;       // hub angle [rad]
+    double tachometer;    // hub velocity [rad/s]
+    double force_reading; // contact force, FSR [N]
+    double piezo_force;   // contact force, piezoelectric sensor [N]
+    double film;          // bending, piezo film [rad]
+    double accelerometer; // hub acceleration [rad/s2]
 } sensor_reading;
 
 void sensors_init(sensors *s, const sensor_parameters *p, int seed);

@@ -46,7 +46,7 @@ static status record_row(recording *r, const arm *a, motion *m, double *state, d
         .first_acceleration = al[first],
         .last_acceleration = al[last],
         .gap = state[SLOT_GAP],
-        .gap_velocity = state[SLOT_GAP_RATE],
+        .gap_velocity = state[SLOT_GAP_VELOCITY],
         .force = state[SLOT_FORCE],
         .impulse = impulse,
         .contact = state[SLOT_CONTACT],
@@ -177,7 +177,7 @@ static status act(recording *r, arm *a, motion *m, fault *f)
         if (todo->kind == ACTION_SET) {
             failed = action_apply(todo, &r->now, f);
             if (r->rig != NULL) {
-                r->now.motor.voltage = r->rig->applied; // the command is the controller's
+                r->now.motor.voltage = r->rig->voltage; // the command is the controller's
                 failed = failed == STATUS_OK ? rig_lock(r->rig, r->now.control.lock, f) : failed;
             }
             arm before = *a;
@@ -213,9 +213,9 @@ static status apply_command(recording *r, arm *a, motion *m)
     bool contact = m->state[SLOT_CONTACT] != 0;
     double now = m->state[SLOT_TIME];
     recording_book_electrical_energy(r, now, state_angles(m, m->state)[0]);
-    r->now.motor.voltage = r->rig->applied;
+    r->now.motor.voltage = r->rig->voltage;
     double before = a->motor.torque;
-    arm_set_voltage(a, r->rig->applied);
+    arm_set_voltage(a, r->rig->voltage);
     motion_retorque(a, m, before);
     status failed = STATUS_OK;
     if (contact && m->state[SLOT_CONTACT] == 0) {
@@ -284,7 +284,7 @@ static bool step_separated(const arm *a, motion *m)
     if (m->state[SLOT_GAP] > SEPARATION_GAP) {
         return true;
     }
-    if (m->state[SLOT_CONTACT] != 0 || m->state[SLOT_GAP_RATE] >= 0) {
+    if (m->state[SLOT_CONTACT] != 0 || m->state[SLOT_GAP_VELOCITY] >= 0) {
         return false;
     }
     for (int i = 0; i < 30; i++) {
@@ -293,7 +293,7 @@ static bool step_separated(const arm *a, motion *m)
         if (state == NULL || state[SLOT_GAP] > SEPARATION_GAP) {
             return state != NULL;
         }
-        if (state[SLOT_GAP_RATE] > 0) {
+        if (state[SLOT_GAP_VELOCITY] > 0) {
             from = middle;
         } else {
             to = middle;

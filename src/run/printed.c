@@ -124,7 +124,7 @@ static void script_printed(void *context, double time, parameters *p)
         if (changed) {
             recording_book_electrical_energy(r, time, r->after_step.angle);
         }
-        p->motor.voltage = r->rig->applied;
+        p->motor.voltage = r->rig->voltage;
     }
     r->now = *p;
 }

@@ -97,17 +97,17 @@ void recording_add_rig_signals(const recording *r, sample *row)
 {
     const rig *on = r->rig;
     bool sampled = on != NULL && on->samples > 0;
-    row->encoder = sampled ? on->reading.angle : (double)NAN;
-    row->tachometer = sampled ? on->reading.velocity : (double)NAN;
-    row->force_reading = sampled ? on->reading.fsr_force : (double)NAN;
+    row->encoder = sampled ? on->reading.encoder : (double)NAN;
+    row->tachometer = sampled ? on->reading.tachometer : (double)NAN;
+    row->force_reading = sampled ? on->reading.force_reading : (double)NAN;
     row->piezo_force = sampled ? on->reading.piezo_force : (double)NAN;
-    row->film = sampled ? on->reading.bending : (double)NAN;
-    row->accelerometer = sampled ? on->reading.acceleration : (double)NAN;
+    row->film = sampled ? on->reading.film : (double)NAN;
+    row->accelerometer = sampled ? on->reading.accelerometer : (double)NAN;
     row->command = sampled ? on->output.command : (double)NAN;
     row->controller_mode = sampled ? on->output.mode : (double)NAN;
     row->desired_angle = sampled ? on->output.desired_angle : (double)NAN;
     row->desired_velocity = sampled ? on->output.desired_velocity : (double)NAN;
-    row->calculated_force = sampled ? on->output.force_estimate : (double)NAN;
+    row->calculated_force = sampled ? on->output.calculated_force : (double)NAN;
 }
 
 void recording_book_electrical_energy(recording *r, double time, double hub_angle)

@@ -356,7 +356,7 @@ static void keep_balance(const arm *a, motion *m, const iterate *it)
     }
     trial[SLOT_FRICTION_TORQUE] = it->stuck ? -it->excess : it->sliding;
     trial[SLOT_GAP] = -g;
-    trial[SLOT_GAP_RATE] = -rate;
+    trial[SLOT_GAP_VELOCITY] = -rate;
     trial[SLOT_GAP_ACCELERATION] = 0; // asked for only at events, which evaluate it
     trial[SLOT_VISCOUS_POWER] = a->motor.damping * w[0] * w[0];
     for (int k = 1; k < a->dof; k++) {

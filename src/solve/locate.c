@@ -69,8 +69,8 @@ static bool watch_slopes(const motion *m, double h, watch w, double *d0, double 
 {
     const double *state = m->state, *trial = m->trial;
     if (w == WATCH_GAP) {
-        *d0 = state[SLOT_GAP_RATE] * h;
-        *d1 = trial[SLOT_GAP_RATE] * h;
+        *d0 = state[SLOT_GAP_VELOCITY] * h;
+        *d1 = trial[SLOT_GAP_VELOCITY] * h;
     } else if (w == WATCH_HUB) {
         *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
         *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;

@@ -104,7 +104,7 @@ void motion_evaluate(const arm *a, motion *m, double *state)
     state[SLOT_FRICTION_TORQUE] = r.friction;
     state[SLOT_GAP_ACCELERATION] = r.gap_acceleration;
     state[SLOT_GAP] = r.gap;
-    state[SLOT_GAP_RATE] = r.gap_rate;
+    state[SLOT_GAP_VELOCITY] = r.gap_velocity;
     state[SLOT_VISCOUS_POWER] = r.viscous_power;
     state[SLOT_DAMPING_POWER] = r.damping_power;
 }
@@ -225,7 +225,7 @@ void motion_project(const arm *a, motion *m, double *state)
 {
     bool locked = contact_state_of(state).friction == HUB_STICK;
     if (m->dof == 1 || (fabs(state[SLOT_GAP]) <= PROJECTION_GAP &&
-                        fabs(state[SLOT_GAP_RATE]) <= PROJECTION_RATE)) {
+                        fabs(state[SLOT_GAP_VELOCITY]) <= PROJECTION_RATE)) {
         return;
     }
     double compliance, *response = m->scratch;
@@ -308,7 +308,7 @@ static motion_event event_of(const motion *m, watch w)
 {
     switch (w) {
     case WATCH_GAP:
-        return m->state[SLOT_GAP_RATE] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
+        return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
     case WATCH_FORCE:
         return MOTION_RELEASE;
     case WATCH_HUB:

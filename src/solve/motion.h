@@ -26,7 +26,7 @@ enum motion_slot {
     SLOT_FRICTION_LOSS,    // [J]
     SLOT_IMPACT_LOSS,      // [J]
     SLOT_GAP,              // [m]
-    SLOT_GAP_RATE,         // [m/s]
+    SLOT_GAP_VELOCITY,     // [m/s]
     SLOT_VISCOUS_POWER,    // at this state [W]
     SLOT_DAMPING_POWER,    // at this state [W]
     SLOT_JUMPED,           // 1 just after an event, before the first step

@@ -4,7 +4,7 @@
 static void sample(void *memory, const controller_input *input, controller_output *output)
 {
     (void)memory;
-    output->command = input->applied;
+    output->command = input->voltage;
 }
 
 static const controller outdated = {

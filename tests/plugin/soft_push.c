@@ -47,8 +47,7 @@ static void sample(void *memory, const controller_input *input, controller_outpu
     output->command = c->approach_voltage;
     if (mode == PUSH) {
         double share = 1 - 0.5 * exp(-(input->time - c->touch_time) / c->rise_time);
-        double torque =
-            share * 2 * c->force * c->rig.link_length - c->damping * input->hub_velocity;
+        double torque = share * 2 * c->force * c->rig.link_length - c->damping * input->tachometer;
         output->command = torque / c->rig.torque_per_volt;
     }
 }

@@ -82,17 +82,17 @@ static void brief(char *text, size_t size, int decimals, double value)
 // Two lines for what the tall panel has a table for.
 static void draw_brief(screen *s, area a, const sample *row, const parameters *p)
 {
-    char angle[24], velocity[24], read[24], estimate[24];
+    char angle[24], velocity[24], read[24], calculated[24];
     brief(angle, sizeof angle, 3, row->desired_angle);
     brief(velocity, sizeof velocity, 2, row->desired_velocity);
     brief(read, sizeof read, 2, row->force_reading);
-    brief(estimate, sizeof estimate, 2, row->calculated_force);
+    brief(calculated, sizeof calculated, 2, row->calculated_force);
     if (isfinite(row->desired_angle)) {
         screen_print(s, a.x, a.y, a.width, INK_TEXT, "wants %s rad, %s rad/s", angle, velocity);
     } else {
         screen_text(s, a.x, a.y, a.width, INK_DIM, "wants no angle");
     }
-    screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, "force %s, est. %s of %g N", read, estimate,
+    screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, "force %s, calc. %s of %g N", read, calculated,
                  p->control.force);
 }
 
@@ -126,7 +126,7 @@ void draw_controller(lab *l, screen *s, area a)
     } lines[] = {{"desired angle", "rad", row->desired_angle},
                  {"desired velocity", "rad/s", row->desired_velocity},
                  {"force reading", "N", row->force_reading},
-                 {"force estimate", "N", row->calculated_force},
+                 {"calculated force", "N", row->calculated_force},
                  {"force commanded", "N", p.control.force}};
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++, line.y++) {
         draw_quantity(s, line, lines[i].name, lines[i].value, lines[i].unit);

@@ -53,7 +53,7 @@ static void choose_mode(force_memory *m, const controller_input *in)
 // [V].
 static double force_pd(const force_memory *m, const controller_input *in)
 {
-    double torque = 2 * m->p[FORCE_WANTED] * m->rig.link_length - m->p[KV] * in->hub_velocity;
+    double torque = 2 * m->p[FORCE_WANTED] * m->rig.link_length - m->p[KV] * in->tachometer;
     return torque / m->rig.torque_per_volt + m->p[FORCE_GAIN] * (m->p[FORCE_WANTED] - in->force);
 }
 

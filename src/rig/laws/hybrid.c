@@ -106,8 +106,8 @@ static double calculated_force(const hybrid_memory *m, const controller_input *i
     double mass_term = r->link_mass * eps2 + (m->printed ? 0 : r->link_inertia);
     // corrected: link 3 turns back about a joint that moves on: (m l^2/2 - m l^2/4 - I3)
     double coupling = m->printed ? mass_term : 2 * r->link_mass * eps2 - mass_term;
-    double acceleration = contact_acceleration(m, in->hub_angle, in->hub_velocity, in->applied);
-    return (2 * r->k2 * (in->hub_angle - r->wall_angle) - coupling * acceleration) / r->link_length;
+    double acceleration = contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
+    return (2 * r->k2 * (in->encoder - r->wall_angle) - coupling * acceleration) / r->link_length;
 }
 
 // Volts of the feedback kp (angle error) + kv (velocity error), read as torque or as volts (B7).
@@ -138,8 +138,8 @@ static void begin(hybrid_memory *m, int mode, const controller_input *in)
     m->mode = mode;
     m->since = in->time;
     if (mode == IMPACT) {
-        plan(m, in->hub_angle, in->hub_velocity,
-             contact_acceleration(m, in->hub_angle, in->hub_velocity, in->applied));
+        plan(m, in->encoder, in->tachometer,
+             contact_acceleration(m, in->encoder, in->tachometer, in->voltage));
     }
 }
 
@@ -167,7 +167,7 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
     out->desired_angle = angle;
     out->desired_velocity = velocity;
     return torque / m->rig.torque_per_volt +
-           feedback(m, angle - in->hub_angle, velocity - in->hub_velocity);
+           feedback(m, angle - in->encoder, velocity - in->tachometer);
 }
 
 // Force mode: PD round the final angle with the static torque in advance, (5.25).
@@ -178,7 +178,7 @@ static double force_command(const hybrid_memory *m, const controller_input *in,
     out->desired_angle = final_angle(m);
     out->desired_velocity = 0;
     return torque / m->rig.torque_per_volt +
-           feedback(m, final_angle(m) - in->hub_angle, -in->hub_velocity);
+           feedback(m, final_angle(m) - in->encoder, -in->tachometer);
 }
 
 // The three modes with their switching: contact, then t_f.
@@ -193,7 +193,7 @@ static double hybrid_command(hybrid_memory *m, const controller_input *in, contr
         begin(m, FORCE, in);
     }
     out->mode = m->mode;
-    out->force_estimate = m->mode == APPROACH ? 0 : calculated_force(m, in);
+    out->calculated_force = m->mode == APPROACH ? 0 : calculated_force(m, in);
     return m->mode == IMPACT  ? impact_command(m, in, out)
            : m->mode == FORCE ? force_command(m, in, out)
                               : approach;
@@ -210,7 +210,7 @@ static double speed_command(const hybrid_memory *m, const controller_input *in, 
 {
     const double gain = 0.5; // [N m s/rad]
     double torque = m->rig.hub_damping * speed + m->rig.stiction * sign(speed) +
-                    gain * (speed - in->hub_velocity);
+                    gain * (speed - in->tachometer);
     return torque / m->rig.torque_per_volt;
 }
 
@@ -229,11 +229,11 @@ static void sample_bang_bang(void *memory, const controller_input *in, controlle
     double limit = m->rig.voltage_limit, approach = limit;
     if (!m->started) {
         m->started = true;
-        m->start_angle = in->hub_angle;
+        m->start_angle = in->encoder;
     }
-    double gone = in->hub_angle - m->start_angle, way = m->rig.wall_angle - m->start_angle;
+    double gone = in->encoder - m->start_angle, way = m->rig.wall_angle - m->start_angle;
     if (gone >= m->own * way) {
-        m->reversed = m->reversed || in->hub_velocity <= 0;
+        m->reversed = m->reversed || in->tachometer <= 0;
         approach = m->reversed ? m->approach_voltage : -limit;
     }
     out->command = hybrid_command(m, in, out, m->reversed ? m->approach_voltage : approach);
@@ -251,7 +251,7 @@ static void sample_reverse_torque(void *memory, const controller_input *in, cont
         begin(m, FORCE, in);
     }
     out->mode = m->mode;
-    out->force_estimate = m->mode == APPROACH ? 0 : calculated_force(m, in);
+    out->calculated_force = m->mode == APPROACH ? 0 : calculated_force(m, in);
     out->command = m->mode == APPROACH ? m->approach_voltage
                    : m->mode == IMPACT ? -m->rig.voltage_limit
                                        : force_command(m, in, out);
@@ -269,7 +269,7 @@ static void sample_recovering(void *memory, const controller_input *in, controll
         begin(m, RECOVER, in);
     }
     // a slow move towards the angle at which the beam would press
-    double speed = fmin(0.3, 5 * (final_angle(m) - in->hub_angle));
+    double speed = fmin(0.3, 5 * (final_angle(m) - in->encoder));
     double approach = m->mode == RECOVER ? speed_command(m, in, speed) : m->approach_voltage;
     out->command = hybrid_command(m, in, out, approach);
 }

@@ -201,9 +201,9 @@ static const char *start(void *memory, const controller_setup *setup)
 // The plan from the hub's angle at the first sample, at rest: y and y' end at the wall and at v.
 static void plan(inverse_memory *m, const controller_input *in)
 {
-    const double T = m->joint[TOUCH], way = m->rig.wall_angle - in->hub_angle;
+    const double T = m->joint[TOUCH], way = m->rig.wall_angle - in->encoder;
     m->started = true;
-    m->start_angle = in->hub_angle;
+    m->start_angle = in->encoder;
     m->departure = in->time + LEAD_IN / m->zero;
     m->cosine = m->arrival_rate / T;
     m->sine = (way - m->arrival_rate * T / 2) * m->travel / T;
@@ -230,7 +230,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
     out->command = torque_of(m, &held) / m->rig.torque_per_volt;
     out->desired_angle = now.tip - now.bend / 2;
     out->desired_velocity = hub_rate(&now);
-    out->force_estimate = now.force;
+    out->calculated_force = now.force;
 }
 
 const controller inverse_dynamics_law = {

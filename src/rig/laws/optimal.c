@@ -163,13 +163,13 @@ static void observe_flight(optimal_memory *m, const controller_input *in)
 {
     static const double angle_row[4] = {[FREE_FIRST] = 1}, rate_row[4] = {[FREE_FIRST_RATE] = 1};
     estimator *e = &m->e;
-    estimator_correct(e, 4, angle_row, 0, in->hub_angle, ANGLE_VARIANCE);
-    estimator_correct(e, 4, rate_row, 0, in->hub_velocity, RATE_VARIANCE);
+    estimator_correct(e, 4, angle_row, 0, in->encoder, ANGLE_VARIANCE);
+    estimator_correct(e, 4, rate_row, 0, in->tachometer, RATE_VARIANCE);
 }
 
 static void predict_flight(optimal_memory *m, const controller_input *in)
 {
-    double drive = motor_torque(m, in->applied);
+    double drive = motor_torque(m, in->voltage);
     drive -= friction(m, m->e.z[FREE_FIRST_RATE], drive);
     estimator_predict(&m->e, &m->flight, drive, flight_noise);
 }
@@ -180,7 +180,7 @@ static void enter_contact(optimal_memory *m, const controller_input *in)
     double before = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2;
     predict_flight(m, in);
     double after = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2, way = after - before;
-    estimator e = {.z = {in->hub_angle, in->hub_velocity, (before + after) / 2, 0}};
+    estimator e = {.z = {in->encoder, in->tachometer, (before + after) / 2, 0}};
     e.p[PRESSED_ANGLE][PRESSED_ANGLE] = ANGLE_VARIANCE;
     e.p[PRESSED_RATE][PRESSED_RATE] = RATE_VARIANCE;
     e.p[PRESSED_WALL][PRESSED_WALL] = way * way / 12 + 1e-6;
@@ -201,8 +201,7 @@ static double braking_force(const optimal_memory *m, double stopping)
 static void leave_contact(optimal_memory *m, const controller_input *in)
 {
     double wall = m->e.z[PRESSED_WALL];
-    estimator e = {
-        .z = {in->hub_angle, 2 * wall - in->hub_angle, in->hub_velocity, -in->hub_velocity}};
+    estimator e = {.z = {in->encoder, 2 * wall - in->encoder, in->tachometer, -in->tachometer}};
     e.p[FREE_FIRST][FREE_FIRST] = ANGLE_VARIANCE;
     e.p[FREE_FIRST_RATE][FREE_FIRST_RATE] = RATE_VARIANCE;
     e.p[FREE_LAST][FREE_LAST] = 1e-4;
@@ -280,10 +279,10 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
 {
     static const double angle_row[4] = {[PRESSED_ANGLE] = 1}, rate_row[4] = {[PRESSED_RATE] = 1};
     estimator *e = &m->e;
-    double drive = motor_torque(m, in->applied);
+    double drive = motor_torque(m, in->voltage);
     predict_contact(m, &m->contact, e, drive);
-    estimator_correct(e, 4, angle_row, 0, in->hub_angle, ANGLE_VARIANCE);
-    estimator_correct(e, 4, rate_row, 0, in->hub_velocity, RATE_VARIANCE);
+    estimator_correct(e, 4, angle_row, 0, in->encoder, ANGLE_VARIANCE);
+    estimator_correct(e, 4, rate_row, 0, in->tachometer, RATE_VARIANCE);
     // the force is linear in the state but for friction: row times state, plus what is left
     double whole = m->spring_force + m->mass_force * m->stiffness / m->inertia;
     double row[4] = {whole, m->mass_force * m->rig.hub_damping / m->inertia, -whole,
@@ -333,8 +332,8 @@ static void change_mode(optimal_memory *m, const controller_input *in)
     if (m->mode == APPROACH && !m->flies) {
         leave_contact(m, in);
     } else if (m->mode == PRESS && !m->flies) {
-        m->e.z[PRESSED_ANGLE] = in->hub_angle; // nothing was observed while it held
-        m->e.z[PRESSED_RATE] = in->hub_velocity;
+        m->e.z[PRESSED_ANGLE] = in->encoder; // nothing was observed while it held
+        m->e.z[PRESSED_RATE] = in->tachometer;
     } else if (m->mode == HOLD) {
         begin_hold(m, m->flies ? (z[FREE_FIRST] - z[FREE_LAST]) / 2
                                : z[PRESSED_ANGLE] - z[PRESSED_WALL]);
@@ -350,7 +349,7 @@ static double hold(optimal_memory *m, const controller_input *in)
     if (!wanted && fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
         m->mode = PRESS;
         if (!m->flies) {
-            m->e.z[PRESSED_WALL] = in->hub_angle - m->held_force / m->spring_force;
+            m->e.z[PRESSED_WALL] = in->encoder - m->held_force / m->spring_force;
             m->e.p[PRESSED_WALL][PRESSED_WALL] = 1e-6;
         }
     }
@@ -371,7 +370,7 @@ static double press(optimal_memory *m, const controller_input *in)
 {
     estimator ahead = m->e;
     if (m->rig.delay > 0) {
-        predict_contact(m, &m->during_delay, &ahead, motor_torque(m, in->applied));
+        predict_contact(m, &m->during_delay, &ahead, motor_torque(m, in->voltage));
     }
     const double *z = ahead.z;
     double shortfall = fmin(SHORTFALL * m->force, MOST_SHORTFALL);
@@ -396,7 +395,7 @@ static void observe(optimal_memory *m, const controller_input *in)
     bool locked = in->wanted_mode >= 0;
     if (!m->started) {
         m->started = m->flies = true;
-        m->e = (estimator){.z = {in->hub_angle, in->hub_angle, 0, 0}};
+        m->e = (estimator){.z = {in->encoder, in->encoder, 0, 0}};
     } else if (m->flies && in->wanted_mode != APPROACH && in->force > m->threshold) {
         enter_contact(m, in);
         m->mode = locked ? m->mode : PRESS;
@@ -421,15 +420,15 @@ static void sample(void *memory, const controller_input *in, controller_output *
                                        : press(m, in);
     out->mode = m->mode;
     if (m->mode == APPROACH) {
-        out->force_estimate = m->force_limit == HUGE_VAL ? 0 : force_of_touch(m);
+        out->calculated_force = m->force_limit == HUGE_VAL ? 0 : force_of_touch(m);
         return;
     }
     double wall = m->flies ? m->rig.wall_angle : m->e.z[PRESSED_WALL];
     out->desired_angle = wall + m->force / m->spring_force;
     out->desired_velocity = 0;
-    out->force_estimate = m->mode == HOLD ? m->held_force
-                          : m->flies      ? 0
-                                          : contact_force(m, m->e.z, motor_torque(m, in->applied));
+    out->calculated_force = m->mode == HOLD ? m->held_force
+                            : m->flies      ? 0
+                                       : contact_force(m, m->e.z, motor_torque(m, in->voltage));
 }
 
 #define LAW(law, table, starts)                                                                    \
