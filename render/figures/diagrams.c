@@ -10,6 +10,7 @@
 #include "src/run/export.h"
 #include "src/base/whole_file.h"
 #include "src/predict/predict.h"
+#include "src/rig/sensors.h"
 
 #define DEGREE     (G_PI / 180)
 #define HUB_RADIUS 0.11 // of the experiment's hub, section 2.3 [m]
@@ -124,14 +125,6 @@ static artwork artwork_of_diagram(diagram *d)
 // rig's.
 #define R_GAIN     10e3 // both of the gain stage [ohm]
 #define MOST_FORCE 12.0 // [N]
-
-static double sensor_output(const sensor_parameters *p, double force)
-{
-    double felt = fmin(force, p->fsr_saturation);
-    double resistance = p->fsr_resistance * pow(felt, -p->fsr_exponent);
-    double divided = felt > 0 ? p->fsr_supply * p->fsr_divider / (p->fsr_divider + resistance) : 0;
-    return divided * p->fsr_gain;
-}
 
 static void draw_ground(const sketch *s, double x, double y)
 {
@@ -275,7 +268,7 @@ status diagram_sensor(const char *title, const figure_options *o, artwork *out, 
         // close together where the curve bends
         double share = (double)i / (CURVE_POINTS - 1);
         d->curve_x[i] = MOST_FORCE * share * share;
-        d->curve_y[i] = sensor_output(p, d->curve_x[i]);
+        d->curve_y[i] = fsr_volts(p, d->curve_x[i]);
     }
     *out = artwork_of_diagram(d);
     return STATUS_OK;
