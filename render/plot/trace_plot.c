@@ -38,30 +38,23 @@ static char *symbol_markup(const signal_info *signal)
     return g_strdup_printf("<i>%.*s</i>%s", (int)letters, symbol, symbol + letters);
 }
 
-// "angle of the hub" belongs to the body "hub"; "" if the description names none.
-static const char *body_of(const signal_info *signal)
-{
-    const char *of = strstr(signal->description, " of the ");
-    return of ? of + strlen(" of the ") : "";
-}
-
 // A hub that is rigidly joined to the first link moves with it.
 static bool hub_is_first_link(const scenario *s)
 {
     return s->parameters.arm.model == ARM_CORRECTED && s->parameters.arm.hub_joint == HUB_RIGID;
 }
 
-// "hub_angle" of the pair hub_..., first_...: the index of the other one, or -1.
+// The first link's signal of the same quantity as the hub's, or -1.
 static int first_link_twin(int index)
 {
-    const char *name = signal_table[index].name;
-    if (strncmp(name, "hub_", 4) != 0) {
-        return -1;
+    const signal_info *hub = &signal_table[index];
+    for (int i = 0; i < signal_count && hub->body == BODY_HUB; i++) {
+        if (signal_table[i].body == BODY_FIRST_LINK &&
+            strcmp(signal_table[i].quantity, hub->quantity) == 0) {
+            return i;
+        }
     }
-    char *twin = g_strconcat("first_", name + 4, NULL);
-    int found = signal_find(twin);
-    g_free(twin);
-    return found;
+    return -1;
 }
 
 static char *series_label(const scenario *s, int index, bool joined)
@@ -75,23 +68,19 @@ static char *series_label(const scenario *s, int index, bool joined)
         g_free(other);
     } else {
         // what belongs to no body is described as a whole
-        const char *body = body_of(signal);
-        label = g_strdup_printf("%s  %s", symbol, body[0] ? body : signal->description);
+        label = g_strdup_printf("%s  %s", symbol,
+                                signal->body != BODY_NONE ? signal_body_name(signal->body)
+                                                          : signal->description);
     }
     g_free(symbol);
     return label;
 }
 
-// "contact force, impulses excluded" becomes "Contact force f"; the body goes, since the symbol
-// names it.
+// "Contact force f"; the body goes, since the symbol names it.
 static char *own_label(const signal_info *signal)
 {
     char *symbol = symbol_markup(signal);
-    const char *of = strstr(signal->description, " of the ");
-    size_t words = strcspn(signal->description, ",");
-    int length = (int)(of ? (size_t)(of - signal->description) : words);
-    char *label = g_strdup_printf("%c%.*s %s", g_ascii_toupper(signal->description[0]), length - 1,
-                                  signal->description + 1, symbol);
+    char *label = g_strdup_printf("%s %s", signal->quantity, symbol);
     g_free(symbol);
     return label;
 }
@@ -322,7 +311,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
     bool alone = from->signals[1] == NULL, named = false;
     for (int i = 0; i < TRACE_SIGNALS && from->signals[i] != NULL; i++) {
         int index = signal_find(from->signals[i]);
-        bool twin = !alone && strncmp(from->signals[i], "first_", 6) == 0 && hub_is_first_link(s);
+        bool twin = !alone && signal_table[index].body == BODY_FIRST_LINK && hub_is_first_link(s);
         bool points = run > 0 && runs[run].points;
         if (twin || (points && !trace_has(&runs[run].result->trace, index))) {
             continue;

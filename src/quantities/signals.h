@@ -51,12 +51,17 @@ typedef struct sample {
 
 typedef enum line_style { LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT } line_style;
 
+// The body whose motion a signal is.
+typedef enum signal_body { BODY_NONE, BODY_HUB, BODY_FIRST_LINK, BODY_LAST_LINK } signal_body;
+
 typedef struct signal_info {
     const char *name;        // as in CSV headers and --plot, "contact_force"
     const char *symbol;      // Pango markup, for figures
     const char *ascii;       // the same in ASCII
     const char *unit;        // "N", "rad/s2" is written "rad/s²" in figures by the plotter
     const char *description; // one sentence without a full stop
+    signal_body body;        // BODY_NONE where the description says all
+    const char *quantity;    // label of its axis, the same for every body: "Angular velocity"
     int colour;              // slot in the palette, 0-7
     line_style style;
     size_t offset; // in struct sample
@@ -69,6 +74,9 @@ enum { SIGNALS_AT_MOST = sizeof(sample) / sizeof(double) };
 
 // Index of a signal by name, or -1.
 int signal_find(const char *name);
+
+// "hub", "first link", "last link"; "" for BODY_NONE.
+const char *signal_body_name(signal_body body);
 
 // The signal's value in a row.
 double signal_value(const sample *row, int index);
