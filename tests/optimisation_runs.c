@@ -6,6 +6,7 @@
 
 #include "src/run/export.h"
 #include "src/predict/linearised.h"
+#include "src/base/json.h"
 
 // Each line a run: settings, separated by blanks.
 static const char *const runs[] = {

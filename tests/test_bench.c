@@ -4,7 +4,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/run/export.h"
 #include "tests/check.h"
 
 static int calls;

@@ -216,7 +216,7 @@ static void results_reach_every_form(void **state)
     FILE *stream = open_memstream(&csv, &size);
     calibration_csv(stream, &c, &s);
     fclose(stream);
-    assert_non_null(strstr(csv, "command_V,force_N,hub_angle_rad,k2_Nm_per_rad,k2_over_arm,"));
+    assert_non_null(strstr(csv, "command[V],force[N],hub_angle[rad],k2[N m/rad],k2_over_arm[],"));
     assert_non_null(strstr(csv, "\n1,0.5,0.02,4.92,1,"));
     json_t *whole = calibration_json(&c, &s, "0.5:4.92 1.5:4.5");
     json_t *first = json_array_get(json_object_get(whole, "points"), 0);

@@ -103,7 +103,8 @@ static void varied_values_have_columns(void **state)
     assert_null(strstr(text, "error"));
     assert_non_null(strstr(text, "9*"));
     assert_null(strstr(text, "1.5*"));
-    assert_non_null(strstr(csv, "scenario,law,control.force,control.gains,status,peak_force_N,"));
+    assert_non_null(
+        strstr(csv, "scenario[],law[],control.force[N],control.gains[],status[],peak_force[N],"));
     json_t *whole = compare_json(&t), *run = json_array_get(json_object_get(whole, "runs"), 2);
     json_t *values = json_object_get(run, "varied");
     check_close(json_number_value(json_object_get(values, "control.force")), 2, 0);

@@ -19,74 +19,6 @@ static scenario parse(const char *text)
     return s;
 }
 
-static void numbers_are_short_and_read_back(void **state)
-{
-    (void)state;
-    const struct {
-        double value;
-        const char *text;
-    } cases[] = {
-        {0.1, "0.1"},  {12, "12"}, {-0.0, "0"}, {1e-5, "1e-05"}, {0.1 + 0.2, "0.30000000000000004"},
-        {-2.5, "-2.5"}};
-    char text[NUMBER_TEXT];
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        number_format(text, cases[i].value);
-        assert_string_equal(text, cases[i].text);
-    }
-    // numbers of every size survive being written and read
-    unsigned long long bits = 0x9E3779B97F4A7C15ULL;
-    for (int i = 0; i < 10000; i++) {
-        double value;
-        bits = bits * 6364136223846793005ULL + 1442695040888963407ULL;
-        memcpy(&value, &bits, sizeof value);
-        if (isfinite(value)) {
-            number_format(text, value);
-            assert_true(strtod(text, NULL) == value);
-        }
-    }
-}
-
-// What json_write writes of a value, on the heap; takes over the value.
-static char *written(json_t *value)
-{
-    char *text = NULL;
-    size_t length = 0;
-    FILE *stream = open_memstream(&text, &length);
-    json_write(stream, value);
-    fclose(stream);
-    json_decref(value);
-    return text;
-}
-
-static void json_is_what_jansson_reads(void **state)
-{
-    (void)state;
-    const char *source = "{\"b\": [1, 0.1, null, true], \"a\": {\"quote\\\" \\u00e9\\n\": \"\"}, "
-                         "\"empty\": {}, \"none\": [], \"list\": [{\"x\": -1e-300}, []]}";
-    json_t *value = json_loads(source, 0, NULL);
-    char *text = written(json_deep_copy(value));
-    json_t *again = json_loads(text, 0, NULL);
-    assert_non_null(again);
-    assert_true(json_equal(value, again));
-    // keys stay in the order in which they were given
-    assert_true(strstr(text, "\"b\"") < strstr(text, "\"a\""));
-    json_decref(value);
-    json_decref(again);
-    free(text);
-}
-
-static void text_without_utf8_is_made_readable(void **state)
-{
-    (void)state;
-    char *text = written(json_text("a\xff"
-                                   "b"));
-    assert_string_equal(text, "\"a?b\"\n");
-    free(text);
-    text = written(json_text("\u00e9"));
-    assert_string_equal(text, "\"\u00e9\"\n");
-    free(text);
-}
-
 // A result as a run that was stopped would leave it.
 static run_result stopped_result(void)
 {
@@ -225,9 +157,6 @@ static void csv_has_columns_of_fitted_sensors_only(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_are_short_and_read_back),
-        cmocka_unit_test(json_is_what_jansson_reads),
-        cmocka_unit_test(text_without_utf8_is_made_readable),
         cmocka_unit_test(object_holds_every_key),
         cmocka_unit_test(csv_has_one_header_and_a_column_for_each_value),
         cmocka_unit_test(csv_has_columns_of_fitted_sensors_only),

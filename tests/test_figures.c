@@ -11,6 +11,7 @@
 #include "render/figures/figures.h"
 #include "render/figures/report.h"
 #include "render/page/text.h"
+#include "src/base/csv.h"
 
 // fontconfig keeps its cache until the process ends
 const char *__lsan_default_suppressions(void);
@@ -173,7 +174,7 @@ static void figures_say_what_they_show(void **state)
 }
 
 // The number in the column `column` of the line that begins with `start`; fails if there is none.
-static double csv_number(const char *csv, const char *start, int column)
+static double number_in_csv(const char *csv, const char *start, int column)
 {
     const char *line = strstr(csv, start);
     if (line == NULL) {
@@ -262,11 +263,11 @@ static double map_error(const char *csv, const char *step, double beta, double g
     char start[64];
     snprintf(start, sizeof start, "newmark,%s,", step);
     for (const char *line = strstr(csv, start); line != NULL; line = strstr(line + 1, start)) {
-        double b = csv_number(line, start, 2), g = csv_number(line, start, 3);
+        double b = number_in_csv(line, start, 2), g = number_in_csv(line, start, 3);
         double distance = hypot(b - beta, g - gamma);
         if (distance < nearest) {
             nearest = distance;
-            error = csv_number(line, start, 4);
+            error = number_in_csv(line, start, 4);
         }
     }
     check_below(nearest, 0.02);
@@ -295,10 +296,10 @@ static void table_cells_are_right(void **state)
     (void)state;
     char *csv = csv_of("T4.1");
     const char *group = "Peak force by the energy principle (N),thesis";
-    check_close(csv_number(csv, group, 2), 23.93, 0);
-    check_close(csv_number(csv, group, 5), 82.92, 0);
+    check_close(number_in_csv(csv, group, 2), 23.93, 0);
+    check_close(number_in_csv(csv, group, 5), 82.92, 0);
     group = "Peak force by the energy principle (N),printed model";
-    check_close(csv_number(csv, group, 2), 23.93, 0.5);
+    check_close(number_in_csv(csv, group, 2), 23.93, 0.5);
     free(csv);
     // what the stability table allows to the arm's 986 Hz mode (impactlab modes)
     csv = csv_of("T3.1");

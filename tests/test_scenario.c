@@ -9,6 +9,7 @@
 #include "src/run/run.h"
 #include "src/scenario/yaml_tree.h"
 #include "src/base/words.h"
+#include "src/base/numbers.h"
 #include "tests/check.h"
 
 // All sentences of one reading, a line each.

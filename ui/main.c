@@ -8,6 +8,7 @@
 
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
+#include "src/base/version.h"
 #include "ui/terminal/terminal.h"
 
 static const command *const command_table[] = {

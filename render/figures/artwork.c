@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "render/plot/figure_file.h"
-#include "src/run/export.h"
+#include "src/base/version.h"
 
 status make_folder(const char *folder, fault *f)
 {

@@ -7,8 +7,8 @@
 #include "render/plot/figure_file.h"
 #include "render/plot/opened_run.h"
 #include "render/page/sketch.h"
-#include "src/run/export.h"
 #include "src/base/whole_file.h"
+#include "src/base/csv.h"
 #include "src/predict/predict.h"
 #include "src/rig/sensors.h"
 
@@ -56,12 +56,12 @@ static status paint_diagram(cairo_t *cr, const void *what, figure_report *report
     return code;
 }
 
-static void write_value(FILE *stream, const char *name, double value, const char *unit)
+static void write_value(csv_writer *csv, const char *name, double value, const char *unit)
 {
-    char number[NUMBER_TEXT];
-    number_format(number, value);
-    csv_field(stream, name);
-    fprintf(stream, ",%s,%s\n", number, unit);
+    csv_text(csv, name);
+    csv_number(csv, value);
+    csv_text(csv, unit);
+    csv_end_row(csv);
 }
 
 static status write_diagram(const void *what, const char *path, fault *f)
@@ -72,13 +72,17 @@ static status write_diagram(const void *what, const char *path, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
-    fputs("quantity,value,unit\n", file.stream);
+    csv_writer csv = csv_begin(file.stream);
+    csv_heading(&csv, "quantity", NULL);
+    csv_heading(&csv, "value", NULL);
+    csv_heading(&csv, "unit", NULL);
+    csv_end_row(&csv);
     for (int i = 0; i < d->value_count; i++) {
-        write_value(file.stream, d->values[i].name, d->values[i].value, d->values[i].unit);
+        write_value(&csv, d->values[i].name, d->values[i].value, d->values[i].unit);
     }
     for (int i = 0; d->curve_x != NULL && i < CURVE_POINTS; i++) {
-        write_value(file.stream, "force", d->curve_x[i], "N");
-        write_value(file.stream, "output", d->curve_y[i], "V");
+        write_value(&csv, "force", d->curve_x[i], "N");
+        write_value(&csv, "output", d->curve_y[i], "V");
     }
     return whole_file_commit(&file, f);
 }

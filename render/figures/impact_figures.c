@@ -8,7 +8,7 @@
 #include "render/plot/figure_file.h"
 #include "render/plot/opened_run.h"
 #include "render/page/sketch.h"
-#include "src/run/export.h"
+#include "src/base/version.h"
 
 #define IMPACT_SCENARIO "corrected/first-impact"
 

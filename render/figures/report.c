@@ -6,8 +6,8 @@
 
 #include "render/figures/figures.h"
 #include "render/page/svg_ids.h"
-#include "src/run/export.h"
 #include "src/base/whole_file.h"
+#include "src/base/version.h"
 
 // One thing the report shows.
 typedef struct report_item {

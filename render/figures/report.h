@@ -2,7 +2,7 @@
 // it again, as one web page and one PDF.
 #pragma once
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 // Writes FOLDER/report.html, which needs no other file and no network, and FOLDER/report.pdf. The
 // folder is created if it is not there. Returns what the runs and the writing return.

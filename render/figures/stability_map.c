@@ -7,8 +7,8 @@
 #include "render/plot/opened_run.h"
 #include "render/page/sketch.h"
 #include "render/plot/sweep_plot.h"
-#include "src/run/export.h"
 #include "src/base/whole_file.h"
+#include "src/base/csv.h"
 
 #define MAP_SCENARIO "corrected/first-impact"
 #define WINDOW       0.15 // length of the force that is compared, from first contact [s]
@@ -353,16 +353,15 @@ static status paint_map(cairo_t *cr, const void *what, figure_report *report, fa
     return STATUS_OK;
 }
 
-static void write_line(FILE *stream, const char *method, double h, double beta, double gamma,
+static void write_line(csv_writer *csv, const char *method, double h, double beta, double gamma,
                        double error)
 {
-    char numbers[4][NUMBER_TEXT];
-    number_format(numbers[0], h);
-    number_format(numbers[1], beta);
-    number_format(numbers[2], gamma);
-    number_format(numbers[3], error);
-    fprintf(stream, "%s,%s,%s,%s,%s\n", method, numbers[0], numbers[1], numbers[2],
-            isfinite(error) ? numbers[3] : "");
+    csv_text(csv, method);
+    csv_number(csv, h);
+    csv_number(csv, beta);
+    csv_number(csv, gamma);
+    csv_number(csv, isfinite(error) ? error : (double)NAN);
+    csv_end_row(csv);
 }
 
 static status write_map(const void *what, const char *path, fault *f)
@@ -373,17 +372,22 @@ static status write_map(const void *what, const char *path, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
-    fputs("method,step[s],beta,gamma,force_error[%]\n", file.stream);
+    csv_writer csv = csv_begin(file.stream);
+    csv_heading(&csv, "method", "");
+    csv_heading(&csv, "step", "s");
+    csv_heading(&csv, "beta", "");
+    csv_heading(&csv, "gamma", "");
+    csv_heading(&csv, "force_error", "%");
+    csv_end_row(&csv);
     for (int panel = 0; panel < PANELS; panel++) {
         for (int cell = 0; cell < CELLS; cell++) {
-            write_line(file.stream, "newmark", steps[panel], beta_at(cell % COLUMNS),
+            write_line(&csv, "newmark", steps[panel], beta_at(cell % COLUMNS),
                        gamma_at(cell / COLUMNS), m->error[panel][cell]);
         }
         for (int i = 0; i < RADII; i++) {
             double beta, gamma;
             alpha_pair(radii[i], &beta, &gamma);
-            write_line(file.stream, "generalized-alpha", steps[panel], beta, gamma,
-                       m->alpha[panel][i]);
+            write_line(&csv, "generalized-alpha", steps[panel], beta, gamma, m->alpha[panel][i]);
         }
     }
     return whole_file_commit(&file, f);

@@ -4,7 +4,7 @@
 
 #include <cairo.h>
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 typedef enum picture_format { FORMAT_NONE, FORMAT_PNG, FORMAT_PDF, FORMAT_SVG } picture_format;
 

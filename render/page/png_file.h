@@ -4,7 +4,7 @@
 #include <cairo.h>
 #include <stdio.h>
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 // A text of a PNG: keyword as in the PNG specification ("Title"), text in UTF-8 (NULL: left out).
 typedef struct png_note {

@@ -5,6 +5,7 @@
 
 #include "render/plot/figure_file.h"
 #include "src/base/whole_file.h"
+#include "src/base/csv.h"
 
 #define CELL_SPACE 3.0 // above and below a row's text, and left and right of a cell's
 #define CELL_SIZE  7.0
@@ -176,10 +177,10 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
 // ---- numbers and HTML
 // ----------------------------------------------------------------------------
 
-static void write_plain(FILE *stream, const char *markup)
+static void write_plain(csv_writer *csv, const char *markup)
 {
     char *plain = text_plain(markup);
-    csv_field(stream, plain);
+    csv_text(csv, plain);
     g_free(plain);
 }
 
@@ -190,17 +191,22 @@ status table_write_csv(const table_page *t, const char *path, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
+    // the group that a row stands under becomes its first field
     bool grouped = false;
     const char *group = "";
     for (guint row = 0; row < t->rows->len; row++) {
         grouped = grouped || table_row_is_group(t, row);
     }
-    fputs(grouped ? "group," : "", file.stream);
-    for (int i = 0; i < t->column_count; i++) {
-        fputs(i > 0 ? "," : "", file.stream);
-        write_plain(file.stream, t->columns[i].label);
+    csv_writer csv = csv_begin(file.stream);
+    if (grouped) {
+        csv_heading(&csv, "group", NULL);
     }
-    fputc('\n', file.stream);
+    for (int i = 0; i < t->column_count; i++) {
+        write_plain(&csv, t->columns[i].label);
+    }
+    csv_end_row(&csv);
+
     for (guint row = 0; row < t->rows->len; row++) {
         char **cells = row_cells(t, row);
         if (table_row_is_group(t, row)) {
@@ -208,14 +214,12 @@ status table_write_csv(const table_page *t, const char *path, fault *f)
             continue;
         }
         if (grouped) {
-            write_plain(file.stream, group);
-            fputc(',', file.stream);
+            write_plain(&csv, group);
         }
         for (int i = 0; i < t->column_count; i++) {
-            fputs(i > 0 ? "," : "", file.stream);
-            write_plain(file.stream, cells[i]);
+            write_plain(&csv, cells[i]);
         }
-        fputc('\n', file.stream);
+        csv_end_row(&csv);
     }
     return whole_file_commit(&file, f);
 }

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 // The family that every figure uses.
 #define TEXT_FAMILY "DejaVu Sans"

@@ -5,8 +5,8 @@
 
 #include "render/plot/curve.h"
 #include "render/page/text.h"
-#include "src/run/export.h"
 #include "src/base/whole_file.h"
+#include "src/base/csv.h"
 
 static status paint(cairo_t *cr, const void *what, fault *f)
 {
@@ -25,90 +25,72 @@ status figure_write(const figure *fig, const char *path, fault *f)
     return picture_write(&p, path, f);
 }
 
-void csv_field(FILE *stream, const char *field)
-{
-    if (strpbrk(field, ",\"\r\n") == NULL) {
-        fputs(field, stream);
-        return;
-    }
-    fputc('"', stream);
-    for (const char *c = field; *c != '\0'; c++) {
-        fputs(*c == '"' ? "\"\"" : (char[]){*c, '\0'}, stream);
-    }
-    fputc('"', stream);
-}
-
-// A name, or the label without markup where there is none, with the unit in brackets.
-static void write_name(FILE *stream, const char *name, const char *label, const char *unit)
+// A name, or the label without markup where there is none, with its unit.
+static void write_name(csv_writer *csv, const char *name, const char *label, const char *unit)
 {
     char *plain = name ? g_strdup(name) : text_plain(label ? label : "");
-    bool has_unit = unit != NULL && unit[0] != '\0';
-    char *field = has_unit ? g_strdup_printf("%s[%s]", plain, unit) : g_strdup(plain);
-    csv_field(stream, field);
-    g_free(field);
+    csv_heading(csv, plain, unit != NULL && unit[0] != '\0' ? unit : NULL);
     g_free(plain);
 }
 
-static void write_panel_name(FILE *stream, const figure_panel *panel)
+static void write_panel_name(csv_writer *csv, const figure_panel *panel)
 {
-    write_name(stream, panel->name, panel->label, panel->unit);
-    fputc(',', stream);
+    write_name(csv, panel->name, panel->label, panel->unit);
 }
 
-// One row; a y that is not finite stays empty.
-static void write_row(FILE *stream, double x, double y)
+// The end of a row.
+static void write_point(csv_writer *csv, double x, double y)
 {
-    char number[NUMBER_TEXT];
-    number_format(number, x);
-    fprintf(stream, ",%s,", number);
-    if (isfinite(y)) {
-        number_format(number, y);
-        fputs(number, stream);
-    }
-    fputc('\n', stream);
+    csv_number(csv, x);
+    csv_number(csv, isfinite(y) ? y : (double)NAN);
+    csv_end_row(csv);
 }
 
-static void write_series(FILE *stream, const figure_panel *panel, const figure_series *s)
+static void write_series(csv_writer *csv, const figure_panel *panel, const figure_series *s)
 {
-    for (size_t i = 0; i < s->count && !ferror(stream); i++) {
+    for (size_t i = 0; i < s->count && !ferror(csv->stream); i++) {
         if (isfinite(series_x(s, i))) {
-            write_panel_name(stream, panel);
-            write_name(stream, s->name, s->label, NULL);
-            write_row(stream, series_x(s, i), series_y(s, i));
+            write_panel_name(csv, panel);
+            write_name(csv, s->name, s->label, NULL);
+            write_point(csv, series_x(s, i), series_y(s, i));
         }
     }
 }
 
-static void write_levels_and_impulses(FILE *stream, const figure_panel *panel)
+static void write_levels_and_impulses(csv_writer *csv, const figure_panel *panel)
 {
     for (int i = 0; i < panel->impulse_count; i++) {
-        write_panel_name(stream, panel);
-        write_name(stream, "impulse", NULL, panel->impulse_unit);
-        write_row(stream, panel->impulses[i].x, panel->impulses[i].size);
+        write_panel_name(csv, panel);
+        write_name(csv, "impulse", NULL, panel->impulse_unit);
+        write_point(csv, panel->impulses[i].x, panel->impulses[i].size);
     }
     for (int i = 0; i < panel->level_count; i++) {
         const char *label = panel->levels[i].label;
-        write_panel_name(stream, panel);
-        write_name(stream, NULL, label ? label : "level", NULL);
+        write_panel_name(csv, panel);
+        write_name(csv, NULL, label ? label : "level", NULL);
         // a level has no x of its own
-        char number[NUMBER_TEXT];
-        number_format(number, panel->levels[i].y);
-        fprintf(stream, ",,%s\n", number);
+        write_point(csv, (double)NAN, panel->levels[i].y);
     }
 }
 
-static void write_marks(FILE *stream, const figure *fig)
+// A row that has an x alone.
+static void write_instant(csv_writer *csv, const char *panel, const char *series, double x)
+{
+    csv_text(csv, panel);
+    csv_text(csv, series);
+    write_point(csv, x, (double)NAN);
+}
+
+static void write_marks(csv_writer *csv, const figure *fig)
 {
     for (int i = 0; i < fig->mark_count; i++) {
-        fputs("mark,", stream);
-        write_name(stream, NULL, fig->marks[i].label, NULL);
-        write_row(stream, fig->marks[i].x, (double)NAN);
+        char *label = text_plain(fig->marks[i].label ? fig->marks[i].label : "");
+        write_instant(csv, "mark", label, fig->marks[i].x);
+        g_free(label);
     }
     for (int i = 0; i < fig->interval_count; i++) {
-        fputs("interval,begins", stream);
-        write_row(stream, fig->intervals[i].from, (double)NAN);
-        fputs("interval,ends", stream);
-        write_row(stream, fig->intervals[i].to, (double)NAN);
+        write_instant(csv, "interval", "begins", fig->intervals[i].from);
+        write_instant(csv, "interval", "ends", fig->intervals[i].to);
     }
 }
 
@@ -119,14 +101,19 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
-    fputs("panel,series,x,y\n", file.stream);
+    csv_writer csv = csv_begin(file.stream);
+    const char *const headings[] = {"panel", "series", "x", "y"};
+    for (int i = 0; i < 4; i++) {
+        csv_heading(&csv, headings[i], NULL);
+    }
+    csv_end_row(&csv);
     for (int p = 0; p < fig->panel_count; p++) {
         const figure_panel *panel = &fig->panels[p];
         for (int s = 0; s < panel->series_count; s++) {
-            write_series(file.stream, panel, &panel->series[s]);
+            write_series(&csv, panel, &panel->series[s]);
         }
-        write_levels_and_impulses(file.stream, panel);
+        write_levels_and_impulses(&csv, panel);
     }
-    write_marks(file.stream, fig);
+    write_marks(&csv, fig);
     return whole_file_commit(&file, f);
 }

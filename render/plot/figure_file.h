@@ -1,8 +1,6 @@
 // Figures as files.
 #pragma once
 
-#include <stdio.h>
-
 #include "render/page/picture_file.h"
 #include "render/plot/plot.h"
 
@@ -14,6 +12,3 @@ status figure_write(const figure *fig, const char *path, fault *f);
 // empty where the curve has a gap), impulses as the series impulse[unit], then marks and shaded
 // intervals with an empty y.
 status figure_write_csv(const figure *fig, const char *path, fault *f);
-
-// Writes one CSV field, in quotes where it needs them.
-void csv_field(FILE *stream, const char *field);

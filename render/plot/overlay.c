@@ -1,11 +1,10 @@
 #include "render/plot/overlay.h"
+#include "src/base/numbers.h"
 
 #include <errno.h>
 #include <glib.h>
 #include <math.h>
 #include <string.h>
-
-#include "src/base/words.h"
 
 enum { MOST_COLUMNS = 256 };
 

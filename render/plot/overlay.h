@@ -2,6 +2,7 @@
 // into that form.
 #pragma once
 
+#include "src/base/fault.h"
 #include "src/run/trace.h"
 
 // Reads rows from a CSV whose first line names its columns as signals, with or without unit

@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 #include "src/quantities/signals.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 enum {
     FIGURE_PANELS = 8,  // most panels

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/run/export.h"
-
 enum { LABELLED_VALUES = 9 };
 
 double sweep_coordinate(const sweep_scale *s, double value)

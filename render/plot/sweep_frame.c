@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/run/export.h"
-
 double sweep_page_x(const sweep_canvas *c, double at)
 {
     return c->box.x + c->box.width * (at - c->x.low) / (c->x.high - c->x.low);

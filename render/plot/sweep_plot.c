@@ -7,7 +7,7 @@
 
 #include "render/plot/curve.h"
 #include "render/page/picture_file.h"
-#include "src/run/export.h"
+#include "src/base/version.h"
 
 enum { MOST_MARKERS = 80 };
 

@@ -9,8 +9,8 @@
 #include "render/plot/opened_run.h"
 #include "render/plot/overlay.h"
 #include "render/page/text.h"
-#include "src/run/export.h"
 #include "src/rig/rig.h"
+#include "src/base/version.h"
 
 #define SHORT_PULSE 0.1  // share of the run below which the first pulse is shown enlarged
 #define INSET_SPACE 0.15 // of the pulse, shown before and after it

@@ -6,7 +6,7 @@
 #include "render/scene/film_file.h"
 #include "render/page/text.h"
 #include "render/plot/trace_plot.h"
-#include "src/run/export.h"
+#include "src/base/version.h"
 
 enum { CLOCK_CELLS = 4000 };
 

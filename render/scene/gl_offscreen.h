@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 typedef enum gl_library { GL_OSMESA, GL_EGL } gl_library;
 

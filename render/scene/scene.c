@@ -9,8 +9,8 @@
 #include "render/scene/floor.h"
 #include "render/scene/labels.h"
 #include "render/page/text.h"
-#include "src/run/export.h"
 #include "src/base/whole_file.h"
+#include "src/base/version.h"
 
 enum {
     CURVE_PIECES = 96, // of a beam with few links

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/arm/arm.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 typedef enum hub_end { HUB_LOCKED, HUB_FREE } hub_end; // held by the controller, or only by inertia
 typedef enum tip_end { TIP_FREE, TIP_PINNED } tip_end; // in the air, or touching the wall

@@ -1,8 +1,5 @@
 #include "src/base/status.h"
 
-#include <stdarg.h>
-#include <stdio.h>
-
 const char *status_text(status code)
 {
     switch (code) {
@@ -13,16 +10,4 @@ const char *status_text(status code)
 #undef STATUS_CASE
     }
     return "unknown status";
-}
-
-status fault_set(fault *f, status code, const char *format, ...)
-{
-    if (f != NULL) {
-        va_list args;
-        f->code = code;
-        va_start(args, format);
-        vsnprintf(f->text, sizeof f->text, format, args);
-        va_end(args);
-    }
-    return code;
 }

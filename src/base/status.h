@@ -1,7 +1,5 @@
-// What can go wrong, as a code for programs and a sentence for people.
+// The codes of what can go wrong.
 #pragma once
-
-#include <stdbool.h>
 
 // One list, two uses: the enumeration and the text of each code.
 #define STATUS_LIST(X)                                                                             \
@@ -25,15 +23,5 @@ typedef enum status {
 #undef STATUS_ENUM
 } status;
 
-// A fault: its code and one sentence that says what was wrong, where, and what was expected.
-typedef struct fault {
-    status code;
-    char text[1024];
-} fault;
-
 // The general text of a status code, never NULL.
 const char *status_text(status code);
-
-// Writes code and a printf-formatted sentence into f (f may be NULL) and returns code.
-status fault_set(fault *f, status code, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));

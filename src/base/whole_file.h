@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 typedef struct whole_file {
     FILE *stream;    // write here

@@ -1,12 +1,12 @@
 #include "src/base/words.h"
 
-#include <ctype.h>
+#include <assert.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 int edit_distance(const char *a, const char *b, int limit)
 {
+    assert(a != NULL && b != NULL);
     enum { LONGEST = 64 };
     size_t la = strlen(a), lb = strlen(b);
     int row[LONGEST + 1];
@@ -32,6 +32,7 @@ int edit_distance(const char *a, const char *b, int limit)
 
 nearest_word nearest_begin(const char *word)
 {
+    assert(word != NULL);
     size_t half = strlen(word) / 2;
     return (nearest_word){.word = word, .distance = half < 4 ? (int)half + 1 : 5};
 }
@@ -50,6 +51,7 @@ static const char *last_part(const char *name)
 
 void nearest_try(nearest_word *n, const char *candidate)
 {
+    assert(n->word != NULL && candidate != NULL);
     int whole = edit_distance(n->word, candidate, n->distance);
     int part = edit_distance(n->word, last_part(candidate), n->distance);
     int distance = whole < part ? whole : part;
@@ -57,21 +59,4 @@ void nearest_try(nearest_word *n, const char *candidate)
         n->distance = distance;
         n->best = candidate;
     }
-}
-
-bool decimal_read(const char *text, double *value, const char **rest)
-{
-    const char *digits = text + (*text == '+' || *text == '-');
-    bool begins = isdigit((unsigned char)digits[0]) ||
-                  (digits[0] == '.' && isdigit((unsigned char)digits[1]));
-    if (!begins || (digits[0] == '0' && tolower((unsigned char)digits[1]) == 'x')) {
-        return false;
-    }
-    char *end;
-    *value = strtod(text, &end);
-    while (isspace((unsigned char)*end)) {
-        end++;
-    }
-    *rest = end;
-    return true;
 }

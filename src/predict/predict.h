@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/quantities/parameters.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 // The state a prediction starts from: three bodies for the thesis's predictors.
 typedef struct three_body_state {

@@ -1,10 +1,9 @@
 #include "src/quantities/k2_table.h"
+#include "src/base/numbers.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#include "src/base/words.h"
 
 // Reads "FORCE:K2" at the start of text; *rest is what follows it and blanks.
 static bool read_entry(const char *text, double *force, double *k2, const char **rest)

@@ -3,7 +3,9 @@
 
 #include <stddef.h>
 
-#include "src/base/status.h"
+#include <stdbool.h>
+
+#include "src/base/fault.h"
 
 enum { K2_TABLE_MOST = 32 };
 

@@ -8,6 +8,7 @@
 
 #include "src/quantities/k2_table.h"
 #include "src/base/words.h"
+#include "src/base/numbers.h"
 
 #define AT(field) offsetof(parameters, field)
 #define REAL      PARAMETER_REAL
@@ -468,13 +469,9 @@ void parameter_format(const parameters *p, int index, char *text, size_t size)
     } else if (info->type == PARAMETER_INTEGER) {
         snprintf(text, size, "%d", (int)value);
     } else {
-        // the shortest text that reads back as the same number
-        for (int digits = 6; digits <= 17; digits++) {
-            snprintf(text, size, "%.*g", digits, value);
-            if (strtod(text, NULL) == value) {
-                break;
-            }
-        }
+        char number[NUMBER_TEXT];
+        number_format_short(number, value);
+        snprintf(text, size, "%s", number);
     }
 }
 

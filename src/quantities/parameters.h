@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
 typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING } hub_joint_kind;

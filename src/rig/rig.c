@@ -9,6 +9,7 @@
 #include "src/quantities/k2_table.h"
 #include "src/rig/laws/laws.h"
 #include "src/base/words.h"
+#include "src/base/numbers.h"
 
 const controller *controller_of(int law)
 {

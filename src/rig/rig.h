@@ -7,7 +7,7 @@
 
 #include "src/rig/controller.h"
 #include "src/rig/sensors.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 typedef struct rig {
     const controller *law;

@@ -1,144 +1,11 @@
 #include "src/run/export.h"
 
+#include <assert.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-const char *lab_version(void)
-{
-    return IMPACTLAB_VERSION;
-}
-
-void number_format(char *text, double value)
-{
-    if (!isfinite(value)) {
-        snprintf(text, NUMBER_TEXT, "%s", isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
-        return;
-    }
-    // the sign of a zero says nothing to a reader
-    value = value == 0 ? 0 : value;
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
-        if (digits == 17 || strtod(text, NULL) == value) {
-            return;
-        }
-    }
-}
-
-json_t *json_number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-json_t *json_text(const char *text)
-{
-    json_t *string = json_string(text);
-    char *copy = string == NULL ? strdup(text) : NULL;
-    // a file's name may be no UTF-8, which JSON cannot hold
-    for (char *c = copy; c != NULL && *c != '\0'; c++) {
-        *c = (unsigned char)*c < 0x80 ? *c : '?';
-    }
-    if (copy != NULL) {
-        string = json_string(copy);
-        free(copy);
-    }
-    return string;
-}
-
-static void write_string(FILE *stream, const char *text)
-{
-    json_t *string = json_text(text);
-    if (string != NULL) {
-        json_dumpf(string, stream, JSON_ENCODE_ANY);
-    }
-    json_decref(string);
-}
-
-static void write_indented(FILE *stream, const json_t *value, int depth);
-
-static void new_line(FILE *stream, int depth)
-{
-    fprintf(stream, "\n%*s", 2 * depth, "");
-}
-
-static void write_object(FILE *stream, const json_t *object, int depth)
-{
-    const char *key, *separator = "";
-    json_t *member;
-    fputc('{', stream);
-    json_object_foreach((json_t *)object, key, member)
-    {
-        fputs(separator, stream);
-        new_line(stream, depth + 1);
-        write_string(stream, key);
-        fputs(": ", stream);
-        write_indented(stream, member, depth + 1);
-        separator = ",";
-    }
-    if (separator[0] != '\0') {
-        new_line(stream, depth);
-    }
-    fputc('}', stream);
-}
-
-// An array of plain values stands on one line.
-static void write_array(FILE *stream, const json_t *array, int depth)
-{
-    size_t length = json_array_size(array);
-    bool nested = false;
-    fputc('[', stream);
-    for (size_t i = 0; i < length; i++) {
-        const json_t *element = json_array_get(array, i);
-        nested = json_is_object(element) || json_is_array(element);
-        if (i > 0) {
-            fputs(nested ? "," : ", ", stream);
-        }
-        if (nested) {
-            new_line(stream, depth + 1);
-        }
-        write_indented(stream, element, depth + 1);
-    }
-    if (nested) {
-        new_line(stream, depth);
-    }
-    fputc(']', stream);
-}
-
-static void write_indented(FILE *stream, const json_t *value, int depth)
-{
-    char text[NUMBER_TEXT];
-    switch (json_typeof(value)) {
-    case JSON_OBJECT:
-        write_object(stream, value, depth);
-        break;
-    case JSON_ARRAY:
-        write_array(stream, value, depth);
-        break;
-    case JSON_STRING:
-        write_string(stream, json_string_value(value));
-        break;
-    case JSON_REAL:
-    case JSON_INTEGER:
-        number_format(text, json_number_value(value));
-        fputs(text, stream);
-        break;
-    case JSON_TRUE:
-        fputs("true", stream);
-        break;
-    case JSON_FALSE:
-        fputs("false", stream);
-        break;
-    case JSON_NULL:
-        fputs("null", stream);
-        break;
-    }
-}
-
-void json_write(FILE *stream, const json_t *value)
-{
-    write_indented(stream, value, 0);
-    fputc('\n', stream);
-}
+#include "src/base/csv.h"
+#include "src/base/json.h"
+#include "src/base/version.h"
 
 static json_t *parameter_value(const parameters *p, int index)
 {
@@ -253,36 +120,31 @@ static int csv_signals(const trace *t, int *columns)
     return count;
 }
 
-static void csv_header(FILE *stream, const trace *t, const int *columns, int count, bool angles)
-{
-    for (int i = 0; i < count; i++) {
-        const signal_info *signal = &signal_table[columns[i]];
-        fprintf(stream, "%s%s[%s]", i > 0 ? "," : "", signal->name, signal->unit);
-    }
-    for (int i = 0; angles && i < t->angle_count; i++) {
-        fprintf(stream, ",angle_%d[rad]", i + 1);
-    }
-    fputc('\n', stream);
-}
-
 void export_csv(FILE *stream, const trace *t, int links)
 {
-    char text[NUMBER_TEXT];
+    assert(stream != NULL && t != NULL && links > 0);
     int columns[SIGNALS_AT_MOST], count = csv_signals(t, columns);
-    bool angles = links > 2;
-    csv_header(stream, t, columns, count, angles);
+    size_t angles = links > 2 ? (size_t)t->angle_count : 0;
+    csv_writer csv = csv_begin(stream);
+    csv.missing = "nan"; // rows have a number in every field
+
+    for (int i = 0; i < count; i++) {
+        csv_heading(&csv, signal_table[columns[i]].name, signal_table[columns[i]].unit);
+    }
+    for (size_t i = 0; i < angles; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "angle_%zu", i + 1);
+        csv_heading(&csv, name, "rad");
+    }
+    csv_end_row(&csv);
+
     for (size_t row = 0; row < t->row_count && !ferror(stream); row++) {
         for (int i = 0; i < count; i++) {
-            number_format(text, signal_value(&t->rows[row], columns[i]));
-            if (i > 0) {
-                fputc(',', stream);
-            }
-            fputs(text, stream);
+            csv_number(&csv, signal_value(&t->rows[row], columns[i]));
         }
-        for (int i = 0; angles && i < t->angle_count; i++) {
-            number_format(text, t->angles[row * (size_t)t->angle_count + (size_t)i]);
-            fprintf(stream, ",%s", text);
+        for (size_t i = 0; i < angles; i++) {
+            csv_number(&csv, t->angles[row * (size_t)t->angle_count + i]);
         }
-        fputc('\n', stream);
+        csv_end_row(&csv);
     }
 }

@@ -1,12 +1,11 @@
 // Faults of a scenario file with their places, and what its nodes hold.
 #include "src/scenario/reader.h"
+#include "src/base/numbers.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "src/base/words.h"
 
 void reader_make_printable(char *text)
 {

@@ -1,8 +1,8 @@
 // Writing a scenario as a file that gives it again.
 #include <string.h>
 
-#include "src/run/export.h"
 #include "src/scenario/scenario.h"
+#include "src/base/numbers.h"
 
 // A text between quotation marks as YAML reads it back.
 static void write_text(FILE *stream, const char *text)

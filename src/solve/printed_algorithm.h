@@ -11,7 +11,7 @@
 #pragma once
 
 #include "src/arm/printed_arm.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 // What the printed algorithm knows after a step.
 typedef struct printed_row {

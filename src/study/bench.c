@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include "src/study/batch.h"
-#include "src/run/export.h"
 #include "src/run/run.h"
 #include "src/study/thesis_tables.h"
 #include "src/predict/linearised.h"
 #include "src/solve/motion.h"
+#include "src/base/json.h"
 
 #define LEAST_TIME    0.01 // of one measurement [s]
 #define PATIENCE      1.0  // after so long three repetitions have to do [s]

@@ -6,7 +6,9 @@
 
 #include <jansson.h>
 
-#include "src/base/status.h"
+#include <stdbool.h>
+
+#include "src/base/fault.h"
 
 enum { BENCH_REPETITIONS = 11, BENCH_NAME = 48, BENCH_UNIT = 16 };
 

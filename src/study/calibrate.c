@@ -3,9 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/run/export.h"
 #include "src/arm/arm.h"
 #include "src/run/run.h"
+#include "src/base/json.h"
+#include "src/base/csv.h"
 
 #define SHORTEST_PRESS 5.0 // [s]
 #define WINDOW_SHARE   0.4 // of it, its last part, over which the readings are averaged
@@ -166,9 +167,18 @@ status calibration_table(const calibration *c, k2_table *t, fault *f)
 }
 
 enum { COLUMNS = 8 };
-static const char *const column_keys[COLUMNS] = {
-    "command_V",   "force_N",        "hub_angle_rad",    "k2_Nm_per_rad",
-    "k2_over_arm", "force_spread_N", "angle_spread_rad", "drift_percent"};
+static const struct {
+    const char *key, *name, *unit; // in JSON; in CSV
+} columns[COLUMNS] = {
+    {"command_V", "command", "V"},
+    {"force_N", "force", "N"},
+    {"hub_angle_rad", "hub_angle", "rad"},
+    {"k2_Nm_per_rad", "k2", "N m/rad"},
+    {"k2_over_arm", "k2_over_arm", ""},
+    {"force_spread_N", "force_spread", "N"},
+    {"angle_spread_rad", "angle_spread", "rad"},
+    {"drift_percent", "drift", "%"},
+};
 
 static void fill_columns(const calibration_point *p, const scenario *s, double values[COLUMNS])
 {
@@ -188,7 +198,7 @@ json_t *calibration_json(const calibration *c, const scenario *s, const char *ta
         double values[COLUMNS];
         fill_columns(&c->points[i], s, values);
         for (int k = 0; k < COLUMNS; k++) {
-            json_object_set_new(point, column_keys[k], json_number(values[k]));
+            json_object_set_new(point, columns[k].key, json_number(values[k]));
         }
         json_array_append_new(points, point);
     }
@@ -198,18 +208,18 @@ json_t *calibration_json(const calibration *c, const scenario *s, const char *ta
 
 void calibration_csv(FILE *stream, const calibration *c, const scenario *s)
 {
+    csv_writer csv = csv_begin(stream);
     for (int k = 0; k < COLUMNS; k++) {
-        fprintf(stream, "%s%s", k > 0 ? "," : "", column_keys[k]);
+        csv_heading(&csv, columns[k].name, columns[k].unit);
     }
-    fputc('\n', stream);
+    csv_end_row(&csv);
+
     for (int i = 0; i < c->count; i++) {
         double values[COLUMNS];
         fill_columns(&c->points[i], s, values);
         for (int k = 0; k < COLUMNS; k++) {
-            char text[NUMBER_TEXT];
-            number_format(text, values[k]);
-            fprintf(stream, "%s%s", k > 0 ? "," : "", text);
+            csv_number(&csv, values[k]);
         }
-        fputc('\n', stream);
+        csv_end_row(&csv);
     }
 }

@@ -2,10 +2,11 @@
 
 #include <string.h>
 
-#include "src/run/export.h"
 #include "src/predict/best_stop.h"
 #include "src/rig/rig.h"
 #include "src/base/words.h"
+#include "src/base/json.h"
+#include "src/base/csv.h"
 
 enum {
     PEAK,
@@ -21,16 +22,16 @@ enum {
 };
 
 const compare_quantity compare_quantities[COMPARE_QUANTITIES] = {
-    [PEAK] = {"peak_force_N", "peak", "N"},
-    [BEST_PEAK] = {"best_peak_N", "best peak", "N"},
-    [OVERSHOOT] = {"overshoot_percent", "over", "%"},
-    [SETTLING] = {"settling_time_s", "settled", "s"},
-    [BEST_SETTLING] = {"best_settling_s", "best time", "s"},
-    [IMPACTS] = {"impacts", "impacts", ""},
-    [SEPARATIONS] = {"separations", "separations", ""},
-    [STEADY_ERROR] = {"steady_error_N", "error", "N"},
-    [COMMAND] = {"largest_command_V", "command", "V"},
-    [ENERGY] = {"electrical_energy_J", "energy", "J"},
+    [PEAK] = {"peak_force_N", "peak_force", "peak", "N"},
+    [BEST_PEAK] = {"best_peak_N", "best_peak", "best peak", "N"},
+    [OVERSHOOT] = {"overshoot_percent", "overshoot", "over", "%"},
+    [SETTLING] = {"settling_time_s", "settling_time", "settled", "s"},
+    [BEST_SETTLING] = {"best_settling_s", "best_settling", "best time", "s"},
+    [IMPACTS] = {"impacts", "impacts", "impacts", ""},
+    [SEPARATIONS] = {"separations", "separations", "separations", ""},
+    [STEADY_ERROR] = {"steady_error_N", "steady_error", "error", "N"},
+    [COMMAND] = {"largest_command_V", "largest_command", "command", "V"},
+    [ENERGY] = {"electrical_energy_J", "electrical_energy", "energy", "J"},
 };
 
 // --- rows -----------------------------------------------------------------------------------
@@ -323,36 +324,32 @@ json_t *compare_json(const compare_table *t)
 
 void compare_csv(FILE *stream, const compare_table *t)
 {
-    fputs("scenario,law", stream);
+    csv_writer csv = csv_begin(stream);
+    csv_heading(&csv, "scenario", "");
+    csv_heading(&csv, "law", "");
     for (int v = 0; v < t->varied_count; v++) {
-        fprintf(stream, ",%s", parameter_table[t->varied[v]].path);
+        const parameter_info *info = &parameter_table[t->varied[v]];
+        csv_heading(&csv, info->path, info->unit);
     }
-    fputs(",status", stream);
+    csv_heading(&csv, "status", "");
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
-        fprintf(stream, ",%s", compare_quantities[k].key);
+        csv_heading(&csv, compare_quantities[k].name, compare_quantities[k].unit);
     }
-    fputc('\n', stream);
+    csv_end_row(&csv);
+
     for (int i = 0; i < t->count; i++) {
         const compare_row *row = &t->rows[i];
-        // quotes double in a quoted field
-        fputc('"', stream);
-        for (const char *c = row->scenario; *c != '\0'; c++) {
-            fputs(*c == '"' ? "\"\"" : (const char[]){*c, 0}, stream);
-        }
-        fprintf(stream, "\",%s", row->law);
+        csv_text(&csv, row->scenario);
+        csv_text(&csv, row->law);
         for (int v = 0; v < t->varied_count; v++) {
             char text[PARAMETER_TEXT_SIZE];
             format_varied(t, i, v, text, sizeof text);
-            fprintf(stream, ",%s", text);
+            csv_text(&csv, text);
         }
-        fprintf(stream, ",%s", row->ok ? "ok" : "failed");
+        csv_text(&csv, row->ok ? "ok" : "failed");
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
-            char text[NUMBER_TEXT] = "";
-            if (!isnan(row->values[k])) {
-                number_format(text, row->values[k]);
-            }
-            fprintf(stream, ",%s", text);
+            csv_number(&csv, row->values[k]);
         }
-        fputc('\n', stream);
+        csv_end_row(&csv);
     }
 }

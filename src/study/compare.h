@@ -9,9 +9,10 @@
 enum { COMPARE_QUANTITIES = 10, COMPARE_MOST_VARIED = 8 };
 
 typedef struct compare_quantity {
-    const char *key;     // in JSON and CSV, its unit at the end
+    const char *key;     // in JSON, its unit at the end
+    const char *name;    // in CSV
     const char *heading; // in the table
-    const char *unit;    // in the table
+    const char *unit;    // in the table and in CSV
 } compare_quantity;
 extern const compare_quantity compare_quantities[COMPARE_QUANTITIES];
 

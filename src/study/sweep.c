@@ -6,10 +6,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "src/run/export.h"
 #include "src/base/random.h"
+#include "src/base/numbers.h"
 #include "src/study/sweep_store.h"
-#include "src/base/words.h"
 
 const char *sweep_sampling_name(sweep_sampling sampling)
 {

@@ -1,4 +1,7 @@
 #include "src/study/sweep_store.h"
+#include "src/base/numbers.h"
+#include "src/base/csv.h"
+#include "src/base/version.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,8 +12,6 @@
 #include <sqlite3.h>
 #include <sys/file.h>
 #include <unistd.h>
-
-#include "src/run/export.h"
 
 // Marks a database as ours (PRAGMA application_id): "ILSw". The layout's version is user_version.
 #define APPLICATION_ID "1229738871"
@@ -576,52 +577,37 @@ status sweep_store_quantity(sweep_store *store, const char *key, double *values,
 
 // --- CSV ------------------------------------------------------------------------------------
 
-static void csv_header(const sweep *s, FILE *stream)
+static void write_headings(csv_writer *csv, const sweep *s)
 {
-    fputs("run[]", stream);
+    csv_heading(csv, "run", "");
     for (int i = 0; i < s->axis_count; i++) {
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
-        fprintf(stream, ",%s[%s]", info->path, info->unit);
+        csv_heading(csv, info->path, info->unit);
     }
-    fputs(",status[],message[]", stream);
+    csv_heading(csv, "status", "");
+    csv_heading(csv, "message", "");
     for (int i = 0; i < summary_count; i++) {
         if (!summary_table[i].timing) {
             char name[64];
             const char *unit;
             quantity_name(summary_table[i].key, name, sizeof name, &unit);
-            fprintf(stream, ",%s[%s]", name, unit);
+            csv_heading(csv, name, unit);
         }
     }
-    fputc('\n', stream);
+    csv_end_row(csv);
 }
 
-// A text as CSV wants it: in quotes, with inner ones doubled, if it could be misread.
-static void csv_text(FILE *stream, const char *text)
+static void write_field(csv_writer *csv, sqlite3_stmt *row, int column)
 {
-    if (strpbrk(text, ",\"\r\n") == NULL) {
-        fputs(text, stream);
-        return;
-    }
-    fputc('"', stream);
-    for (; *text != '\0'; text++) {
-        fputs(*text == '"' ? "\"\"" : (const char[]){*text, '\0'}, stream);
-    }
-    fputc('"', stream);
-}
-
-static void csv_field(FILE *stream, sqlite3_stmt *row, int column)
-{
-    char number[NUMBER_TEXT];
-    int type = sqlite3_column_type(row, column);
-    if (column > 0) {
-        fputc(',', stream);
-    }
-    if (type == SQLITE_TEXT) {
-        csv_text(stream, (const char *)sqlite3_column_text(row, column));
-    } else {
-        number_format(number,
-                      type == SQLITE_NULL ? (double)NAN : sqlite3_column_double(row, column));
-        fputs(number, stream);
+    switch (sqlite3_column_type(row, column)) {
+    case SQLITE_TEXT:
+        csv_text(csv, (const char *)sqlite3_column_text(row, column));
+        break;
+    case SQLITE_NULL:
+        csv_number(csv, (double)NAN);
+        break;
+    default:
+        csv_number(csv, sqlite3_column_double(row, column));
     }
 }
 
@@ -633,14 +619,16 @@ status sweep_store_csv(sweep_store *store, FILE *stream, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
-    csv_header(store->sweep, stream);
+
+    csv_writer csv = csv_begin(stream);
+    write_headings(&csv, store->sweep);
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
         for (int i = 0; i < first_quantity + summary_count; i++) {
             if (i < first_quantity || !summary_table[i - first_quantity].timing) {
-                csv_field(stream, rows, i);
+                write_field(&csv, rows, i);
             }
         }
-        fputc('\n', stream);
+        csv_end_row(&csv);
     }
     return sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
 }

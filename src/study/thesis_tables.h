@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/quantities/parameters.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 enum { TABLE_VOLTAGES = 4 };
 

@@ -10,6 +10,7 @@
 #include "render/plot/study_plot.h"
 #include "src/study/bench.h"
 #include "src/base/words.h"
+#include "src/base/version.h"
 
 // --- what the programs add to the library's benchmarks --------------------------------------
 

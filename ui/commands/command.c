@@ -1,6 +1,7 @@
 #include "ui/commands/command.h"
 
 #include "src/study/sweep.h"
+#include "src/base/json.h"
 
 #include <langinfo.h>
 #include <stdarg.h>

@@ -1,10 +1,10 @@
 // The commands of the command line, and what they share.
 #pragma once
 
+#include <jansson.h>
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "src/run/export.h"
 #include "src/run/run.h"
 #include "src/base/whole_file.h"
 

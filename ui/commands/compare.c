@@ -4,7 +4,7 @@
 
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
-#include "src/base/words.h"
+#include "src/base/numbers.h"
 
 enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
 

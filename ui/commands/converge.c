@@ -6,6 +6,8 @@
 #include "render/plot/figure_file.h"
 #include "render/plot/trace_plot.h"
 #include "src/study/convergence.h"
+#include "src/base/json.h"
+#include "src/base/version.h"
 
 static json_t *panel_object(const scenario *s, const convergence_panel *panel)
 {

@@ -4,6 +4,7 @@
 
 #include "render/figures/figures.h"
 #include "src/base/words.h"
+#include "src/base/numbers.h"
 #include "ui/commands/figure_options.h"
 
 #define DEFAULT_FOLDER  "figures"

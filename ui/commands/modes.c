@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "src/arm/modes.h"
+#include "src/base/json.h"
 
 #define TWO_PI (2 * 3.14159265358979323846)
 

@@ -4,6 +4,7 @@
 
 #include "src/predict/linearised.h"
 #include "src/predict/predict.h"
+#include "src/base/json.h"
 
 typedef struct predictor {
     const char *name; // key of --json

@@ -2,6 +2,7 @@
 
 #include "render/page/picture_file.h"
 #include "render/plot/trace_plot.h"
+#include "src/run/export.h"
 
 #include <math.h>
 

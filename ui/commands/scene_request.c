@@ -1,8 +1,7 @@
 #include "ui/commands/scene_request.h"
+#include "src/base/numbers.h"
 
 #include <stdlib.h>
-
-#include "src/base/words.h"
 
 enum { DEFAULT_INSTANTS = 5 };
 

@@ -8,6 +8,8 @@
 #include "render/plot/study_plot.h"
 #include "src/study/convergence.h"
 #include "src/study/sensor_view.h"
+#include "src/base/json.h"
+#include "src/base/version.h"
 
 static status write_figure(figure *fig, const scenario *s, const char *what, const char *path,
                            fault *f)

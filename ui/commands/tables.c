@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/study/thesis_tables.h"
+#include "src/base/json.h"
 
 static json_t *numbers(const double *values)
 {

@@ -1,11 +1,10 @@
 // Actions that change the run: values, pushes, branches, undo.
 #include "ui/explorer/actions.h"
+#include "src/base/numbers.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "src/run/export.h"
 
 bool lab_change(lab *l, int parameter, const char *text)
 {

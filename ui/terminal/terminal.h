@@ -2,7 +2,7 @@
 // every way out, crashes included.
 #pragma once
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 #include "ui/terminal/escape_sequence.h"
 #include "ui/terminal/key_codes.h"
 #include "ui/terminal/screen.h"

@@ -12,6 +12,7 @@
 #include <time.h>
 
 #include "src/base/whole_file.h"
+#include "src/base/json.h"
 #include "tests/bench/peers/peer.h"
 
 #define SAMPLE_TIME 0.02 // shortest time of one sample [s]

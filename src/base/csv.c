@@ -1,0 +1,80 @@
+#include "src/base/csv.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+
+csv_writer csv_begin(FILE *stream)
+{
+    assert(stream != NULL);
+    return (csv_writer){.stream = stream};
+}
+
+static void begin_field(csv_writer *w)
+{
+    if (w->in_row) {
+        fputc(',', w->stream);
+    }
+    w->in_row = true;
+}
+
+// What stands between quotes, inner ones doubled.
+static void write_quoted(FILE *stream, const char *text)
+{
+    for (; *text != '\0'; text++) {
+        if (*text == '"') {
+            fputc('"', stream);
+        }
+        fputc(*text, stream);
+    }
+}
+
+static bool needs_quotes(const char *text)
+{
+    return strpbrk(text, ",\"\r\n") != NULL;
+}
+
+// One field: a name, and a unit in brackets unless that is NULL.
+static void write_field(csv_writer *w, const char *name, const char *unit)
+{
+    assert(w->stream != NULL && name != NULL);
+    const char *const parts[] = {name, unit != NULL ? "[" : "", unit != NULL ? unit : "",
+                                 unit != NULL ? "]" : ""};
+    bool quoted = needs_quotes(name) || (unit != NULL && needs_quotes(unit));
+    begin_field(w);
+    fputs(quoted ? "\"" : "", w->stream);
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        write_quoted(w->stream, parts[i]);
+    }
+    fputs(quoted ? "\"" : "", w->stream);
+}
+
+void csv_heading(csv_writer *w, const char *name, const char *unit)
+{
+    write_field(w, name, unit);
+}
+
+void csv_text(csv_writer *w, const char *text)
+{
+    write_field(w, text, NULL);
+}
+
+void csv_number(csv_writer *w, double value)
+{
+    char text[NUMBER_TEXT];
+    begin_field(w);
+    if (!isnan(value)) {
+        number_format(text, value);
+        fputs(text, w->stream);
+    } else if (w->missing != NULL) {
+        fputs(w->missing, w->stream);
+    }
+}
+
+void csv_end_row(csv_writer *w)
+{
+    fputc('\n', w->stream);
+    w->in_row = false;
+}

@@ -1,0 +1,51 @@
+#include "src/base/fault.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+static void fill(fault *f, status code, const char *format, va_list args)
+{
+    f->code = code;
+    f->path = "";
+    f->line = f->column = 0;
+    vsnprintf(f->text, sizeof f->text, format, args);
+}
+
+status fault_set(fault *f, status code, const char *format, ...)
+{
+    if (f != NULL) {
+        va_list args;
+        va_start(args, format);
+        fill(f, code, format, args);
+        va_end(args);
+    }
+    return code;
+}
+
+status fault_set_at(fault *f, status code, const char *path, const char *format, ...)
+{
+    assert(path != NULL);
+    if (f != NULL) {
+        va_list args;
+        va_start(args, format);
+        fill(f, code, format, args);
+        va_end(args);
+        f->path = path;
+    }
+    return code;
+}
+
+status fault_set_place(fault *f, status code, int line, int column, const char *format, ...)
+{
+    assert(line > 0 && column > 0);
+    if (f != NULL) {
+        va_list args;
+        va_start(args, format);
+        fill(f, code, format, args);
+        va_end(args);
+        f->line = line;
+        f->column = column;
+    }
+    return code;
+}

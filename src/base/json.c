@@ -1,0 +1,136 @@
+#include "src/base/json.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+
+json_t *json_number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *json_text(const char *text)
+{
+    assert(text != NULL);
+    json_t *string = json_string(text);
+    char *copy = string == NULL ? strdup(text) : NULL;
+    // a file's name may be no UTF-8, which JSON cannot hold
+    for (char *c = copy; c != NULL && *c != '\0'; c++) {
+        *c = (unsigned char)*c < 0x80 ? *c : '?';
+    }
+    if (copy != NULL) {
+        string = json_string(copy);
+        free(copy);
+    }
+    return string;
+}
+
+json_t *json_numbers(const double *values, int count)
+{
+    assert(count >= 0 && (values != NULL || count == 0));
+    json_t *array = json_array();
+    for (int i = 0; i < count; i++) {
+        json_array_append_new(array, json_number(values[i]));
+    }
+    return array;
+}
+
+static void write_string(FILE *stream, const char *text)
+{
+    json_t *string = json_text(text);
+    if (string != NULL) {
+        json_dumpf(string, stream, JSON_ENCODE_ANY);
+    }
+    json_decref(string);
+}
+
+static void write_indented(FILE *stream, const json_t *value, int depth);
+
+static void new_line(FILE *stream, int depth)
+{
+    fprintf(stream, "\n%*s", 2 * depth, "");
+}
+
+static void write_object(FILE *stream, const json_t *object, int depth)
+{
+    const char *key, *separator = "";
+    json_t *member;
+    fputc('{', stream);
+    json_object_foreach((json_t *)object, key, member)
+    {
+        fputs(separator, stream);
+        new_line(stream, depth + 1);
+        write_string(stream, key);
+        fputs(": ", stream);
+        write_indented(stream, member, depth + 1);
+        separator = ",";
+    }
+    if (separator[0] != '\0') {
+        new_line(stream, depth);
+    }
+    fputc('}', stream);
+}
+
+// An array of plain values stands on one line.
+static void write_array(FILE *stream, const json_t *array, int depth)
+{
+    size_t length = json_array_size(array);
+    bool nested = false;
+    fputc('[', stream);
+    for (size_t i = 0; i < length; i++) {
+        const json_t *element = json_array_get(array, i);
+        nested = json_is_object(element) || json_is_array(element);
+        if (i > 0) {
+            fputs(nested ? "," : ", ", stream);
+        }
+        if (nested) {
+            new_line(stream, depth + 1);
+        }
+        write_indented(stream, element, depth + 1);
+    }
+    if (nested) {
+        new_line(stream, depth);
+    }
+    fputc(']', stream);
+}
+
+static void write_indented(FILE *stream, const json_t *value, int depth)
+{
+    char text[NUMBER_TEXT];
+    switch (json_typeof(value)) {
+    case JSON_OBJECT:
+        write_object(stream, value, depth);
+        break;
+    case JSON_ARRAY:
+        write_array(stream, value, depth);
+        break;
+    case JSON_STRING:
+        write_string(stream, json_string_value(value));
+        break;
+    case JSON_REAL:
+    case JSON_INTEGER:
+        number_format(text, json_number_value(value));
+        fputs(text, stream);
+        break;
+    case JSON_TRUE:
+        fputs("true", stream);
+        break;
+    case JSON_FALSE:
+        fputs("false", stream);
+        break;
+    case JSON_NULL:
+        fputs("null", stream);
+        break;
+    }
+}
+
+void json_write(FILE *stream, const json_t *value)
+{
+    assert(stream != NULL && value != NULL);
+    write_indented(stream, value, 0);
+    fputc('\n', stream);
+}

@@ -1,0 +1,5 @@
+// The version of the program.
+#pragma once
+
+// "0.1.0".
+const char *lab_version(void);

@@ -1,0 +1,70 @@
+// JSON files: what jansson reads back, in the order and with the digits that were meant.
+#include "src/base/json.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/check.h"
+
+// What json_write writes of a value, on the heap; takes over the value.
+static char *written(json_t *value)
+{
+    char *text = NULL;
+    size_t length = 0;
+    FILE *stream = open_memstream(&text, &length);
+    json_write(stream, value);
+    fclose(stream);
+    json_decref(value);
+    return text;
+}
+
+static void json_is_what_jansson_reads(void **state)
+{
+    (void)state;
+    const char *source = "{\"b\": [1, 0.1, null, true], \"a\": {\"quote\\\" \\u00e9\\n\": \"\"}, "
+                         "\"empty\": {}, \"none\": [], \"list\": [{\"x\": -1e-300}, []]}";
+    json_t *value = json_loads(source, 0, NULL);
+    char *text = written(json_deep_copy(value));
+    json_t *again = json_loads(text, 0, NULL);
+    assert_non_null(again);
+    assert_true(json_equal(value, again));
+    // keys stay in the order in which they were given
+    assert_true(strstr(text, "\"b\"") < strstr(text, "\"a\""));
+    json_decref(value);
+    json_decref(again);
+    free(text);
+}
+
+static void text_without_utf8_is_made_readable(void **state)
+{
+    (void)state;
+    char *text = written(json_text("a\xff"
+                                   "b"));
+    assert_string_equal(text, "\"a?b\"\n");
+    free(text);
+    text = written(json_text("\u00e9"));
+    assert_string_equal(text, "\"\u00e9\"\n");
+    free(text);
+}
+
+static void numbers_that_are_missing_are_null(void **state)
+{
+    (void)state;
+    const double values[] = {1.5, (double)NAN, (double)INFINITY, 0.1};
+    char *text = written(json_numbers(values, 4));
+    assert_string_equal(text, "[1.5, null, null, 0.1]\n");
+    free(text);
+    text = written(json_numbers(NULL, 0));
+    assert_string_equal(text, "[]\n");
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(json_is_what_jansson_reads),
+        cmocka_unit_test(text_without_utf8_is_made_readable),
+        cmocka_unit_test(numbers_that_are_missing_are_null),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
