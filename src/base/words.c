@@ -4,30 +4,42 @@
 #include <stddef.h>
 #include <string.h>
 
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+// Optimal string alignment: Levenshtein's distance with swaps of neighbours.
 int edit_distance(const char *a, const char *b, int limit)
 {
     assert(a != NULL && b != NULL);
     enum { LONGEST = 64 };
     size_t la = strlen(a), lb = strlen(b);
-    int row[LONGEST + 1];
+    int rows[3][LONGEST + 1];
+    int *before = rows[0], *last = rows[1], *row = rows[2];
     if (la > LONGEST || lb > LONGEST) {
         return limit;
     }
-    // one row of the table of prefix distances, overwritten letter by letter
+
+    // three rows of the table of distances between prefixes, used in turn
     for (size_t j = 0; j <= lb; j++) {
         row[j] = (int)j;
     }
     for (size_t i = 1; i <= la; i++) {
-        int diagonal = row[0];
+        int *oldest = before;
+        before = last;
+        last = row;
+        row = oldest;
         row[0] = (int)i;
         for (size_t j = 1; j <= lb; j++) {
-            int replaced = diagonal + (a[i - 1] != b[j - 1]);
-            int shifted = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
-            diagonal = row[j];
-            row[j] = replaced < shifted ? replaced : shifted;
+            row[j] =
+                smaller(last[j - 1] + (a[i - 1] != b[j - 1]), smaller(last[j], row[j - 1]) + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                row[j] = smaller(row[j], before[j - 2] + 1);
+            }
         }
     }
-    return row[lb] < limit ? row[lb] : limit;
+    return smaller(row[lb], limit);
 }
 
 nearest_word nearest_begin(const char *word)

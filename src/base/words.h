@@ -1,8 +1,8 @@
 // The nearest known word to a misspelt one.
 #pragma once
 
-// Number of insertions, deletions and replacements that turn a into b, at most `limit` (also for
-// words of more than 64 bytes).
+// Number of insertions, deletions, replacements and swaps of neighbours that turn a into b, at most
+// `limit` (also for words of more than 64 bytes).
 int edit_distance(const char *a, const char *b, int limit);
 
 // The search for the word nearest to a misspelt one.

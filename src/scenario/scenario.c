@@ -1,5 +1,6 @@
 #include "src/scenario/reader.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -181,8 +182,8 @@ void scenario_finish(scenario *s)
     *s = (scenario){0};
 }
 
-// Sets one parameter of p and resolves all; f holds the sentence without its beginning.
-static status override_parameter(const scenario *s, parameters *p, const char *assignment, fault *f)
+// Gives one parameter of p its value; f holds the sentence without its beginning.
+static status assign(parameters *p, const char *assignment, fault *f)
 {
     char path[128];
     size_t length = strcspn(assignment, "=");
@@ -198,10 +199,13 @@ static status override_parameter(const scenario *s, parameters *p, const char *a
                          near ? ", did you mean '" : ", expected one that 'show' lists",
                          near ? near : "", near ? "'?" : "");
     }
-    status result = parameter_set_text(p, index, assignment + length + 1, f);
-    if (result == STATUS_OK) {
-        result = parameters_resolve(p, f);
-    }
+    return parameter_set_text(p, index, assignment + length + 1, f);
+}
+
+// Resolves parameters that were changed, and checks that the scenario's script goes with them.
+static status resolve_changed(const scenario *s, parameters *p, fault *f)
+{
+    status result = parameters_resolve(p, f);
     if (result == STATUS_OK) {
         scenario changed = *s;
         changed.parameters = *p;
@@ -221,7 +225,10 @@ status scenario_override(scenario *s, const char *assignment, fault *f)
 {
     fault inner;
     parameters p = s->parameters;
-    status result = override_parameter(s, &p, assignment, &inner);
+    status result = assign(&p, assignment, &inner);
+    if (result == STATUS_OK) {
+        result = resolve_changed(s, &p, &inner);
+    }
     if (result != STATUS_OK) {
         fault_set(f, result, "--set %.200s: %.700s", assignment, inner.text);
         if (f != NULL) {
@@ -231,4 +238,59 @@ status scenario_override(scenario *s, const char *assignment, fault *f)
     }
     s->parameters = p;
     return STATUS_OK;
+}
+
+// Applies all at once: each is read once, and they are resolved together.
+static bool override_together(scenario *s, char *const *assignments, int count)
+{
+    fault ignored;
+    parameters p = s->parameters;
+    for (int i = 0; i < count; i++) {
+        if (assign(&p, assignments[i], &ignored) != STATUS_OK) {
+            return false;
+        }
+    }
+    if (count > 0 && resolve_changed(s, &p, &ignored) != STATUS_OK) {
+        return false;
+    }
+    s->parameters = p;
+    return true;
+}
+
+// Applies one after the other. Returns how many failed, each told to report (may be NULL).
+static int override_each(scenario *s, char *const *assignments, int count, fault_handler report,
+                         void *context)
+{
+    int failures = 0;
+    for (int i = 0; i < count; i++) {
+        fault f = {0};
+        if (scenario_override(s, assignments[i], &f) != STATUS_OK) {
+            failures++;
+            if (report != NULL) {
+                report(context, f.text);
+            }
+        }
+    }
+    return failures;
+}
+
+status scenario_override_all(scenario *s, char *const *assignments, int count, fault_handler report,
+                             void *context)
+{
+    assert(s != NULL && count >= 0 && (count == 0 || assignments != NULL));
+    if (override_together(s, assignments, count)) {
+        return STATUS_OK;
+    }
+
+    // something is wrong: those that can be applied are, so that the faults of the others are told
+    // as long as fewer remain
+    int failures = count + 1, left = override_each(s, assignments, count, NULL, NULL);
+    while (left > 0 && left < failures) {
+        failures = left;
+        left = override_each(s, assignments, count, NULL, NULL);
+    }
+    if (left == 0 || override_each(s, assignments, count, report, context) == 0) {
+        return STATUS_OK;
+    }
+    return STATUS_BAD_ARGUMENT;
 }

@@ -73,6 +73,13 @@ void scenario_write(FILE *stream, const scenario *s);
 // script is allowed; the action then does not happen.
 status scenario_override(scenario *s, const char *assignment, fault *f);
 
+// Applies several of them, in any order that makes sense: what is wrong only until another one is
+// set (arm.links=4 before arm.model=corrected) is right. Of several values for one parameter the
+// last one counts. Each fault is reported as scenario_override says it, and then nothing is said of
+// what the parameters are.
+status scenario_override_all(scenario *s, char *const *assignments, int count, fault_handler report,
+                             void *context);
+
 // Finds a scenario by the name `list` shows ("thesis/fig-3-4") or by file, as SCENARIO on the
 // command line is meant, and reads it. A file may be given without its ".yaml". STATUS_BAD_ARGUMENT
 // if there is neither; the sentence then names the nearest scenario.

@@ -27,28 +27,17 @@ static void show_progress(void *context, int done, int total)
     fprintf(stderr, "\r[%s] %3d %%  %d of %d frames", bar, 100 * done / total, done, total);
 }
 
-static int read_options(const arguments *a, film_options *o)
+static film_options options_of(const arguments *a)
 {
-    scene_request r;
-    double rate = 0;
-    int code = read_scene_request(a, &r);
-    if (code != EXIT_DONE) {
-        return code;
-    }
-    *o = (film_options){.camera = r.options.camera,
-                        .renderer = r.options.renderer,
-                        .width = r.options.width,
-                        .height = r.options.height,
-                        .stop = &signal_caught};
-    code = read_number_between("fps", a->fps, 1, 120, &rate);
-    o->frames_per_second = (int)rate;
-    if (code == EXIT_DONE) {
-        code = read_number_between("seconds", a->seconds, 0.1, 3600, &o->seconds);
-    }
-    if (code == EXIT_DONE) {
-        code = read_number_between("slow", a->slow, 1, 1000, &o->slow);
-    }
-    return code;
+    scene_options view = read_view(a);
+    return (film_options){.camera = view.camera,
+                          .renderer = view.renderer,
+                          .width = view.width,
+                          .height = view.height,
+                          .frames_per_second = (int)a->fps,
+                          .seconds = a->seconds,
+                          .slow = a->slow,
+                          .stop = &signal_caught};
 }
 
 // Films the run. An interrupt ends it in order: no half film stays behind.
@@ -78,16 +67,17 @@ static int film_run(const arguments *a, const scenario *s, const run_result *res
     return signal_caught != 0 ? 128 + signal_caught : exit_status;
 }
 
-static int simulate_and_film(const arguments *a, const scenario *s, film_options *o)
+static int simulate_and_film(const arguments *a, scenario *s)
 {
     run_result result;
+    film_options o = options_of(a);
     int exit_status = EXIT_FAILED;
     status code = run_scenario(s, true, &result);
     if (code != STATUS_OK) {
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
     } else {
-        exit_status = film_run(a, s, &result, o);
+        exit_status = film_run(a, s, &result, &o);
     }
     run_finish(&result);
     return exit_status;
@@ -95,37 +85,60 @@ static int simulate_and_film(const arguments *a, const scenario *s, film_options
 
 static int animate(const arguments *a)
 {
-    scenario s;
-    film_options o;
     fault f = {0};
     if (a->output == NULL) {
         return complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, FILE.gif, or "
                         "a folder for PNG frames");
     }
-    int result = read_options(a, &o);
-    if (result == EXIT_DONE && film_file_check(a->output, &f) != STATUS_OK) {
-        result = complain_fault(&f);
+    if (film_file_check(a->output, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
-    if (result == EXIT_DONE) {
-        result = open_scenario(&s, a->operands[0], a);
-    }
-    if (result != EXIT_DONE) {
-        return result;
-    }
-    result = simulate_and_film(a, &s, &o);
-    scenario_finish(&s);
-    return result;
+    return with_scenario(a->operands[0], a, simulate_and_film);
 }
+
+static const option_row rows[] = {
+    {.name = "output",
+     .letter = 'o',
+     .type = OPTION_PLACE,
+     .value = "PATH",
+     .help = "film or folder to write to",
+     PLACE(output)},
+    {.name = "fps",
+     .type = OPTION_NUMBER,
+     .value = "N",
+     .help = "frames per second of the film (30)",
+     PLACE(fps),
+     .low = 1,
+     .high = 120},
+    {.name = "seconds",
+     .type = OPTION_NUMBER,
+     .value = "S",
+     .help = "length of the film (10)",
+     PLACE(seconds),
+     .low = 0.1,
+     .high = 3600,
+     .unit = "s"},
+    {.name = "slow",
+     .type = OPTION_NUMBER,
+     .value = "N",
+     .help = "how much the first impact is slowed down (8)",
+     PLACE(slow),
+     .low = 1,
+     .high = 1000},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
 
 const command animate_command = {
     .name = "animate",
+    .group = GROUP_PICTURES,
     .operands = "SCENARIO",
-    .options = "soGKZFUVq",
     .summary = "Make a film of a run: the arm in space and its traces",
     .help = "-o FILE.mp4, FILE.webm or FILE.gif needs the program ffmpeg; any other name is that "
             "of a folder, to\nbe made, for PNG frames. The first impact is slowed down against "
             "the rest.\n",
     .least = 1,
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &options, &quiet_options, &view_options},
     .run = animate,
 };

@@ -1,207 +1,214 @@
+// Reads the command line by the rows of a command's options.
 #include "ui/commands/command.h"
 
+#include <assert.h>
+#include <ctype.h>
+#include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/page/picture_file.h"
+#include "src/base/numbers.h"
+#include "src/base/whole_file.h"
 #include "src/base/words.h"
+#include "src/study/sweep.h"
 
-// Every option of every command, by a letter that is also its short form where `is_short` says so.
-typedef struct option_info {
-    char letter;
-    bool is_short;
-    const char *name;
-    const char *value; // what it takes, NULL if nothing
-    const char *help;
-} option_info;
+// getopt_long's value of the option in row i is ROW_VALUE + i, apart from all letters
+enum { ROW_VALUE = 256 };
 
-static const option_info option_table[] = {
-    {'s', false, "set", "PATH=VALUE", "give a parameter another value (may be repeated)"},
-    {'j', false, "json", "FILE|-", "write the results as JSON; - is the standard output"},
-    {'c', false, "csv", "FILE|-", "write the recorded signals, one row a step"},
-    {'p', false, "plot", "FILE.{png,pdf,svg}", "draw the recorded signals"},
-    {'S', false, "scene", "FILE.png", "draw the arm"},
-    {'v', false, "vary", "PATH=a:b:n", "vary a parameter: n values from a to b (may be repeated)"},
-    {'m', false, "sample", "grid|random|latin", "how the values are combined (grid)"},
-    {'n', false, "runs", "N", "number of runs at random or of a Latin hypercube"},
-    {'e', false, "seed", "S", "start of the random numbers (0)"},
-    {'J', false, "jobs", "J", "number of runs at a time (as many as processors)"},
-    {'d', false, "db", "FILE.sqlite", "keep every run in a database; go on where it ends"},
-    {'C', false, "csv", "FILE|-", "write a row for each run"},
-    {'P', false, "plot", "FILE.{png,pdf,svg}", "draw the quantity over one or two parameters"},
-    {'Q', false, "quantity", "KEY", "what to draw and to sum up (peak_force_N)"},
-    {'L', false, "plot", "FILE.{png,pdf,svg}", "draw the study; a CSV of what is drawn beside it"},
-    {'O', false, "only", "NAME", "measure this one alone"},
-    {'B', false, "baseline", "FILE", "compare with what --json wrote before"},
-    {'A', false, "against", "SCENARIO", "a run to hold the others against"},
-    {'t', false, "tolerance", "PERCENT", "differences beyond it are marked (5)"},
-    {'X', false, "markdown", "FILE|-", "write the table as one of a Markdown page"},
-    {'H', false, "columns", "KEY,KEY...", "show only these quantities, by their keys of --json"},
-    {'M', false, "mono", NULL, "black and greys on white"},
-    {'D', false, "dark", NULL, "on near black"},
-    {'W', false, "width", "MM", "width of the page in millimetres"},
-    {'Y', false, "overlay", "FILE.csv", "points of reference data over recorded signals"},
-    {'i', false, "dpi", "N", "resolution of a PNG (200)"},
-    {'T', false, "at", "T", "draw the arm at this instant [s] (may be repeated)"},
-    {'G', false, "gl", "osmesa|egl|cairo|auto", "what draws the arm (auto)"},
-    {'K', false, "camera", "three-quarter|top|side", "where it is seen from (three-quarter)"},
-    {'Z', false, "size", "WIDTHxHEIGHT", "of the picture in pixels (1280x720)"},
-    {'F', false, "fps", "N", "frames per second of the film (30)"},
-    {'U', false, "seconds", "S", "length of the film (10)"},
-    {'V', false, "slow", "N", "how much the first impact is slowed down (8)"},
-    {'k', false, "keys", "KEYS", "press these keys: characters, and <Right>, <Enter>, <C-l>..."},
-    {'r', false, "script", "FILE|-", "carry out commands, one a line, as : takes them"},
-    {'z', false, "size", "WIDTHxHEIGHT", "print a screen of this size in characters (120x40)"},
-    {'g', false, "glyphs", "braille|blocks|ascii", "characters to draw with"},
-    {'E', false, "theme", "dark|light|mono", "colours for that ground"},
-    {'I', false, "colours", "auto|true|256|16|mono", "how many of them the terminal has"},
-    {'o', true, "output", "PATH", "file or folder to write to"},
-    {'f', false, "format", "png,pdf,svg", "which kinds of files to write"},
-    {'q', true, "quiet", NULL, "print no summary"},
-    {'h', true, "help", NULL, "print this help"},
-};
-enum { OPTIONS = sizeof option_table / sizeof option_table[0] };
-
-static bool has_option(const command *self, const option_info *info)
+const option_table *command_options(const command *c, int i)
 {
-    return info->letter == 'h' || strchr(self->options, info->letter) != NULL;
+    int own = 0; // tables that come before --help
+    assert(c != NULL && i >= 0 && i <= COMMAND_TABLES);
+    while (c->options[own] != NULL && strcmp(c->options[own]->title, help_options.title) == 0) {
+        own++;
+    }
+    return i < own ? c->options[i] : i == own ? &help_options : c->options[i - 1];
 }
 
-void print_help(const command *self)
+const option_row *command_option(const command *c, int i)
 {
-    printf("impactlab %s%s%s%s\n\n%s.\n", self->name, self->operands[0] ? " " : "", self->operands,
-           " [OPTION]...", self->summary);
-    if (self->help[0] != '\0') {
-        printf("\n%s", self->help);
+    const option_table *t;
+    assert(c != NULL && i >= 0);
+    for (int k = 0; (t = command_options(c, k)) != NULL; k++) {
+        if (i < t->count) {
+            return &t->rows[i];
+        }
+        i -= t->count;
     }
-    printf("\nOptions:\n");
-    for (int i = 0; i < OPTIONS; i++) {
-        const option_info *info = &option_table[i];
-        if (has_option(self, info)) {
-            char text[64];
-            snprintf(text, sizeof text, "--%s%s%s", info->name, info->value ? " " : "",
-                     info->value ? info->value : "");
-            printf("  %c%c%c %-26s  %s\n", info->is_short ? '-' : ' ',
-                   info->is_short ? info->letter : ' ', info->is_short ? ',' : ' ', text,
-                   info->help);
+    return NULL;
+}
+
+static void *place_of(const arguments *a, const option_row *o)
+{
+    return (char *)a + o->place;
+}
+
+static bool stores_text(option_type type)
+{
+    return type >= OPTION_TEXT && type <= OPTION_QUANTITY;
+}
+
+const char *option_text(const arguments *a, const option_row *o)
+{
+    assert(stores_text(o->type));
+    return *(const char **)place_of(a, o);
+}
+
+bool option_is_written(const option_row *o)
+{
+    return o->type == OPTION_RESULT || o->type == OPTION_PICTURE || o->type == OPTION_PLACE;
+}
+
+// --- values ---------------------------------------------------------------------------------
+
+static int read_number(const option_row *o, const char *text, double *value)
+{
+    const char *rest;
+    const char *space = o->unit != NULL ? " " : "", *unit = o->unit != NULL ? o->unit : "";
+    double number;
+    if (decimal_read(text, &number, &rest) && *rest == '\0' && number >= o->low &&
+        number <= o->high) {
+        *value = number;
+        return EXIT_DONE;
+    }
+    if (isinf(o->high)) {
+        return complain("--%s %s: expected a number from %g%s%s", o->name, text, o->low, space,
+                        unit);
+    }
+    return complain("--%s %s: expected a number from %g to %g%s%s", o->name, text, o->low, o->high,
+                    space, unit);
+}
+
+static int read_whole(const option_row *o, const char *text, uint64_t *value)
+{
+    // 2^64 and what lies beyond stand for the largest number there is
+    uint64_t low = (uint64_t)o->low, high = o->high < 0x1p64 ? (uint64_t)o->high : UINT64_MAX;
+    char *end;
+    errno = 0;
+    unsigned long long number = strtoull(text, &end, 10);
+    if (!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
+        number > high) {
+        return complain("--%s %s: expected a whole number from %llu to %llu", o->name, text,
+                        (unsigned long long)low, (unsigned long long)high);
+    }
+    *value = number;
+    return EXIT_DONE;
+}
+
+static int read_size(const option_row *o, const char *text, grid_size *size)
+{
+    char *rest = NULL;
+    long width = strtol(text, &rest, 10), height = 0;
+    if (*rest == 'x') {
+        height = strtol(rest + 1, &rest, 10);
+    }
+    if (*rest != '\0' || width < 1 || width > o->high || height < 1 || height > o->high) {
+        return complain("--%s %s: expected width x height in %s, like 120x40, at most %g", o->name,
+                        text, o->unit, o->high);
+    }
+    *size = (grid_size){(int)width, (int)height};
+    return EXIT_DONE;
+}
+
+// "a|b|c" as people write it: "a, b or c".
+static int complain_choice(const option_row *o, const char *text)
+{
+    char words[256] = "";
+    size_t length = 0;
+    for (const char *c = o->value; *c != '\0' && length + 5 < sizeof words; c++) {
+        const char *joint = strchr(c + 1, '|') != NULL ? ", " : " or ";
+        char single[2] = {*c, '\0'};
+        length += (size_t)snprintf(words + length, sizeof words - length, "%s",
+                                   *c == '|' ? joint : single);
+    }
+    return complain("--%s %s: expected %s", o->name, text, words);
+}
+
+static int check_choice(const option_row *o, const char *text)
+{
+    size_t length = strlen(text);
+    for (const char *word = o->value; word != NULL; word = strchr(word, '|')) {
+        word += *word == '|';
+        if (length > 0 && length == strcspn(word, "|") && strncmp(word, text, length) == 0) {
+            return EXIT_DONE;
         }
     }
+    return complain_choice(o, text);
 }
 
-// Stores an option's value; false if it was given before.
-static bool take_text(const char **slot, const char *value)
+static int check_quantity(const option_row *o, const char *key)
 {
-    bool first = *slot == NULL;
-    *slot = value;
-    return first;
-}
-
-static bool take_option(arguments *a, int letter, char *value)
-{
-    switch (letter) {
-    case 's':
-        a->sets[a->set_count++] = value;
-        return true;
-    case 'j':
-        return take_text(&a->json, value);
-    case 'c':
-    case 'C':
-        return take_text(&a->csv, value);
-    case 'p':
-    case 'P':
-    case 'L':
-        return take_text(&a->plot, value);
-    case 'S':
-        return take_text(&a->scene, value);
-    case 'v':
-        a->varies[a->vary_count++] = value;
-        return true;
-    case 'm':
-        return take_text(&a->sample, value);
-    case 'n':
-        return take_text(&a->runs, value);
-    case 'e':
-        return take_text(&a->seed, value);
-    case 'J':
-        return take_text(&a->jobs, value);
-    case 'd':
-        return take_text(&a->db, value);
-    case 'Q':
-        return take_text(&a->quantity, value);
-    case 'O':
-        return take_text(&a->only, value);
-    case 'B':
-        return take_text(&a->baseline, value);
-    case 'A':
-        return take_text(&a->against, value);
-    case 't':
-        return take_text(&a->tolerance, value);
-    case 'X':
-        return take_text(&a->markdown, value);
-    case 'H':
-        return take_text(&a->columns, value);
-    case 'M':
-        a->mono = true;
-        return true;
-    case 'D':
-        a->dark = true;
-        return true;
-    case 'Y':
-        return take_text(&a->overlay, value);
-    case 'W':
-        return take_text(&a->width, value);
-    case 'i':
-        return take_text(&a->dpi, value);
-    case 'T':
-        a->ats[a->at_count++] = value;
-        return true;
-    case 'G':
-        return take_text(&a->gl, value);
-    case 'K':
-        return take_text(&a->camera, value);
-    case 'Z':
-        return take_text(&a->size, value);
-    case 'F':
-        return take_text(&a->fps, value);
-    case 'U':
-        return take_text(&a->seconds, value);
-    case 'V':
-        return take_text(&a->slow, value);
-    case 'k':
-        return take_text(&a->keys, value);
-    case 'r':
-        return take_text(&a->script, value);
-    case 'z':
-        return take_text(&a->size, value);
-    case 'g':
-        return take_text(&a->glyphs, value);
-    case 'I':
-        return take_text(&a->colours, value);
-    case 'E':
-        return take_text(&a->theme, value);
-    case 'o':
-        return take_text(&a->output, value);
-    case 'f':
-        return take_text(&a->format, value);
-    default:
-        a->quiet = true;
-        return true;
+    nearest_word near = nearest_begin(key);
+    for (int i = 0; i < summary_count; i++) {
+        if (strcmp(summary_table[i].key, key) == 0) {
+            return EXIT_DONE;
+        }
+        nearest_try(&near, summary_table[i].key);
     }
+    if (near.best != NULL) {
+        return complain("--%s %s: there is no such quantity, did you mean %s?", o->name, key,
+                        near.best);
+    }
+    return complain("--%s %s: there is no such quantity (impactlab run --json lists them)", o->name,
+                    key);
 }
+
+// Checks a value by its row and stores it. Returns EXIT_DONE, or complains.
+static int store_value(arguments *a, const option_row *o, char *text)
+{
+    void *place = place_of(a, o);
+    switch (o->type) {
+    case OPTION_FLAG:
+        *(bool *)place = true;
+        return EXIT_DONE;
+    case OPTION_NUMBER:
+        return read_number(o, text, place);
+    case OPTION_WHOLE:
+        return read_whole(o, text, place);
+    case OPTION_SIZE:
+        return read_size(o, text, place);
+    case OPTION_NUMBERS: {
+        number_list *list = place;
+        return read_number(o, text, &list->items[list->count++]);
+    }
+    case OPTION_PARAMETERS: {
+        text_list *list = place;
+        list->items[list->count++] = text;
+        return EXIT_DONE;
+    }
+    case OPTION_TEXT:
+    case OPTION_CHOICE:
+    case OPTION_FILE:
+    case OPTION_RESULT:
+    case OPTION_PICTURE:
+    case OPTION_PLACE:
+    case OPTION_SCENARIO:
+    case OPTION_QUANTITY:
+        *(const char **)place = text;
+        return o->type == OPTION_CHOICE     ? check_choice(o, text)
+               : o->type == OPTION_QUANTITY ? check_quantity(o, text)
+                                            : EXIT_DONE;
+    }
+    return EXIT_DONE;
+}
+
+// --- getopt ---------------------------------------------------------------------------------
 
 // What is said of an option getopt does not take.
 static int complain_option(const command *self, int found, const char *text)
 {
     char shown[96];
+    const option_row *o;
     if (found == ':') {
         return complain("option %s needs a value (see impactlab %s --help)", text, self->name);
     }
     snprintf(shown, sizeof shown, "%.*s", (int)strcspn(text, "="), text);
     nearest_word near = nearest_begin(shown + strspn(shown, "-"));
-    for (int i = 0; i < OPTIONS; i++) {
-        if (has_option(self, &option_table[i])) {
-            nearest_try(&near, option_table[i].name);
-        }
+    for (int i = 0; (o = command_option(self, i)) != NULL; i++) {
+        nearest_try(&near, o->name);
     }
     if (near.best != NULL && near.distance > 0) {
         return complain("%s has no option %s, did you mean --%s?", self->name, shown, near.best);
@@ -212,17 +219,19 @@ static int complain_option(const command *self, int found, const char *text)
 // Fills getopt's tables with the options of the command.
 static void option_lists(const command *self, struct option *longs, char *shorts)
 {
+    const option_row *o;
     // the colon makes getopt tell a missing value from an unknown option
     *shorts++ = ':';
-    for (int i = 0; i < OPTIONS; i++) {
-        const option_info *info = &option_table[i];
-        if (!has_option(self, info)) {
-            continue;
+    for (int i = 0; (o = command_option(self, i)) != NULL; i++) {
+        int takes_value = o->type != OPTION_FLAG;
+        assert(i < COMMAND_OPTIONS && (o->value != NULL) == (takes_value != 0));
+        *longs++ = (struct option){o->name, takes_value, NULL, ROW_VALUE + i};
+        if (o->alias != NULL) {
+            *longs++ = (struct option){o->alias, takes_value, NULL, ROW_VALUE + i};
         }
-        *longs++ = (struct option){info->name, info->value != NULL, NULL, info->letter};
-        if (info->is_short) {
-            *shorts++ = info->letter;
-            if (info->value != NULL) {
+        if (o->letter != 0) {
+            *shorts++ = o->letter;
+            if (takes_value) {
                 *shorts++ = ':';
             }
         }
@@ -231,79 +240,130 @@ static void option_lists(const command *self, struct option *longs, char *shorts
     *shorts = '\0';
 }
 
-static const char *option_name(int letter)
+// The row that getopt's value stands for.
+static int row_of(const command *self, int found)
 {
-    for (int i = 0; i < OPTIONS; i++) {
-        if (option_table[i].letter == letter) {
-            return option_table[i].name;
-        }
+    int i = 0;
+    if (found >= ROW_VALUE) {
+        return found - ROW_VALUE;
     }
-    return "";
+    while (command_option(self, i)->letter != found) {
+        i++;
+    }
+    return i;
 }
+
+static bool is_repeated(const option_row *o)
+{
+    return o->type == OPTION_NUMBERS || o->type == OPTION_PARAMETERS;
+}
+
+// Takes every option in its turn. True if help was asked for; *exit_status says what went wrong.
+static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
+{
+    struct option longs[2 * COMMAND_OPTIONS + 1];
+    char shorts[2 * COMMAND_OPTIONS + 2];
+    bool given[COMMAND_OPTIONS] = {false};
+    int found;
+    option_lists(a->command, longs, shorts);
+    opterr = 0;
+    while (*exit_status == EXIT_DONE &&
+           (found = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
+        if (found == '?' || found == ':') {
+            *exit_status = complain_option(a->command, found, argv[optind - 1]);
+            break;
+        }
+        int i = row_of(a->command, found);
+        const option_row *o = command_option(a->command, i);
+        if (o == help_options.rows) {
+            return true;
+        }
+        *exit_status = given[i] && o->type != OPTION_FLAG && !is_repeated(o)
+                           ? complain("option --%s was given twice", o->name)
+                           : store_value(a, o, optarg);
+        given[i] = true;
+    }
+    return false;
+}
+
+// --- the whole command line -----------------------------------------------------------------
 
 // Two results must not end in one place.
 static int check_places(const arguments *a)
 {
-    const char *places[] = {a->json, a->csv, a->plot, a->scene, a->db, a->markdown, a->output};
-    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
-        for (size_t j = 0; j < i; j++) {
-            if (places[i] != NULL && places[j] != NULL && strcmp(places[i], places[j]) == 0) {
+    const option_row *o, *other;
+    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
+        const char *path = option_is_written(o) ? option_text(a, o) : NULL;
+        for (int j = 0; path != NULL && j < i; j++) {
+            other = command_option(a->command, j);
+            const char *before = option_is_written(other) ? option_text(a, other) : NULL;
+            if (before != NULL && strcmp(path, before) == 0) {
                 return complain("two results cannot both be written to %s",
-                                strcmp(places[i], "-") == 0 ? "the standard output" : places[i]);
+                                strcmp(path, "-") == 0 ? "the standard output" : path);
             }
         }
     }
     return EXIT_DONE;
 }
 
-static int check_operands(const arguments *a, const command *self)
+static int check_operands(const arguments *a)
 {
-    const char *name = self->name;
+    const command *self = a->command;
     if (a->operand_count < self->least) {
-        return complain("%s needs %s (see impactlab %s --help)", name, self->operands, name);
+        return complain("%s needs %s (see impactlab %s --help)", self->name, self->operands,
+                        self->name);
     }
     if (a->operand_count > self->most) {
-        return complain("%s does not know what to do with '%s' (see impactlab %s --help)", name,
-                        a->operands[self->most], name);
+        return complain("%s does not know what to do with '%s' (see impactlab %s --help)",
+                        self->name, a->operands[self->most], self->name);
     }
     return check_places(a);
 }
 
+// Gives every list room for a whole command line, and numbers their initial values.
+static bool prepare(arguments *a, int argc)
+{
+    const option_row *o;
+    bool room = true;
+    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
+        void *place = place_of(a, o);
+        if (o->type == OPTION_PARAMETERS) {
+            text_list *list = place;
+            list->items = calloc((size_t)argc + 1, sizeof *list->items);
+            room = room && list->items != NULL;
+        } else if (o->type == OPTION_NUMBERS) {
+            number_list *list = place;
+            list->items = calloc((size_t)argc + 1, sizeof *list->items);
+            room = room && list->items != NULL;
+        } else if (o->type == OPTION_NUMBER) {
+            *(double *)place = o->initial;
+        }
+    }
+    return room;
+}
+
 bool arguments_read(arguments *a, const command *self, int argc, char **argv, int *exit_status)
 {
-    struct option longs[OPTIONS + 1];
-    char shorts[2 * OPTIONS + 2];
-    int letter;
-    memset(a, 0, sizeof *a);
-    a->sets = calloc((size_t)argc + 1, sizeof *a->sets);
-    a->varies = calloc((size_t)argc + 1, sizeof *a->varies);
-    a->ats = calloc((size_t)argc + 1, sizeof *a->ats);
-    if (a->sets == NULL || a->varies == NULL || a->ats == NULL) {
+    assert(self != NULL && argc > 0 && exit_status != NULL);
+    *a = (arguments){.command = self};
+    *exit_status = EXIT_DONE;
+    if (!prepare(a, argc)) {
         arguments_finish(a);
         complain("out of memory");
         *exit_status = EXIT_FAILED;
         return false;
     }
-    option_lists(self, longs, shorts);
-    opterr = 0;
-    *exit_status = EXIT_DONE;
-    while (*exit_status == EXIT_DONE &&
-           (letter = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
-        if (letter == 'h') {
-            print_help(self);
-            arguments_finish(a);
-            return false;
-        }
-        if (letter == '?' || letter == ':') {
-            *exit_status = complain_option(self, letter, argv[optind - 1]);
-        } else if (!take_option(a, letter, optarg)) {
-            *exit_status = complain("option --%s was given twice", option_name(letter));
-        }
+    if (take_options(a, argc, argv, exit_status)) {
+        print_help(stdout, self);
+        arguments_finish(a);
+        return false;
     }
+
+    // getopt has moved all that is no option behind the options
     a->operands = argv + optind;
     a->operand_count = argc - optind;
     if (*exit_status == EXIT_DONE) {
-        *exit_status = check_operands(a, self);
+        *exit_status = check_operands(a);
     }
     if (*exit_status != EXIT_DONE) {
         arguments_finish(a);
@@ -313,8 +373,34 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
 
 void arguments_finish(arguments *a)
 {
-    free(a->sets);
-    free(a->varies);
-    free(a->ats);
-    memset(a, 0, sizeof *a);
+    const option_row *o;
+    for (int i = 0; a->command != NULL && (o = command_option(a->command, i)) != NULL; i++) {
+        if (o->type == OPTION_PARAMETERS) {
+            free(((text_list *)place_of(a, o))->items);
+        } else if (o->type == OPTION_NUMBERS) {
+            free(((number_list *)place_of(a, o))->items);
+        }
+    }
+    *a = (arguments){0};
+}
+
+int check_results(const arguments *a)
+{
+    const option_row *o;
+    int result = EXIT_DONE;
+    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
+        fault f = {.code = STATUS_OK};
+        const char *path = option_is_written(o) ? option_text(a, o) : NULL;
+        if (path == NULL || o->type == OPTION_PLACE) {
+            continue;
+        }
+        if (o->type == OPTION_PICTURE) {
+            f.code = picture_check_path(path, &f);
+        }
+        if (f.code == STATUS_OK) {
+            f.code = whole_file_check(path, &f);
+        }
+        result = f.code == STATUS_OK ? result : worse(result, complain_fault(&f));
+    }
+    return result;
 }

@@ -232,11 +232,8 @@ static int bench(const arguments *a)
 {
     baseline before = {NULL, 0};
     fault f = {0};
-    int result = check_output(a->json);
-    if (result == EXIT_DONE && a->plot != NULL && picture_check_path(a->plot, &f) != STATUS_OK) {
-        result = complain_fault(&f);
-    }
-    if (result == EXIT_DONE && a->baseline != NULL &&
+    int result = EXIT_DONE;
+    if (a->baseline != NULL &&
         bench_read(a->baseline, &before.results, &before.count, &f) != STATUS_OK) {
         result = complain_fault(&f);
     }
@@ -250,10 +247,29 @@ static int bench(const arguments *a)
     return result;
 }
 
+static const option_row rows[] = {
+    {.name = "only",
+     .type = OPTION_TEXT,
+     .value = "NAME",
+     .help = "measure this one alone",
+     PLACE(only)},
+    {.name = "baseline",
+     .type = OPTION_FILE,
+     .value = "FILE",
+     .help = "compare with what --json wrote before",
+     PLACE(baseline)},
+    {.name = "plot",
+     .type = OPTION_PICTURE,
+     .value = "FILE.{png,pdf,svg}",
+     .help = "draw the study; a CSV of what is drawn beside it",
+     PLACE(plot)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command bench_command = {
     .name = "bench",
+    .group = GROUP_PROGRAM,
     .operands = "",
-    .options = "OBLjq",
     .summary = "How fast the lab computes on this machine",
     .help =
         "Medians of repeated measurements, in computing time of one processor\n(of the batch: by "
@@ -270,5 +286,6 @@ const command bench_command = {
         "The first four are microseconds of computing per simulated millisecond. --baseline marks "
         "as slower\nwhat takes 15 % longer than before and did so in every measurement. --plot "
         "then draws the time of a\nstep over the number of links, 2 to 1024.\n",
+    .options = {&json_options, &options, &quiet_options},
     .run = bench,
 };

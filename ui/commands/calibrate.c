@@ -18,10 +18,10 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
     sweep series;
     snprintf(standard, sizeof standard, VOLTAGE_PATH "=%.17g:%.17g:%d", most / DEFAULT_PRESSES,
              most, DEFAULT_PRESSES);
-    if (a->vary_count > 0) {
-        given = a->varies[0];
+    if (a->varies.count > 0) {
+        given = a->varies.items[0];
     }
-    if (a->vary_count > 1 || strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0) {
+    if (a->varies.count > 1 || strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0) {
         return complain("calibrate varies " VOLTAGE_PATH " and nothing else, once");
     }
     sweep_request request = {.vary = &given, .vary_count = 1};
@@ -118,32 +118,43 @@ static int report(const arguments *a, const scenario *s, const calibration *c)
     return result;
 }
 
-static int calibrate_command_run(const arguments *a)
+static int press_and_report(const arguments *a, scenario *s)
 {
-    scenario s;
     fault f = {0};
     calibration c;
     double commands[K2_TABLE_MOST];
-    int count = 0, result = check_output(a->json);
-    result = result == EXIT_DONE ? check_output(a->csv) : result;
-    result = result == EXIT_DONE ? check_output(a->output) : result;
-    result = result == EXIT_DONE ? open_scenario(&s, a->operands[0], a) : result;
+    int count = 0, result = choose_commands(a, s, commands, &count);
     if (result != EXIT_DONE) {
         return result;
     }
-    result = choose_commands(a, &s, commands, &count);
-    if (result == EXIT_DONE) {
-        result = calibrate(&s, commands, count, &c, &f) == STATUS_OK ? report(a, &s, &c)
-                                                                     : complain_fault(&f);
-    }
-    scenario_finish(&s);
-    return result;
+    return calibrate(s, commands, count, &c, &f) == STATUS_OK ? report(a, s, &c)
+                                                              : complain_fault(&f);
 }
+
+static int calibrate_command_run(const arguments *a)
+{
+    return with_scenario(a->operands[0], a, press_and_report);
+}
+
+static const option_row rows[] = {
+    {.name = "csv",
+     .type = OPTION_RESULT,
+     .value = "FILE|-",
+     .help = "write a row for each command",
+     PLACE(csv)},
+    {.name = "output",
+     .letter = 'o',
+     .type = OPTION_RESULT,
+     .value = "FILE|-",
+     .help = "write the scenario with the table in it",
+     PLACE(output)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
 
 const command calibrate_command = {
     .name = "calibrate",
+    .group = GROUP_CONTROL,
     .operands = "SCENARIO",
-    .options = "svjCoq",
     .summary = "Measure the stiffness that a controller has to believe in, (5.26)",
     .help =
         "Presses the arm against the wall with constant commands, eight of them or those of\n"
@@ -152,5 +163,7 @@ const command calibrate_command = {
         "table in\ncontrol.k2_table, which every law then goes by.\n",
     .least = 1,
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options},
     .run = calibrate_command_run,
 };

@@ -40,11 +40,12 @@ static int check(const arguments *a)
 
 const command check_command = {
     .name = "check",
+    .group = GROUP_ONE_RUN,
     .operands = "FILE...",
-    .options = "",
     .summary = "Validate scenario files",
     .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what was expected.\n",
     .least = 1,
     .most = 1 << 20,
+    .takes_scenarios = true,
     .run = check,
 };

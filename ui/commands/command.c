@@ -3,6 +3,7 @@
 #include "src/study/sweep.h"
 #include "src/base/json.h"
 
+#include <assert.h>
 #include <langinfo.h>
 #include <stdarg.h>
 #include <string.h>
@@ -42,34 +43,6 @@ void report_to_stderr(void *context, const char *sentence)
     fprintf(stderr, "%s\n", sentence);
 }
 
-// Applies every --set once. Returns how many failed; complains about them if asked to.
-static int apply_sets_once(scenario *s, const arguments *a, bool aloud)
-{
-    int failures = 0;
-    for (int i = 0; i < a->set_count; i++) {
-        fault f = {0};
-        if (scenario_override(s, a->sets[i], &f) != STATUS_OK) {
-            failures++;
-            if (aloud) {
-                complain_fault(&f);
-            }
-        }
-    }
-    return failures;
-}
-
-// Gives every parameter of --set its value. One that is wrong only until another one is set
-// (arm.links=4 before arm.model=corrected) gets another chance, so that their order is free.
-static int apply_sets(scenario *s, const arguments *a)
-{
-    for (int pass = 0; pass < a->set_count; pass++) {
-        if (apply_sets_once(s, a, false) == 0) {
-            return EXIT_DONE;
-        }
-    }
-    return apply_sets_once(s, a, true) == 0 ? EXIT_DONE : EXIT_BAD_ARGUMENTS;
-}
-
 // Counts the faults it passes on, so that none of them goes unsaid.
 static void report_and_count(void *context, const char *sentence)
 {
@@ -87,19 +60,26 @@ static bool is_same_file(const char *path, const char *other)
 // Results must not replace the scenario they come from.
 static int check_keeps_scenario(const scenario *s, const arguments *a)
 {
-    const char *const outputs[] = {a->json, a->csv, a->plot, a->scene, a->output};
-    for (size_t i = 0; i < sizeof outputs / sizeof outputs[0]; i++) {
-        if (is_same_file(outputs[i], s->file)) {
+    const option_row *o;
+    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
+        if (option_is_written(o) && is_same_file(option_text(a, o), s->file)) {
             return complain("'%s' is the scenario itself, expected another file for the results",
-                            outputs[i]);
+                            option_text(a, o));
         }
     }
     return EXIT_DONE;
 }
 
+static void complain_sentence(void *context, const char *sentence)
+{
+    (void)context;
+    complain("%s", sentence);
+}
+
 int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
 {
     int reported = 0;
+    assert(s != NULL && name_or_file != NULL && a != NULL);
     status code = scenario_open(s, name_or_file, report_and_count, &reported);
     if (code != STATUS_OK) {
         if (reported == 0) {
@@ -108,8 +88,9 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
         return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
     }
     int result = check_keeps_scenario(s, a);
-    if (result == EXIT_DONE) {
-        result = apply_sets(s, a);
+    if (result == EXIT_DONE && scenario_override_all(s, a->sets.items, a->sets.count,
+                                                     complain_sentence, NULL) != STATUS_OK) {
+        result = EXIT_BAD_ARGUMENTS;
     }
     if (result != EXIT_DONE) {
         scenario_finish(s);
@@ -117,41 +98,61 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
     return result;
 }
 
+int with_scenario(const char *name_or_file, const arguments *a,
+                  int (*use)(const arguments *a, scenario *s))
+{
+    scenario s;
+    int result = open_scenario(&s, name_or_file, a);
+    if (result == EXIT_DONE) {
+        result = use(a, &s);
+        scenario_finish(&s);
+    }
+    return result;
+}
+
+static void write_json_value(FILE *stream, const void *value)
+{
+    json_write(stream, value);
+}
+
 int write_json(const char *path, json_t *value)
+{
+    if (value == NULL) {
+        complain("%s", status_text(STATUS_NO_MEMORY));
+        return EXIT_FAILED;
+    }
+    int result = write_file(path, write_json_value, value);
+    json_decref(value);
+    return result;
+}
+
+int write_file(const char *path, void (*write)(FILE *stream, const void *what), const void *what)
 {
     whole_file file;
     fault f = {0};
-    if (value == NULL) {
-        fault_set(&f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
-        return complain_fault(&f);
-    }
+    assert(path != NULL && write != NULL);
     status code = whole_file_open(&file, path, &f);
     if (code == STATUS_OK) {
-        json_write(file.stream, value);
+        write(file.stream, what);
         code = whole_file_commit(&file, &f);
     }
-    json_decref(value);
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
-int check_output(const char *path)
+int worse(int a, int b)
 {
-    fault f = {0};
-    if (path == NULL || whole_file_check(path, &f) == STATUS_OK) {
-        return EXIT_DONE;
-    }
-    return complain_fault(&f);
-}
-
-static bool is_standard_output(const char *path)
-{
-    return path != NULL && strcmp(path, "-") == 0;
+    return a > b ? a : b;
 }
 
 bool summary_wanted(const arguments *a)
 {
-    return !a->quiet && !is_standard_output(a->json) && !is_standard_output(a->csv) &&
-           !is_standard_output(a->markdown) && !is_standard_output(a->output);
+    const option_row *o;
+    bool alone = false;
+    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
+        const char *path = o->type == OPTION_RESULT ? option_text(a, o) : NULL;
+        alone = alone || (path != NULL && strcmp(path, "-") == 0);
+    }
+    return !a->quiet && !alone;
 }
 
 void key_label(const char *key, char *label, size_t size, const char **unit)
@@ -160,15 +161,6 @@ void key_label(const char *key, char *label, size_t size, const char **unit)
     for (char *c = label; *c != '\0'; c++) {
         *c = *c == '_' ? ' ' : *c;
     }
-}
-
-int text_width(const char *text)
-{
-    int width = 0;
-    for (; *text != '\0'; text++) {
-        width += ((unsigned char)*text & 0xC0) != 0x80;
-    }
-    return width;
 }
 
 bool terminal_has_utf8(void)

@@ -1,10 +1,10 @@
 #include "ui/commands/command.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
-#include "src/base/numbers.h"
 
 enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
 
@@ -39,7 +39,7 @@ static void finish(comparison *c)
 static int open_sweep(comparison *c, const arguments *a, int i)
 {
     fault f = {0};
-    sweep_request request = {.vary = a->varies, .vary_count = a->vary_count};
+    sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
     if (sweep_init(&c->sweeps[i], &c->scenarios[i], &request, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -70,7 +70,7 @@ static int open_all(comparison *c, const arguments *a)
         const char *name = i < a->operand_count ? a->operands[i] : a->against;
         result = open_scenario(&c->scenarios[i], name, a);
         c->opened += result == EXIT_DONE;
-        if (result == EXIT_DONE && a->vary_count > 0) {
+        if (result == EXIT_DONE && a->varies.count > 0) {
             result = open_sweep(c, a, i);
         }
     }
@@ -135,18 +135,6 @@ static int write_table(const char *path, const compare_table *t,
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
-// A tolerance in percent as a share; false if it is none.
-static bool read_tolerance(const char *text, double *share)
-{
-    const char *rest = "";
-    double percent = 5;
-    if (text != NULL && (!decimal_read(text, &percent, &rest) || *rest != '\0' || percent < 0)) {
-        return false;
-    }
-    *share = percent / 100;
-    return true;
-}
-
 static int write_results(const arguments *a, const comparison *c, compare_table *t)
 {
     int result = c->failed ? EXIT_FAILED : EXIT_DONE;
@@ -154,7 +142,7 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     t->count = c->combinations * c->operands;
     t->group = c->operands;
     t->varied = c->varied;
-    t->varied_count = a->vary_count;
+    t->varied_count = a->varies.count;
     t->against = a->against != NULL ? c->against : NULL;
     if (a->json != NULL && write_json(a->json, compare_json(t)) != EXIT_DONE) {
         result = EXIT_FAILED;
@@ -180,17 +168,11 @@ static int compare(const arguments *a)
     comparison c = {0};
     compare_table table = {0};
     fault f = {0};
-    if (!read_tolerance(a->tolerance, &table.tolerance)) {
-        return complain("--tolerance %s is wrong, expected a number of percent from 0",
-                        a->tolerance);
-    }
+    table.tolerance = a->tolerance / 100;
     if (a->columns != NULL && compare_choose(&table, a->columns, &f) != STATUS_OK) {
         return complain("--columns %s: %s", a->columns, f.text);
     }
-    int result = check_output(a->json);
-    result = result == EXIT_DONE ? check_output(a->csv) : result;
-    result = result == EXIT_DONE ? check_output(a->markdown) : result;
-    result = result == EXIT_DONE ? open_all(&c, a) : result;
+    int result = open_all(&c, a);
     if (result == EXIT_DONE) {
         run_all(&c);
         result = write_results(a, &c, &table);
@@ -199,10 +181,42 @@ static int compare(const arguments *a)
     return result;
 }
 
+static const option_row rows[] = {
+    {.name = "csv",
+     .type = OPTION_RESULT,
+     .value = "FILE|-",
+     .help = "write a row for each run",
+     PLACE(csv)},
+    {.name = "against",
+     .type = OPTION_SCENARIO,
+     .value = "SCENARIO",
+     .help = "a run to hold the others against",
+     PLACE(against)},
+    {.name = "tolerance",
+     .type = OPTION_NUMBER,
+     .value = "PERCENT",
+     .help = "differences beyond it are marked (5)",
+     PLACE(tolerance),
+     .high = HUGE_VAL,
+     .initial = 5,
+     .unit = "percent"},
+    {.name = "markdown",
+     .type = OPTION_RESULT,
+     .value = "FILE|-",
+     .help = "write the table as one of a Markdown page",
+     PLACE(markdown)},
+    {.name = "columns",
+     .type = OPTION_TEXT,
+     .value = "KEY,KEY...",
+     .help = "show only these quantities, by their keys of --json",
+     PLACE(columns)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command compare_command = {
     .name = "compare",
+    .group = GROUP_MANY_RUNS,
     .operands = "SCENARIO...",
-    .options = "svjCXHAtq",
     .summary = "Several scenarios in one table",
     .help = "One row a run: peak force, its overshoot over the commanded force, settling time, "
             "impacts,\nseparations, steady error, largest command and electrical energy. Best peak "
@@ -211,5 +225,7 @@ const command compare_command = {
             "--vary, as sweep takes it, runs each of\nthem for every combination of values.\n",
     .least = 1,
     .most = MOST_SCENARIOS,
+    .takes_scenarios = true,
+    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options},
     .run = compare,
 };

@@ -202,45 +202,49 @@ static status plot(const scenario *s, const convergence_panel *panel, const char
     return code;
 }
 
-static int converge(const arguments *a)
+static int compute_and_report(const arguments *a, scenario *s)
 {
-    scenario s;
     convergence_panel panel;
     fault f = {0};
-    int result = check_output(a->json);
-    if (result == EXIT_DONE && a->plot != NULL && picture_check_path(a->plot, &f) != STATUS_OK) {
+    int result = EXIT_DONE;
+    if (convergence_compute(s, &panel, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (a->json != NULL) {
+        result = write_json(a->json, panel_object(s, &panel));
+    }
+    if (summary_wanted(a)) {
+        print_panel(s, &panel);
+    }
+    if (result == EXIT_DONE && a->plot != NULL && plot(s, &panel, a->plot, &f) != STATUS_OK) {
         result = complain_fault(&f);
     }
-    if (result == EXIT_DONE) {
-        result = open_scenario(&s, a->operands[0], a);
-    }
-    if (result != EXIT_DONE) {
-        return result;
-    }
-    if (convergence_compute(&s, &panel, &f) != STATUS_OK) {
-        result = complain_fault(&f);
-    } else {
-        if (a->json != NULL) {
-            result = write_json(a->json, panel_object(&s, &panel));
-        }
-        if (summary_wanted(a)) {
-            print_panel(&s, &panel);
-        }
-        if (result == EXIT_DONE && a->plot != NULL && plot(&s, &panel, a->plot, &f) != STATUS_OK) {
-            result = complain_fault(&f);
-        }
-    }
-    scenario_finish(&s);
     return result;
 }
 
+static int converge(const arguments *a)
+{
+    return with_scenario(a->operands[0], a, compute_and_report);
+}
+
+static const option_row rows[] = {
+    {.name = "plot",
+     .type = OPTION_PICTURE,
+     .value = "FILE.{png,pdf,svg}",
+     .help = "draw the contact force at the three steps",
+     PLACE(plot)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command converge_command = {
     .name = "converge",
+    .group = GROUP_MANY_RUNS,
     .operands = "SCENARIO",
-    .options = "sjpq",
     .summary = "Run at the steps h, h/2, h/4 and tell the observed orders",
     .help = "h is the scenario's method.step. --plot draws the contact force at the three steps.\n",
     .least = 1,
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &json_options, &options, &quiet_options},
     .run = converge,
 };

@@ -48,17 +48,6 @@ static int run_script(lab *l, const char *path)
     return code;
 }
 
-static int take_size(const char *text, int *width, int *height)
-{
-    char rest;
-    if (sscanf(text, "%dx%d%c", width, height, &rest) != 2 || *width < 1 || *height < 1 ||
-        *width > 1000 || *height > 1000) {
-        return complain("--size is '%s', expected WIDTHxHEIGHT in characters, such as 120x40",
-                        text);
-    }
-    return EXIT_DONE;
-}
-
 static int print_screen(lab *l, int width, int height)
 {
     screen s = {0};
@@ -76,7 +65,11 @@ static int run_off_screen(lab *l, const arguments *a)
 {
     int width = 120, height = 40;
     fault f = {0};
-    int code = a->size != NULL ? take_size(a->size, &width, &height) : EXIT_DONE;
+    int code = EXIT_DONE;
+    if (a->size.width > 0) {
+        width = a->size.width;
+        height = a->size.height;
+    }
     l->width = width;
     l->height = height;
     if (code == EXIT_DONE && a->script != NULL) {
@@ -164,7 +157,7 @@ static int open_lab(lab *l, const arguments *a)
     if (code != EXIT_DONE) {
         return code;
     }
-    bool live = a->keys == NULL && a->script == NULL && a->size == NULL;
+    bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
     if (lab_open_patiently(l, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -193,7 +186,7 @@ static int run(const arguments *a)
 {
     lab l;
     fault f = {0};
-    bool off_screen = a->keys != NULL || a->script != NULL || a->size != NULL;
+    bool off_screen = a->keys != NULL || a->script != NULL || a->size.width > 0;
     if (!off_screen && !terminal_usable(&f)) {
         return complain_fault(&f);
     }
@@ -215,14 +208,53 @@ static int run(const arguments *a)
     return code;
 }
 
+static const option_row rows[] = {
+    {.name = "keys",
+     .type = OPTION_TEXT,
+     .value = "KEYS",
+     .help = "press these keys: characters, and <Right>, <Enter>, <C-l>...",
+     PLACE(keys)},
+    {.name = "script",
+     .type = OPTION_FILE,
+     .value = "FILE|-",
+     .help = "carry out commands, one a line, as : takes them",
+     PLACE(script)},
+    {.name = "size",
+     .type = OPTION_SIZE,
+     .value = "WIDTHxHEIGHT",
+     .help = "print a screen of this size in characters (120x40)",
+     PLACE(size),
+     .high = 1000,
+     .unit = "characters"},
+    {.name = "glyphs",
+     .type = OPTION_CHOICE,
+     .value = "braille|blocks|ascii",
+     .help = "characters to draw with",
+     PLACE(glyphs)},
+    {.name = "theme",
+     .type = OPTION_CHOICE,
+     .value = "dark|light|mono",
+     .help = "colours for that ground",
+     PLACE(theme)},
+    {.name = "colours",
+     .alias = "colors",
+     .type = OPTION_CHOICE,
+     .value = "auto|true|256|16|mono",
+     .help = "how many of them the terminal has",
+     PLACE(colours)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command lab_command = {
     .name = "lab",
+    .group = GROUP_ONE_RUN,
     .operands = "[SCENARIO]",
-    .options = "skrzgEIq",
     .summary = "Explore a run on the terminal",
     .help = "Opens corrected/first-impact if no scenario is named; ? lists the keys. With --keys, "
             "--script or\n--size nothing is shown live: the keys are pressed, then the script's "
             "screen is printed as text.\n",
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &options, &quiet_options},
     .run = run,
 };

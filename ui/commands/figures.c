@@ -10,33 +10,18 @@
 #define DEFAULT_FOLDER  "figures"
 #define DEFAULT_FORMATS "png"
 
-// Reads a number from low to high; *value stays if text is NULL.
-static int read_number(const char *option, const char *text, double low, double high, double *value)
-{
-    double number;
-    const char *rest;
-    if (text == NULL) {
-        return EXIT_DONE;
-    }
-    if (!decimal_read(text, &number, &rest) || *rest != '\0' || !(number >= low) ||
-        !(number <= high)) {
-        return complain("--%s %s: expected a number from %g to %g", option, text, low, high);
-    }
-    *value = number;
-    return EXIT_DONE;
-}
-
 int read_figure_options(const arguments *a, figure_options *o)
 {
     *o = (figure_options){.theme = a->mono   ? THEME_MONO
                                    : a->dark ? THEME_DARK
                                              : THEME_COLOUR,
+                          .width_mm = a->width,
+                          .dpi = a->dpi,
                           .overlay = a->overlay};
     if (a->mono && a->dark) {
         return complain("--mono and --dark cannot go together");
     }
-    int code = read_number("width", a->width, 60, 400, &o->width_mm);
-    return code == EXIT_DONE ? read_number("dpi", a->dpi, 30, 1200, &o->dpi) : code;
+    return EXIT_DONE;
 }
 
 // Whether every ID names a figure; says which does not.
@@ -79,10 +64,52 @@ static int figures(const arguments *a)
     return code;
 }
 
+static const char *figure_word(int i)
+{
+    return i < thesis_figure_count ? thesis_figures[i].id : NULL;
+}
+
+static const option_row rows[] = {
+    {.name = "output",
+     .letter = 'o',
+     .type = OPTION_PLACE,
+     .value = "FOLDER",
+     .help = "folder to write to (figures)",
+     PLACE(output)},
+    {.name = "format",
+     .type = OPTION_TEXT,
+     .value = "png,pdf,svg",
+     .help = "which kinds of files to write",
+     PLACE(format)},
+    {.name = "overlay",
+     .type = OPTION_FILE,
+     .value = "FILE.csv",
+     .help = "points of reference data over recorded signals",
+     PLACE(overlay)},
+    {.name = "mono", .type = OPTION_FLAG, .help = "black and greys on white", PLACE(mono)},
+    {.name = "dark", .type = OPTION_FLAG, .help = "on near black", PLACE(dark)},
+    {.name = "width",
+     .type = OPTION_NUMBER,
+     .value = "MM",
+     .help = "width of the page in millimetres",
+     PLACE(width),
+     .low = 60,
+     .high = 400,
+     .unit = "mm"},
+    {.name = "dpi",
+     .type = OPTION_NUMBER,
+     .value = "N",
+     .help = "resolution of a PNG (200)",
+     PLACE(dpi),
+     .low = 30,
+     .high = 1200},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command figures_command = {
     .name = "figures",
+    .group = GROUP_THESIS,
     .operands = "[ID]...",
-    .options = "ofYMDWiq",
     .summary = "Draw the figures and tables of the thesis",
     .help = "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a CSV of "
             "what is\ndrawn stands beside each.\n\n"
@@ -91,5 +118,7 @@ const command figures_command = {
             "Newmark's "
             "parameters.\n",
     .most = 1 << 20,
+    .operand_word = figure_word,
+    .options = {&options, &quiet_options},
     .run = figures,
 };

@@ -44,8 +44,8 @@ static int list(const arguments *a)
 
 const command list_command = {
     .name = "list",
+    .group = GROUP_ONE_RUN,
     .operands = "",
-    .options = "",
     .summary = "Name and title of every scenario",
     .help = "",
     .run = list,

@@ -125,36 +125,32 @@ static int compute_and_report(const arguments *args, const scenario *s)
     return result;
 }
 
+static int check_and_compute(const arguments *args, scenario *s)
+{
+    if (s->parameters.arm.model == ARM_PRINTED) {
+        // errata B1: no natural frequencies without a symmetric stiffness
+        return complain("the printed equations have no symmetric stiffness and so no natural "
+                        "frequencies, try --set arm.model=corrected");
+    }
+    return compute_and_report(args, s);
+}
+
 static int modes(const arguments *a)
 {
-    scenario s;
-    int result = check_output(a->json);
-    if (result == EXIT_DONE) {
-        result = open_scenario(&s, a->operands[0], a);
-    }
-    if (result != EXIT_DONE) {
-        return result;
-    }
-    if (s.parameters.arm.model == ARM_PRINTED) {
-        // errata B1: no natural frequencies without a symmetric stiffness
-        result = complain("the printed equations have no symmetric stiffness and so no natural "
-                          "frequencies, try --set arm.model=corrected");
-    } else {
-        result = compute_and_report(a, &s);
-    }
-    scenario_finish(&s);
-    return result;
+    return with_scenario(a->operands[0], a, check_and_compute);
 }
 
 const command modes_command = {
     .name = "modes",
+    .group = GROUP_ONE_RUN,
     .operands = "SCENARIO",
-    .options = "sjq",
     .summary = "Natural frequencies and shapes of the arm",
     .help = "Small vibrations about the straight arm without damping and friction, for a hub that "
             "is locked (held by\nthe controller) or free, and a tip that is free or pinned to the "
             "wall.\n",
     .least = 1,
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &json_options, &quiet_options},
     .run = modes,
 };

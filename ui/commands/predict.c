@@ -177,35 +177,33 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
     return code;
 }
 
-static int predict(const arguments *a)
+static int predict_and_report(const arguments *a, scenario *s)
 {
-    scenario s;
     run_result result;
-    int code = check_output(a->json);
-    if (code == EXIT_DONE) {
-        code = open_scenario(&s, a->operands[0], a);
-    }
-    if (code != EXIT_DONE) {
-        return code;
-    }
-    if (run_scenario(&s, true, &result) == STATUS_OK) {
-        code = report(a, &s, &result);
+    int code = EXIT_FAILED;
+    if (run_scenario(s, true, &result) == STATUS_OK) {
+        code = report(a, s, &result);
     } else {
-        complain("%s failed: %s", s.name, result.summary.message);
-        code = EXIT_FAILED;
+        complain("%s failed: %s", s->name, result.summary.message);
     }
     run_finish(&result);
-    scenario_finish(&s);
     return code;
+}
+
+static int predict(const arguments *a)
+{
+    return with_scenario(a->operands[0], a, predict_and_report);
 }
 
 const command predict_command = {
     .name = "predict",
+    .group = GROUP_ONE_RUN,
     .operands = "SCENARIO",
-    .options = "sjq",
     .summary = "Predict the peak force from the instant before contact, beside what then happens",
     .help = "",
     .least = 1,
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &json_options, &quiet_options},
     .run = predict,
 };

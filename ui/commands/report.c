@@ -17,13 +17,24 @@ static int report(const arguments *a)
     return EXIT_DONE;
 }
 
+static const option_row rows[] = {
+    {.name = "output",
+     .letter = 'o',
+     .type = OPTION_PLACE,
+     .value = "FOLDER",
+     .help = "folder to write to (report)",
+     PLACE(output)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command report_command = {
     .name = "report",
+    .group = GROUP_THESIS,
     .operands = "",
-    .options = "oq",
     .summary = "All figures and tables as one web page and one PDF",
     .help = "Into the folder 'report' unless -o says otherwise. The page needs no other file and "
             "no network. Under\neach item stand its scenario, its model and the command that "
             "makes it again.\n",
+    .options = {&options, &quiet_options},
     .run = report,
 };

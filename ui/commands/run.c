@@ -106,33 +106,28 @@ static void print_expectations(const scenario *s, const summary *m)
     }
 }
 
-static int write_csv(const char *path, const scenario *s, const run_result *result)
-{
-    whole_file file;
-    fault f = {0};
-    status code = whole_file_open(&file, path, &f);
-    if (code == STATUS_OK) {
-        export_csv(file.stream, &result->trace, s->parameters.arm.links);
-        code = whole_file_commit(&file, &f);
-    }
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
-}
+// What export_csv writes.
+typedef struct recorded {
+    const trace *trace;
+    int links;
+} recorded;
 
-// The larger of two exit statuses: what went wrong once stays wrong.
-static int worse(int a, int b)
+static void write_signals(FILE *stream, const void *what)
 {
-    return a > b ? a : b;
+    const recorded *r = what;
+    export_csv(stream, r->trace, r->links);
 }
 
 // Writes every file that was asked for. One that fails does not keep the others from being written.
 static int write_results(const arguments *a, const scenario *s, const run_result *result)
 {
+    const recorded signals = {&result->trace, s->parameters.arm.links};
     int code = EXIT_DONE;
     if (a->json != NULL) {
         code = worse(code, write_json(a->json, export_run(s, result)));
     }
     if (a->csv != NULL) {
-        code = worse(code, write_csv(a->csv, s, result));
+        code = worse(code, write_file(a->csv, write_signals, &signals));
     }
     if (a->plot != NULL) {
         fault f = {0};
@@ -144,17 +139,6 @@ static int write_results(const arguments *a, const scenario *s, const run_result
         code = worse(code, write_scene(a, s, result));
     }
     return code;
-}
-
-// Whether what is asked for can be done at all, before anything is computed.
-static int check_request(const arguments *a)
-{
-    fault f = {0};
-    if (a->plot != NULL && picture_check_path(a->plot, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
-    int result = worse(check_output(a->json), worse(check_output(a->csv), check_output(a->plot)));
-    return worse(result, check_scene(a));
 }
 
 // What the amplifier makes of a voltage beyond its limit changes the run: say so.
@@ -198,29 +182,50 @@ static int run_and_report(const arguments *a, scenario *s)
     return exit_status;
 }
 
+static int run_unless_changed(const arguments *a, scenario *s)
+{
+    // what the file expects is said of its own parameters, not of changed ones
+    if (a->sets.count > 0) {
+        s->expectation_count = 0;
+    }
+    return run_and_report(a, s);
+}
+
 static int run(const arguments *a)
 {
-    scenario s;
-    int result = check_request(a);
-    if (result == EXIT_DONE) {
-        result = open_scenario(&s, a->operands[0], a);
-    }
-    if (result != EXIT_DONE) {
-        return result;
-    }
-    // what the file expects is said of its own parameters, not of changed ones
-    if (a->set_count > 0) {
-        s.expectation_count = 0;
-    }
-    result = run_and_report(a, &s);
-    scenario_finish(&s);
-    return result;
+    int result = check_scene(a);
+    return result == EXIT_DONE ? with_scenario(a->operands[0], a, run_unless_changed) : result;
 }
+
+static const option_row rows[] = {
+    {.name = "csv",
+     .type = OPTION_RESULT,
+     .value = "FILE|-",
+     .help = "write the recorded signals, one row a step",
+     PLACE(csv)},
+    {.name = "plot",
+     .type = OPTION_PICTURE,
+     .value = "FILE.{png,pdf,svg}",
+     .help = "draw the recorded signals",
+     PLACE(plot)},
+    {.name = "scene",
+     .type = OPTION_PLACE,
+     .value = "FILE.png",
+     .help = "draw the arm",
+     PLACE(scene)},
+    {.name = "at",
+     .type = OPTION_NUMBERS,
+     .value = "T",
+     .help = "draw the arm at this instant [s] (may be repeated)",
+     PLACE(instants),
+     .high = 1e5},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
 
 const command run_command = {
     .name = "run",
+    .group = GROUP_ONE_RUN,
     .operands = "SCENARIO",
-    .options = "sjcpSTGKZq",
     .summary = "Simulate a scenario and sum it up",
     .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
             "checked unless\n--set changed something. A run that fails still writes what it has "
@@ -228,5 +233,7 @@ const command run_command = {
             "force of the first pulse.\n",
     .least = 1,
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &json_options, &options, &quiet_options, &view_options},
     .run = run,
 };

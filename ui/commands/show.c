@@ -29,23 +29,6 @@ static void print_parameter(const parameters *p, int index)
     printf("  %s\n", info->description);
 }
 
-// Prints words in lines of at most 96 characters.
-static void print_wrapped(const char *text)
-{
-    int column = 0;
-    while (*(text += strspn(text, " \n")) != '\0') {
-        int length = (int)strcspn(text, " \n");
-        char word[256];
-        snprintf(word, sizeof word, "%.*s", length, text);
-        int width = text_width(word);
-        const char *gap = column == 0 ? "" : column + 1 + width > 96 ? "\n" : " ";
-        column = gap[0] == ' ' ? column + 1 + width : width;
-        printf("%s%.*s", gap, length, text);
-        text += length;
-    }
-    printf("%s", column > 0 ? "\n" : "");
-}
-
 static void print_actions(const scenario *s)
 {
     for (int i = 0; i < s->action_count; i++) {
@@ -72,41 +55,43 @@ static void print_expectations(const scenario *s)
     }
 }
 
-static int show(const arguments *a)
+static int print_scenario(const arguments *a, scenario *s)
 {
-    scenario s;
-    int result = open_scenario(&s, a->operands[0], a);
-    if (result != EXIT_DONE) {
-        return result;
-    }
-    printf("%s: %s\n", s.name, s.title);
-    print_wrapped(s.description);
+    (void)a;
+    printf("%s: %s\n", s->name, s->title);
+    print_wrapped(stdout, s->description, (int)strlen(s->description), 96);
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",
            "value", "unit", "range");
     for (int i = 0; i < parameter_count; i++) {
-        print_parameter(&s.parameters, i);
+        print_parameter(&s->parameters, i);
     }
-    if (s.action_count > 0) {
+    if (s->action_count > 0) {
         printf("\nScript:\n");
-        print_actions(&s);
+        print_actions(s);
     }
-    if (s.expectation_count > 0) {
+    if (s->expectation_count > 0) {
         printf("\nExpected:\n");
-        print_expectations(&s);
+        print_expectations(s);
     }
-    scenario_finish(&s);
     return EXIT_DONE;
+}
+
+static int show(const arguments *a)
+{
+    return with_scenario(a->operands[0], a, print_scenario);
 }
 
 const command show_command = {
     .name = "show",
+    .group = GROUP_ONE_RUN,
     .operands = "SCENARIO",
-    .options = "s",
     .summary = "The resolved parameters of a scenario, with units and ranges",
     .help =
         "A parameter marked with = was given by the scenario or by --set, the others have their "
         "defaults.\n",
     .least = 1,
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options},
     .run = show,
 };

@@ -143,7 +143,7 @@ static status plot_methods(const scenario *s, const method_study *study, const c
     return write_figure(&fig, s, "methods", path, f);
 }
 
-static int study_of_methods(const scenario *s, const arguments *a)
+static int study_of_methods(const arguments *a, scenario *s)
 {
     method_study study;
     fault f = {0};
@@ -320,7 +320,7 @@ static status plot_sensor(const scenario *s, const sensor_study *study, const ch
     return write_figure(&fig, s, "sensor", path, f);
 }
 
-static int study_of_sensor(const scenario *s, const arguments *a)
+static int study_of_sensor(const arguments *a, scenario *s)
 {
     sensor_study study;
     fault f = {0};
@@ -342,7 +342,7 @@ static int study_of_sensor(const scenario *s, const arguments *a)
 
 typedef struct topic {
     const char *name, *scenario; // the scenario if none is given
-    int (*study)(const scenario *s, const arguments *a);
+    int (*study)(const arguments *a, scenario *s);
 } topic;
 
 static const topic topics[] = {
@@ -361,32 +361,33 @@ static const topic *find_topic(const char *name)
     return NULL;
 }
 
+static const char *topic_word(int i)
+{
+    return i < TOPICS ? topics[i].name : NULL;
+}
+
 static int study(const arguments *a)
 {
     const topic *t = find_topic(a->operands[0]);
-    scenario s;
-    fault f = {0};
     if (t == NULL) {
         return complain("there is no study '%s', expected methods or sensor", a->operands[0]);
     }
-    int result = check_output(a->json);
-    if (result == EXIT_DONE && a->plot != NULL && picture_check_path(a->plot, &f) != STATUS_OK) {
-        result = complain_fault(&f);
-    }
-    if (result == EXIT_DONE) {
-        result = open_scenario(&s, a->operand_count > 1 ? a->operands[1] : t->scenario, a);
-    }
-    if (result == EXIT_DONE) {
-        result = t->study(&s, a);
-        scenario_finish(&s);
-    }
-    return result;
+    return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a, t->study);
 }
+
+static const option_row rows[] = {
+    {.name = "plot",
+     .type = OPTION_PICTURE,
+     .value = "FILE.{png,pdf,svg}",
+     .help = "draw the study; a CSV of what is drawn beside it",
+     PLACE(plot)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
 
 const command study_command = {
     .name = "study",
+    .group = GROUP_MANY_RUNS,
     .operands = "methods|sensor [SCENARIO]",
-    .options = "sjLq",
     .summary = "Error against cost of the methods; what a force sensor would see",
     .help = "methods: the scenario (corrected/first-impact) by every method of time integration at "
             "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak "
@@ -395,5 +396,8 @@ const command study_command = {
             "reads has one. See docs/methods.md and\ndocs/what-a-sensor-sees.md.\n",
     .least = 1,
     .most = 2,
+    .takes_scenarios = true,
+    .operand_word = topic_word,
+    .options = {&set_options, &json_options, &options, &quiet_options},
     .run = study,
 };

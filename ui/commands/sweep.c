@@ -1,8 +1,6 @@
 // impactlab sweep: a run for each of many parameter values.
 #include "ui/commands/command.h"
 
-#include <ctype.h>
-#include <errno.h>
 #include <math.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -12,7 +10,6 @@
 
 #include "render/plot/sweep_plot.h"
 #include "src/study/sweep_store.h"
-#include "src/base/words.h"
 
 enum { ROWS_SHOWN = 40, BAR_LENGTH = 24 };
 
@@ -45,54 +42,6 @@ static void catch_signals(void)
 
 // --- the request ----------------------------------------------------------------------------
 
-// Reads a whole number from low to high; *value stays if text is NULL.
-static int read_whole(const char *option, const char *text, uint64_t low, uint64_t high,
-                      uint64_t *value)
-{
-    if (text == NULL) {
-        return EXIT_DONE;
-    }
-    char *end;
-    errno = 0;
-    unsigned long long number = strtoull(text, &end, 10);
-    if (!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
-        number > high) {
-        return complain("%s %s: expected a whole number from %llu to %llu", option, text,
-                        (unsigned long long)low, (unsigned long long)high);
-    }
-    *value = number;
-    return EXIT_DONE;
-}
-
-static int read_sampling(const char *text, sweep_sampling *sampling)
-{
-    *sampling = SWEEP_GRID;
-    for (int i = SWEEP_GRID; text != NULL && i <= SWEEP_LATIN; i++) {
-        if (strcmp(text, sweep_sampling_name((sweep_sampling)i)) == 0) {
-            *sampling = (sweep_sampling)i;
-            return EXIT_DONE;
-        }
-    }
-    return text == NULL ? EXIT_DONE : complain("--sample %s: expected grid, random or latin", text);
-}
-
-static int check_quantity(const char *key)
-{
-    nearest_word near = nearest_begin(key);
-    for (int i = 0; i < summary_count; i++) {
-        if (strcmp(summary_table[i].key, key) == 0) {
-            return EXIT_DONE;
-        }
-        nearest_try(&near, summary_table[i].key);
-    }
-    if (near.best != NULL) {
-        return complain("--quantity %s: there is no such quantity, did you mean %s?", key,
-                        near.best);
-    }
-    return complain("--quantity %s: there is no such quantity (impactlab run --json lists them)",
-                    key);
-}
-
 // What the command line asks for, read.
 typedef struct order {
     const arguments *arguments;
@@ -109,31 +58,34 @@ static int processors(void)
     return count < 1 ? 1 : count > SWEEP_MOST_JOBS ? SWEEP_MOST_JOBS : (int)count;
 }
 
-static int read_options(order *o, const arguments *a)
+static sweep_sampling sampling_of(const char *name)
 {
-    uint64_t runs = 0, jobs = (uint64_t)processors();
-    memset(o, 0, sizeof *o);
-    o->arguments = a;
-    o->quantity = a->quantity ? a->quantity : "peak_force_N";
-    o->request.vary = a->varies;
-    o->request.vary_count = a->vary_count;
-    int code = read_sampling(a->sample, &o->request.sampling);
-    code = code ? code : read_whole("--runs", a->runs, 1, SWEEP_MOST_RUNS, &runs);
-    code = code ? code : read_whole("--seed", a->seed, 0, UINT64_MAX, &o->request.seed);
-    code = code ? code : read_whole("--jobs", a->jobs, 1, SWEEP_MOST_JOBS, &jobs);
-    code = code ? code : check_quantity(o->quantity);
-    o->request.runs = (size_t)runs;
-    o->jobs = (int)jobs;
-    return code;
+    for (int i = SWEEP_GRID; name != NULL && i <= SWEEP_LATIN; i++) {
+        if (strcmp(name, sweep_sampling_name((sweep_sampling)i)) == 0) {
+            return (sweep_sampling)i;
+        }
+    }
+    return SWEEP_GRID;
+}
+
+static order order_of(const arguments *a)
+{
+    return (order){.arguments = a,
+                   .quantity = a->quantity != NULL ? a->quantity : "peak_force_N",
+                   .jobs = a->jobs > 0 ? (int)a->jobs : processors(),
+                   .request = {.vary = a->varies.items,
+                               .vary_count = a->varies.count,
+                               .sampling = sampling_of(a->sampling),
+                               .runs = (size_t)a->runs,
+                               .seed = a->seed}};
 }
 
 // Reads the scenario and what is varied, and looks at everything that can be wrong beforehand.
 static int prepare(order *o, const arguments *a)
 {
     fault f = {0};
-    int code = read_options(o, a);
-    code = code ? code : check_output(a->csv);
-    code = code ? code : open_scenario(&o->scenario, a->operands[0], a);
+    *o = order_of(a);
+    int code = open_scenario(&o->scenario, a->operands[0], a);
     if (code != EXIT_DONE) {
         return code;
     }
@@ -368,10 +320,59 @@ static int sweep_command_run(const arguments *a)
     return code;
 }
 
+static const option_row rows[] = {
+    {.name = "sample",
+     .type = OPTION_CHOICE,
+     .value = "grid|random|latin",
+     .help = "how the values are combined (grid)",
+     PLACE(sampling)},
+    {.name = "runs",
+     .type = OPTION_WHOLE,
+     .value = "N",
+     .help = "number of runs at random or of a Latin hypercube",
+     PLACE(runs),
+     .low = 1,
+     .high = SWEEP_MOST_RUNS},
+    {.name = "seed",
+     .type = OPTION_WHOLE,
+     .value = "S",
+     .help = "start of the random numbers (0)",
+     PLACE(seed),
+     .high = HUGE_VAL},
+    {.name = "jobs",
+     .type = OPTION_WHOLE,
+     .value = "J",
+     .help = "number of runs at a time (as many as processors)",
+     PLACE(jobs),
+     .low = 1,
+     .high = SWEEP_MOST_JOBS},
+    {.name = "db",
+     .type = OPTION_PLACE,
+     .value = "FILE.sqlite",
+     .help = "keep every run in a database; go on where it ends",
+     PLACE(db)},
+    {.name = "csv",
+     .type = OPTION_RESULT,
+     .value = "FILE|-",
+     .help = "write a row for each run",
+     PLACE(csv)},
+    {.name = "plot",
+     .type = OPTION_PICTURE,
+     .value = "FILE.{png,pdf,svg}",
+     .help = "draw the quantity over one or two parameters",
+     PLACE(plot)},
+    {.name = "quantity",
+     .type = OPTION_QUANTITY,
+     .value = "KEY",
+     .help = "what to draw and to sum up (peak_force_N)",
+     PLACE(quantity)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command sweep_command = {
     .name = "sweep",
+    .group = GROUP_MANY_RUNS,
     .operands = "SCENARIO",
-    .options = "svmneJdCPQq",
     .summary = "A run for each of many parameter values",
     .help =
         "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them evenly in the "
@@ -383,5 +384,7 @@ const command sweep_command = {
         "Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",
     .least = 1,
     .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &vary_options, &options, &quiet_options},
     .run = sweep_command_run,
 };

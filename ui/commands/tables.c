@@ -121,10 +121,7 @@ static int tables(const arguments *a)
 {
     thesis_tables t;
     fault f = {0};
-    int result = check_output(a->json);
-    if (result != EXIT_DONE) {
-        return result;
-    }
+    int result = EXIT_DONE;
     if (tables_compute(&t, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -139,10 +136,11 @@ static int tables(const arguments *a)
 
 const command tables_command = {
     .name = "tables",
+    .group = GROUP_THESIS,
     .operands = "",
-    .options = "jq",
     .summary = "Tables 4.1-4.3 of the thesis: printed, computed, difference",
     .help = "Each row is computed with the equations as the thesis prints them and with the "
             "corrected ones.\n",
+    .options = {&json_options, &quiet_options},
     .run = tables,
 };

@@ -1,0 +1,172 @@
+// What --help prints, and the command `help`.
+#include "ui/commands/command.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "src/base/version.h"
+
+enum { LINE = 100 };
+
+static void print_paragraphs(FILE *stream, const char *text)
+{
+    paragraph p;
+    bool was_literal = false;
+    while (next_paragraph(&text, &p)) {
+        if (!(p.literal && was_literal)) {
+            fprintf(stream, "\n");
+        }
+        if (p.literal) {
+            fprintf(stream, "%.*s\n", p.bytes, p.start);
+        } else {
+            print_wrapped(stream, p.start, p.bytes, LINE);
+        }
+        was_literal = p.literal;
+    }
+}
+
+static int option_width(const option_row *o)
+{
+    return (int)(strlen(o->name) + (o->value != NULL ? 1 + strlen(o->value) : 0));
+}
+
+// Width of the column of a command's options.
+static int widest_option(const command *c)
+{
+    const option_row *o;
+    int widest = 0;
+    for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
+        int width = option_width(o);
+        widest = width > widest ? width : widest;
+    }
+    return widest;
+}
+
+static void print_option(FILE *stream, const option_row *o, int column)
+{
+    char letter[] = {'-', o->letter, ',', '\0'};
+    fprintf(stream, "  %-3s --%s%s%s%*s  %s\n", o->letter != 0 ? letter : "", o->name,
+            o->value ? " " : "", o->value ? o->value : "", column - option_width(o), "", o->help);
+}
+
+// The rows of a table below its title, which is left out where it is that of the table before.
+static void print_table(FILE *stream, const command *c, const option_table *t,
+                        const char *title_before)
+{
+    if (strcmp(t->title, title_before) != 0) {
+        fprintf(stream, "\n%s:\n", t->title);
+    }
+    for (int i = 0; i < t->count; i++) {
+        print_option(stream, &t->rows[i], widest_option(c));
+    }
+}
+
+void print_help(FILE *stream, const command *self)
+{
+    assert(stream != NULL && self != NULL);
+    fprintf(stream, "impactlab %s%s%s [OPTION]...\n\n%s.\n", self->name,
+            self->operands[0] ? " " : "", self->operands, self->summary);
+    print_paragraphs(stream, self->help);
+
+    // its options, each table's below the others of its title
+    const option_table *t;
+    const char *title = "";
+    for (int i = 0; (t = command_options(self, i)) != NULL; i++) {
+        print_table(stream, self, t, title);
+        title = t->title;
+    }
+}
+
+void print_commands(FILE *stream)
+{
+    static const char *const titles[] = {
+#define GROUP_TITLE(group, title) title,
+        COMMAND_GROUPS(GROUP_TITLE)
+#undef GROUP_TITLE
+    };
+    fprintf(stream,
+            "impactlab %s: impact and force control of a flexible robot arm\n\n"
+            "usage: impactlab COMMAND [ARGUMENT]...\n",
+            lab_version());
+    for (int group = 0; group < COMMAND_GROUP_COUNT; group++) {
+        fprintf(stream, "\n%s:\n", titles[group]);
+        for (int i = 0; i < command_count; i++) {
+            if ((int)command_table[i]->group == group) {
+                fprintf(stream, "  %-9s  %s\n", command_table[i]->name, command_table[i]->summary);
+            }
+        }
+    }
+    fprintf(stream,
+            "\nimpactlab COMMAND --help tells more about a command.\n"
+            "Exit status: 0 done; 1 the run failed or a file could not be written; 2 bad arguments "
+            "or a bad\nscenario.\n");
+}
+
+// --- the command ----------------------------------------------------------------------------
+
+static int write_completion(const char *shell)
+{
+    static const struct {
+        const char *shell;
+        void (*write)(FILE *stream);
+    } writers[] = {
+        {"bash", write_bash_completion},
+        {"zsh", write_zsh_completion},
+        {"fish", write_fish_completion},
+    };
+    for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++) {
+        if (strcmp(writers[i].shell, shell) == 0) {
+            writers[i].write(stdout);
+        }
+    }
+    return EXIT_DONE;
+}
+
+static int help(const arguments *a)
+{
+    const command *about = a->operand_count > 0 ? command_find(a->operands[0]) : NULL;
+    if (a->operand_count > 0 && about == NULL) {
+        return complain_command(a->operands[0]);
+    }
+    if (a->completion != NULL) {
+        return write_completion(a->completion);
+    }
+    if (a->man) {
+        write_man_page(stdout, about);
+    } else if (about != NULL) {
+        print_help(stdout, about);
+    } else {
+        print_commands(stdout);
+    }
+    return EXIT_DONE;
+}
+
+static const char *command_word(int i)
+{
+    return i < command_count ? command_table[i]->name : NULL;
+}
+
+static const option_row rows[] = {
+    {.name = "man",
+     .type = OPTION_FLAG,
+     .help = "write the man page instead, of the command or of impactlab",
+     PLACE(man)},
+    {.name = "completion",
+     .type = OPTION_CHOICE,
+     .value = "bash|zsh|fish",
+     .help = "write what this shell needs to complete commands and options",
+     PLACE(completion)},
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
+const command help_command = {
+    .name = "help",
+    .group = GROUP_PROGRAM,
+    .summary = "The commands, or how to call one of them",
+    .help = "",
+    .operands = "[COMMAND]",
+    .most = 1,
+    .operand_word = command_word,
+    .options = {&options},
+    .run = help,
+};

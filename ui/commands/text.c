@@ -1,0 +1,52 @@
+// Longer texts on the command line: paragraphs and lines.
+#include "ui/commands/command.h"
+
+#include <assert.h>
+#include <string.h>
+
+int text_width(const char *text)
+{
+    int width = 0;
+    for (; *text != '\0'; text++) {
+        width += ((unsigned char)*text & 0xC0) != 0x80;
+    }
+    return width;
+}
+
+void print_wrapped(FILE *stream, const char *text, int bytes, int width)
+{
+    const char *end = text + bytes;
+    int column = 0;
+    assert(bytes >= 0 && width > 0);
+    while ((text += strspn(text, " \n")) < end) {
+        char word[256];
+        int length = (int)strcspn(text, " \n");
+        length = length < end - text ? length : (int)(end - text);
+        snprintf(word, sizeof word, "%.*s", length, text);
+
+        // a word goes on the next line where this one has no room for it
+        int wide = text_width(word);
+        const char *gap = column == 0 ? "" : column + 1 + wide > width ? "\n" : " ";
+        column = gap[0] == ' ' ? column + 1 + wide : wide;
+        fprintf(stream, "%s%.*s", gap, length, text);
+        text += length;
+    }
+    fprintf(stream, "%s", column > 0 ? "\n" : "");
+}
+
+bool next_paragraph(const char **text, paragraph *p)
+{
+    *text += strspn(*text, "\n");
+    if (**text == '\0') {
+        return false;
+    }
+    *p = (paragraph){.start = *text, .literal = **text == ' '};
+
+    // lines are one paragraph until one that is empty or begins with a blank
+    do {
+        *text += strcspn(*text, "\n");
+        p->bytes = (int)(*text - p->start);
+        *text += **text == '\n';
+    } while (!p->literal && strchr("\n ", **text) == NULL);
+    return true;
+}
