@@ -2,29 +2,8 @@
 
 #include <math.h>
 
-#include "src/predict/linearised.h"
-#include "src/predict/predict.h"
 #include "src/base/json.h"
-
-typedef struct predictor {
-    const char *name; // key of --json
-    const char *label;
-    // NULL: the linearised arm, which asks for the state of all links
-    status (*predict)(const parameters *p, const three_body_state *s, prediction *out, fault *f);
-} predictor;
-
-static const predictor predictors[] = {
-    {"energy", "energy principle", predict_energy},
-    {"impact_dynamics", "impact dynamics", predict_impact_dynamics},
-    {"impact_quadratic", "impact dynamics, closed form", predict_impact_quadratic},
-    {"linearised", "linearised constrained arm", NULL},
-};
-enum { PREDICTORS = sizeof predictors / sizeof predictors[0] };
-
-typedef struct outcome {
-    prediction prediction;
-    fault fault; // why there is none; code STATUS_OK if there is one
-} outcome;
+#include "src/predict/predictors.h"
 
 // The last row in free flight before the first contact, or NULL if there was no contact.
 static const sample *last_free_row(const trace *t)
@@ -46,46 +25,26 @@ static three_body_state state_of(const sample *row)
     };
 }
 
-static status predict_by_linearised_arm(const parameters *p, const run_result *result,
-                                        prediction *out, fault *f)
+static void ask_predictors(const scenario *s, const run_result *result, const sample *row,
+                           prediction_answer answers[PREDICTOR_COUNT])
 {
-    if (result->before_impact == NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "for the corrected model only");
-    }
-    arm a;
-    arm_init(&a, p);
-    motion *work = motion_create(&a, &p->method);
-    if (work == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
-    }
-    status code =
-        predict_linearised(&a, work, result->before_impact, result->before_impact + a.dof, out);
-    motion_destroy(work);
-    return code == STATUS_OK ? code : fault_set(f, code, "%s", status_text(code));
-}
-
-static void predict_all(const scenario *s, const run_result *result, const sample *row,
-                        outcome *outcomes)
-{
-    three_body_state state = state_of(row);
     parameters now = scenario_parameters_at(s, row->time);
-    for (int i = 0; i < PREDICTORS; i++) {
-        outcomes[i] = (outcome){.fault = {.code = STATUS_OK}};
-        outcome *o = &outcomes[i];
-        o->fault.code = predictors[i].predict != NULL
-                            ? predictors[i].predict(&now, &state, &o->prediction, &o->fault)
-                            : predict_by_linearised_arm(&now, result, &o->prediction, &o->fault);
-    }
+    const double *all = result->before_impact;
+    int half = (int)(result->before_impact_size / sizeof *all / 2);
+    prediction_question question = {.parameters = &now,
+                                    .bodies = state_of(row),
+                                    .angles = all,
+                                    .velocities = all != NULL ? all + half : NULL};
+    predict_all(&question, answers);
 }
 
-static json_t *prediction_object(const char *method, const outcome *o)
+static json_t *prediction_object(const prediction_answer *answer)
 {
     json_t *object = json_object();
-    json_object_set_new(object, "method", json_string(method));
-    json_object_set_new(object, "message", json_text(o->fault.text));
-    bool known = o->fault.code == STATUS_OK;
-    const prediction none = {.force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
-    const prediction *p = known ? &o->prediction : &none;
+    bool known = prediction_known(answer);
+    const prediction *p = &answer->prediction;
+    json_object_set_new(object, "method", json_string(answer->name));
+    json_object_set_new(object, "message", json_text(known ? "" : prediction_reason(answer)));
     json_object_set_new(object, "holds", known ? json_boolean(p->holds) : json_null());
     json_object_set_new(object, "peak_N", json_number(p->force));
     json_object_set_new(object, "time_to_peak_s", json_number(p->delay));
@@ -93,14 +52,14 @@ static json_t *prediction_object(const char *method, const outcome *o)
     return object;
 }
 
-static json_t *predict_object(const scenario *s, const sample *row, const outcome *outcomes,
-                              const summary *m)
+static json_t *predict_object(const scenario *s, const sample *row,
+                              const prediction_answer *answers, const summary *m)
 {
     json_t *object = json_object(), *array = json_array(), *simulation = json_object();
     json_object_set_new(object, "scenario", json_text(s->name));
     json_object_set_new(object, "t_s", json_number(row->time));
-    for (int i = 0; i < PREDICTORS; i++) {
-        json_array_append_new(array, prediction_object(predictors[i].name, &outcomes[i]));
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        json_array_append_new(array, prediction_object(&answers[i]));
     }
     json_object_set_new(object, "predictions", array);
     json_object_set_new(simulation, "peak_N", json_number(m->first_pulse_peak_N));
@@ -128,8 +87,8 @@ static void print_line(const char *label, double force, double delay, double imp
     printf("\n");
 }
 
-static void print_predictions(const scenario *s, const sample *row, const outcome *outcomes,
-                              const summary *m)
+static void print_predictions(const scenario *s, const sample *row,
+                              const prediction_answer *answers, const summary *m)
 {
     printf("%s: %s\nfirst contact at %.6g s, predicted from the instant before it\n\n", s->name,
            s->title, m->first_contact_s);
@@ -138,15 +97,12 @@ static void print_predictions(const scenario *s, const sample *row, const outcom
            row->time, row->hub_angle, row->first_angle, row->last_angle, row->hub_velocity,
            row->first_velocity, row->last_velocity);
     printf("  %-30s %14s %14s %14s\n", "first pulse", "peak [N]", "after [ms]", "impulse [N s]");
-    for (int i = 0; i < PREDICTORS; i++) {
-        const outcome *o = &outcomes[i];
-        if (o->fault.code != STATUS_OK) {
-            printf("  %-30s %s\n", predictors[i].label, o->fault.text);
-        } else if (!o->prediction.holds) {
-            printf("  %-30s the touch would not hold\n", predictors[i].label);
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        const prediction *p = &answers[i].prediction;
+        if (answers[i].outcome == PREDICTION_HOLDS) {
+            print_line(answers[i].label, p->force, p->delay, p->impulse);
         } else {
-            print_line(predictors[i].label, o->prediction.force, o->prediction.delay,
-                       o->prediction.impulse);
+            printf("  %-30s %s\n", answers[i].label, prediction_reason(&answers[i]));
         }
     }
     print_line("simulation", m->first_pulse_peak_N, m->first_pulse_time_to_peak_s,
@@ -159,20 +115,20 @@ static void print_predictions(const scenario *s, const sample *row, const outcom
 
 static int report(const arguments *a, const scenario *s, const run_result *result)
 {
-    outcome outcomes[PREDICTORS];
+    prediction_answer answers[PREDICTOR_COUNT];
     const sample *row = last_free_row(&result->trace);
     if (row == NULL) {
         complain("%s has no free flight that ends in a contact, there is nothing to predict",
                  s->name);
         return EXIT_FAILED;
     }
-    predict_all(s, result, row, outcomes);
+    ask_predictors(s, result, row, answers);
     int code = EXIT_DONE;
     if (a->json != NULL) {
-        code = write_json(a->json, predict_object(s, row, outcomes, &result->summary));
+        code = write_json(a->json, predict_object(s, row, answers, &result->summary));
     }
     if (summary_wanted(a)) {
-        print_predictions(s, row, outcomes, &result->summary);
+        print_predictions(s, row, answers, &result->summary);
     }
     return code;
 }

@@ -1,0 +1,65 @@
+// All predictors in one table, and one question to all of them: if the arm touched the wall in this
+// state, what would the first pulse be?
+#pragma once
+
+#include "src/base/status.h"
+#include "src/predict/predict.h"
+
+// Every predictor with the key under which results name it, a label, and a label for narrow places.
+#define PREDICTOR_LIST(X)                                                                          \
+    X(PREDICTOR_ENERGY, "energy", "energy principle", "energy")                                    \
+    X(PREDICTOR_IMPACT_DYNAMICS, "impact_dynamics", "impact dynamics", "impact dynamics")          \
+    X(PREDICTOR_IMPACT_QUADRATIC, "impact_quadratic", "impact dynamics, closed form",              \
+      "closed form")                                                                               \
+    X(PREDICTOR_LINEARISED, "linearised", "linearised constrained arm", "linearised")
+
+typedef enum predictor {
+#define PREDICTOR_ENUM(id, name, label, short_label) id,
+    PREDICTOR_LIST(PREDICTOR_ENUM)
+#undef PREDICTOR_ENUM
+        PREDICTOR_COUNT
+} predictor;
+
+// What a predictor has to say of a state.
+#define PREDICTION_OUTCOME_LIST(X)                                                                 \
+    X(PREDICTION_HOLDS, "the touch would hold")                                                    \
+    X(PREDICTION_LOST, "the touch would not hold")                                                 \
+    X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                                   \
+    X(PREDICTION_LINKS_UNKNOWN, "the state of all links is not known")                             \
+    X(PREDICTION_FAILED, "there is no prediction")
+
+typedef enum prediction_outcome {
+#define PREDICTION_OUTCOME_ENUM(id, text) id,
+    PREDICTION_OUTCOME_LIST(PREDICTION_OUTCOME_ENUM)
+#undef PREDICTION_OUTCOME_ENUM
+} prediction_outcome;
+
+// The state that is asked about.
+typedef struct prediction_question {
+    const parameters *parameters; // resolved, as they are at that instant
+    three_body_state bodies;      // hub, first and last link
+    const double *angles;         // of all degrees of freedom [rad], as the corrected model counts
+    const double *velocities;     // them [rad/s]; NULL where they are not known
+} prediction_question;
+
+typedef struct prediction_answer {
+    const char *name;           // key in results
+    const char *label;          // for people
+    const char *short_label;    // the same in 16 columns
+    prediction_outcome outcome; // PREDICTION_HOLDS, PREDICTION_LOST: `prediction` is filled in
+    prediction prediction;      // else NaN, and not held
+    fault fault;                // why there is none after PREDICTION_FAILED; else STATUS_OK
+} prediction_answer;
+
+// Whether the predictor has an answer: a touch that holds or one that does not.
+bool prediction_known(const prediction_answer *answer);
+
+// Why there is no pulse to speak of: a sentence for people; "" if the touch would hold.
+const char *prediction_reason(const prediction_answer *answer);
+
+// Asks one predictor. The linearised arm of many links takes milliseconds and allocates, the others
+// microseconds.
+prediction_answer predict_with(predictor which, const prediction_question *question);
+
+// Asks all of them, in the order of the list.
+void predict_all(const prediction_question *question, prediction_answer answers[PREDICTOR_COUNT]);
