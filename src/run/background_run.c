@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "src/run/resume.h"
+
 struct background_run {
     scenario scenario;
     run_options options;

@@ -1,33 +1,61 @@
-// Checkpoints: where a run of the corrected arm can be resumed.
-#include "src/run/recording.h"
+#include "src/run/checkpoint.h"
 
+#include <assert.h>
 #include <string.h>
 
-enum { CHECKPOINT_ROWS = 512 }; // rows from one checkpoint to the next
+enum {
+    CHECKPOINT_ROWS = 512, // from one checkpoint to the next
+    ROWS_PER_RESERVED = 64 // address space is for one checkpoint in so many rows
+};
 
-status recording_open_history(recording *r, const motion *m, fault *f)
+checkpoint *checkpoint_at(const run_history *h, size_t index)
 {
-    run_history *h = &r->result->history;
-    size_t expected = r->options.rows_expected, most = rows_at_most(expected);
-    size_t size = sizeof(checkpoint) + (size_t)m->size * sizeof(double);
-    r->keeps_history = expected > 0 && r->rig == NULL;
-    if (!r->keeps_history || h->steps.reserved > 0) {
-        return STATUS_OK;
-    }
-    bool reserved = shared_array_reserve(&h->steps, sizeof(force_step), expected, most) &&
-                    shared_array_reserve(&h->checkpoints, size, expected / 64, most);
-    return reserved ? STATUS_OK
-                    : fault_set(f, STATUS_NO_MEMORY, "no address space for %zu rows", expected);
+    assert(h != NULL && index < h->checkpoint_count);
+    return (checkpoint *)((char *)h->checkpoints.base + index * h->checkpoints.size);
 }
 
-bool recording_checkpoint(recording *r, const motion *m, double last_event)
+// Whether the run keeps checkpoints, and its forces beyond its end.
+static bool keeps_history(const recording *r)
+{
+    return r->options->rows_expected > 0 && r->rig == NULL;
+}
+
+bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected)
+{
+    assert(h != NULL && size >= sizeof(checkpoint));
+    size_t least = rows_expected / ROWS_PER_RESERVED, most = recording_most_rows(rows_expected);
+    return force_history_reserve(&h->forces, rows_expected, most) &&
+           shared_array_reserve(&h->checkpoints, size, least, most);
+}
+
+status checkpoint_open_history(recording *r, const motion *m, fault *f)
+{
+    assert(r != NULL && m != NULL);
+    run_history *h = &r->result->history;
+    size_t expected = r->options->rows_expected;
+    size_t size = sizeof(checkpoint) + (size_t)m->size * sizeof(double);
+    if (h->forces.array.reserved > 0) {
+        return STATUS_OK; // shared with the run that is resumed
+    }
+    if (!keeps_history(r)) {
+        force_history_init(&h->forces);
+        return STATUS_OK;
+    }
+    return checkpoint_reserve(h, size, expected)
+               ? STATUS_OK
+               : fault_set(f, STATUS_NO_MEMORY, "no address space for %zu rows", expected);
+}
+
+bool checkpoint_keep(recording *r, const motion *m, double last_event)
 {
     run_history *h = &r->result->history;
     const trace *t = &r->result->trace;
     double now = m->state[SLOT_TIME];
-    if (!r->keeps_history || now - last_event < 1e-12) {
+    if (!keeps_history(r) || now - last_event < ONE_INSTANT) {
         return true;
     }
+
+    // is it time for one, and is there room?
     size_t before = h->checkpoint_count > 0 ? checkpoint_at(h, h->checkpoint_count - 1)->rows : 0;
     if (t->row_count < before + CHECKPOINT_ROWS) {
         return true;
@@ -35,17 +63,15 @@ bool recording_checkpoint(recording *r, const motion *m, double last_event)
     if (!shared_array_grow(&h->checkpoints, h->checkpoint_count + 1)) {
         return false;
     }
-    checkpoint *kept = checkpoint_at(h, h->checkpoint_count++);
+
+    h->checkpoint_count++;
+    checkpoint *kept = checkpoint_at(h, h->checkpoint_count - 1);
     *kept = (checkpoint){.time = now,
                          .rows = t->row_count,
                          .events = t->event_count,
-                         .force_steps = r->count,
-                         .next_action = r->next_action,
-                         .grid_row = r->grid_row,
-                         .separated = r->separated,
-                         .pulse_open = r->pulse_open,
+                         .force_steps = h->forces.count,
                          .impacted = r->result->before_impact != NULL,
-                         .integral_at_window = r->integral_at_window,
+                         .recording = r->state,
                          .summary = r->result->summary,
                          .steps = m->steps,
                          .start_energy = m->start_energy,
@@ -56,21 +82,19 @@ bool recording_checkpoint(recording *r, const motion *m, double last_event)
     return true;
 }
 
-void recording_resume(recording *r, arm *a, motion *m)
+void checkpoint_restore(recording *r, arm *a, motion *m)
 {
+    assert(r != NULL && r->result->history.checkpoint_count > 0);
     const run_history *h = &r->result->history;
     const checkpoint *kept = checkpoint_at(h, h->checkpoint_count - 1);
-    r->count = kept->force_steps;
-    r->steps = h->steps.base;
-    r->capacity = h->steps.capacity;
-    r->grid_row = kept->grid_row;
-    r->separated = kept->separated;
-    r->pulse_open = kept->pulse_open;
-    r->integral_at_window = kept->integral_at_window;
-    for (; r->next_action < kept->next_action; r->next_action++) {
-        action_apply(&r->scenario->actions[r->next_action], &r->now, NULL);
+
+    // the parameters as the script had changed them by then
+    for (; r->state.next_action < kept->recording.next_action; r->state.next_action++) {
+        action_apply(&r->scenario->actions[r->state.next_action], &r->now, NULL);
     }
     arm_init(a, &r->now);
+    r->state = kept->recording;
+
     memcpy(m->state, kept->state, (size_t)m->size * sizeof(double));
     m->steps = kept->steps;
     m->start_energy = kept->start_energy;

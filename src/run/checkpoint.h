@@ -1,39 +1,41 @@
-// What a run in flight is made of at the beginning of a step: enough to go on from there.
+// Checkpoints of a run of the corrected arm: what is needed to go on from an instant as if the run
+// had never stopped, kept every few hundred rows.
 #pragma once
 
-#include "src/run/run.h"
+#include "src/run/recording.h"
+#include "src/solve/motion.h"
 
-#define STEADY_WINDOW 0.1 // steady force: mean over the last of the run [s]
-
-// The force over a step: at its ends, and its mean.
-typedef struct force_step {
-    double start, end;        // [s]
-    double first, last, mean; // [N]
-} force_step;
-
-// An element of run_history.checkpoints; its size there includes the state.
+// An element of run_history.checkpoints; its size there includes the motion's state.
 typedef struct checkpoint {
-    double time; // [s]
-    size_t rows, events, force_steps;
-    int next_action;
-    long grid_row;
-    bool separated, pulse_open, impacted;
-    double integral_at_window;
+    double time;                      // [s]
+    size_t rows, events, force_steps; // recorded until then
+    bool impacted;                    // run_result.before_impact is known
+    recording_state recording;
     summary summary;
     // of the motion
     long steps;
-    double start_energy, pulse_peak, pulse_peak_time, largest_penetration;
+    double start_energy;        // [J]
+    double pulse_peak;          // [N]
+    double pulse_peak_time;     // [s]
+    double largest_penetration; // [m]
     double state[];
 } checkpoint;
 
 // The checkpoint of a number, oldest first.
-static inline checkpoint *checkpoint_at(const run_history *h, size_t index)
-{
-    return (checkpoint *)((char *)h->checkpoints.base + index * h->checkpoints.size);
-}
+checkpoint *checkpoint_at(const run_history *h, size_t index);
 
-// Address space for a resumable run's rows, and for what there is one of for many rows.
-static inline size_t rows_at_most(size_t expected)
-{
-    return 16 * expected + 1000000;
-}
+// Reserves address space for the forces and checkpoints (of `size` bytes each) of a run of so many
+// rows. False if it cannot be had.
+bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected);
+
+// Prepares the history of a run that keeps one (options.rows_expected, and no rig), or else one of
+// the forces alone. STATUS_NO_MEMORY, with a sentence in f.
+status checkpoint_open_history(recording *r, const motion *m, fault *f);
+
+// Keeps the state at the beginning of a step, if the last checkpoint is some rows ago. Not right
+// after an event, which was at last_event [s]: how many come at once is not part of a checkpoint.
+// False without memory.
+bool checkpoint_keep(recording *r, const motion *m, double last_event);
+
+// Goes back to the last checkpoint of a result that run_resume has prepared.
+void checkpoint_restore(recording *r, arm *a, motion *m);

@@ -1,54 +1,88 @@
-// A run of the printed arm: what its rows make of the summary, and how the rig samples it.
-#include "src/run/recording.h"
+#include "src/run/printed.h"
 
+#include <assert.h>
 #include <math.h>
 
+#include "src/run/rig_recording.h"
 #include "src/solve/printed_algorithm.h"
 
-static bool observe_printed(void *context, const printed_row *row)
+// A run of the printed arm in progress.
+typedef struct printed_run_state {
+    recording *recording;
+    printed_motion motion; // with the command in force
+    sensed_motion sensed;  // what the sensors were fixed to at the last row
+} printed_run_state;
+
+// --- what a step is recorded as ---------------------------------------------------------------
+
+static status record_event(recording *r, double time, event_kind kind, int index)
 {
-    recording *r = context;
+    return trace_add_event(&r->result->trace, (event){.time = time, .kind = kind, .index = index});
+}
+
+// The first row in contact: pulse and peaks count from here.
+static void begin_first_pulse(recording *r, const printed_row *row)
+{
     summary *s = &r->result->summary;
-    bool was_in_contact = r->pulse_open;
-    s->steps += row->time > 0;
+    s->first_contact_s = row->time;
+    s->peak_force_N = s->first_pulse_peak_N = -1;
+    s->first_pulse_s = (double)NAN;
+}
+
+// The largest forces so far, of the run and of its first pulse.
+static void note_peaks(recording *r, const printed_row *row)
+{
+    summary *s = &r->result->summary;
+    double since = row->time - s->first_contact_s;
+    if (row->force > s->peak_force_N) {
+        s->peak_force_N = row->force;
+        s->time_to_peak_s = since;
+    }
+    if (isnan(s->first_pulse_s) && row->force > s->first_pulse_peak_N) {
+        s->first_pulse_peak_N = row->force;
+        s->first_pulse_time_to_peak_s = since;
+    }
+}
+
+// Takes note of contact that begins or ends with the row.
+static status note_contact(recording *r, const printed_row *row)
+{
+    summary *s = &r->result->summary;
+    recording_state *state = &r->state;
+    bool was_in_contact = state->pulse_open;
+    status failed = STATUS_OK;
     s->max_penetration_m = fmax(s->max_penetration_m, -row->gap);
     if (row->contact && isnan(s->first_contact_s)) {
-        s->first_contact_s = row->time;
-        s->peak_force_N = s->first_pulse_peak_N = -1;
-        r->pulse_open = was_in_contact = true;
-        s->first_pulse_s = (double)NAN;
-        trace_add_event(&r->result->trace,
-                        (event){.time = row->time, .kind = EVENT_CONTACT, .index = -1});
+        begin_first_pulse(r, row);
     }
-    if (!isnan(s->first_contact_s)) {
-        double since = row->time - s->first_contact_s;
-        if (row->force > s->peak_force_N) {
-            s->peak_force_N = row->force;
-            s->time_to_peak_s = since;
-        }
-        bool first_pulse = isnan(s->first_pulse_s);
-        if (first_pulse && row->force > s->first_pulse_peak_N) {
-            s->first_pulse_peak_N = row->force;
-            s->first_pulse_time_to_peak_s = since;
-        }
-        if (was_in_contact && !row->contact) {
-            r->pulse_open = false;
-            if (first_pulse) {
-                s->first_pulse_s = since;
-            }
-            trace_add_event(&r->result->trace,
-                            (event){.time = row->time, .kind = EVENT_RELEASE, .index = -1});
-        } else if (!was_in_contact && row->contact) {
-            r->pulse_open = true;
-            s->separations += r->separated;
-            r->separated = false;
-            trace_add_event(&r->result->trace,
-                            (event){.time = row->time, .kind = EVENT_CONTACT, .index = -1});
-        }
-        s->impacts += row->contact && (!was_in_contact || since == 0);
-        r->separated |= row->gap > SEPARATION_GAP;
+    if (isnan(s->first_contact_s)) {
+        return STATUS_OK; // the wall is still to be met
     }
-    const motor_parameters *motor = &r->now.motor;
+
+    note_peaks(r, row);
+    if (row->contact && !was_in_contact) {
+        s->impacts++;
+        s->separations += state->separated;
+        state->separated = false;
+        failed = record_event(r, row->time, EVENT_CONTACT, -1);
+    } else if (was_in_contact && !row->contact) {
+        if (isnan(s->first_pulse_s)) {
+            s->first_pulse_s = row->time - s->first_contact_s;
+        }
+        failed = record_event(r, row->time, EVENT_RELEASE, -1);
+    }
+    state->pulse_open = row->contact;
+    state->separated |= row->gap > SEPARATION_GAP;
+    return failed;
+}
+
+static status add_row(const printed_run_state *run, const printed_row *row)
+{
+    recording *r = run->recording;
+    const motor_model *motor = &run->motion.arm.motor;
+    if (!r->options->keep_trace) {
+        return STATUS_OK;
+    }
     sample sampled = {
         .time = row->time,
         .hub_angle = row->angle[0],
@@ -64,8 +98,8 @@ static bool observe_printed(void *context, const printed_row *row)
         .gap_velocity = (double)NAN,
         .force = row->force,
         .contact = row->contact,
-        .voltage = motor_limited_voltage(motor, motor->voltage),
-        .motor_torque = motor_torque_per_volt(motor) * motor_limited_voltage(motor, motor->voltage),
+        .voltage = motor->voltage,
+        .motor_torque = motor->torque,
         .friction_torque = (double)NAN,
         .kinetic_energy = (double)NAN,
         .strain_energy = (double)NAN,
@@ -78,68 +112,118 @@ static bool observe_printed(void *context, const printed_row *row)
         .energy_residual = (double)NAN,
     };
     recording_add_rig_signals(r, &sampled);
-    double before = r->count > 0 ? r->steps[r->count - 1].last : 0;
-    double start = r->count > 0 ? r->steps[r->count - 1].end : row->time;
-    force_step step = {start, row->time, before, row->force, (before + row->force) / 2};
-    if (r->rig != NULL) {
-        sensed_motion last = {.angle = row->angle[0],
-                              .velocity = row->velocity[0],
-                              .acceleration = row->acceleration[0],
-                              .bending = row->angle[2] - row->angle[1],
-                              .bending_rate = row->velocity[2] - row->velocity[1],
-                              .force = row->force};
-        sensed_motion first = r->count > 0 ? r->after_step : last;
-        sensors_follow(&r->rig->sensors, row->time - start, &first, &last, step.mean);
-        r->after_step = last;
-    }
-    if (r->rig_status == STATUS_OK && recording_asked_to_stop(r)) {
-        r->rig_status = fault_set(r->rig_fault, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
-                                  status_text(STATUS_STOPPED));
-    }
-    return r->rig_status == STATUS_OK && recording_add_step(r, step) == STATUS_OK &&
-           (!r->keep_trace ||
-            recording_add_row(r, &sampled, row->angle, row->velocity) == STATUS_OK);
+    return recording_add_row(r, &sampled, row->angle, row->velocity);
 }
 
-// Scripted changes take effect at the next step; the printed model knows no pushes.
-static void script_printed(void *context, double time, parameters *p)
+static sensed_motion sensed_at(const printed_row *row)
 {
-    recording *r = context;
-    const scenario *s = r->scenario;
-    for (; r->next_action < s->action_count && s->actions[r->next_action].time <= time;
-         r->next_action++) {
-        const action *todo = &s->actions[r->next_action];
-        if (todo->kind == ACTION_SET) {
-            action_apply(todo, p, NULL); // the reader has checked the value
-            if (r->rig != NULL && r->rig_status == STATUS_OK) {
-                r->rig_status = rig_lock(r->rig, p->control.lock, r->rig_fault);
-            }
-            trace_add_event(&r->result->trace,
-                            (event){.time = time, .kind = EVENT_CHANGE, .index = r->next_action});
-        }
-    }
-    if (r->rig != NULL && r->rig_status == STATUS_OK) {
-        bool changed;
-        r->rig_status = rig_act(r->rig, time, &r->after_step, &changed, r->rig_fault);
-        if (changed) {
-            recording_book_electrical_energy(r, time, r->after_step.angle);
-        }
-        p->motor.voltage = r->rig->voltage;
-    }
-    r->now = *p;
+    return (sensed_motion){.angle = row->angle[0],
+                           .velocity = row->velocity[0],
+                           .acceleration = row->acceleration[0],
+                           .bending = row->angle[2] - row->angle[1],
+                           .bending_rate = row->velocity[2] - row->velocity[1],
+                           .force = row->force};
 }
+
+// Records a row: contact, what the sensors feel, force, signals.
+static status record_row(printed_run_state *run, fault *f)
+{
+    recording *r = run->recording;
+    const printed_row *row = &run->motion.row;
+    const force_history *forces = &r->result->history.forces;
+    status failed = note_contact(r, row);
+
+    // the force over the step, which the row of time 0 has none of
+    bool first = forces->count == 0;
+    const force_step *last = first ? NULL : &force_steps(forces)[forces->count - 1];
+    double before = first ? 0 : last->last, start = first ? row->time : last->end;
+    force_step step = {start, row->time, before, row->force, (before + row->force) / 2};
+
+    if (r->rig != NULL) {
+        sensed_motion now = sensed_at(row);
+        sensors_follow(&r->rig->sensors, row->time - start, first ? &now : &run->sensed, &now,
+                       step.mean);
+        run->sensed = now;
+    }
+
+    if (failed == STATUS_OK) {
+        failed = recording_add_step(r, step);
+    }
+    if (failed == STATUS_OK) {
+        failed = add_row(run, row);
+    }
+    if (failed == STATUS_OK && recording_asked_to_stop(r)) {
+        failed = fault_set(f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
+                           status_text(STATUS_STOPPED));
+    }
+    return failed;
+}
+
+// --- between steps ----------------------------------------------------------------------------
+
+// Carries out the script's actions that are due; they take effect at the coming step.
+static status run_script(printed_run_state *run, fault *f)
+{
+    recording *r = run->recording;
+    const scenario *s = r->scenario;
+    const double time = run->motion.row.time;
+    bool changed = false;
+    for (; r->state.next_action < s->action_count; r->state.next_action++) {
+        const action *todo = &s->actions[r->state.next_action];
+        if (todo->time > time) {
+            break;
+        }
+        status failed = action_apply(todo, &r->now, f);
+        if (failed == STATUS_OK && r->rig != NULL) {
+            failed = rig_lock(r->rig, r->now.control.lock, f);
+        }
+        if (failed == STATUS_OK) {
+            failed = record_event(r, time, EVENT_CHANGE, r->state.next_action);
+        }
+        if (failed != STATUS_OK) {
+            return failed;
+        }
+        changed = true;
+    }
+    if (changed) {
+        printed_motion_rebind(&run->motion, &r->now);
+    }
+    return STATUS_OK;
+}
+
+// Samples the sensors and changes the command where the time for it has come.
+static status run_rig(printed_run_state *run, fault *f)
+{
+    recording *r = run->recording;
+    if (r->rig == NULL) {
+        return STATUS_OK;
+    }
+    bool changed;
+    const double time = run->motion.row.time;
+    status failed = rig_act(r->rig, time, &run->sensed, &changed, f);
+    if (failed == STATUS_OK && changed) {
+        recording_change_command(r, time, run->sensed.angle);
+    }
+    // the controller's command, not motor.voltage
+    printed_motion_set_voltage(&run->motion, r->rig->voltage);
+    return failed;
+}
+
+// --- the summary ------------------------------------------------------------------------------
 
 // The printed algorithm knows its force at its rows only: moves a peak that lies at one of them,
 // `*since` after first contact, to the top of the parabola through it and its neighbours.
 static void refine_sampled_peak(const recording *r, double *force, double *since)
 {
+    const force_history *forces = &r->result->history.forces;
+    const force_step *steps = force_steps(forces);
     double at = r->result->summary.first_contact_s + *since;
-    for (size_t i = 1; i + 1 < r->count; i++) {
-        if (r->steps[i].end != at) {
+    for (size_t i = 1; i + 1 < forces->count; i++) {
+        if (steps[i].end != at) {
             continue;
         }
-        double before = r->steps[i - 1].last, after = r->steps[i + 1].last;
-        double h = r->steps[i].end - r->steps[i - 1].end;
+        double before = steps[i - 1].last, after = steps[i + 1].last;
+        double h = steps[i].end - steps[i - 1].end;
         double second = before - 2 * *force + after, slope = (after - before) / 2;
         bool inside = before > 0 && after > 0 && second < 0; // not at the edge of a pulse
         if (inside && fabs(slope) <= -second) {
@@ -150,44 +234,87 @@ static void refine_sampled_peak(const recording *r, double *force, double *since
     }
 }
 
-status run_printed(recording *r, fault *f)
+// The integral of the force over the window of the steady force [N s], from the mean of its rows.
+static double steady_integral(const recording *r)
 {
-    const parameters *p = &r->scenario->parameters;
-    status opened = recording_open_trace(r, 3, f);
-    if (opened != STATUS_OK) {
-        return opened;
+    const force_history *forces = &r->result->history.forces;
+    const force_step *steps = force_steps(forces);
+    double duration = r->scenario->parameters.run.duration, window = duration - STEADY_WINDOW;
+    double total = 0, weight = 0;
+    for (size_t i = 1; i < forces->count; i++) {
+        if (steps[i].end > window) {
+            total += steps[i].last;
+            weight++;
+        }
     }
-    for (int i = 0; i < r->scenario->action_count; i++) {
-        if (r->scenario->actions[i].kind == ACTION_PUSH) {
+    return weight > 0 ? total / weight * fmin(STEADY_WINDOW, duration) : 0;
+}
+
+// Sums up what is known of a run, also of one that failed.
+static void sum_up(const printed_run_state *run, status failed)
+{
+    recording *r = run->recording;
+    summary *s = &r->result->summary;
+    snprintf(s->method, sizeof s->method, "Newmark, as printed");
+    s->steps = (double)run->motion.steps;
+    s->motor_work_J = s->energy_residual_J = (double)NAN; // (2.16) as printed conserves no energy
+    s->separations += r->state.separated;
+    if (!isnan(s->first_contact_s)) {
+        refine_sampled_peak(r, &s->first_pulse_peak_N, &s->first_pulse_time_to_peak_s);
+        refine_sampled_peak(r, &s->peak_force_N, &s->time_to_peak_s);
+    }
+
+    // what only a whole run has
+    if (failed == STATUS_OK) {
+        recording_finish_summary(r, steady_integral(r));
+        recording_finish_rig_summary(r, run->sensed.angle);
+    }
+}
+
+// The printed model knows no pushes.
+static status refuse_pushes(const scenario *s, fault *f)
+{
+    for (int i = 0; i < s->action_count; i++) {
+        if (s->actions[i].kind == ACTION_PUSH) {
             return fault_set(
                 f, STATUS_BAD_SCENARIO,
                 "the script pushes the arm at %g s, but the printed model knows no pushes",
-                r->scenario->actions[i].time);
+                s->actions[i].time);
         }
     }
-    r->rig_fault = f;
-    status s = printed_run(&r->now, observe_printed, script_printed, r, f);
-    s = s == STATUS_OK ? r->rig_status : s;
-    summary *sum = &r->result->summary;
-    sum->motor_work_J = sum->energy_residual_J =
-        (double)NAN; // (2.16) as printed conserves no energy
-    sum->separations += r->separated;
-    if (!isnan(sum->first_contact_s)) {
-        refine_sampled_peak(r, &sum->first_pulse_peak_N, &sum->first_pulse_time_to_peak_s);
-        refine_sampled_peak(r, &sum->peak_force_N, &sum->time_to_peak_s);
+    return STATUS_OK;
+}
+
+status run_printed(recording *r, fault *f)
+{
+    assert(r != NULL && r->scenario->parameters.arm.model == ARM_PRINTED);
+    printed_run_state run = {.recording = r};
+    status failed = recording_open_trace(r, 3, f);
+    if (failed == STATUS_OK) {
+        failed = refuse_pushes(r->scenario, f);
     }
-    snprintf(sum->method, sizeof sum->method, "Newmark, as printed");
-    if (s == STATUS_OK && r->count > 0) {
-        double window = p->run.duration - STEADY_WINDOW, total = 0, weight = 0;
-        for (size_t i = 1; i < r->count; i++) {
-            if (r->steps[i].end > window) {
-                total += r->steps[i].last;
-                weight++;
-            }
+    if (failed != STATUS_OK) {
+        return failed;
+    }
+
+    force_history_init(&r->result->history.forces);
+    printed_motion_start(&run.motion, &r->now);
+    if (r->rig != NULL) {
+        printed_motion_set_voltage(&run.motion, r->rig->voltage);
+    }
+    failed = record_row(&run, f);
+    while (failed == STATUS_OK && !printed_motion_ended(&run.motion)) {
+        failed = run_script(&run, f);
+        if (failed == STATUS_OK) {
+            failed = run_rig(&run, f);
         }
-        recording_finish_summary(
-            r, weight > 0 ? total / weight * fmin(STEADY_WINDOW, p->run.duration) : 0);
-        recording_finish_rig_summary(r, r->after_step.angle);
+        if (failed == STATUS_OK) {
+            failed = printed_motion_step(&run.motion, f);
+        }
+        if (failed == STATUS_OK) {
+            failed = record_row(&run, f);
+        }
     }
-    return s;
+    sum_up(&run, failed);
+    return failed;
 }

@@ -1,4 +1,6 @@
-// Runs that begin with what another run has computed already.
+#include "src/run/resume.h"
+
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,7 +30,7 @@ static double same_until(const scenario *a, const scenario *b)
         if (i != duration) {
             return -1;
         }
-        // steps are cut where the steady force's window begins
+        // a step is cut where the steady force's window begins
         double shorter = fmin(a->parameters.run.duration, b->parameters.run.duration);
         until = fmax(0, shorter - STEADY_WINDOW);
     }
@@ -47,25 +49,31 @@ static double same_until(const scenario *a, const scenario *b)
     return until;
 }
 
-// Shares the first rows, events, steps and checkpoints.
-static bool share(const run_result *from, size_t rows, size_t events, size_t steps,
-                  size_t checkpoints, size_t rows_expected, run_result *result)
+// How much of a run another one begins with.
+typedef struct shared_part {
+    size_t rows, events, force_steps, checkpoints;
+} shared_part;
+
+// Lets result begin with the given part of `from`, with room for the rows expected. False without
+// memory; what was shared until then is result's.
+static bool share(const run_result *from, const shared_part *part, size_t rows_expected,
+                  run_result *result)
 {
     const run_history *old = &from->history;
     run_history *own = &result->history;
-    size_t most = rows_at_most(rows_expected);
+    size_t most = recording_most_rows(rows_expected);
     bool shared =
         trace_reserve(&result->trace, from->trace.angle_count, rows_expected, most) == STATUS_OK &&
-        trace_share(&result->trace, &from->trace, rows, events) == STATUS_OK;
-    if (shared && old->steps.reserved > 0) {
-        shared = shared_array_reserve(&own->steps, old->steps.size, rows_expected, most) &&
-                 shared_array_share(&own->steps, &old->steps, steps) &&
-                 shared_array_reserve(&own->checkpoints, old->checkpoints.size, rows_expected / 64,
-                                      most) &&
-                 shared_array_share(&own->checkpoints, &old->checkpoints, checkpoints);
-        own->step_count = steps;
-        own->checkpoint_count = checkpoints;
+        trace_share(&result->trace, &from->trace, part->rows, part->events) == STATUS_OK;
+    if (!shared || old->forces.array.reserved == 0) {
+        return shared; // there is no history to be shared
     }
+
+    shared = checkpoint_reserve(own, old->checkpoints.size, rows_expected) &&
+             shared_array_share(&own->forces.array, &old->forces.array, part->force_steps) &&
+             shared_array_share(&own->checkpoints, &old->checkpoints, part->checkpoints);
+    own->forces.count = part->force_steps;
+    own->checkpoint_count = part->checkpoints;
     return shared;
 }
 
@@ -82,11 +90,14 @@ static bool copy_before_impact(const run_result *from, run_result *result)
 bool run_resume(const run_result *from, const scenario *old, const scenario *s,
                 size_t rows_expected, run_result *result)
 {
+    assert(from != NULL && old != NULL && s != NULL && result != NULL);
     memset(result, 0, sizeof *result);
     const run_history *h = &from->history;
     if (h->checkpoint_count == 0) {
         return false;
     }
+
+    // the last checkpoint before the runs differ
     double until = same_until(old, s) - MARGIN * s->parameters.method.step;
     size_t count = 0;
     while (count < h->checkpoint_count && checkpoint_at(h, count)->time < until) {
@@ -95,11 +106,12 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
     if (count == 0) {
         return false;
     }
+
+    // everything up to it
     const checkpoint *last = checkpoint_at(h, count - 1);
-    bool taken =
-        share(from, last->rows, last->events, last->force_steps, count, rows_expected, result) &&
-        (!last->impacted || copy_before_impact(from, result));
-    if (!taken) {
+    const shared_part part = {last->rows, last->events, last->force_steps, count};
+    if (!share(from, &part, rows_expected, result) ||
+        (last->impacted && !copy_before_impact(from, result))) {
         run_finish(result);
         return false;
     }
@@ -109,10 +121,11 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
 
 status run_share(const run_result *from, size_t rows_expected, run_result *result)
 {
+    assert(from != NULL && result != NULL);
     memset(result, 0, sizeof *result);
-    const trace *t = &from->trace;
-    bool done = share(from, t->row_count, t->event_count, from->history.step_count,
-                      from->history.checkpoint_count, rows_expected, result) &&
+    const shared_part whole = {from->trace.row_count, from->trace.event_count,
+                               from->history.forces.count, from->history.checkpoint_count};
+    bool done = share(from, &whole, rows_expected, result) &&
                 (from->before_impact == NULL || copy_before_impact(from, result));
     result->summary = from->summary;
     if (!done) {
@@ -132,13 +145,13 @@ shared_chunks run_compare_rows(const run_result *result, const run_result *other
     const run_history *h = &result->history, *k = &other->history;
     size_t rows = fewer(a->row_count, b->row_count);
     size_t events = fewer(a->event_count, b->event_count);
-    size_t steps = fewer(h->step_count, k->step_count);
+    size_t steps = fewer(h->forces.count, k->forces.count);
     return (shared_chunks){
         .rows = shared_array_same_chunks(&a->row_array, &b->row_array, rows),
         .angles = shared_array_same_chunks(&a->angle_array, &b->angle_array, rows),
         .velocities = shared_array_same_chunks(&a->velocity_array, &b->velocity_array, rows),
         .events = shared_array_same_chunks(&a->event_array, &b->event_array, events),
-        .steps = shared_array_same_chunks(&h->steps, &k->steps, steps)};
+        .forces = shared_array_same_chunks(&h->forces.array, &k->forces.array, steps)};
 }
 
 void run_merge(run_result *result, const run_result *other, const shared_chunks *same)
@@ -148,5 +161,5 @@ void run_merge(run_result *result, const run_result *other, const shared_chunks 
     shared_array_merge(&result->trace.velocity_array, &other->trace.velocity_array,
                        same->velocities);
     shared_array_merge(&result->trace.event_array, &other->trace.event_array, same->events);
-    shared_array_merge(&result->history.steps, &other->history.steps, same->steps);
+    shared_array_merge(&result->history.forces.array, &other->history.forces.array, same->forces);
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/run/background_run.h"
+#include "src/run/resume.h"
 
 #define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
 #define ROW_SPARE     1.5                   // rows of events beside those of the grid

@@ -1,0 +1,229 @@
+#include "src/run/corrected_events.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/run/rig_recording.h"
+
+void corrected_bind_arm(corrected_run *c)
+{
+    const recording *r = c->recording;
+    arm_init(&c->arm, &r->now);
+    if (r->rig != NULL) {
+        arm_set_voltage(&c->arm, r->rig->voltage); // the controller's, not motor.voltage
+    }
+}
+
+// --- events of the motion ---------------------------------------------------------------------
+
+static status record_event(recording *r, double time, event_kind kind, const motion_report *report)
+{
+    event e = {.time = time, .kind = kind, .index = -1};
+    if (kind == EVENT_IMPACT) {
+        e.impulse = report->impulse;
+        e.speed = report->speed;
+        e.loss = report->loss;
+    }
+    return trace_add_event(&r->result->trace, e);
+}
+
+void corrected_close_first_pulse(corrected_run *c)
+{
+    recording *r = c->recording;
+    const motion *m = c->motion;
+    summary *s = &r->result->summary;
+    r->state.pulse_open = false;
+    s->first_pulse_s = m->state[SLOT_TIME] - s->first_contact_s;
+    if (m->pulse_peak >= 0) {
+        s->first_pulse_peak_N = m->pulse_peak;
+        s->first_pulse_time_to_peak_s = m->pulse_peak_time - s->first_contact_s;
+    }
+}
+
+// What the trace calls the event.
+static event_kind kind_of(const motion *m, const motion_report *report)
+{
+    static const event_kind kinds[] = {[MOTION_IMPACT] = EVENT_IMPACT,
+                                       [MOTION_TOUCH] = EVENT_CONTACT,
+                                       [MOTION_RELEASE] = EVENT_RELEASE,
+                                       [MOTION_STICK] = EVENT_STICK,
+                                       [MOTION_SLIP] = EVENT_SLIP};
+    // the hub came to rest: does friction hold it?
+    bool turns_back = report->event == MOTION_STICK && m->state[SLOT_FRICTION] != HUB_STICK;
+    return turns_back ? EVENT_REVERSAL : kinds[report->event];
+}
+
+// Puts an event that has just been applied into trace and summary.
+static status record_applied_event(corrected_run *c, const motion_report *report)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+    summary *s = &r->result->summary;
+    double now = m->state[SLOT_TIME];
+    bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
+    status failed = record_event(r, now, kind_of(m, report), report);
+    s->impacts += report->event == MOTION_IMPACT;
+
+    // the gap closes: a flight ends, at the first time the pulse begins
+    if (closes) {
+        s->separations += r->state.separated;
+        r->state.separated = false;
+        if (isnan(s->first_contact_s)) {
+            s->first_contact_s = now;
+            s->contact_impulse_Ns = report->impulse;
+            r->state.pulse_open = true;
+            motion_watch(m);
+        }
+        if (report->holds && failed == STATUS_OK && report->event == MOTION_IMPACT) {
+            failed = record_event(r, now, EVENT_CONTACT, report);
+        }
+    }
+
+    bool apart = m->state[SLOT_CONTACT] == 0 && (closes || report->event == MOTION_RELEASE);
+    if (apart && r->state.pulse_open) {
+        corrected_close_first_pulse(c);
+    }
+    return failed;
+}
+
+// Adds the impulse of an impact that has just been applied to the force sensors' lag.
+static void add_impulse_to_sensors(corrected_run *c, const motion_report *report)
+{
+    rig *on = c->recording->rig;
+    // an impulse that the next step is to deliver is part of that step's force
+    if (on != NULL && report->event == MOTION_IMPACT && c->motion->state[SLOT_IMPULSE] == 0) {
+        sensors_strike(&on->sensors, report->impulse);
+    }
+}
+
+// Keeps angles and velocities as they are before the first impact.
+static status keep_state_before_impact(run_result *result, const motion *m)
+{
+    size_t size = 2 * (size_t)m->dof * sizeof(double); // velocities stand behind the angles
+    result->before_impact = malloc(size);
+    if (result->before_impact == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    memcpy(result->before_impact, state_angles(m, m->state), size);
+    result->before_impact_size = size;
+    return STATUS_OK;
+}
+
+status corrected_pass_event(corrected_run *c, motion_report *report)
+{
+    motion *m = c->motion;
+    run_result *result = c->recording->result;
+    status failed = corrected_record_row(c, m->state, 0);
+    if (failed == STATUS_OK && report->event == MOTION_IMPACT && result->before_impact == NULL) {
+        failed = keep_state_before_impact(result, m);
+    }
+    if (failed != STATUS_OK) {
+        return failed;
+    }
+
+    motion_apply(&c->arm, m, report);
+    add_impulse_to_sensors(c, report);
+    failed = record_applied_event(c, report);
+    if (failed == STATUS_OK) {
+        failed = corrected_audit(c);
+    }
+    return failed == STATUS_OK ? corrected_record_row(c, m->state, report->impulse) : failed;
+}
+
+// --- the script -------------------------------------------------------------------------------
+
+// Sets a parameter, under which the arm goes on in its present state.
+static status set_parameter(corrected_run *c, const action *todo, fault *f)
+{
+    recording *r = c->recording;
+    status failed = action_apply(todo, &r->now, f);
+    if (failed == STATUS_OK && r->rig != NULL) {
+        failed = rig_lock(r->rig, r->now.control.lock, f);
+    }
+    arm before = c->arm;
+    corrected_bind_arm(c);
+    motion_rebind(&before, &c->arm, c->motion);
+    return failed;
+}
+
+// Carries out one action and records it; the rows on its both sides show what it changed.
+static status run_action(corrected_run *c, int index, fault *f)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+    const action *todo = &r->scenario->actions[index];
+    motion_report report = {.event = MOTION_REACHED};
+    event e = {.time = m->state[SLOT_TIME], .kind = EVENT_CHANGE, .index = index};
+    status failed = corrected_record_row(c, m->state, 0);
+    if (failed != STATUS_OK) {
+        return failed;
+    }
+
+    if (todo->kind == ACTION_SET) {
+        failed = set_parameter(c, todo, f);
+    } else {
+        e.kind = EVENT_PUSH;
+        e.impulse = todo->value;
+        motion_push(&c->arm, m, todo->value, &report);
+        add_impulse_to_sensors(c, &report);
+    }
+    if (failed == STATUS_OK) {
+        failed = trace_add_event(&r->result->trace, e);
+    }
+
+    // a push in contact is an impact; either may end the contact
+    if (failed == STATUS_OK && report.event == MOTION_IMPACT) {
+        failed = record_applied_event(c, &report);
+    } else if (failed == STATUS_OK && m->state[SLOT_CONTACT] == 0 && r->state.pulse_open) {
+        corrected_close_first_pulse(c);
+    }
+    return failed == STATUS_OK ? corrected_record_row(c, m->state, report.impulse) : failed;
+}
+
+status corrected_run_script(corrected_run *c, fault *f)
+{
+    const scenario *s = c->recording->scenario;
+    int *next = &c->recording->state.next_action;
+    const double due = c->motion->state[SLOT_TIME] + ONE_INSTANT;
+    status failed = STATUS_OK;
+    while (failed == STATUS_OK && *next < s->action_count && s->actions[*next].time <= due) {
+        failed = run_action(c, *next, f);
+        *next += failed == STATUS_OK;
+    }
+    return failed;
+}
+
+// --- the rig ----------------------------------------------------------------------------------
+
+// Lets another command take effect: the torque jumps, and with it accelerations and force.
+static status apply_command(corrected_run *c)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    double now = m->state[SLOT_TIME], before = c->arm.motor.torque;
+    recording_change_command(r, now, state_angles(m, m->state)[0]);
+    arm_set_voltage(&c->arm, r->rig->voltage);
+    motion_retorque(&c->arm, m, before);
+
+    status failed = STATUS_OK;
+    if (contact && m->state[SLOT_CONTACT] == 0) {
+        motion_report lost = {.event = MOTION_RELEASE};
+        failed = record_applied_event(c, &lost);
+    }
+    return failed == STATUS_OK && now > 0 ? corrected_record_row(c, m->state, 0) : failed;
+}
+
+status corrected_run_rig(corrected_run *c, fault *f)
+{
+    rig *on = c->recording->rig;
+    double now = c->motion->state[SLOT_TIME];
+    if (on == NULL || rig_next_time(on) > now + ONE_INSTANT) {
+        return STATUS_OK;
+    }
+    bool changed;
+    sensed_motion sensed = corrected_sensed_motion(c, c->motion->state);
+    status s = rig_act(on, now, &sensed, &changed, f);
+    return s == STATUS_OK && changed ? apply_command(c) : s;
+}

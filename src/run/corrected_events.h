@@ -1,0 +1,20 @@
+// What happens to a run of the corrected arm between its steps: events of the motion, the script's
+// actions, and the commands of the rig.
+#pragma once
+
+#include "src/run/corrected_rows.h"
+
+// Derives the arm's constants from the parameters as they are now; the command in force stays.
+void corrected_bind_arm(corrected_run *c);
+
+// The first pulse is over: takes note of its length and of the largest force until now.
+void corrected_close_first_pulse(corrected_run *c);
+
+// Applies an event that the motion stopped at and records the rows on its both sides.
+status corrected_pass_event(corrected_run *c, motion_report *report);
+
+// Carries out the script's actions that are due. What fails says why in f, or has a code only.
+status corrected_run_script(corrected_run *c, fault *f);
+
+// Samples the sensors and changes the command where the time for it has come.
+status corrected_run_rig(corrected_run *c, fault *f);

@@ -1,0 +1,186 @@
+#include "src/run/corrected_rows.h"
+
+#include <math.h>
+
+#include "src/run/rig_recording.h"
+
+#define SHORTEST_MEAN  1e-9 // a step shorter than this has the mean of its ends [s]
+#define TINY_ENERGY    1e-9 // below it nothing is called unstable [J]
+#define TINY_TURN      1e-2 // nor below what the motor does in this turn [rad]
+#define WRONG_ENERGY   0.1  // share of the energy turned over that may not be unaccounted for
+#define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near a step's end lies at it
+
+enum { SEPARATION_BISECTIONS = 30 };
+
+status corrected_audit(corrected_run *c)
+{
+    const motion *m = c->motion;
+    summary *s = &c->recording->result->summary;
+    double residual = motion_energy_residual(&c->arm, m, m->state);
+    s->energy_residual_J = fmax(s->energy_residual_J, fabs(residual));
+
+    double turned_over = fabs(m->state[SLOT_MOTOR_WORK]) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
+                         m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN + TINY_ENERGY;
+    // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
+    double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
+    return wrong > WRONG_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
+}
+
+status corrected_record_row(corrected_run *c, double *state, double impulse)
+{
+    recording *r = c->recording;
+    const arm *a = &c->arm;
+    const motion *m = c->motion;
+    if (!r->options->keep_trace) {
+        return STATUS_OK;
+    }
+
+    double *q = state_angles(m, state), *w = state_velocities(m, state);
+    double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
+    int first = a->first, last = a->dof - 1;
+    sample row = {
+        .time = state[SLOT_TIME],
+        .hub_angle = q[0],
+        .first_angle = q[first],
+        .last_angle = q[last],
+        .hub_velocity = w[0],
+        .first_velocity = w[first],
+        .last_velocity = w[last],
+        .hub_acceleration = al[0],
+        .first_acceleration = al[first],
+        .last_acceleration = al[last],
+        .gap = state[SLOT_GAP],
+        .gap_velocity = state[SLOT_GAP_VELOCITY],
+        .force = state[SLOT_FORCE],
+        .impulse = impulse,
+        .contact = state[SLOT_CONTACT],
+        .sticking = state[SLOT_FRICTION] == HUB_STICK,
+        .voltage = a->motor.voltage,
+        .motor_torque = a->motor.torque,
+        .friction_torque = state[SLOT_FRICTION_TORQUE],
+        .kinetic_energy = chain_kinetic_energy(a, q, w),
+        .strain_energy = chain_strain_energy(a, q),
+        .motor_work = state[SLOT_MOTOR_WORK],
+        .external_work = state[SLOT_EXTERNAL_WORK],
+        .viscous_loss = quadrature[QUADRATURE_VISCOUS],
+        .friction_loss = state[SLOT_FRICTION_LOSS],
+        .damping_loss = quadrature[QUADRATURE_DAMPING],
+        .impact_loss = state[SLOT_IMPACT_LOSS],
+        .energy_residual = motion_energy_residual(a, m, state),
+    };
+    recording_add_rig_signals(r, &row);
+    return recording_add_row(r, &row, q, w);
+}
+
+sensed_motion corrected_sensed_motion(const corrected_run *c, double *state)
+{
+    const motion *m = c->motion;
+    const double *q = state_angles(m, state), *w = state_velocities(m, state);
+    int first = c->arm.first, last = c->arm.dof - 1;
+    return (sensed_motion){.angle = q[0],
+                           .velocity = w[0],
+                           .acceleration = state_accelerations(m, state)[0],
+                           .bending = q[last] - q[first],
+                           .bending_rate = w[last] - w[first],
+                           .force = state[SLOT_FORCE]};
+}
+
+// Records the rows of the grid that lie within the step just made, and passes over one at its end
+// if an event is there.
+static status record_grid(corrected_run *c, bool at_event)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+    const double interval = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
+    if (!r->options->keep_trace) {
+        return STATUS_OK;
+    }
+    for (;; r->state.grid_row++) {
+        double time = (double)r->state.grid_row * interval;
+        bool at_end = fabs(time - now) <= GRID_TOLERANCE * interval;
+        if (time > now && !at_end) {
+            return STATUS_OK;
+        }
+        if (at_end && at_event) {
+            continue; // an event records its own rows
+        }
+
+        // a row within the step is stepped to again from the step's start
+        double *state = at_end ? m->state : motion_between(&c->arm, m, time);
+        status failed = state ? corrected_record_row(c, state, 0) : STATUS_NOT_FINITE;
+        failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
+        if (failed != STATUS_OK) {
+            return failed;
+        }
+    }
+}
+
+// Whether the gap was a separation at any instant of the step just made. A whole flight may lie
+// within one step, so the end says little: look where the gap stops growing.
+static bool step_separated(corrected_run *c)
+{
+    motion *m = c->motion;
+    double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
+    if (m->state[SLOT_GAP] > SEPARATION_GAP) {
+        return true;
+    }
+    if (m->state[SLOT_CONTACT] != 0 || m->state[SLOT_GAP_VELOCITY] >= 0) {
+        return false;
+    }
+
+    // the gap closes at the step's end: bisect for the instant at which it was the largest
+    for (int i = 0; i < SEPARATION_BISECTIONS; i++) {
+        double middle = 0.5 * (from + to);
+        const double *state = motion_between(&c->arm, m, middle);
+        if (state == NULL || state[SLOT_GAP] > SEPARATION_GAP) {
+            return state != NULL;
+        }
+        if (state[SLOT_GAP_VELOCITY] > 0) {
+            from = middle;
+        } else {
+            to = middle;
+        }
+    }
+    return false;
+}
+
+// The force over the step just made.
+static force_step force_over_step(const motion *m)
+{
+    const double *start = m->trial; // where the step left its beginning
+    double length = m->state[SLOT_TIME] - start[SLOT_TIME];
+    double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
+                      state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    // between stops that differ by rounding only, the integral's difference is all rounding
+    double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
+    return (force_step){.start = start[SLOT_TIME],
+                        .end = m->state[SLOT_TIME],
+                        .first = start[SLOT_FORCE],
+                        .last = m->state[SLOT_FORCE],
+                        .mean = length > SHORTEST_MEAN ? integral / length : ends};
+}
+
+status corrected_record_step(corrected_run *c, bool at_event)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+    const force_step force = force_over_step(m);
+    double length = force.end - force.start;
+    if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
+        r->state.separated = step_separated(c);
+    }
+    // an arm held still has the energy it had
+    status s = motion_held_still(m) ? STATUS_OK : corrected_audit(c);
+
+    // the sensors lag behind what they are fixed to
+    if (r->rig != NULL) {
+        sensed_motion first = corrected_sensed_motion(c, m->trial);
+        sensed_motion last = corrected_sensed_motion(c, m->state);
+        sensors_follow(&r->rig->sensors, length, &first, &last, force.mean);
+    }
+
+    if (s == STATUS_OK && length > 0) {
+        s = recording_add_step(r, force);
+    }
+    return s == STATUS_OK ? record_grid(c, at_event) : s;
+}

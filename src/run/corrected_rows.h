@@ -1,0 +1,26 @@
+// A run of the corrected arm in progress, and what it records after every step.
+#pragma once
+
+#include "src/run/recording.h"
+#include "src/solve/motion.h"
+
+typedef struct corrected_run {
+    recording *recording;
+    arm arm; // with the command in force
+    motion *motion;
+} corrected_run;
+
+// Takes note of the energy that the ledger does not account for. STATUS_UNSTABLE if the run makes
+// energy.
+status corrected_audit(corrected_run *c);
+
+// Adds a row of a state of the motion, at which an impulse [N s] acts or none, if the run keeps
+// rows. STATUS_NO_MEMORY.
+status corrected_record_row(corrected_run *c, double *state, double impulse);
+
+// Records the step just made: force, separation, ledger, and the rows of the grid that lie within
+// it; of one at its end only if there is no event, which records rows of its own.
+status corrected_record_step(corrected_run *c, bool at_event);
+
+// What the sensors are fixed to, in a state of the motion.
+sensed_motion corrected_sensed_motion(const corrected_run *c, double *state);

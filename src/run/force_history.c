@@ -1,0 +1,78 @@
+#include "src/run/force_history.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+void force_history_init(force_history *h)
+{
+    assert(h != NULL);
+    shared_array_init(&h->array, sizeof(force_step));
+    h->count = 0;
+}
+
+bool force_history_reserve(force_history *h, size_t least, size_t most)
+{
+    assert(h != NULL && least <= most);
+    h->count = 0;
+    return shared_array_reserve(&h->array, sizeof(force_step), least, most);
+}
+
+void force_history_finish(force_history *h)
+{
+    shared_array_finish(&h->array);
+    memset(h, 0, sizeof *h);
+}
+
+status force_history_add(force_history *h, force_step step)
+{
+    if (h->count == h->array.capacity && !shared_array_grow(&h->array, h->count + 1)) {
+        return STATUS_NO_MEMORY;
+    }
+    ((force_step *)h->array.base)[h->count++] = step;
+    return STATUS_OK;
+}
+
+// The last instant within a step at which the force is `edge`, as a share of it; -1 if none.
+static double last_crossing(const force_step *step, double edge)
+{
+    // force = first + slope s + curve s^2 for 0 <= s <= 1
+    double curve = 3 * (step->first + step->last) - 6 * step->mean;
+    double slope = step->last - step->first - curve, offset = step->first - edge;
+    double latest = -1;
+
+    // a straight line
+    if (fabs(curve) < 1e-12 * (fabs(slope) + fabs(offset))) {
+        double s = slope != 0 ? -offset / slope : -1;
+        return s >= 0 && s <= 1 ? s : -1;
+    }
+
+    // the later one of the parabola's two crossings that lies within the step
+    double square = slope * slope - 4 * curve * offset;
+    for (int sign = -1; sign <= 1 && square >= 0; sign += 2) {
+        double s = (-slope + sign * sqrt(square)) / (2 * curve);
+        latest = s >= 0 && s <= 1 && s > latest ? s : latest;
+    }
+    return latest;
+}
+
+double force_settled_since(const force_history *h, double final)
+{
+    const force_step *steps = force_steps(h);
+    double band = SETTLED_BAND * fabs(final);
+
+    // from the end backwards: where was the force outside for the last time?
+    for (size_t i = h->count; i-- > 0;) {
+        const force_step *step = &steps[i];
+        double upper = last_crossing(step, final + band), lower = last_crossing(step, final - band);
+        double left = fmax(upper, lower);
+        if (fabs(step->last - final) > band) {
+            // outside at its end: inside only from the next step's start on
+            return i + 1 == h->count ? (double)NAN : step->end;
+        }
+        if (left >= 0) {
+            return step->start + left * (step->end - step->start);
+        }
+    }
+    return h->count > 0 ? steps[0].start : (double)NAN;
+}

@@ -1,0 +1,43 @@
+// The contact force of a whole run, step by step: what its settling time is found from.
+#pragma once
+
+#include "src/base/shared_array.h"
+#include "src/base/status.h"
+
+#define SETTLED_BAND 0.05 // a force has settled within this share of its final value
+
+// The force over one step: at its ends, and its mean.
+typedef struct force_step {
+    double start, end;        // [s]
+    double first, last, mean; // [N]
+} force_step;
+
+// The array is plain (after force_history_init) or shared between runs (after
+// force_history_reserve); all zero is an empty one that may be finished.
+typedef struct force_history {
+    shared_array array; // of force_step
+    size_t count;
+} force_history;
+
+// An empty history of a run that is not resumed.
+void force_history_init(force_history *h);
+
+// An empty history that other runs can share: for `least` steps, and up to `most` if there is
+// address space. False if it cannot be had.
+bool force_history_reserve(force_history *h, size_t least, size_t most);
+
+void force_history_finish(force_history *h);
+
+// The steps, oldest first; good until the next one is added to a plain history.
+static inline const force_step *force_steps(const force_history *h)
+{
+    return h->array.base;
+}
+
+// Appends a step. STATUS_NO_MEMORY.
+status force_history_add(force_history *h, force_step step);
+
+// The instant [s] after which the force stays within SETTLED_BAND round `final` [N] for good, each
+// step taken as the parabola through its ends that has its mean; NaN if the run ends outside, or
+// has no step.
+double force_settled_since(const force_history *h, double final);

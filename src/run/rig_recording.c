@@ -1,0 +1,59 @@
+#include "src/run/rig_recording.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "src/arm/motor.h"
+
+status recording_start_rig(recording *r, fault *f)
+{
+    assert(r != NULL && r->rig == NULL);
+    const parameters *p = &r->scenario->parameters;
+    if (p->control.law == LAW_NONE) {
+        return STATUS_OK;
+    }
+    r->command = (recorded_command){.hub_angle = p->initial.angle};
+    r->result->summary.electrical_energy_J = 0;
+    status s = rig_create(&r->rig, p, f);
+    return s == STATUS_OK ? scenario_check_locks(r->scenario, r->rig->law, f) : s;
+}
+
+void recording_add_rig_signals(const recording *r, sample *row)
+{
+    const rig *on = r->rig;
+    bool sampled = on != NULL && on->samples > 0;
+    row->encoder = sampled ? on->reading.encoder : (double)NAN;
+    row->tachometer = sampled ? on->reading.tachometer : (double)NAN;
+    row->force_reading = sampled ? on->reading.force_reading : (double)NAN;
+    row->piezo_force = sampled ? on->reading.piezo_force : (double)NAN;
+    row->film = sampled ? on->reading.film : (double)NAN;
+    row->accelerometer = sampled ? on->reading.accelerometer : (double)NAN;
+    row->command = sampled ? on->output.command : (double)NAN;
+    row->controller_mode = sampled ? on->output.mode : (double)NAN;
+    row->desired_angle = sampled ? on->output.desired_angle : (double)NAN;
+    row->desired_velocity = sampled ? on->output.desired_velocity : (double)NAN;
+    row->calculated_force = sampled ? on->output.calculated_force : (double)NAN;
+}
+
+void recording_change_command(recording *r, double time, double hub_angle)
+{
+    const recorded_command *c = &r->command;
+    r->result->summary.electrical_energy_J +=
+        motor_electrical_energy(&r->now.motor, c->volts, time - c->time, hub_angle - c->hub_angle);
+    r->command = (recorded_command){r->rig->voltage, time, hub_angle};
+}
+
+void recording_finish_rig_summary(recording *r, double hub_angle)
+{
+    assert(r != NULL);
+    summary *s = &r->result->summary;
+    const parameters *p = &r->scenario->parameters;
+    if (r->rig == NULL) {
+        return;
+    }
+    recording_change_command(r, p->run.duration, hub_angle);
+    s->largest_command_V = r->rig->largest_command;
+    s->force_command_N = p->control.force;
+    s->force_over_command_N = s->peak_force_N - p->control.force;
+    s->steady_error_N = s->steady_force_N - p->control.force;
+}

@@ -1,0 +1,17 @@
+// The rig in a run: set up at its start, in every row, and in the summary.
+#pragma once
+
+#include "src/run/recording.h"
+
+// Sets up the rig, if the scenario has a control law; until its first command the motor rests.
+status recording_start_rig(recording *r, fault *f);
+
+// Copies what the rig knows into a row; NaN without a rig or before its first sample.
+void recording_add_rig_signals(const recording *r, sample *row);
+
+// The rig's present command takes effect at `time` [s], with the hub at hub_angle [rad]: what the
+// amplifier fed in under the one before is booked.
+void recording_change_command(recording *r, double time, double hub_angle);
+
+// Fills in what the summary says of the rig; the hub is at the given angle at the end [rad].
+void recording_finish_rig_summary(recording *r, double hub_angle);
