@@ -117,12 +117,11 @@ static const char *mode_name(const scenario *s, int mode)
 // What drives the arm: a voltage, or a controller.
 static void add_drive(GString *out, const parameters *p)
 {
-    char law[PARAMETER_TEXT_SIZE];
     if (p->control.law == LAW_NONE) {
         g_string_append_printf(out, ", %g\u2009V; ", p->motor.voltage);
         return;
     }
-    parameter_format(p, parameter_find("control.law"), law, sizeof law);
+    const char *law = control_law_table[p->control.law].word;
     g_string_append_printf(out, ", on the rig: %s at %g\u2009Hz", law, p->control.rate);
     if (p->control.law == LAW_OPEN_LOOP) {
         g_string_append_printf(out, ", %g\u2009V; ", p->control.approach_voltage);

@@ -116,9 +116,8 @@ const parameter_info parameter_table[] = {
     {"run.duration", "s", REAL, AT(run.duration), 1, 1, 1e-6, 1e5, NULL, NOT_TIMED,
      "simulated time"},
     {"control.law", "", CHOICE, AT(control.law), LAW_NONE, LAW_NONE, 0, LAW_PLUGIN,
-     "none|open-loop|hybrid|force-pd|force-integral|reverse-torque|speed-limit|bang-bang|"
-     "discontinuous|recovering|optimal|predictive|inverse-dynamics|plugin",
-     NOT_TIMED, "control law on the rig, or none: the bare arm under motor.voltage"},
+     CONTROL_LAW_CHOICES, NOT_TIMED,
+     "control law on the rig, or none: the bare arm under motor.voltage"},
     {"control.plugin", "", TEXT, AT(control.plugin), 0, 0, 0, 1, NULL, NOT_TIMED,
      "shared object with a controller of one's own (control.law = plugin)"},
     {"control.settings", "", TEXT, AT(control.settings), 0, 0, 0, 1, NULL, NOT_TIMED,

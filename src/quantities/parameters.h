@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #include "src/base/fault.h"
+#include "src/quantities/control_laws.h"
 
 typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
 typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING } hub_joint_kind;
@@ -76,24 +77,6 @@ typedef struct run_parameters {
 } run_parameters;
 
 enum { PARAMETER_TEXT_SIZE = 128 }; // room for a parameter that is a text, its end included
-
-// In the order of the choices of control.law.
-typedef enum control_law {
-    LAW_NONE, // no rig: the bare arm under motor.voltage
-    LAW_OPEN_LOOP,
-    LAW_HYBRID,
-    LAW_FORCE_PD,
-    LAW_FORCE_INTEGRAL,
-    LAW_REVERSE_TORQUE,
-    LAW_SPEED_LIMIT,
-    LAW_BANG_BANG,
-    LAW_DISCONTINUOUS,
-    LAW_RECOVERING,
-    LAW_OPTIMAL,
-    LAW_PREDICTIVE,
-    LAW_INVERSE_DYNAMICS,
-    LAW_PLUGIN
-} control_law;
 
 typedef struct control_parameters {
     int law;                            // control_law

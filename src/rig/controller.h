@@ -11,12 +11,14 @@
 // Version of this interface; a controller carries the one it was compiled with.
 enum { CONTROLLER_INTERFACE = 3 };
 
-// A number that a user may give a controller. Built-in names are those of `control.NAME`, a
-// plug-in's further ones are given in control.settings as NAME=VALUE.
+// A number that a user may give a controller. One that is called like a control.NAME of the
+// scenario takes the scenario's value; given by its name alone, as {.name = "force"}, it takes
+// unit, range and default from there too. The controller's own further ones are given in
+// control.settings as NAME=VALUE.
 typedef struct controller_parameter {
     const char *name;
     const char *unit;        // "" for a pure number
-    double initial;          // where neither the scenario nor the rig gives it
+    double initial;          // where the scenario does not give it
     double minimum, maximum; // both included
     const char *description; // one sentence without a full stop
 } controller_parameter;

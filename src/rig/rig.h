@@ -6,12 +6,13 @@
 #pragma once
 
 #include "src/rig/controller.h"
+#include "src/rig/plugin.h"
 #include "src/rig/sensors.h"
 #include "src/base/fault.h"
 
 typedef struct rig {
     const controller *law;
-    void *library;  // of a plug-in, else NULL
+    plugin plugin;  // the law comes from, else empty
     void *memory;   // the controller's
     double *values; // of the controller's parameters
     sensors sensors;

@@ -36,12 +36,6 @@ const compare_quantity compare_quantities[COMPARE_QUANTITIES] = {
 
 // --- rows -----------------------------------------------------------------------------------
 
-static const char *law_of(const parameters *p)
-{
-    const controller *law = p->control.law == LAW_NONE ? NULL : controller_of(p->control.law);
-    return law != NULL ? law->name : p->control.law == LAW_PLUGIN ? "plugin" : "none";
-}
-
 // What full knowledge of the state could have made of the run's first impact.
 static void find_best(const scenario *s, const run_result *result, double *peak, double *settling)
 {
@@ -75,7 +69,7 @@ compare_row compare_row_of(const scenario *s, const run_result *result)
     find_best(s, result, &peak, &settling);
     return (compare_row){
         .scenario = s->name,
-        .law = law_of(&s->parameters),
+        .law = control_law_table[s->parameters.control.law].word,
         .ok = m->status == STATUS_OK,
         .values = {[PEAK] = m->peak_force_N,
                    [BEST_PEAK] = peak,

@@ -105,9 +105,9 @@ void draw_controller(lab *l, screen *s, area a)
 {
     const sample *row = session_sample(&l->session);
     parameters p = session_parameters_at(&l->session, l->session.now);
-    char law[64], title[128];
-    parameter_format(&p, parameter_find("control.law"), law, sizeof law);
-    snprintf(title, sizeof title, "%s, %g Hz", law, p.control.rate);
+    char title[128];
+    snprintf(title, sizeof title, "%s, %g Hz", control_law_table[p.control.law].word,
+             p.control.rate);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
     area line = {a.x + 2, a.y + 1, a.width - 4, 1};
     draw_modes(l, s, line, row->controller_mode);

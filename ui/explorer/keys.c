@@ -51,15 +51,7 @@ static bool type(char *text, int key)
 // The i-th control law, then "off"; NULL beyond it.
 static const char *law_name(int i)
 {
-    static char name[LAB_TEXT];
-    if (i > LAW_PLUGIN) {
-        return i == LAW_PLUGIN + 1 ? "off" : NULL;
-    }
-    parameters p;
-    parameters_defaults(&p, ARM_CORRECTED);
-    p.control.law = i;
-    parameter_format(&p, parameter_find("control.law"), name, sizeof name);
-    return name;
+    return i < LAW_COUNT ? control_law_table[i].word : i == LAW_COUNT ? "off" : NULL;
 }
 
 // Candidates for the word that is being typed: the i-th, or NULL.

@@ -8,12 +8,9 @@ static const char *const mode_names[] = {"approach", "contact", NULL};
 
 enum { FORCE_WANTED, APPROACH_VOLTAGE, KV, THRESHOLD, FORCE_GAIN, INTEGRAL_GAIN, PARAMETERS };
 static const controller_parameter table[PARAMETERS] = {
-    {"force", "N", 1, 0, 1000, "commanded contact force"},
-    {"approach_voltage", "V", 1, -1000, 1000, "constant command of the approach"},
-    {"kv", "", 0.75, -1e6, 1e6, "velocity gain, a torque"},
-    {"contact_threshold", "N", 0.05, 0, 1000, "force reading that means contact"},
-    {"force_gain", "V/N", 1, -1000, 1000, "gain of the force error"},
-    {"integral_gain", "V/(N s)", 5, -1e4, 1e4, "gain of the integrated force error"},
+    {.name = "force"},      {.name = "approach_voltage"},
+    {.name = "kv"},         {.name = "contact_threshold"},
+    {.name = "force_gain"}, {.name = "integral_gain"},
 };
 
 typedef struct force_memory {

@@ -14,15 +14,10 @@ static const char *const recovering_names[] = {"approach", "impact", "force", "r
 // Parameters that all these laws share, in this order, then one of the law's own.
 enum { FORCE_WANTED, APPROACH_VOLTAGE, KP, KV, GAINS, COEFFICIENTS, TRANSITION, THRESHOLD, OWN };
 #define SHARED_PARAMETERS                                                                          \
-    {"force", "N", 1, 0, 1000, "commanded contact force"},                                         \
-        {"approach_voltage", "V", 1, -1000, 1000, "constant command of the approach"},             \
-        {"kp", "", 10.15, -1e6, 1e6, "position gain"},                                             \
-        {"kv", "", 0.75, -1e6, 1e6, "velocity gain"},                                              \
-        {"gains", "", 0, 0, 2, "0 torque, 1 volts, 2 torque in the impact mode, else volts"},      \
-        {"coefficients", "", 0, 0, 1, "0 corrected, 1 printed"},                                   \
-        {"transition_time", "s", 0.35, 1e-3, 100, "length of the impact mode"},                    \
+    {.name = "force"}, {.name = "approach_voltage"}, {.name = "kp"}, {.name = "kv"},               \
+        {.name = "gains"}, {.name = "coefficients"}, {.name = "transition_time"},                  \
     {                                                                                              \
-        "contact_threshold", "N", 0.05, 0, 1000, "force reading that means contact"                \
+        .name = "contact_threshold"                                                                \
     }
 
 typedef struct hybrid_memory {
@@ -275,12 +270,9 @@ static void sample_recovering(void *memory, const controller_input *in, controll
 }
 
 static const controller_parameter shared[] = {SHARED_PARAMETERS};
-static const controller_parameter with_speed[] = {
-    SHARED_PARAMETERS, {"speed_limit", "rad/s", 0.3, 0, 1000, "hub velocity of the approach"}};
-static const controller_parameter with_share[] = {
-    SHARED_PARAMETERS, {"switch_share", "", 0.5, 0, 1, "share of the way where the command turns"}};
-static const controller_parameter with_time[] = {
-    SHARED_PARAMETERS, {"reverse_time", "s", 0.02, 0, 10, "how long the motor pulls back"}};
+static const controller_parameter with_speed[] = {SHARED_PARAMETERS, {.name = "speed_limit"}};
+static const controller_parameter with_share[] = {SHARED_PARAMETERS, {.name = "switch_share"}};
+static const controller_parameter with_time[] = {SHARED_PARAMETERS, {.name = "reverse_time"}};
 
 #define LAW(law, names, table, starts, samples)                                                    \
     {                                                                                              \

@@ -43,11 +43,8 @@ static const char *const mode_names[] = {"travel", "press", NULL};
 
 enum { FORCE_WANTED, ARRIVAL_SPEED, TRAVEL_TIME, TRANSITION, THRESHOLD, PARAMETERS };
 static const controller_parameter table[PARAMETERS] = {
-    {"force", "N", 1, 0, 1000, "commanded contact force"},
-    {"arrival_speed", "m/s", 0, 0, 1000, "speed with which the tip is to meet the wall"},
-    {"travel_time", "s", 0.35, 1e-3, 100, "how long the tip moves to the wall"},
-    {"transition_time", "s", 0.35, 1e-3, 100, "how long the force rises"},
-    {"contact_threshold", "N", 0.05, 0, 1000, "force reading that means contact"},
+    {.name = "force"},           {.name = "arrival_speed"},     {.name = "travel_time"},
+    {.name = "transition_time"}, {.name = "contact_threshold"},
 };
 
 enum { WAIT, TRAVEL, RISE, HOLD }; // pieces of the plan; piece k ends at joint k

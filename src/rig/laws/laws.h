@@ -2,8 +2,10 @@
 // rig; docs/control.md says where each comes from.
 #pragma once
 
+#include "src/quantities/control_laws.h"
 #include "src/rig/controller.h"
 
-extern const controller open_loop_law, hybrid_law, force_pd_law, force_integral_law,
-    reverse_torque_law, speed_limit_law, bang_bang_law, discontinuous_law, recovering_law,
-    optimal_law, predictive_law, inverse_dynamics_law;
+// hybrid_law and so on, one for each in the list
+#define LAW(name, prefix, word, description) extern const controller prefix##_law;
+CONTROL_LAWS(LAW)
+#undef LAW

@@ -23,14 +23,12 @@ static const char *const mode_names[] = {"approach", "press", "hold", NULL};
 
 enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, OWN };
 #define SHARED_PARAMETERS                                                                          \
-    {"force", "N", 1, 0, 1000, "commanded contact force"},                                         \
-        {"approach_voltage", "V", 1, -1000, 1000, "constant command of the approach"},             \
+    {.name = "force"}, {.name = "approach_voltage"},                                               \
     {                                                                                              \
-        "contact_threshold", "N", 0.05, 0, 1000, "force reading that means contact"                \
+        .name = "contact_threshold"                                                                \
     }
 static const controller_parameter shared[] = {SHARED_PARAMETERS};
-static const controller_parameter with_limit[] = {
-    SHARED_PARAMETERS, {"force_limit", "N", 2, 0, 1000, "force that an impact may not exceed"}};
+static const controller_parameter with_limit[] = {SHARED_PARAMETERS, {.name = "force_limit"}};
 
 enum { FREE_FIRST, FREE_LAST, FREE_FIRST_RATE, FREE_LAST_RATE };    // states in free flight
 enum { PRESSED_ANGLE, PRESSED_RATE, PRESSED_WALL, PRESSED_TORQUE }; // states in contact

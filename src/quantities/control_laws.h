@@ -1,0 +1,50 @@
+// The built-in control laws, in one list: a law is added here and as a file in src/rig/laws, and
+// nowhere else. It makes the choices of control.law, the declarations of src/rig/laws/laws.h, the
+// rig's table of controllers and the table in docs/control.md.
+#pragma once
+
+// Each law: name in the enumeration below, prefix of the controller (hybrid: hybrid_law), word in
+// scenarios, one line that says what it does, without a full stop.
+#define CONTROL_LAWS(LAW)                                                                          \
+    LAW(OPEN_LOOP, open_loop, "open-loop", "the constant command of the approach, nothing else")   \
+    LAW(HYBRID, hybrid, "hybrid", "approach, impact and force mode of the thesis, 5.2 to 5.4")     \
+    LAW(FORCE_PD, force_pd, "force-pd",                                                            \
+        "static torque 2 f l, force error and damping by the tachometer")                          \
+    LAW(FORCE_INTEGRAL, force_integral, "force-integral",                                          \
+        "from contact on the integral of the force error")                                         \
+    LAW(REVERSE_TORQUE, reverse_torque, "reverse-torque",                                          \
+        "full command backwards for a while after contact, then the force mode of hybrid")         \
+    LAW(SPEED_LIMIT, speed_limit, "speed-limit", "hybrid with the hub's speed limited on the way") \
+    LAW(BANG_BANG, bang_bang, "bang-bang",                                                         \
+        "full command forwards and back on the way, then hybrid")                                  \
+    LAW(DISCONTINUOUS, discontinuous, "discontinuous",                                             \
+        "force-pd while the sensor feels the wall, the approach while it does not")                \
+    LAW(RECOVERING, recovering, "recovering",                                                      \
+        "hybrid that goes back to position control where contact is lost")                         \
+    LAW(OPTIMAL, optimal, "optimal", "state feedback with an observer on the linearised arm")      \
+    LAW(PREDICTIVE, predictive, "predictive",                                                      \
+        "optimal behind an approach that keeps to a limit on the force")                           \
+    LAW(INVERSE_DYNAMICS, inverse_dynamics, "inverse-dynamics",                                    \
+        "computed torque through the inverse of the flexible arm, played back open-loop")
+
+// Values of control.law.
+typedef enum control_law {
+    LAW_NONE, // no rig: the bare arm under motor.voltage
+#define LAW(name, prefix, word, description) LAW_##name,
+    CONTROL_LAWS(LAW)
+#undef LAW
+        LAW_PLUGIN, // a controller of one's own, from control.plugin
+    LAW_COUNT
+} control_law;
+
+// The choices of control.law in the order of the enumeration, "none|open-loop|...|plugin".
+#define CONTROL_LAW_WORD(name, prefix, word, description) "|" word
+#define CONTROL_LAW_CHOICES                               "none" CONTROL_LAWS(CONTROL_LAW_WORD) "|plugin"
+
+typedef struct control_law_info {
+    const char *word;        // in scenarios
+    const char *description; // one line without a full stop
+} control_law_info;
+
+// Indexed by control_law.
+extern const control_law_info control_law_table[LAW_COUNT];

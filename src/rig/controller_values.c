@@ -1,0 +1,144 @@
+#include "src/rig/controller_values.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+#include "src/base/words.h"
+
+// Index of control.NAME in the parameter table, -1 if the scenario has no such parameter.
+static int scenario_parameter(const char *name)
+{
+    char path[80];
+    snprintf(path, sizeof path, "control.%.60s", name);
+    return parameter_find(path);
+}
+
+// A controller that says nothing of a parameter but its name leaves the rest to the table.
+static bool has_only_a_name(const controller_parameter *c)
+{
+    return c->unit == NULL && c->description == NULL;
+}
+
+controller_parameter controller_parameter_at(const controller *law, int index)
+{
+    assert(law != NULL && index >= 0 && index < law->parameter_count);
+    const controller_parameter *own = &law->parameters[index];
+    if (!has_only_a_name(own)) {
+        return *own;
+    }
+    int i = scenario_parameter(own->name);
+    assert(i >= 0);
+    const parameter_info *info = &parameter_table[i];
+    return (controller_parameter){.name = own->name,
+                                  .unit = info->unit,
+                                  .initial = info->default_corrected,
+                                  .minimum = info->minimum,
+                                  .maximum = info->maximum,
+                                  .description = info->description};
+}
+
+// The value without control.settings.
+static double scenario_value(const controller_parameter *own, const parameters *p)
+{
+    int i = scenario_parameter(own->name);
+    if (i >= 0 && (p->set[i] || has_only_a_name(own))) {
+        return parameter_get(p, i);
+    }
+    return own->initial;
+}
+
+// --- control.settings -----------------------------------------------------------------------
+
+// One word of control.settings, NAME=VALUE, where it stands in the text.
+typedef struct setting {
+    const char *word;
+    size_t length, name_length; // without '=' the name is the whole word
+} setting;
+
+static setting setting_at(const char *word)
+{
+    setting s = {.word = word, .length = strcspn(word, " ")};
+    const char *equals = memchr(word, '=', s.length);
+    s.name_length = equals != NULL ? (size_t)(equals - word) : s.length;
+    return s;
+}
+
+// Index of the parameter that a setting names, -1 if the controller has none of that name.
+static int find_named(const controller *law, setting s)
+{
+    for (int i = 0; i < law->parameter_count; i++) {
+        const char *name = law->parameters[i].name;
+        if (strlen(name) == s.name_length && strncmp(name, s.word, s.name_length) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static status refuse_name(const controller *law, setting s, fault *f)
+{
+    char written[PARAMETER_TEXT_SIZE] = "";
+    memcpy(written, s.word, s.name_length);
+    nearest_word near = nearest_begin(written);
+    for (int i = 0; i < law->parameter_count; i++) {
+        nearest_try(&near, law->parameters[i].name);
+    }
+    return fault_set(f, STATUS_BAD_SCENARIO,
+                     "control.settings: the controller '%s' has no parameter '%s'%s%s%s", law->name,
+                     written, near.best ? ", did you mean '" : "", near.best ? near.best : "",
+                     near.best ? "'?" : "");
+}
+
+static status read_setting(const controller *law, setting s, double *values, fault *f)
+{
+    int index = find_named(law, s);
+    if (index < 0) {
+        return refuse_name(law, s, f);
+    }
+
+    // what stands behind '=', as a text of its own
+    char text[PARAMETER_TEXT_SIZE] = "";
+    if (s.name_length < s.length) {
+        memcpy(text, s.word + s.name_length + 1, s.length - s.name_length - 1);
+    }
+
+    controller_parameter wanted = controller_parameter_at(law, index);
+    const char *end = text;
+    double value = 0;
+    if (!decimal_read(text, &value, &end) || *end != '\0' ||
+        !(value >= wanted.minimum && value <= wanted.maximum)) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.settings: '%.*s' is wrong, expected %s=NUMBER from %g to %g%s%s",
+                         (int)s.length, s.word, wanted.name, wanted.minimum, wanted.maximum,
+                         wanted.unit != NULL && wanted.unit[0] ? " " : "",
+                         wanted.unit != NULL ? wanted.unit : "");
+    }
+    values[index] = value;
+    return STATUS_OK;
+}
+
+status controller_values(const controller *law, const parameters *p, double *values, fault *f)
+{
+    assert(law != NULL && p != NULL && (values != NULL || law->parameter_count == 0));
+    for (int i = 0; i < law->parameter_count; i++) {
+        const char *name = law->parameters[i].name;
+        if (has_only_a_name(&law->parameters[i]) && scenario_parameter(name) < 0) {
+            return fault_set(f, STATUS_BAD_SCENARIO,
+                             "the controller '%s' says of its parameter '%.60s' nothing but the "
+                             "name, and there is no control.%.60s",
+                             law->name, name, name);
+        }
+        values[i] = scenario_value(&law->parameters[i], p);
+    }
+
+    status code = STATUS_OK;
+    const char *rest = p->control.settings;
+    while (code == STATUS_OK && *(rest += strspn(rest, " ")) != '\0') {
+        setting s = setting_at(rest);
+        code = read_setting(law, s, values, f);
+        rest += s.length;
+    }
+    return code;
+}

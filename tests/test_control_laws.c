@@ -1,0 +1,180 @@
+// The list of control laws: a law's name, word, controller and line of the manual belong together.
+// `test_control_laws docs/control.md --write` brings the manual's table up to date.
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/rig/controller_values.h"
+#include "src/rig/rig.h"
+#include "tests/rig_fixture.h"
+
+static const char *manual; // path of docs/control.md
+
+static void every_word_chooses_the_controller_of_that_name(void **state)
+{
+    (void)state;
+    const int index = parameter_find("control.law");
+    for (int law = LAW_NONE; law < LAW_COUNT; law++) {
+        parameters p;
+        fault f;
+        parameters_defaults(&p, ARM_CORRECTED);
+        const char *word = control_law_table[law].word;
+        assert_int_equal(parameter_set_text(&p, index, word, &f), STATUS_OK);
+        assert_int_equal(p.control.law, law);
+        const controller *c = controller_of(law);
+        assert_true((c == NULL) == (law == LAW_NONE || law == LAW_PLUGIN));
+        if (c != NULL) {
+            assert_string_equal(c->name, word);
+        }
+    }
+}
+
+static void parameters_of_the_scenario_are_described_there_alone(void **state)
+{
+    (void)state;
+    for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
+        const controller *c = controller_of(law);
+        for (int i = 0; i < c->parameter_count; i++) {
+            char path[80];
+            snprintf(path, sizeof path, "control.%s", c->parameters[i].name);
+            int index = parameter_find(path);
+            if (index < 0) {
+                // one of the law's own, from control.settings
+                assert_true(c->parameters[i].unit != NULL && c->parameters[i].description != NULL);
+                continue;
+            }
+            if (c->parameters[i].unit != NULL || c->parameters[i].initial != 0) {
+                fail_msg("%s describes %s, which the parameter table does", c->name, path);
+            }
+            controller_parameter known = controller_parameter_at(c, i);
+            assert_string_equal(known.unit, parameter_table[index].unit);
+            check_close(known.initial, parameter_table[index].default_corrected, 0);
+        }
+    }
+}
+
+// The value of the hybrid law's parameter `index` in its table, under settings of the scenario.
+static double value_of(int index, const char *const *settings)
+{
+    double values[16];
+    fault f;
+    parameters p = rig_parameters(settings);
+    assert_int_equal(controller_values(controller_of(LAW_HYBRID), &p, values, &f), STATUS_OK);
+    return values[index];
+}
+
+static void settings_go_before_the_scenario_and_that_before_the_default(void **state)
+{
+    (void)state;
+    const controller *law = controller_of(LAW_HYBRID);
+    int kp = 0;
+    while (strcmp(law->parameters[kp].name, "kp") != 0) {
+        kp++;
+    }
+    double initial = parameter_table[parameter_find("control.kp")].default_corrected;
+    check_close(value_of(kp, SETTINGS("control.law=hybrid")), initial, 0);
+    check_close(value_of(kp, SETTINGS("control.law=hybrid", "control.kp=3")), 3, 0);
+    check_close(
+        value_of(kp, SETTINGS("control.law=hybrid", "control.kp=3", "control.settings=kp=4")), 4,
+        0);
+}
+
+static void initial_values_of_ones_own_parameters_take_effect(void **state)
+{
+    (void)state;
+    const controller_parameter table[] = {{"kp", "", 7, 0, 10, "own initial value"},
+                                          {"calm", "s", 0.5, 0, 1, "of this controller alone"},
+                                          {.name = "kv"}};
+    const controller own = {.name = "own", .parameters = table, .parameter_count = 3};
+    double values[3];
+    fault f;
+    parameters p = rig_parameters(NULL);
+    assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
+    check_close(values[0], 7, 0);
+    check_close(values[1], 0.5, 0);
+    check_close(values[2], parameter_table[parameter_find("control.kv")].default_corrected, 0);
+    p = rig_parameters(SETTINGS("control.kp=2"));
+    assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
+    check_close(values[0], 2, 0);
+
+    const controller_parameter unknown[] = {{.name = "nothing"}};
+    const controller vague = {.name = "vague", .parameters = unknown, .parameter_count = 1};
+    assert_int_equal(controller_values(&vague, &p, values, &f), STATUS_BAD_SCENARIO);
+}
+
+// --- the manual -----------------------------------------------------------------------------
+
+#define TABLE_HEAD "| law | what it does |\n|---|---|\n"
+
+static void format_table(char *text, size_t size)
+{
+    size_t used = (size_t)snprintf(text, size, "%s", TABLE_HEAD);
+    for (int law = LAW_NONE; law < LAW_COUNT; law++) {
+        assert_true(used < size);
+        used += (size_t)snprintf(text + used, size - used, "| `%s` | %s |\n",
+                                 control_law_table[law].word, control_law_table[law].description);
+    }
+    assert_true(used < size);
+}
+
+static char *read_manual(void)
+{
+    FILE *file = fopen(manual, "rb");
+    char *text = calloc(1, 1 << 20);
+    assert_non_null(file);
+    assert_non_null(text);
+    size_t length = fread(text, 1, (1 << 20) - 1, file);
+    fclose(file);
+    text[length] = '\0';
+    return text;
+}
+
+// Where the table stands in the manual's text: its start, and the first blank line behind it.
+static char *find_table(char *text, char **end)
+{
+    char *start = strstr(text, TABLE_HEAD);
+    *end = start != NULL ? strstr(start, "\n\n") : NULL;
+    return *end != NULL ? start : NULL;
+}
+
+static void manual_has_the_table_of_the_list(void **state)
+{
+    (void)state;
+    char expected[8192], *end, *text = read_manual(), *found = find_table(text, &end);
+    format_table(expected, sizeof expected);
+    assert_non_null(found);
+    end[1] = '\0';
+    if (strcmp(found, expected) != 0) {
+        fail_msg("the table of laws in %s is out of date; test_control_laws %s --write renews it",
+                 manual, manual);
+    }
+    free(text);
+}
+
+static int write_manual(void)
+{
+    char table[8192], *end, *text = read_manual(), *start = find_table(text, &end);
+    format_table(table, sizeof table);
+    FILE *file = start != NULL ? fopen(manual, "wb") : NULL;
+    if (file != NULL) {
+        fprintf(file, "%.*s%s%s", (int)(start - text), text, table, end + 1);
+        fclose(file);
+    }
+    free(text);
+    return file != NULL ? 0 : 1;
+}
+
+int main(int count, char **arguments)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_word_chooses_the_controller_of_that_name),
+        cmocka_unit_test(parameters_of_the_scenario_are_described_there_alone),
+        cmocka_unit_test(settings_go_before_the_scenario_and_that_before_the_default),
+        cmocka_unit_test(initial_values_of_ones_own_parameters_take_effect),
+        cmocka_unit_test(manual_has_the_table_of_the_list),
+    };
+    manual = count > 1 ? arguments[1] : "docs/control.md";
+    if (count > 2 && strcmp(arguments[2], "--write") == 0) {
+        return write_manual();
+    }
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
