@@ -62,6 +62,53 @@ for command in list show check run tables figures animate predict modes sweep co
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
 done
+# every option of every command stands in its man page and in each shell's completion
+expect 0 help --man-pages man1
+for shell in bash zsh fish; do
+    expect 0 help --completion $shell
+    cp out "completion.$shell"
+    # the shell itself judges the script, where it is installed
+    ! command -v $shell >/dev/null || $shell -n "completion.$shell" 2>err || fail "$shell does not read its completion"
+done
+commands=$("$lab" --help | sed -n 's/^  \([a-z]*\)  .*/\1/p')
+[ "$(wc -w <<<"$commands")" -ge 18 ] || fail "--help lists too few commands"
+for command in $commands; do
+    says man1/impactlab.1 "impactlab\\-$command"
+    options=$("$lab" $command --help | sed -n 's/^  ....--\([a-z-]*\).*/\1/p')
+    [ -n "$options" ] || fail "$command --help lists no option"
+    # the part of each completion that is the command's
+    sed -n "/^    $command)\$/,/^    [a-z]*)\$/p" completion.bash >part.bash
+    sed -n "/^        $command)\$/,/^        [a-z]*)\$/p" completion.zsh >part.zsh
+    grep "'__fish_seen_subcommand_from $command'" completion.fish >part.fish
+    for option in $options; do
+        says "man1/impactlab-$command.1" "\\-\\-${option//-/\\-}"
+        grep -q -e "options='.*--$option[ ']" part.bash || fail "bash does not complete $command --$option"
+        grep -q -e "--$option[=[]" part.zsh || fail "zsh does not complete $command --$option"
+        grep -q -e " -l $option " part.fish || fail "fish does not complete $command --$option"
+    done
+done
+expect 2 help --completion tcsh
+says err "bash, zsh or fish"
+# bash as it would answer somebody who presses Tab
+offers() {
+    bash -c 'source completion.bash; COMP_WORDS=(impactlab "$@"); COMP_CWORD=$#
+        compopt() { :; }; _impactlab; printf "%s\n" "${COMPREPLY[@]}"' - "$@" >out 2>err
+    silent err
+}
+offers con
+says out converge
+offers run hit.yaml --camera t
+says out three-quarter
+says out top
+offers run --set motor.vol
+says out motor.voltage=
+offers sweep --quantity peak_f
+says out peak_force_N
+offers run hit
+says out hit.yaml
+offers figures 3.1
+says out 3.10
+
 expect 2 lsit
 says err "did you mean 'list'?"
 expect 2 nothing-like-it
@@ -75,6 +122,12 @@ says err "run needs SCENARIO"
 expect 2 run hit.yaml one-more
 says err "one-more"
 expect 2 run first-impct
+says err "did you mean 'corrected/first-impact'?"
+expect 2 run frist-impact
+says err "did you mean 'corrected/first-impact'?"
+expect 0 --colors mono --size 80x24
+expect 2 lab --theme purple
+says err "expected dark, light or mono"
 expect 2 run no-such-file.yaml
 expect 2 animate hit.yaml
 says err "-o FILE.mp4"

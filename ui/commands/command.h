@@ -51,6 +51,7 @@ typedef struct arguments {
     // help
     const char *completion; // the shell
     bool man;
+    const char *man_pages; // folder
 } arguments;
 
 // The parts of `impactlab --help`, in its order.

@@ -2,7 +2,9 @@
 #include "ui/commands/command.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "src/base/version.h"
 
@@ -122,6 +124,37 @@ static int write_completion(const char *shell)
     return EXIT_DONE;
 }
 
+static void write_page(FILE *stream, const void *what)
+{
+    write_man_page(stream, what);
+}
+
+// Writes the page of a command, of impactlab itself if c is NULL, as FOLDER/impactlab-COMMAND.1.
+static int write_page_into(const char *folder, const command *c)
+{
+    char path[4096];
+    int length = snprintf(path, sizeof path, "%s/impactlab%s%s.1", folder, c != NULL ? "-" : "",
+                          c != NULL ? c->name : "");
+    if (length >= (int)sizeof path) {
+        return complain("--man-pages %s: the name is too long", folder);
+    }
+    return write_file(path, write_page, c);
+}
+
+// All man pages. The folder is made if it is not there.
+static int write_pages(const char *folder)
+{
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+        complain("the folder '%s' cannot be made: %s", folder, strerror(errno));
+        return EXIT_FAILED;
+    }
+    int result = write_page_into(folder, NULL);
+    for (int i = 0; i < command_count; i++) {
+        result = worse(result, write_page_into(folder, command_table[i]));
+    }
+    return result;
+}
+
 static int help(const arguments *a)
 {
     const command *about = a->operand_count > 0 ? command_find(a->operands[0]) : NULL;
@@ -130,6 +163,9 @@ static int help(const arguments *a)
     }
     if (a->completion != NULL) {
         return write_completion(a->completion);
+    }
+    if (a->man_pages != NULL) {
+        return write_pages(a->man_pages);
     }
     if (a->man) {
         write_man_page(stdout, about);
@@ -151,6 +187,11 @@ static const option_row rows[] = {
      .type = OPTION_FLAG,
      .help = "write the man page instead, of the command or of impactlab",
      PLACE(man)},
+    {.name = "man-pages",
+     .type = OPTION_PLACE,
+     .value = "FOLDER",
+     .help = "write the man pages of all commands as files",
+     PLACE(man_pages)},
     {.name = "completion",
      .type = OPTION_CHOICE,
      .value = "bash|zsh|fish",

@@ -229,7 +229,9 @@ const command run_command = {
     .summary = "Simulate a scenario and sum it up",
     .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
             "checked unless\n--set changed something. A run that fails still writes what it has "
-            "until then.\nThe scene shows the arm at every --at, or from the start to the peak "
+            "until then, and so does one that is ended by an interrupt while standard error is a "
+            "terminal, where a run\nof more than a second tells how far it is.\nThe scene shows "
+            "the arm at every --at, or from the start to the peak "
             "force of the first pulse.\n",
     .least = 1,
     .most = 1,

@@ -1,5 +1,6 @@
 #include "ui/terminal/escape_sequence.h"
 
+#include <assert.h>
 #include <stdio.h>
 
 enum { WHEEL = 64, DRAG = 32, SHIFT = 4, META = 8, CONTROL = 16, OLD_RELEASE = 3, OLD_OFFSET = 32 };
@@ -11,6 +12,8 @@ static sequence_result mouse(int button, int column, int row, bool pressed, poin
                               .y = row - 1,
                               .shift = (button & SHIFT) != 0,
                               .control = (button & CONTROL) != 0};
+
+    // only the wheel and the first button mean something here
     if (plain == WHEEL || plain == WHEEL + 1) {
         report->kind = plain == WHEEL ? POINTER_WHEEL_UP : POINTER_WHEEL_DOWN;
         return pressed ? SEQUENCE_MOUSE : SEQUENCE_OVER;
@@ -58,6 +61,9 @@ static sequence_result take_parameter(escape_sequence *e, int character, pointer
 
 sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_event *report)
 {
+    assert(e != NULL && report != NULL && e->state != SEQUENCE_NONE);
+
+    // what kind of sequence it is
     if (e->state == SEQUENCE_ESCAPED && (character == '[' || character == 'O')) {
         e->state = SEQUENCE_BRACKET;
         e->length = 0;
@@ -66,6 +72,8 @@ sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_
     if (e->state == SEQUENCE_BRACKET) {
         return take_parameter(e, character, report);
     }
+
+    // three bytes, each a number from 32 on
     if (e->state == SEQUENCE_OLD_MOUSE) {
         e->text[e->length++] = (char)(character - OLD_OFFSET);
         if (e->length < 3) {
@@ -74,6 +82,8 @@ sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_
         e->state = SEQUENCE_NONE;
         return mouse(e->text[0] & 0x7f, e->text[1], e->text[2], true, report);
     }
+
+    // the escape was a key
     e->state = SEQUENCE_NONE;
     return SEQUENCE_OTHER_KEY;
 }

@@ -1,5 +1,6 @@
 #include "ui/terminal/paint.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -46,11 +47,15 @@ static void put_ink(outlet *o, ink i, colour_theme theme, colour_depth depth)
 {
     char text[64] = "";
     rgb c;
+
+    // which colour, if any, and whether it is bold
     int index = depth == DEPTH_256 ? ink_256(theme, i) : depth == DEPTH_16 ? ink_16(theme, i) : -1;
     bool coloured = ink_rgb(theme, i, &c) && depth != DEPTH_MONO;
     // many terminals show bold dark colours as bright ones, which nobody can read on light ground
     bool faint = theme == COLOURS_LIGHT && depth == DEPTH_16 && coloured;
     bool bold = (i == INK_TITLE || i == INK_EVENT || i == INK_WARNING) && !faint;
+
+    // the colour as this terminal is told
     if (coloured && depth == DEPTH_TRUE) {
         snprintf(text, sizeof text, ";38;2;%d;%d;%d", c.red, c.green, c.blue);
     } else if (coloured && depth == DEPTH_256 && index >= 0) {
@@ -68,6 +73,8 @@ void paint_cells(const screen *s, screen *shown, glyph_set glyphs, colour_theme 
                  colour_depth depth, bool whole)
 {
     static outlet o;
+    assert(s != NULL && shown != NULL && depth != DEPTH_AUTO);
+    assert(s->width == shown->width && s->height == shown->height);
     int at_x = -1, at_y = -1, colour = -1;
     // a terminal that knows synchronised output shows the frame at once, others ignore it
     put(&o, "\033[?2026h");
@@ -78,10 +85,13 @@ void paint_cells(const screen *s, screen *shown, glyph_set glyphs, colour_theme 
             bool blank = c.glyph == ' ' && c.ink != INK_SELECTED;
             bool same = whole ? blank : c.glyph == old->glyph && c.ink == old->ink;
             *old = c;
+
             // the last cell may scroll the screen; it is worth nothing
             if (same || (x == s->width - 1 && y == s->height - 1)) {
                 continue;
             }
+
+            // the cursor and the ink follow where they are not there yet
             char text[32];
             if (at_x != x || at_y != y) {
                 snprintf(text, sizeof text, "\033[%d;%dH", y + 1, x + 1);
@@ -91,8 +101,9 @@ void paint_cells(const screen *s, screen *shown, glyph_set glyphs, colour_theme 
                 put_ink(&o, c.ink, theme, depth);
                 colour = (int)c.ink;
             }
-            uint32_t glyph = glyph_in_set(c.glyph, glyphs);
+
             // what takes no cell or two would break the grid
+            uint32_t glyph = glyph_in_set(c.glyph, glyphs);
             glyph_encode(wcwidth((wchar_t)glyph) == 1 ? glyph : '?', text);
             put(&o, text);
             at_x = x + 1;

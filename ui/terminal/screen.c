@@ -1,5 +1,6 @@
 #include "ui/terminal/screen.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -9,6 +10,7 @@ enum { BRAILLE = 0x2800 };
 
 bool screen_resize(screen *s, int width, int height)
 {
+    assert(s != NULL);
     width = width < 1 ? 1 : width;
     height = height < 1 ? 1 : height;
     cell *cells = calloc((size_t)width * (size_t)height, sizeof *cells);
@@ -42,6 +44,7 @@ static cell *cell_at(screen *s, int x, int y)
 
 void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour)
 {
+    assert(s != NULL && colour < INK_COUNT);
     cell *c = cell_at(s, x, y);
     if (c != NULL) {
         *c = (cell){glyph, colour};
@@ -51,6 +54,8 @@ void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour)
 uint32_t glyph_decode(const char **text)
 {
     const unsigned char *t = (const unsigned char *)*text;
+
+    // the first byte says how many follow, each with six bits
     int more = t[0] >= 0xf0 ? 3 : t[0] >= 0xe0 ? 2 : t[0] >= 0xc0 ? 1 : 0;
     uint32_t glyph = more == 0 ? t[0] : t[0] & (0x3fu >> more);
     for (int i = 1; i <= more; i++) {
@@ -61,6 +66,8 @@ uint32_t glyph_decode(const char **text)
         glyph = glyph << 6 | (t[i] & 0x3fu);
     }
     *text += more + 1;
+
+    // what the terminal must not get
     bool stray = more == 0 && t[0] >= 0x80;
     bool control = glyph < ' ' || (glyph >= 0x7f && glyph < 0xa0);
     return stray || control ? '?' : glyph;
@@ -69,6 +76,7 @@ uint32_t glyph_decode(const char **text)
 int screen_text(screen *s, int x, int y, int room, ink colour, const char *text)
 {
     int taken = 0;
+    assert(s != NULL && text != NULL);
     while (*text != '\0' && taken < room) {
         screen_put(s, x + taken, y, glyph_decode(&text), colour);
         taken++;
@@ -80,6 +88,7 @@ int screen_print(screen *s, int x, int y, int room, ink colour, const char *form
 {
     char text[1024];
     va_list list;
+    assert(format != NULL);
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
@@ -88,17 +97,20 @@ int screen_print(screen *s, int x, int y, int room, ink colour, const char *form
 
 int text_wrap(const char *text, int width, text_line *lines, int most, bool *split)
 {
+    assert(text != NULL && lines != NULL && most >= 0);
     int count = 0;
     bool broken = false;
     text += strspn(text, " ");
     while (*text != '\0' && count < most) {
         const char *at = text, *end = text;
+
         // up to the last word that is not beyond the width
         for (int cells = 0; *at != '\0' && cells < width; cells++) {
             bool blank = glyph_decode(&at) == ' ';
             end = !blank && (*at == ' ' || *at == '\0') ? at : end;
         }
         if (end == text) {
+            // a word that is wider than the line
             end = at;
             broken = true;
         }
@@ -114,6 +126,9 @@ int text_wrap(const char *text, int width, text_line *lines, int most, bool *spl
 void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title)
 {
     int right = x + width - 1, bottom = y + height - 1;
+    assert(s != NULL && title != NULL);
+
+    // sides, and an empty inside
     for (int row = y; row <= bottom; row++) {
         for (int column = x; column <= right; column++) {
             bool side = column == x || column == right, level = row == y || row == bottom;
@@ -124,6 +139,8 @@ void screen_frame(screen *s, int x, int y, int width, int height, ink colour, co
                        level || side ? colour : INK_TEXT);
         }
     }
+
+    // corners, and the title with a blank on each side of it
     screen_put(s, x, y, 0x250c, colour);
     screen_put(s, right, y, 0x2510, colour);
     screen_put(s, x, bottom, 0x2514, colour);
@@ -179,10 +196,13 @@ static bool clip(double low, double high, double a, double b, double *from, doub
 void canvas_line(const canvas *c, double x0, double y0, double x1, double y1, ink colour)
 {
     double from = 0, to = 1;
+    assert(c != NULL && c->screen != NULL);
     if (!isfinite(x0 + y0 + x1 + y1) || !clip(-1, 2 * c->width, x0, x1, &from, &to) ||
         !clip(-1, 4 * c->height, y0, y1, &from, &to)) {
         return;
     }
+
+    // one dot for each row or column that the line crosses within the canvas
     double dx = x1 - x0, dy = y1 - y0;
     long dots = (long)ceil(fmax(fabs(dx), fabs(dy)) * (to - from));
     for (long i = 0; i <= dots; i++) {
@@ -268,6 +288,7 @@ void glyph_encode(uint32_t glyph, char *text)
 
 void screen_dump(const screen *s, glyph_set set, FILE *stream)
 {
+    assert(s != NULL && stream != NULL);
     for (int y = 0; y < s->height; y++) {
         const cell *row = s->cells + (long)y * s->width;
         int length = s->width;

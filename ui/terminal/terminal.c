@@ -1,5 +1,6 @@
 #include "ui/terminal/terminal.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -111,12 +112,16 @@ bool terminal_usable(fault *f)
 {
     const char *name = getenv("TERM");
     int code;
+
+    // both ends must be one
     if (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO)) {
         fault_set(f, STATUS_BAD_ARGUMENT,
                   "the lab needs a terminal for its input and its output "
                   "(--size 120x40 --keys '...' prints a screen without)");
         return false;
     }
+
+    // one that can place its cursor
     bool known = name != NULL && name[0] != '\0' && setupterm(name, STDOUT_FILENO, &code) == OK;
     const char *place = known ? tigetstr("cup") : NULL;
     bool usable = place != NULL && place != (const char *)-1;
@@ -167,11 +172,13 @@ status terminal_open(fault *f)
     if (!terminal_usable(f)) {
         return STATUS_BAD_ARGUMENT;
     }
+    assert(tty.curses == NULL);
     leaving = 0;
     tcgetattr(STDIN_FILENO, &tty.saved);
     if (pipe2(tty.wake, O_NONBLOCK | O_CLOEXEC) != 0) {
         return fault_set(f, STATUS_NO_MEMORY, "no pipe for signals: %s", strerror(errno));
     }
+
     // before ncurses, which then leaves the resizing to us
     take_signals();
     tty.curses = newterm(NULL, stdout, stdin);
@@ -179,25 +186,34 @@ status terminal_open(fault *f)
         terminal_close();
         return fault_set(f, STATUS_BAD_ARGUMENT, "the terminal cannot be used");
     }
+
+    // what a crash sends to give the terminal back
     tty.restore_length = 0;
     prepare(tigetstr("rmkx"));
     prepare("\033[?1000l\033[?1002l\033[?1006l\033[?2026l");
     prepare(tigetstr("sgr0"));
     prepare(tigetstr("cnorm"));
     prepare(tigetstr("rmcup"));
+
+    // keys come one by one, and unseen
     cbreak();
     noecho();
     nonl();
     keypad(stdscr, TRUE);
     define_common_keys();
+
+    // we read mouse reports ourselves, where the terminal has any
     const char *reports = tigetstr("kmous");
     tty.has_mouse = reports != NULL && reports != (const char *)-1;
     keyok(KEY_MOUSE, FALSE);
     tty.sequence.state = SEQUENCE_NONE;
+
+    // no waiting in ncurses: terminal_wait does that
     nodelay(stdscr, TRUE);
     set_escdelay(25);
     typeahead(-1);
     curs_set(0);
+
     tty.colours = has_colors();
     if (tty.colours) {
         start_color();
@@ -222,6 +238,8 @@ void terminal_close(void)
         delscreen(tty.curses);
         tty.curses = NULL;
     }
+
+    // as it was before terminal_open
     tcsetattr(STDIN_FILENO, TCSANOW, &tty.saved);
     screen_finish(&tty.shown);
     give_signals_back();
@@ -229,6 +247,8 @@ void terminal_close(void)
         close(tty.wake[i]);
     }
     tty.wake[0] = tty.wake[1] = -1;
+
+    // the signal that asked to leave does what it would have done
     if (leaving != 0) {
         signal(leaving, SIG_DFL);
         raise(leaving);
@@ -237,6 +257,7 @@ void terminal_close(void)
 
 void terminal_size(int *width, int *height)
 {
+    assert(width != NULL && height != NULL);
     *width = COLS > 0 ? COLS : 1;
     *height = LINES > 0 ? LINES : 1;
 }
@@ -375,6 +396,8 @@ terminal_input terminal_wait(double seconds)
     if (in.kind != TERMINAL_NONE) {
         return in;
     }
+
+    // for a key, or for a signal's byte
     struct pollfd watched[2] = {{STDIN_FILENO, POLLIN, 0}, {tty.wake[0], POLLIN, 0}};
     int ready = poll(watched, 2, seconds < 0 ? -1 : (int)(1e3 * seconds + 0.999));
     if (ready > 0 && watched[1].revents != 0) {
@@ -382,6 +405,7 @@ terminal_input terminal_wait(double seconds)
     }
     if (ready > 0 && watched[0].revents & POLLIN) {
         in = pending_input();
+
         // readable, but there is nothing: its other end was closed
         int waiting = 0;
         bool ended = in.kind == TERMINAL_NONE && ioctl(STDIN_FILENO, FIONREAD, &waiting) == 0 &&
@@ -389,6 +413,8 @@ terminal_input terminal_wait(double seconds)
         in.kind = ended ? TERMINAL_LEAVE : in.kind;
         return in;
     }
+
+    // neither has anything and yet something happened: the terminal is gone
     if (ready > 0) {
         in.kind = TERMINAL_LEAVE;
     }
@@ -404,6 +430,8 @@ colour_depth terminal_depth(void)
     if (!tty.colours || (none != NULL && none[0] != '\0')) {
         return DEPTH_MONO;
     }
+
+    // what the terminal's description says, and what the terminal says of itself
     bool described = tigetflag("RGB") == 1 || tigetnum("RGB") > 0 || tigetflag("Tc") == 1 ||
                      (direct != NULL && direct != (const char *)-1) || COLORS > 256;
     bool claimed =
@@ -465,6 +493,8 @@ static void show_cell(int x, int y, cell c, glyph_set glyphs, bool coloured)
     if (wcwidth(text[0]) != 1) {
         text[0] = '?';
     }
+
+    // bold stands for bright where there are eight colours
     attr_t attributes = attributes_of(c.ink, coloured);
     rgb ignored;
     if (coloured && tty.bright[c.ink]) {
@@ -474,6 +504,7 @@ static void show_cell(int x, int y, cell c, glyph_set glyphs, bool coloured)
         // many terminals show bold dark colours as bright ones: unreadable on light ground
         attributes &= ~(attr_t)A_BOLD;
     }
+
     setcchar(&out, text, attributes, coloured ? (short)(c.ink + 1) : 0, NULL);
     mvadd_wch(y, x, &out);
 }
@@ -481,6 +512,7 @@ static void show_cell(int x, int y, cell c, glyph_set glyphs, bool coloured)
 // Shows the cells through ncurses.
 static void show_by_curses(const screen *s, glyph_set glyphs, bool coloured, bool whole)
 {
+    // what has changed since the last picture
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++) {
             long i = (long)y * s->width + x;
@@ -491,6 +523,7 @@ static void show_by_curses(const screen *s, glyph_set glyphs, bool coloured, boo
             }
         }
     }
+
     // a terminal that knows synchronised output shows the frame at once, others ignore it
     ssize_t ignored = write(STDOUT_FILENO, "\033[?2026h", 8);
     refresh();
@@ -501,6 +534,9 @@ static void show_by_curses(const screen *s, glyph_set glyphs, bool coloured, boo
 void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
                    bool whole)
 {
+    assert(s != NULL && s->width > 0 && s->height > 0 && tty.curses != NULL);
+
+    // another size, theme or depth: everything anew
     bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;
     depth = depth == DEPTH_AUTO ? terminal_depth() : depth;
     if (!tty.themed || tty.theme != theme || tty.depth != depth) {
@@ -511,11 +547,14 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour
         return;
     }
     whole = whole || !same_size;
+
     // ncurses has numbers for the colours that the terminal's description has, no others
     bool coloured = theme != COLOURS_MONO && depth != DEPTH_MONO;
     bool numbered =
         tty.colours && COLORS <= 256 && depth != DEPTH_TRUE && (depth == DEPTH_16 || COLORS == 256);
     tty.painted = coloured && !numbered;
+
+    // ncurses keeps count of what is on the screen even where it does not paint
     if (whole) {
         clearok(stdscr, TRUE);
         erase();
