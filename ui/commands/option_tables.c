@@ -59,3 +59,29 @@ static const option_row view_rows[] = {
      .unit = "pixels"},
 };
 const option_table view_options = OPTION_TABLE("The arm in space", view_rows);
+
+static const option_row page_rows[] = {
+    {.name = "overlay",
+     .type = OPTION_FILE,
+     .value = "FILE.csv",
+     .help = "points of reference data over recorded signals",
+     PLACE(overlay)},
+    {.name = "mono", .type = OPTION_FLAG, .help = "black and greys on white", PLACE(mono)},
+    {.name = "dark", .type = OPTION_FLAG, .help = "on near black", PLACE(dark)},
+    {.name = "width",
+     .type = OPTION_NUMBER,
+     .value = "MM",
+     .help = "width of the page in millimetres",
+     PLACE(width),
+     .low = 60,
+     .high = 400,
+     .unit = "mm"},
+    {.name = "dpi",
+     .type = OPTION_NUMBER,
+     .value = "N",
+     .help = "resolution of a PNG (200)",
+     PLACE(dpi),
+     .low = 30,
+     .high = 1200},
+};
+const option_table page_options = OPTION_TABLE("Pages", page_rows);

@@ -70,4 +70,5 @@ extern const option_table vary_options;  // --vary
 extern const option_table json_options;  // --json
 extern const option_table quiet_options; // --quiet
 extern const option_table help_options;  // --help, which every command has
+extern const option_table page_options;  // --overlay, --mono, --dark, --width, --dpi
 extern const option_table view_options;  // --gl, --camera, --size

@@ -1,0 +1,135 @@
+// What impactlab sweep writes and prints of its runs.
+#include "ui/commands/sweep_report.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/plot/sweep_plot.h"
+
+enum { ROWS_SHOWN = 40 };
+
+static int write_csv(const sweep_order *o, sweep_store *store)
+{
+    whole_file file;
+    fault f = {0};
+    if (whole_file_open(&file, o->arguments->csv, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (sweep_store_csv(store, file.stream, &f) != STATUS_OK) {
+        whole_file_abandon(&file);
+        return complain_fault(&f);
+    }
+    return whole_file_commit(&file, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+}
+
+static int write_plot(const sweep_order *o, const double *values)
+{
+    fault f = {0};
+    sweep_picture picture = {.sweep = &o->sweep, .key = o->quantity, .values = values};
+    return sweep_plot_write(&picture, o->arguments->plot, &f) == STATUS_OK ? EXIT_DONE
+                                                                           : complain_fault(&f);
+}
+
+// "motor.voltage = 2 V, method.name = event" of a run.
+static void print_values(const sweep *s, size_t run)
+{
+    for (int i = 0; i < s->axis_count; i++) {
+        const parameter_info *info = &parameter_table[s->axes[i].parameter];
+        char text[128];
+        sweep_value_text(s, run, i, text, sizeof text);
+        printf("%s%s = %s%s%s", i > 0 ? ", " : "", info->path, text, info->unit[0] ? " " : "",
+               info->unit);
+    }
+}
+
+// One line for the smallest or largest value.
+static void print_extreme(const sweep *s, const char *word, const double *values, size_t run,
+                          const char *unit)
+{
+    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], unit[0] ? " " : "", unit, run + 1);
+    print_values(s, run);
+    printf("\n");
+}
+
+static void print_table(const sweep_order *o, const double *values)
+{
+    size_t shown = o->sweep.run_count < ROWS_SHOWN ? o->sweep.run_count : ROWS_SHOWN;
+    for (size_t run = 0; run < shown; run++) {
+        printf("  %10.5g  ", values[run]);
+        print_values(&o->sweep, run);
+        printf("\n");
+    }
+    if (shown < o->sweep.run_count) {
+        printf("  ... and %zu more (--csv writes all)\n", o->sweep.run_count - shown);
+    }
+}
+
+static void print_summary(const sweep_order *o, const double *values, size_t failed,
+                          const sweep_progress *p)
+{
+    const sweep *s = &o->sweep;
+    const arguments *a = o->arguments;
+    char label[64];
+    const char *unit;
+
+    // how many runs there were
+    key_label(o->quantity, label, sizeof label, &unit);
+    printf("%s: %zu run%s (%s), %zu failed", o->scenario.name, s->run_count,
+           s->run_count == 1 ? "" : "s", sweep_sampling_name(s->sampling), failed);
+    if (p->done_now < p->total) {
+        printf(", %zu were there already", p->total - p->done_now);
+    }
+    printf("\n%s%s%s%s\n", label, unit[0] ? " [" : "", unit, unit[0] ? "]" : "");
+
+    // each value, where no file has them
+    if (a->csv == NULL && a->db == NULL && a->plot == NULL) {
+        print_table(o, values);
+    }
+
+    // the smallest and the largest of those that occurred
+    size_t low = s->run_count, high = s->run_count;
+    for (size_t run = 0; run < s->run_count; run++) {
+        if (isfinite(values[run])) {
+            low = low == s->run_count || values[run] < values[low] ? run : low;
+            high = high == s->run_count || values[run] > values[high] ? run : high;
+        }
+    }
+    if (low == s->run_count) {
+        printf("  did not occur in any run\n");
+        return;
+    }
+    print_extreme(s, "smallest", values, low, unit);
+    print_extreme(s, "largest", values, high, unit);
+}
+
+int report_sweep(const sweep_order *o, sweep_store *store, const sweep_progress *p)
+{
+    const arguments *a = o->arguments;
+    fault f = {0};
+    size_t failed = 0;
+    int code = EXIT_DONE, plotted = EXIT_DONE;
+    double *values = malloc(o->sweep.run_count * sizeof *values);
+    if (values == NULL) {
+        fault_set(&f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        return complain_fault(&f);
+    }
+    if (sweep_store_quantity(store, o->quantity, values, &failed, &f) != STATUS_OK) {
+        free(values);
+        return complain_fault(&f);
+    }
+
+    // files first: what is printed may be cut off
+    code = a->csv != NULL ? write_csv(o, store) : EXIT_DONE;
+    plotted = a->plot != NULL ? write_plot(o, values) : EXIT_DONE;
+    code = plotted > code ? plotted : code;
+    if (summary_wanted(a)) {
+        print_summary(o, values, failed, p);
+    }
+    free(values);
+    if (failed == o->sweep.run_count) {
+        complain("all %zu runs failed; the message of each is in its row", failed);
+        code = code > EXIT_FAILED ? code : EXIT_FAILED;
+    }
+    return code;
+}
