@@ -499,7 +499,7 @@ static void a_spike_of_one_sample_is_visible(void **state)
     for (int sign = -1; sign <= 1; sign += 2) {
         y[SPIKE] = sign;
         figure_series series = {.x = x, .y = y, .count = COUNT, .colour = 5};
-        figure_panel panel = {.series = &series, .series_count = 1, .y_low = -1.1, .y_high = 1.1};
+        figure_panel panel = {.series = &series, .series_count = 1, .y.low = -1.1, .y.high = 1.1};
         figure fig = {.panels = &panel, .panel_count = 1, .width = 100, .dpi = 100};
         static figure_report r;
         record(&fig, &r);
@@ -535,7 +535,7 @@ static void points_that_are_not_finite_leave_a_gap(void **state)
         }
         x[80] = bad[kind];
         figure_series series = {.x = x, .y = y, .count = COUNT, .colour = 5};
-        figure_panel panel = {.series = &series, .series_count = 1, .y_low = 0, .y_high = 1};
+        figure_panel panel = {.series = &series, .series_count = 1, .y.low = 0, .y.high = 1};
         figure fig = {.panels = &panel, .panel_count = 1};
         static figure_report r;
         cairo_surface_t *image = paint_pixels(&fig, 2, &r);
@@ -576,7 +576,8 @@ static void empty_and_hopeless_series_are_drawn_without_fuss(void **state)
                               {.x = same, .y = x, .count = 4},
                               {.x = x, .y = same, .count = 4}};
     for (int i = 0; i < 6; i++) {
-        figure_panel panel = {.series = &series[i], .series_count = 1, .label = "y", .unit = "N"};
+        figure_panel panel = {
+            .series = &series[i], .series_count = 1, .y = {.label = "y", .unit = "N"}};
         figure fig = {.panels = &panel, .panel_count = 1};
         expect_tidy(&fig);
     }
@@ -591,7 +592,7 @@ static void far_away_points_are_clipped(void **state)
     (void)state;
     double x[] = {0, 0.25, 0.5, 0.75, 1}, y[] = {0.5, 1e12, 0.5, -1e300, 0.5};
     figure_series series = {.x = x, .y = y, .count = 5, .colour = 5};
-    figure_panel panel = {.series = &series, .series_count = 1, .y_low = 0, .y_high = 1};
+    figure_panel panel = {.series = &series, .series_count = 1, .y.low = 0, .y.high = 1};
     figure fig = {.panels = &panel, .panel_count = 1};
     static figure_report r;
     cairo_surface_t *image = paint_pixels(&fig, 2, &r);
@@ -850,8 +851,7 @@ static void csv_holds_what_is_drawn(void **state)
     double x[] = {0, 0.1, 0.2}, y[] = {1, (double)NAN, -2.5};
     figure_series series = {.name = "force, \"raw\"", .x = x, .y = y, .count = 3};
     figure_impulse impulse = {0.1, 0.04};
-    figure_panel panel = {.name = "force",
-                          .unit = "N",
+    figure_panel panel = {.y = {.name = "force", .unit = "N"},
                           .series = &series,
                           .series_count = 1,
                           .impulses = &impulse,

@@ -6,6 +6,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "render/page/palette.h"
+#include "render/plot/contour.h"
 #include "render/plot/sweep_plot.h"
 #include "render/page/text.h"
 #include "src/study/sweep_store.h"
@@ -574,10 +576,9 @@ static void the_colour_scale_grows_lighter_all_the_way(void **state)
     (void)state;
     double before = -1;
     for (int i = 0; i <= 100; i++) {
-        double rgb[3];
-        sweep_plot_colour(i / 100.0, rgb);
+        colour c = palette_shade(i / 100.0);
         double light =
-            0.2126 * pow(rgb[0], 2.2) + 0.7152 * pow(rgb[1], 2.2) + 0.0722 * pow(rgb[2], 2.2);
+            0.2126 * pow(c.red, 2.2) + 0.7152 * pow(c.green, 2.2) + 0.0722 * pow(c.blue, 2.2);
         check_below(before, light);
         before = light;
     }

@@ -229,20 +229,19 @@ static void draw_sensor(sketch *s, const diagram *d)
     draw_stages(s, s->left + 74, s->top + 62);
     const figure_series curve = {
         .name = "output", .x = d->curve_x, .y = d->curve_y, .count = CURVE_POINTS, .colour = 5};
-    const figure_panel panel = {.name = "output",
-                                .label = "Output <i>V</i><sub>out</sub>",
-                                .unit = "V",
+    const figure_panel panel = {.y = {.name = "output",
+                                      .label = "Output <i>V</i><sub>out</sub>",
+                                      .unit = "V",
+                                      .with_zero = true},
                                 .series = &curve,
-                                .series_count = 1,
-                                .with_zero = true};
-    const figure plot = {.x_name = "force",
-                         .x_label = "Force on the sensor <i>f</i>",
-                         .x_unit = "N",
-                         .panels = &panel,
-                         .panel_count = 1,
-                         .width = (s->right - s->left) * 25.4 / 72,
-                         .height = 52,
-                         .theme = s->theme};
+                                .series_count = 1};
+    const figure plot = {
+        .x = {.name = "force", .label = "Force on the sensor <i>f</i>", .unit = "N"},
+        .panels = &panel,
+        .panel_count = 1,
+        .width = (s->right - s->left) * 25.4 / 72,
+        .height = 52,
+        .theme = s->theme};
     paint_part(s, &plot, s->left, s->top + 186);
 }
 

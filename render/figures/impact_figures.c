@@ -87,8 +87,8 @@ static void add_signal(impact_figure *fig, int panel, const char *name, const ch
     const trace *t = &fig->run.result.trace;
     const signal_info *signal = &signal_table[signal_find(name)];
     const char *base = (const char *)t->rows;
-    fig->panels[panel].name = signal->name;
-    fig->panels[panel].unit = signal->unit;
+    fig->panels[panel].y.name = signal->name;
+    fig->panels[panel].y.unit = signal->unit;
     add_series(fig, panel,
                (figure_series){.name = signal->name,
                                .label = label,
@@ -133,15 +133,15 @@ static void describe_shapes(impact_figure *fig)
                                .colour = 5,
                                .marker = MARKER_SQUARE,
                                .no_line = true});
-    fig->figure.x_name = "along";
-    fig->figure.x_label = "Along the line to the contact point";
-    fig->figure.x_unit = "m";
-    fig->figure.x_low = -0.04;
-    fig->figure.x_high = 1.06;
-    fig->panels[0].name = "across";
-    fig->panels[0].label = "Across it";
-    fig->panels[0].unit = "mm";
-    fig->panels[0].with_zero = true;
+    fig->figure.x.name = "along";
+    fig->figure.x.label = "Along the line to the contact point";
+    fig->figure.x.unit = "m";
+    fig->figure.x.low = -0.04;
+    fig->figure.x.high = 1.06;
+    fig->panels[0].y.name = "across";
+    fig->panels[0].y.label = "Across it";
+    fig->panels[0].y.unit = "mm";
+    fig->panels[0].y.with_zero = true;
     fig->panels[0].weight = 1.5;
     fig->figure.panel_count = 1;
 }
@@ -264,8 +264,9 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
     status code = figure_paint(cr, &fig->figure, seen, f);
     if (code == STATUS_OK) {
         const figure *shown = &fig->figure;
-        plane p = {seen->panels[0], shown->x_low, shown->x_high, fig->panels[0].y_low,
-                   fig->panels[0].y_high};
+        plane p = {seen->panels[0],
+                   {SCALE_LINEAR, shown->x.low, shown->x.high},
+                   {SCALE_LINEAR, fig->panels[0].y.low, fig->panels[0].y.high}};
         sketch s = {.cr = cr,
                     .context = text_context_create(),
                     .colours = palette_of(shown->theme),
@@ -305,10 +306,10 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
     figure_panel *panel = &fig->panels[0];
     double pulse = isfinite(m->first_pulse_s) ? m->first_pulse_s : fig->peak_time - fig->contact;
     add_signal(fig, 0, "force", NULL);
-    panel->label = "Contact force <i>f</i>";
+    panel->y.label = "Contact force <i>f</i>";
     panel->weight = 1.7;
-    panel->y_low = -0.04 * fig->peak;
-    panel->y_high = 1.3 * fig->peak;
+    panel->y.low = -0.04 * fig->peak;
+    panel->y.high = 1.3 * fig->peak;
     fig->impulse = (figure_impulse){fig->contact, m->contact_impulse_Ns};
     panel->impulses = &fig->impulse;
     panel->impulse_count = 1;
@@ -325,11 +326,11 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
     fig->interval = (figure_interval){fig->contact, fig->contact + pulse};
     fig->figure.intervals = &fig->interval;
     fig->figure.interval_count = 1;
-    fig->figure.x_name = "time";
-    fig->figure.x_label = "Time <i>t</i>";
-    fig->figure.x_unit = "s";
-    fig->figure.x_low = fig->contact - 0.25 * pulse;
-    fig->figure.x_high = fig->contact + 1.25 * pulse;
+    fig->figure.x.name = "time";
+    fig->figure.x.label = "Time <i>t</i>";
+    fig->figure.x.unit = "s";
+    fig->figure.x.low = fig->contact - 0.25 * pulse;
+    fig->figure.x.high = fig->contact + 1.25 * pulse;
     fig->figure.panel_count = 1;
     fig->figure.caption =
         "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse that takes no "
@@ -426,18 +427,18 @@ static status assumed_motion(const char *title, bool of_angle, const figure_opti
                        : of_angle ? "quadratic approximation (4.19)"
                                   : "linear approximation");
         most[i] = departure(fig, name, angles[i], velocities[i], of_angle);
-        fig->panels[i].label = labels[of_angle][i];
+        fig->panels[i].y.label = labels[of_angle][i];
     }
     double period = fig->peak_time - fig->contact;
     fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
     fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
     fig->figure.marks = fig->marks;
     fig->figure.mark_count = 2;
-    fig->figure.x_name = "time";
-    fig->figure.x_label = "Time <i>t</i>";
-    fig->figure.x_unit = "s";
-    fig->figure.x_low = fig->contact - 0.4 * period;
-    fig->figure.x_high = fig->contact + 1.4 * period;
+    fig->figure.x.name = "time";
+    fig->figure.x.label = "Time <i>t</i>";
+    fig->figure.x.unit = "s";
+    fig->figure.x.low = fig->contact - 0.4 * period;
+    fig->figure.x.high = fig->contact + 1.4 * period;
     fig->figure.panel_count = PANELS;
     fig->figure.caption = own(
         fig, g_strdup_printf("First and last link of corrected/first-impact from first contact to "

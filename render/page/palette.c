@@ -1,13 +1,13 @@
 #include "render/page/palette.h"
 
-#include <string.h>
+#include <math.h>
 
 #define RGB(r, g, b)                                                                               \
     {                                                                                              \
         (r) / 255.0, (g) / 255.0, (b) / 255.0                                                      \
     }
 
-enum { SLOTS = 8, STYLES = 4 };
+enum { SLOTS = 8 };
 
 // Okabe and Ito 2008; their yellow is too faint for lines on white and gives way to a grey.
 static const colour on_white[SLOTS] = {
@@ -64,23 +64,20 @@ colour palette_series(figure_theme theme, int slot, int place)
     return theme == THEME_DARK ? on_black[slot] : on_white[slot];
 }
 
-line_style palette_style(const figure_series *series, int index)
+colour palette_shade(double share)
 {
-    bool taken[STYLES] = {false};
-    line_style style = LINE_SOLID;
-    for (int i = 0; i <= index; i++) {
-        style = series[i].style;
-        if (series[i].secondary) {
-            continue;
-        }
-        // the orders in which styles give way keep the lines as plain as possible
-        static const line_style others[] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT, LINE_DOTTED};
-        for (int k = 0; k < STYLES && taken[style]; k++) {
-            style = taken[others[k]] ? style : others[k];
-        }
-        taken[style] = true;
-    }
-    return series[index].secondary ? LINE_DASHED : style;
+    static const colour points[] = {
+        RGB(0x44, 0x01, 0x54), RGB(0x47, 0x2d, 0x7b), RGB(0x3b, 0x52, 0x8b),
+        RGB(0x2c, 0x72, 0x8e), RGB(0x21, 0x91, 0x8c), RGB(0x28, 0xae, 0x80),
+        RGB(0x5e, 0xc9, 0x62), RGB(0xad, 0xdc, 0x30), RGB(0xfd, 0xe7, 0x25),
+    };
+    enum { LAST = sizeof points / sizeof points[0] - 1 };
+    double at = fmin(fmax(share, 0), 1) * LAST;
+    int i = at >= LAST ? LAST - 1 : (int)at;
+    const colour *a = &points[i], *b = &points[i + 1];
+    return (colour){a->red + (at - i) * (b->red - a->red),
+                    a->green + (at - i) * (b->green - a->green),
+                    a->blue + (at - i) * (b->blue - a->blue)};
 }
 
 void set_colour(cairo_t *cr, colour c)

@@ -3,7 +3,8 @@
 
 #include <cairo.h>
 
-#include "render/plot/plot.h"
+#include "render/page/page.h"
+#include "src/quantities/signals.h"
 
 typedef struct colour {
     double red, green, blue;
@@ -19,8 +20,10 @@ const palette *palette_of(figure_theme theme);
 // The colour of a slot, 0-7; in a mono figure by the series' place in its panel.
 colour palette_series(figure_theme theme, int slot, int place);
 
-// The style of the series `index` among a panel's: its own, or the next that no earlier one has.
-line_style palette_style(const figure_series *series, int index);
+// The colour at share 0 ... 1 of the colour scale: viridis of van der Walt and Smith (2015, public
+// domain), straight lines between nine of its colours. Perceptually even, from dark blue to yellow,
+// and its lightness grows all the way, so that it survives a grey printer.
+colour palette_shade(double share);
 
 void set_colour(cairo_t *cr, colour c);
 

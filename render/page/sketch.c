@@ -59,23 +59,6 @@ void sketch_size(const sketch_frame *frame, double *width, double *height)
     g_object_unref(context);
 }
 
-void report_add_text(figure_report *report, const char *markup, figure_rect place)
-{
-    if (report == NULL || report->text_count == FIGURE_TEXTS) {
-        return;
-    }
-    figure_text *t = &report->texts[report->text_count++];
-    char *plain = text_plain(markup);
-    const char *end;
-    t->place = place;
-    g_strlcpy(t->text, plain, sizeof t->text);
-    // a character that was cut in two goes altogether
-    if (!g_utf8_validate(t->text, -1, &end)) {
-        t->text[end - t->text] = '\0';
-    }
-    g_free(plain);
-}
-
 static void draw_block(sketch *s, text_block t, double x, double y, double ax, double ay, colour c)
 {
     double width, height;

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "render/page/palette.h"
-#include "render/plot/plot.h"
 #include "render/page/text.h"
 
 #define SKETCH_WIDTH  370.0 // a page as designed (130 mm)
@@ -86,6 +85,3 @@ void sketch_text(sketch *s, double x, double y, double ax, double ay, const char
                  double size);
 void sketch_wrapped(sketch *s, double x, double y, double width, text_align align,
                     const char *markup, double size, bool bold);
-
-// Adds a text and its place on the page to a report (may be NULL).
-void report_add_text(figure_report *report, const char *markup, figure_rect place);

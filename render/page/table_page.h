@@ -1,7 +1,6 @@
 // Tables as pages: a heading, rows of cells, and rows that head a group.
 #pragma once
 
-#include "render/plot/plot.h"
 #include "render/page/sketch.h"
 
 enum { TABLE_COLUMNS = 10 };

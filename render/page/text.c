@@ -3,6 +3,8 @@
 #include <fontconfig/fontconfig.h>
 #include <string.h>
 
+#include "render/page/page.h"
+
 static bool family_matches(void)
 {
     FcPattern *wanted = FcPatternCreate();
@@ -81,7 +83,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
                                                 PANGO_ALIGN_RIGHT};
     PangoLayout *layout = pango_layout_new(context);
     PangoFontDescription *font = pango_font_description_new();
-    pango_font_description_set_family_static(font, TEXT_FAMILY);
+    pango_font_description_set_family(font, t->family != NULL ? t->family : TEXT_FAMILY);
     pango_font_description_set_size(font, (int)(t->size * PANGO_SCALE));
     pango_font_description_set_weight(font, t->bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
     pango_layout_set_font_description(layout, font);
@@ -163,6 +165,23 @@ char *text_escape(const char *bytes)
     char *valid = g_utf8_make_valid(bytes, -1), *escaped = g_markup_escape_text(valid, -1);
     g_free(valid);
     return escaped;
+}
+
+void report_add_text(figure_report *report, const char *markup, figure_rect place)
+{
+    if (report == NULL || report->text_count == FIGURE_TEXTS) {
+        return;
+    }
+    figure_text *t = &report->texts[report->text_count++];
+    char *plain = text_plain(markup);
+    const char *end;
+    t->place = place;
+    g_strlcpy(t->text, plain, sizeof t->text);
+    // a character that was cut in two goes altogether
+    if (!g_utf8_validate(t->text, -1, &end)) {
+        t->text[end - t->text] = '\0';
+    }
+    g_free(plain);
 }
 
 void text_release(void)

@@ -10,7 +10,7 @@
 
 #include "src/base/fault.h"
 
-// The family that every figure uses.
+// The family of every text that names none.
 #define TEXT_FAMILY "DejaVu Sans"
 
 typedef enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT } text_align;
@@ -18,7 +18,8 @@ typedef enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT } text_align;
 // A text to draw or measure.
 typedef struct text_block {
     const char *markup;
-    double size; // of the letters
+    double size;        // of the letters
+    const char *family; // NULL: TEXT_FAMILY
     bool bold;
     text_align align; // of its lines
     double width;     // at which it is wrapped into lines; 0: never

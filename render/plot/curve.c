@@ -1,5 +1,6 @@
 #include "render/plot/curve.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -10,12 +11,13 @@
 
 double plane_x(const plane *p, double x)
 {
-    return p->box.x + p->box.width * ((x - p->x_low) / (p->x_high - p->x_low));
+    return p->box.x + p->box.width * scale_share(&p->x, x);
 }
 
 double plane_y(const plane *p, double y)
 {
-    return p->box.y + p->box.height * ((p->y_high - y) / (p->y_high - p->y_low));
+    double at = scale_coordinate(p->y.kind, y);
+    return p->box.y + p->box.height * ((p->y.high - at) / (p->y.high - p->y.low));
 }
 
 static double value_at(const figure_series *s, const double *values, size_t index)
@@ -36,30 +38,28 @@ double series_y(const figure_series *s, size_t index)
     return value_at(s, s->y, index);
 }
 
-void series_x_range(const figure_series *s, double *low, double *high)
+double series_shade(const figure_series *s, size_t index)
+{
+    return value_at(s, s->shade, index);
+}
+
+void series_include_x(const figure_series *s, axis_scale *x)
 {
     for (size_t i = 0; i < s->count; i++) {
-        double x = series_x(s, i);
-        if (isfinite(x)) {
-            *low = fmin(*low, x);
-            *high = fmax(*high, x);
-        }
+        scale_include(x, series_x(s, i));
     }
 }
 
-void series_y_range(const figure_series *s, double x_low, double x_high, double *low, double *high)
+void series_include_y(const figure_series *s, const axis_scale *within, axis_scale *y)
 {
     for (size_t i = 0; i < s->count; i++) {
-        double x = series_x(s, i), y = series_y(s, i);
-        if (isfinite(y) && x >= x_low && x <= x_high) {
-            *low = fmin(*low, y);
-            *high = fmax(*high, y);
+        if (scale_holds(within, series_x(s, i))) {
+            scale_include(y, series_y(s, i));
         }
     }
 }
 
 // ---- clipping
-// -------------------------------------------------------------------------------------
 
 typedef struct point {
     double x, y;
@@ -133,7 +133,6 @@ static void pen_to(pen *p, point q)
 }
 
 // ---- decimation
-// -----------------------------------------------------------------------------------
 
 // The points of one column that matter, with their numbers to keep their order.
 typedef struct column {
@@ -201,6 +200,7 @@ static bool x_ascends(const figure_series *s)
 
 void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void *context)
 {
+    assert(p != NULL && s != NULL && sink != NULL);
     pen tip = {.left = p->box.x - CLIP_SPACE,
                .top = p->box.y - CLIP_SPACE,
                .right = p->box.x + p->box.width + CLIP_SPACE,
@@ -211,7 +211,8 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
     column c = {.count = 0};
     for (size_t i = 0; i < s->count; i++) {
         double x = series_x(s, i), y = series_y(s, i);
-        if (!isfinite(x) || !isfinite(y)) {
+        if (!isfinite(scale_coordinate(p->x.kind, x)) ||
+            !isfinite(scale_coordinate(p->y.kind, y))) {
             column_flush(&c, &tip);
             pen_lift(&tip);
             continue;

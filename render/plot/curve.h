@@ -5,9 +5,8 @@
 
 // A rectangle on the page and what its edges stand for.
 typedef struct plane {
-    figure_rect box;      // [pt]
-    double x_low, x_high; // left and right edge
-    double y_low, y_high; // bottom and top edge
+    figure_rect box; // [pt]
+    axis_scale x, y; // from left to right, from bottom to top
 } plane;
 
 double plane_x(const plane *p, double x);
@@ -21,13 +20,14 @@ typedef enum stroke_kind {
 
 typedef void (*stroke_sink)(void *context, stroke_kind kind, double x, double y);
 
-// Value number `index` of a series' x or y.
+// Value number `index` of a series' x, y or shade.
 double series_x(const figure_series *s, size_t index);
 double series_y(const figure_series *s, size_t index);
+double series_shade(const figure_series *s, size_t index);
 
-// Smallest and largest finite x, or finite y at an x within [x_low, x_high], widening low and high.
-void series_x_range(const figure_series *s, double *low, double *high);
-void series_y_range(const figure_series *s, double x_low, double x_high, double *low, double *high);
+// Widens a scale until it holds every x of a series, or every y at an x that *within holds.
+void series_include_x(const figure_series *s, axis_scale *x);
+void series_include_y(const figure_series *s, const axis_scale *within, axis_scale *y);
 
 // Gives the series' line to the sink, in page coordinates, clipped to the plane and a little more.
 // Where many points fall on one column of 1/600 inch, the first, lowest, highest and last of them

@@ -1,5 +1,6 @@
 #include "render/plot/figure_file.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -35,7 +36,7 @@ static void write_name(csv_writer *csv, const char *name, const char *label, con
 
 static void write_panel_name(csv_writer *csv, const figure_panel *panel)
 {
-    write_name(csv, panel->name, panel->label, panel->unit);
+    write_name(csv, panel->y.name, panel->y.label, panel->y.unit);
 }
 
 // The end of a row.
@@ -116,4 +117,18 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
     }
     write_marks(&csv, fig);
     return whole_file_commit(&file, f);
+}
+
+status figure_write_with_csv(const figure *fig, const char *path, fault *f)
+{
+    assert(fig != NULL && path != NULL);
+    const char *ending = strrchr(path, '.');
+    status code = figure_write(fig, path, f);
+    if (code != STATUS_OK || ending == NULL) {
+        return code;
+    }
+    char *csv = g_strdup_printf("%.*s.csv", (int)(ending - path), path);
+    code = figure_write_csv(fig, csv, f);
+    g_free(csv);
+    return code;
 }

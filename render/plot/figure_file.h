@@ -12,3 +12,6 @@ status figure_write(const figure *fig, const char *path, fault *f);
 // empty where the curve has a gap), impulses as the series impulse[unit], then marks and shaded
 // intervals with an empty y.
 status figure_write_csv(const figure *fig, const char *path, fault *f);
+
+// Both: the picture, and a CSV of the same name beside it.
+status figure_write_with_csv(const figure *fig, const char *path, fault *f);

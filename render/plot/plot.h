@@ -1,30 +1,28 @@
-// Figures: panels of curves above one another that share the horizontal axis.
+// Figures: panels of axes with layers of data.
 //
 // A figure is a description in plain data that borrows everything it points to; nothing here
 // changes or frees it. figure_paint draws it, figure_write (render/plot/figure_file.h) makes files.
+// Panels stand in rows of `columns`; all share the horizontal axis. Traces, studies, sweeps and
+// maps are all described this way, so that axes, ticks, legends and colours look alike.
 // Unless said otherwise a text is Pango markup and NULL stands for none.
 #pragma once
 
 #include <cairo.h>
-#include <stdbool.h>
-#include <stddef.h>
 
-#include "src/quantities/signals.h"
+#include "render/page/page.h"
+#include "render/plot/scale.h"
 #include "src/base/fault.h"
+#include "src/quantities/signals.h"
 
-enum {
-    FIGURE_PANELS = 8,  // most panels
-    PANEL_SERIES = 16,  // most series of a panel
-    FIGURE_TEXTS = 512, // texts a report remembers
-};
+enum { PANEL_SERIES = 16 }; // most series of a panel
 
-typedef enum figure_theme {
-    THEME_COLOUR, // Okabe and Ito's colours on white
-    THEME_MONO,   // black and greys on white
-    THEME_DARK    // Okabe and Ito's colours on near black
-} figure_theme;
-
-typedef enum marker_kind { MARKER_NONE, MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE } marker_kind;
+typedef enum marker_kind {
+    MARKER_NONE,
+    MARKER_CIRCLE,
+    MARKER_SQUARE,
+    MARKER_TRIANGLE,
+    MARKER_CROSS
+} marker_kind;
 
 typedef enum legend_kind {
     LEGEND_AUTO, // of two or more curves, inside the panel where no data are, else in a row above
@@ -32,19 +30,56 @@ typedef enum legend_kind {
     LEGEND_NONE
 } legend_kind;
 
-// A curve. A point that is not finite leaves a gap.
+// A tick set by hand.
+typedef struct figure_tick {
+    double value;
+    const char *label;
+} figure_tick;
+
+// An axis. A value that a logarithmic axis cannot show, zero or below, counts as missing.
+typedef struct figure_axis {
+    const char *name;  // plain, for the CSV, "force"
+    const char *label; // without its unit
+    const char *unit;  // plain, as in the signal table: "rad/s2"; "" or NULL for a pure number
+    scale_kind scale;
+    double low, high;         // its ends; low >= high: from the data
+    double room;              // share of the data's range kept free at both ends
+    bool with_zero;           // an axis from the data includes 0
+    const figure_tick *ticks; // NULL: round values
+    int tick_count;
+} figure_axis;
+
+// A layer of points, joined by a line or not. A point that is not finite leaves a gap.
 typedef struct figure_series {
     const char *name;    // plain, for the CSV, "force"
     const char *label;   // for the legend
     const double *x, *y; // count values each
+    const double *shade; // values on the panel's colour scale for the markers; NULL: in `colour`
     size_t count;
-    size_t stride;      // bytes from one value to the next, in x and y alike; 0: sizeof(double)
+    size_t stride;      // bytes from one value to the next, in x, y and shade; 0: sizeof(double)
     int colour;         // slot in the palette, 0-7
     line_style style;   // changed where an earlier series of the panel has the same
     marker_kind marker; // at every point
+    double radius;      // of markers [pt]; 0: the style's
     bool secondary;     // thinner and dashed, for a second run of the same quantity
     bool no_line;       // markers only
+    bool rim;           // on a rim of the page's colour, so that it shows on a map
 } figure_series;
+
+// A layer of coloured cells over a grid of points: z[column * rows + row].
+typedef struct figure_map {
+    const double *x, *y; // ascending: of the columns and of the rows, in the axes' values
+    size_t columns, rows;
+    const double *z; // a cell whose value is not finite is hatched
+    bool contours;   // lines at the ticks of the colour scale
+} figure_map;
+
+// A colour scale from low (dark) to high (bright).
+typedef struct figure_colours {
+    figure_axis axis;
+    bool reversed; // bright for low values
+    bool bar;      // shown at the right of the panel
+} figure_colours;
 
 // A horizontal line across a panel.
 typedef struct figure_level {
@@ -70,9 +105,11 @@ typedef struct figure_impulse {
 } figure_impulse;
 
 typedef struct figure_panel {
-    const char *name;  // plain, for the CSV, "force"
-    const char *label; // of the vertical axis, without its unit
-    const char *unit;  // plain, as in the signal table: "rad/s2"; "" or NULL for a pure number
+    const char *heading; // above it
+    const char *remark;  // in its middle: why there is nothing to see
+    figure_axis y;
+    const figure_map *map; // below all other layers
+    const figure_colours *colours;
     const figure_series *series;
     int series_count;
     const figure_level *levels;
@@ -82,8 +119,6 @@ typedef struct figure_panel {
     const char *impulse_label; // of the strip, without its unit
     const char *impulse_unit;
     double weight;             // share of the height, 0 counts as 1
-    double y_low, y_high;      // ends of the vertical axis; y_low >= y_high: from the data
-    bool with_zero;            // an axis from the data includes 0
     double zoom_from, zoom_to; // range of x shown once more in an inset; from >= to: no inset
     legend_kind legend;
 } figure_panel;
@@ -91,12 +126,11 @@ typedef struct figure_panel {
 typedef struct figure {
     const char *title;   // plain
     const char *caption; // small, at the bottom
-    const char *x_name;  // plain, for the CSV, "time"
-    const char *x_label; // without its unit
-    const char *x_unit;
-    double x_low, x_high; // ends of the horizontal axis; x_low >= x_high: from the data
+    figure_axis x;
     const figure_panel *panels;
     int panel_count;
+    int columns;        // panels in a row; 0 counts as 1
+    bool common_legend; // the first panel's legend holds for all and stands above them
     const figure_mark *marks;
     int mark_count;
     const figure_interval *intervals;
@@ -104,35 +138,17 @@ typedef struct figure {
     double width, height; // of the page [mm]; 0: 170 wide, as high as the panels want
     double dpi;           // of a PNG; 0: 200
     figure_theme theme;
+    const char *font;       // family; NULL: the house's
+    double letters;         // factor on the size of all letters; 0 counts as 1
     const char *software;   // plain, for the file's metadata, "impactlab 0.1.0"
     const char *parameters; // plain, for the file's metadata
 } figure;
-
-// A rectangle on the page [pt], y downwards.
-typedef struct figure_rect {
-    double x, y, width, height;
-} figure_rect;
-
-typedef struct figure_text {
-    figure_rect place; // upright, also round a rotated text
-    char text[64];     // its beginning, without markup
-} figure_text;
-
-// What was drawn where.
-typedef struct figure_report {
-    figure_rect page;
-    figure_rect panels[FIGURE_PANELS];  // inside the axes
-    figure_rect legends[FIGURE_PANELS]; // width 0: none
-    figure_rect insets[FIGURE_PANELS];  // with their labels; width 0: none
-    int panel_count;
-    figure_text texts[FIGURE_TEXTS];
-    int text_count;
-} figure_report;
 
 // Page size [pt] of a figure.
 void figure_size(const figure *fig, double *width, double *height);
 
 // Draws the figure with the page's top left corner at the origin of cr, in points. *report (may be
 // NULL) is filled. STATUS_BAD_ARGUMENT for a page that is too small or a description that makes no
-// sense, STATUS_CANNOT_READ if the font is missing.
+// sense, such as a logarithmic axis without a value above zero, STATUS_CANNOT_READ if the font is
+// missing.
 status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault *f);

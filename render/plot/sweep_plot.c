@@ -1,103 +1,318 @@
-// A quantity over one parameter, and what pictures of either kind are asked for.
-#include "render/plot/sweep_canvas.h"
+#include "render/plot/sweep_plot.h"
 
+#include <assert.h>
+#include <glib.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/plot/curve.h"
-#include "render/page/picture_file.h"
+#include "render/page/text.h"
+#include "render/plot/figure_file.h"
 #include "src/base/version.h"
 
-enum { MOST_MARKERS = 80 };
+#define PAGE_WIDTH  150.0 // [mm]
+#define PAGE_HEIGHT 100.0
+#define DOTS_ROOM   0.03 // of an axis, free at both ends
+#define LINE_ROOM   0.05 // of the quantity's range, free above and below it
 
-// --- one parameter --------------------------------------------------------------------------
+enum { LABELLED_VALUES = 9, MOST_MARKERS = 80 };
 
-static void stroke_to(void *context, stroke_kind kind, double x, double y)
+// A varied parameter as an axis: where its points lie, in order.
+typedef struct varied {
+    const sweep_axis *axis;
+    bool words;    // its points are counted
+    double *place; // ascending, count of them; NULL if the values were drawn
+    size_t *order; // place[i] belongs to value order[i] of the sweep's axis
+    size_t count;
+} varied;
+
+// A figure with everything it borrows.
+typedef struct sweep_figure {
+    figure figure;
+    figure_panel panel;
+    figure_series series;
+    figure_map map;
+    figure_colours colours;
+    varied varied[2];
+    GPtrArray *owned; // blocks
+} sweep_figure;
+
+static void *own(sweep_figure *s, void *block)
 {
-    cairo_t *cr = context;
-    switch (kind) {
-    case STROKE_MOVE:
-        cairo_move_to(cr, x, y);
-        break;
-    case STROKE_LINE:
-        cairo_line_to(cr, x, y);
-        break;
-    case STROKE_DOT:
-        // a line without length shows its round ends
-        cairo_move_to(cr, x, y);
-        cairo_line_to(cr, x, y);
-        break;
+    g_ptr_array_add(s->owned, block);
+    return block;
+}
+
+// ---- axes
+
+// A number with few digits as markup: a true minus sign, "2·10<sup>−5</sup>" for "2e-05".
+static char *number_label(double value)
+{
+    char digits[24];
+    const char *sign = value < 0 ? "\u2212" : "";
+    snprintf(digits, sizeof digits, "%.6g", fabs(value));
+    char *exponent = strchr(digits, 'e');
+    if (exponent == NULL) {
+        return g_strdup_printf("%s%s", sign, digits);
+    }
+    int power = atoi(exponent + 1);
+    *exponent = '\0';
+    bool one = strcmp(digits, "1") == 0;
+    return g_strdup_printf("%s%s%s10<sup>%s%d</sup>", sign, one ? "" : digits, one ? "" : "\u00b7",
+                           power < 0 ? "\u2212" : "", abs(power));
+}
+
+static int compare_values(const void *a, const void *b, void *context)
+{
+    const double *values = context, x = values[*(const size_t *)a], y = values[*(const size_t *)b];
+    return (x > y) - (x < y);
+}
+
+// Sets the points of an axis in ascending order; words stay in theirs.
+static void order_points(sweep_figure *s, varied *v)
+{
+    const sweep_axis *axis = v->axis;
+    v->count = axis->count;
+    v->place = own(s, g_new(double, v->count));
+    v->order = own(s, g_new(size_t, v->count));
+    for (size_t i = 0; i < v->count; i++) {
+        v->order[i] = i;
+    }
+    if (!v->words) {
+        g_qsort_with_data(v->order, (int)v->count, sizeof *v->order, compare_values, axis->values);
+    }
+    for (size_t i = 0; i < v->count; i++) {
+        v->place[i] = v->words ? (double)i : axis->values[v->order[i]];
     }
 }
 
-// The curve through `count` points (x, y), in coordinates.
-static void draw_curve(sweep_canvas *c, const double *x, const double *y, size_t count,
-                       bool with_line, figure_theme theme)
+// True for a few values that are spaced unevenly and have no long digits.
+static bool points_are_good_ticks(const varied *v)
 {
-    figure_series series = {.x = x, .y = y, .count = count};
-    plane place = {c->box, c->x.low, c->x.high, c->y.low, c->y.high};
-    set_colour(c->cr, palette_series(theme, 0, 0));
-    if (with_line) {
-        set_line_style(c->cr, LINE_SOLID, 1.2);
-        curve_trace(&place, &series, stroke_to, c->cr);
-        cairo_stroke(c->cr);
+    const sweep_axis *axis = v->axis;
+    bool good =
+        (axis->logarithmic || !axis->is_range) && v->count > 0 && v->count <= LABELLED_VALUES;
+    for (size_t i = 0; i < v->count && good; i++) {
+        char digits[32];
+        snprintf(digits, sizeof digits, "%.3g", axis->values[i]);
+        good = fabs(strtod(digits, NULL) - axis->values[i]) <= 1e-9 * fabs(axis->values[i]);
     }
-    if (with_line && count > MOST_MARKERS) {
-        return;
+    return good;
+}
+
+static char *point_label(const varied *v, size_t i)
+{
+    char word[PARAMETER_TEXT_SIZE] = "";
+    double value = v->axis->values[v->order[i]];
+    if (!v->words) {
+        return number_label(value);
     }
-    double radius = count > 500 ? 1.1 : count > 12 ? 1.9 : 2.4;
-    for (size_t i = 0; i < count; i++) {
-        if (isfinite(y[i])) {
-            sweep_dot(c, sweep_page_x(c, x[i]), sweep_page_y(c, y[i]), radius);
+    parameters p = {0};
+    parameter_set_number(&p, v->axis->parameter, value, NULL);
+    parameter_format(&p, v->axis->parameter, word, sizeof word);
+    return text_escape(word);
+}
+
+// The axis of a varied parameter.
+static figure_axis describe_axis(sweep_figure *s, varied *v, const sweep_axis *axis)
+{
+    const parameter_info *info = &parameter_table[axis->parameter];
+    *v = (varied){.axis = axis,
+                  .words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
+    figure_axis out = {.name = info->path,
+                       .label = own(s, text_escape(info->path)),
+                       .unit = info->unit,
+                       .scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR,
+                       .room = DOTS_ROOM};
+    if (axis->values != NULL) {
+        order_points(s, v);
+    }
+    if (v->words) {
+        out.low = -0.5;
+        out.high = (double)v->count - 0.5;
+    }
+
+    // ticks at the points themselves
+    if (v->words || points_are_good_ticks(v)) {
+        figure_tick *ticks = own(s, g_new0(figure_tick, v->count));
+        for (size_t i = 0; i < v->count; i++) {
+            ticks[i] = (figure_tick){v->place[i], own(s, point_label(v, i))};
+        }
+        out.ticks = ticks;
+        out.tick_count = (int)v->count;
+    }
+    return out;
+}
+
+// Where a run's value lies on the axis.
+static double place_of(const varied *v, double value)
+{
+    for (size_t i = 0; v->words && i < v->count; i++) {
+        if (v->axis->values[i] == value) {
+            return (double)i;
         }
     }
-    cairo_fill(c->cr);
+    return value;
 }
 
-static status paint_line(sweep_canvas *c, const sweep_picture *p, fault *f)
+// Places of all runs along an axis of drawn values.
+static double *drawn_places(sweep_figure *s, const sweep *from, int axis)
+{
+    double *places = own(s, g_new(double, from->run_count));
+    for (size_t run = 0; run < from->run_count; run++) {
+        places[run] = place_of(&s->varied[axis], sweep_value(from, run, axis));
+    }
+    return places;
+}
+
+// The axis of the quantity itself.
+static figure_axis quantity_axis(sweep_figure *s, const char *key)
+{
+    char name[64];
+    const char *unit;
+    quantity_name(key, name, sizeof name, &unit);
+    g_strdelimit(name, "_", ' ');
+    return (figure_axis){.name = key, .label = own(s, text_escape(name)), .unit = unit};
+}
+
+// ---- layers
+
+// One parameter: a curve; dots alone where nothing lies between the points.
+static void describe_line(sweep_figure *s, const sweep_picture *p)
+{
+    const sweep *from = p->sweep;
+    const varied *v = &s->varied[0];
+    size_t count = from->run_count;
+    bool grid = from->sampling == SWEEP_GRID;
+    double *y = own(s, g_new(double, count));
+    for (size_t i = 0; i < count; i++) {
+        y[i] = p->values[grid ? v->order[i] : i];
+    }
+    bool joined = grid && !v->words;
+    s->series =
+        (figure_series){.name = p->key,
+                        .x = grid ? v->place : drawn_places(s, from, 0),
+                        .y = y,
+                        .count = count,
+                        .no_line = !joined,
+                        .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE,
+                        .radius = count > 500  ? 1.1
+                                  : count > 12 ? 1.9
+                                               : 2.4};
+    s->panel.y = quantity_axis(s, p->key);
+    s->panel.y.room = LINE_ROOM;
+    s->panel.series = &s->series;
+    s->panel.series_count = 1;
+}
+
+// Two parameters: a map of every combination, or dots where they were drawn.
+static void describe_map(sweep_figure *s, const sweep_picture *p)
+{
+    const sweep *from = p->sweep;
+    const varied *x = &s->varied[0], *y = &s->varied[1];
+    s->colours = (figure_colours){.axis = quantity_axis(s, p->key), .bar = true};
+    s->panel.colours = &s->colours;
+    if (from->sampling != SWEEP_GRID) {
+        s->series = (figure_series){.name = p->key,
+                                    .x = drawn_places(s, from, 0),
+                                    .y = drawn_places(s, from, 1),
+                                    .shade = p->values,
+                                    .count = from->run_count,
+                                    .no_line = true,
+                                    .marker = MARKER_CIRCLE,
+                                    .radius = from->run_count > 1000  ? 1.5
+                                              : from->run_count > 200 ? 2.2
+                                                                      : 3.2};
+        s->panel.series = &s->series;
+        s->panel.series_count = 1;
+        return;
+    }
+    double *z = own(s, g_new(double, x->count * y->count));
+    for (size_t i = 0; i < x->count; i++) {
+        for (size_t j = 0; j < y->count; j++) {
+            z[i * y->count + j] = p->values[x->order[i] * y->count + y->order[j]];
+        }
+    }
+    s->map = (figure_map){.x = x->place,
+                          .y = y->place,
+                          .columns = x->count,
+                          .rows = y->count,
+                          .z = z,
+                          .contours = !x->words && !y->words};
+    s->panel.map = &s->map;
+    s->figure.x.room = s->panel.y.room = 0;
+}
+
+// ---- the picture
+
+// How many runs have no value, in a few words; NULL if none.
+static char *missing_caption(const sweep_picture *p, size_t missing)
 {
     const sweep *s = p->sweep;
-    double low, high, *x = malloc(2 * s->run_count * sizeof *x);
-    char note[128];
-    if (x == NULL || !sweep_scale_of_axis(&c->x, &s->axes[0], 8)) {
-        free(x);
-        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
-    }
-    bool any = sweep_value_range(p->values, s->run_count, &low, &high);
-    low = any ? low : 0;
-    high = any ? high : 1;
-    double room = high > low ? 0.05 * (high - low) : fmax(0.1 * fabs(high), 1e-12);
-    sweep_scale_of_quantity(&c->y, p->key, low - room, high + room, 6);
-    if (c->x.kind == SCALE_WORDS) {
-        c->x.low = -0.5;
-        c->x.high = (double)c->x.count - 0.5;
-    } else {
-        sweep_scale_widen(&c->x, 0.02);
-    }
-    sweep_missing_note(p, note, sizeof note, "");
-    sweep_place_box(c, 0, note[0] != '\0');
-    sweep_draw_grid(c);
-    sweep_gather(p, &c->x, x, x + s->run_count);
-    cairo_save(c->cr);
-    cairo_rectangle(c->cr, c->box.x, c->box.y, c->box.width, c->box.height);
-    cairo_clip(c->cr);
-    bool with_line = s->sampling == SWEEP_GRID && c->x.kind != SCALE_WORDS;
-    draw_curve(c, x, x + s->run_count, s->run_count, with_line, p->theme);
-    cairo_restore(c->cr);
-    sweep_draw_axes(c);
-    sweep_draw_title(c, p, note);
-    if (!any) {
-        sweep_no_value_text(c);
-    }
-    free(x);
-    return STATUS_OK;
+    const char *how = s->axis_count == 1          ? ""
+                      : s->sampling == SWEEP_GRID ? " (hatched)"
+                                                  : " (empty)";
+    return missing == 0 ? NULL
+                        : g_strdup_printf("%zu %s without a value%s", missing,
+                                          missing == 1 ? "run" : "runs", how);
 }
 
-// --- files ----------------------------------------------------------------------------------
+static char *title_of(const sweep_picture *p, const char *quantity)
+{
+    static const char *const how[] = {
+        [SWEEP_GRID] = "", [SWEEP_RANDOM] = " at random", [SWEEP_LATIN] = " of a Latin hypercube"};
+    return g_strdup_printf("%s: %s of %zu runs%s", p->sweep->base->name, quantity,
+                           p->sweep->run_count, how[p->sweep->sampling]);
+}
+
+// What was varied, as on the command line.
+static char *command_of(const sweep *s)
+{
+    GString *out = g_string_new(NULL);
+    for (int i = 0; i < s->axis_count; i++) {
+        g_string_append_printf(out, "%s--vary %s=%s", i > 0 ? " " : "",
+                               parameter_table[s->axes[i].parameter].path, s->axes[i].text);
+    }
+    return g_string_free(out, FALSE);
+}
+
+static void describe(sweep_figure *s, const sweep_picture *p)
+{
+    const sweep *from = p->sweep;
+    size_t missing = 0;
+    for (size_t i = 0; i < from->run_count; i++) {
+        missing += !isfinite(p->values[i]);
+    }
+
+    // axes and layers
+    s->figure.x = describe_axis(s, &s->varied[0], &from->axes[0]);
+    if (from->axis_count == 1) {
+        describe_line(s, p);
+    } else {
+        s->panel.y = describe_axis(s, &s->varied[1], &from->axes[1]);
+        describe_map(s, p);
+    }
+    if (missing == from->run_count) {
+        s->panel.remark = "the quantity did not occur in any run";
+    }
+
+    // the page
+    figure *fig = &s->figure;
+    fig->panels = &s->panel;
+    fig->panel_count = 1;
+    fig->title =
+        own(s, title_of(p, from->axis_count == 1 ? s->panel.y.label : s->colours.axis.label));
+    fig->caption = own(s, missing_caption(p, missing));
+    fig->width = PAGE_WIDTH;
+    fig->height = PAGE_HEIGHT;
+    fig->theme = p->theme;
+    fig->software = own(s, g_strconcat("impactlab ", lab_version(), NULL));
+    fig->parameters = own(s, command_of(from));
+}
 
 status sweep_plot_check(const sweep *s, const char *path, fault *f)
 {
+    assert(s != NULL && path != NULL);
     if (s->axis_count > 2) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "--plot shows one or two varied parameters, but %d are varied",
@@ -107,44 +322,14 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f)
     return code == STATUS_OK ? text_check_font(f) : code;
 }
 
-status sweep_plot_paint(cairo_t *cr, const sweep_picture *p, fault *f)
-{
-    status code = text_check_font(f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    sweep_canvas c = {.cr = cr, .context = text_context_create(), .colours = palette_of(p->theme)};
-    set_colour(cr, c.colours->page);
-    cairo_paint(cr);
-    code = p->sweep->axis_count == 1 ? paint_line(&c, p, f) : sweep_paint_map(&c, p, f);
-    sweep_scale_finish(&c.x);
-    sweep_scale_finish(&c.y);
-    g_object_unref(c.context);
-    return code;
-}
-
-static status paint(cairo_t *cr, const void *what, fault *f)
-{
-    return sweep_plot_paint(cr, what, f);
-}
-
 status sweep_plot_write(const sweep_picture *p, const char *path, fault *f)
 {
-    const sweep *s = p->sweep;
-    char vary[512] = "", software[64];
-    size_t length = 0;
-    for (int i = 0; i < s->axis_count && length < sizeof vary; i++) {
-        length += (size_t)snprintf(vary + length, sizeof vary - length, "%s--vary %s=%s",
-                                   i > 0 ? " " : "", parameter_table[s->axes[i].parameter].path,
-                                   s->axes[i].text);
-    }
-    snprintf(software, sizeof software, "impactlab %s", lab_version());
-    picture page = {.width = PAGE_WIDTH,
-                    .height = PAGE_HEIGHT,
-                    .title = s->base->name,
-                    .software = software,
-                    .parameters = vary,
-                    .paint = paint,
-                    .what = p};
-    return picture_write(&page, path, f);
+    assert(p != NULL && path != NULL && p->sweep->axis_count >= 1 && p->sweep->axis_count <= 2);
+    sweep_figure *s = g_new0(sweep_figure, 1);
+    s->owned = g_ptr_array_new_with_free_func(g_free);
+    describe(s, p);
+    status code = figure_write(&s->figure, path, f);
+    g_ptr_array_free(s->owned, TRUE);
+    g_free(s);
+    return code;
 }

@@ -358,11 +358,11 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
     figure_panel *panel = &t->panels[index];
     const signal_info *first = &signal_table[signal_find(from->signals[0])];
     const wall_parameters *wall = &runs[0].scenario->parameters.wall;
-    panel->name = first->name;
-    panel->unit = first->unit;
-    panel->label = from->label ? from->label : keep(texts, own_label(first));
+    panel->y.name = first->name;
+    panel->y.unit = first->unit;
+    panel->y.label = from->label ? from->label : keep(texts, own_label(first));
     panel->weight = from->weight;
-    panel->with_zero = from->with_zero;
+    panel->y.with_zero = from->with_zero;
     panel->series = t->series[index];
     for (int run = 0; run < run_count; run++) {
         add_series(t, index, from, runs, run, run_count, texts);
@@ -433,9 +433,9 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
                                  : g_strdup(modes ? "second mode" : "contact");
     fig->caption = keep(texts, caption_of(&runs[0], shading));
     g_free(shading);
-    fig->x_name = "time";
-    fig->x_label = "Time <i>t</i>";
-    fig->x_unit = "s";
+    fig->x.name = "time";
+    fig->x.label = "Time <i>t</i>";
+    fig->x.unit = "s";
     fig->panels = t->panels;
     fig->panel_count = panel_count;
     for (int i = 0; i < panel_count; i++) {

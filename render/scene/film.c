@@ -100,8 +100,8 @@ static status paint_traces(film *m, fault *f)
     m->trace_scale = TRACE_LETTERS * fmin(height / 720.0, m->options.width / 1280.0);
     // the scene has the title
     t.figure.title = t.figure.caption = NULL;
-    t.figure.x_low = m->clock.start;
-    t.figure.x_high = m->clock.end;
+    t.figure.x.low = m->clock.start;
+    t.figure.x.high = m->clock.end;
     t.figure.width = width / m->trace_scale * 25.4 / 72;
     t.figure.height = height / m->trace_scale * 25.4 / 72;
     m->traces = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/scene/camera.h"
+#include "src/base/fault.h"
 
 typedef struct scene_floor {
     double level;        // height of the floor [m]

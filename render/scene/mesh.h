@@ -7,7 +7,7 @@
 #include <stddef.h>
 
 #include "render/page/palette.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 typedef struct vector {
     double x, y, z;

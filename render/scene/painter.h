@@ -3,6 +3,7 @@
 #pragma once
 
 #include "render/scene/camera.h"
+#include "src/base/fault.h"
 
 // Which renderer is asked for.
 typedef enum scene_renderer { RENDER_AUTO, RENDER_OSMESA, RENDER_EGL, RENDER_CAIRO } scene_renderer;

@@ -7,7 +7,7 @@
 
 #include "render/figures/figures.h"
 #include "render/page/picture_file.h"
-#include "render/plot/study_plot.h"
+#include "render/plot/figure_file.h"
 #include "src/study/bench.h"
 #include "src/base/words.h"
 #include "src/base/version.h"
@@ -209,23 +209,23 @@ static int plot_scaling(const arguments *a)
          .colour = 7,
          .secondary = true},
     };
-    const figure_panel panel = {.name = "step",
-                                .label = "time for a step of 1 ms",
-                                .unit = "µs",
+    const figure_panel panel = {.y = {.name = "step",
+                                      .label = "time for a step of 1 ms",
+                                      .unit = "µs",
+                                      .scale = SCALE_LOGARITHMIC},
                                 .series = series,
                                 .series_count = 3};
     snprintf(software, sizeof software, "impactlab %s", lab_version());
-    const figure fig = {.title = "Cost of an implicit step over the number of links",
-                        .x_name = "links",
-                        .x_label = "links",
-                        .x_unit = "",
-                        .panels = &panel,
-                        .panel_count = 1,
-                        .width = 120,
-                        .height = 90,
-                        .software = software,
-                        .parameters = "impactlab bench --plot"};
-    return study_plot_write(&fig, a->plot, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    const figure fig = {
+        .title = "Cost of an implicit step over the number of links",
+        .x = {.name = "links", .label = "links", .scale = SCALE_LOGARITHMIC, .room = 0.04},
+        .panels = &panel,
+        .panel_count = 1,
+        .width = 120,
+        .height = 90,
+        .software = software,
+        .parameters = "impactlab bench --plot"};
+    return figure_write_with_csv(&fig, a->plot, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
 static int bench(const arguments *a)

@@ -143,25 +143,17 @@ static status draw(const three_runs *r, double *work[4], const char *path, fault
         }
     }
     const figure_panel panels[] = {
-        {.name = "force",
-         .label = "contact force <i>f</i>",
-         .unit = "N",
+        {.y = {.name = "force", .label = "contact force <i>f</i>", .unit = "N", .with_zero = true},
          .series = force,
-         .series_count = PANEL_STEPS,
-         .with_zero = true},
-        {.name = "difference",
-         .label = "less the finest",
-         .unit = "N",
+         .series_count = PANEL_STEPS},
+        {.y = {.name = "difference", .label = "less the finest", .unit = "N", .with_zero = true},
          .series = less,
-         .series_count = PANEL_STEPS - 1,
-         .with_zero = true},
+         .series_count = PANEL_STEPS - 1},
     };
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     snprintf(title, sizeof title, "%s: the same run at three steps", r->scenario[0].name);
     const figure fig = {.title = title,
-                        .x_name = "time",
-                        .x_label = "time",
-                        .x_unit = "s",
+                        .x = {.name = "time", .label = "time", .unit = "s"},
                         .panels = panels,
                         .panel_count = 2,
                         .software = software};

@@ -4,22 +4,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/page/picture_file.h"
-#include "render/plot/study_plot.h"
+#include "render/plot/figure_file.h"
 #include "src/study/convergence.h"
 #include "src/study/sensor_view.h"
 #include "src/base/json.h"
 #include "src/base/version.h"
 
+// A page of panels side by side over one logarithmic axis, with the data beside it.
 static status write_figure(figure *fig, const scenario *s, const char *what, const char *path,
                            fault *f)
 {
     char software[64], command_line[256];
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     snprintf(command_line, sizeof command_line, "impactlab study %s %s --plot", what, s->name);
+    fig->x.scale = SCALE_LOGARITHMIC;
+    fig->x.room = 0.04;
+    fig->columns = fig->panel_count;
+    fig->common_legend = true;
+    fig->height = 88;
     fig->software = software;
     fig->parameters = command_line;
-    return study_plot_write(fig, path, f);
+    return figure_write_with_csv(fig, path, f);
 }
 
 // --- methods --------------------------------------------------------------------------------
@@ -123,9 +128,10 @@ static status plot_methods(const scenario *s, const method_study *study, const c
                                            .colour = colours[m],
                                            .marker = markers[m]};
         }
-        panels[k] = (figure_panel){.name = plain[k],
-                                   .label = names[k],
-                                   .unit = units[k],
+        panels[k] = (figure_panel){.y = {.name = plain[k],
+                                         .label = names[k],
+                                         .unit = units[k],
+                                         .scale = SCALE_LOGARITHMIC},
                                    .series = series[k],
                                    .series_count = STUDY_METHODS};
     }
@@ -135,9 +141,7 @@ static status plot_methods(const scenario *s, const method_study *study, const c
                       "Steps 10 ms, 5 ms, 2 ms ... 1 µs from left to right (the event "
                       "method strides over several where it can). Left and low is better. "
                       "What lies below 10<sup>−13</sup> is rounding; the gap is the reference.",
-                  .x_name = "computing time",
-                  .x_label = "computing time",
-                  .x_unit = "s",
+                  .x = {.name = "computing time", .label = "computing time", .unit = "s"},
                   .panels = panels,
                   .panel_count = STUDY_QUANTITIES};
     return write_figure(&fig, s, "methods", path, f);
@@ -299,10 +303,13 @@ static status plot_sensor(const scenario *s, const sensor_study *study, const ch
     };
 #undef CURVE
     const figure_panel panels[] = {
-        {.name = "peak", .label = "largest force", .unit = "N", .series = force, .series_count = 7},
-        {.name = "momentum",
-         .label = "first impulse, and momentum of 2 ms",
-         .unit = "N s",
+        {.y = {.name = "peak", .label = "largest force", .unit = "N", .scale = SCALE_LOGARITHMIC},
+         .series = force,
+         .series_count = 7},
+        {.y = {.name = "momentum",
+               .label = "first impulse, and momentum of 2 ms",
+               .unit = "N s",
+               .scale = SCALE_LOGARITHMIC},
          .series = momentum,
          .series_count = 3},
     };
@@ -312,9 +319,7 @@ static status plot_sensor(const scenario *s, const sensor_study *study, const ch
                   .caption =
                       "Squares: force and first impulse of the rigid point contact. Circles: "
                       "largest reading of a sensor, and all momentum of the first 2 ms.",
-                  .x_name = "links",
-                  .x_label = "links",
-                  .x_unit = "",
+                  .x = {.name = "links", .label = "links"},
                   .panels = panels,
                   .panel_count = 2};
     return write_figure(&fig, s, "sensor", path, f);

@@ -1,5 +1,5 @@
 // Figures over logarithmic axes, judged by the pixels of an image.
-#include "render/plot/study_plot.h"
+#include "render/plot/figure_file.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static cairo_surface_t *paint(const figure *fig)
     cairo_t *cr = cairo_create(image);
     fault f;
     cairo_scale(cr, SCALE, SCALE);
-    if (study_plot_paint(cr, fig, &f) != STATUS_OK) {
+    if (figure_paint(cr, fig, NULL, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
     cairo_destroy(cr);
@@ -55,8 +55,7 @@ static bool middle_of(cairo_surface_t *image, int slot, int from, int to, double
 
 static figure figure_of(const figure_panel *panel)
 {
-    return (figure){.x_name = "n",
-                    .x_label = "number",
+    return (figure){.x = {.name = "n", .label = "number", .scale = SCALE_LOGARITHMIC, .room = 0.04},
                     .panels = panel,
                     .panel_count = 1,
                     .width = 100,
@@ -80,7 +79,9 @@ static void decades_are_evenly_spaced(void **state)
                                     .marker = MARKER_CIRCLE,
                                     .no_line = true};
     }
-    const figure_panel panel = {.name = "p", .label = "p", .series = series, .series_count = 3};
+    const figure_panel panel = {.y = {.name = "p", .label = "p", .scale = SCALE_LOGARITHMIC},
+                                .series = series,
+                                .series_count = 3};
     figure fig = figure_of(&panel);
     cairo_surface_t *image = paint(&fig);
     for (int i = 0; i < 3; i++) {
@@ -100,15 +101,17 @@ static void points_at_or_below_zero_are_left_out(void **state)
     static const double x[] = {1, 10, 100}, y[] = {1, 0, 3}, none[] = {0, -1, 0};
     const figure_series some = {.name = "s", .x = x, .y = y, .count = 3};
     const figure_series nothing = {.name = "s", .x = x, .y = none, .count = 3};
-    const figure_panel panel = {.name = "p", .series = &some, .series_count = 1};
-    const figure_panel empty = {.name = "empty", .series = &nothing, .series_count = 1};
+    const figure_panel panel = {
+        .y = {.name = "p", .scale = SCALE_LOGARITHMIC}, .series = &some, .series_count = 1};
+    const figure_panel empty = {
+        .y = {.name = "empty", .scale = SCALE_LOGARITHMIC}, .series = &nothing, .series_count = 1};
     figure fig = figure_of(&panel);
     cairo_surface_destroy(paint(&fig));
     cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 300, 300);
     cairo_t *cr = cairo_create(image);
     fault f;
     fig = figure_of(&empty);
-    assert_int_equal(study_plot_paint(cr, &fig, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_paint(cr, &fig, NULL, &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "empty"));
     cairo_destroy(cr);
     cairo_surface_destroy(image);
@@ -119,14 +122,16 @@ static void file_and_data_are_written(void **state)
     (void)state;
     static const double x[] = {2, 20}, y[] = {0.5, 0.25};
     const figure_series s = {.name = "cost", .label = "cost", .x = x, .y = y, .count = 2};
-    const figure_panel panel = {.name = "step", .unit = "s", .series = &s, .series_count = 1};
+    const figure_panel panel = {.y = {.name = "step", .unit = "s", .scale = SCALE_LOGARITHMIC},
+                                .series = &s,
+                                .series_count = 1};
     const figure fig = figure_of(&panel);
     char folder[] = "/tmp/impactlab-test-XXXXXX", path[64], csv[64], text[512] = "";
     fault f;
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/a.svg", folder);
     snprintf(csv, sizeof csv, "%s/a.csv", folder);
-    assert_int_equal(study_plot_write(&fig, path, &f), STATUS_OK);
+    assert_int_equal(figure_write_with_csv(&fig, path, &f), STATUS_OK);
     FILE *file = fopen(csv, "r");
     assert_non_null(file);
     assert_true(fread(text, 1, sizeof text - 1, file) > 0);
@@ -137,7 +142,7 @@ static void file_and_data_are_written(void **state)
     unlink(path);
     rmdir(folder);
     snprintf(path, sizeof path, "%s/a.txt", folder);
-    assert_int_equal(study_plot_write(&fig, path, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_write_with_csv(&fig, path, &f), STATUS_BAD_ARGUMENT);
 }
 
 static int release(void **state)

@@ -1,0 +1,175 @@
+#include "render/plot/axis.h"
+
+#include <assert.h>
+#include <glib.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/page/text.h"
+
+#define MINOR_SPACING 2.5 // least distance of minor ticks [pt]
+#define FEW_DECADES   1.2 // below which 2 and 5 always have ticks, so that there are some
+
+// ---- ticks
+
+// Ticks set by hand.
+static void use_given_ticks(axis *a)
+{
+    for (int i = 0; i < a->from->tick_count && i < TICKS_MOST; i++) {
+        a->at[a->count] = a->from->ticks[i].value;
+        a->text[a->count++] = a->from->ticks[i].label;
+    }
+}
+
+static void choose_even_ticks(axis *a, int wanted)
+{
+    ticks_between(&a->even, a->scale.low, a->scale.high, wanted);
+    a->count = a->even.count;
+    for (int i = 0; i < a->count; i++) {
+        a->at[i] = a->even.value[i];
+        tick_label(&a->even, i, a->own[i]);
+        a->text[i] = a->own[i];
+    }
+}
+
+// "0.01", "20", "2·10<sup>−6</sup>" for mantissa times the power of ten, alike all along an axis.
+static void format_decade(const axis_scale *s, int mantissa, int power, char text[AXIS_LABEL])
+{
+    if (s->low > -2.5 && s->high < 4.5) {
+        snprintf(text, AXIS_LABEL, "%.*f", power < 0 ? -power : 0, mantissa * pow(10, power));
+        return;
+    }
+    char factor[16] = "";
+    if (mantissa > 1) {
+        snprintf(factor, sizeof factor, "%d\u00b7", mantissa);
+    }
+    snprintf(text, AXIS_LABEL, "%s10<sup>%s%d</sup>", factor, power < 0 ? "\u2212" : "",
+             abs(power));
+}
+
+// Powers of ten, as far apart as room asks for, or 1, 2, 5 of every decade where they fit.
+static void choose_decades(axis *a, int wanted)
+{
+    static const int mantissas[] = {1, 2, 5};
+    const axis_scale *s = &a->scale;
+    double decades = s->high - s->low;
+    int spacing = 1, per_decade = 3 * decades <= wanted || decades < FEW_DECADES ? 3 : 1;
+    while (decades / spacing > wanted) {
+        spacing++;
+    }
+    for (int power = (int)floor(s->low); power <= (int)ceil(s->high); power++) {
+        for (int i = 0; i < per_decade && power % spacing == 0 && a->count < TICKS_MOST; i++) {
+            double at = power + log10(mantissas[i]);
+            if (at >= s->low - 1e-9 && at <= s->high + 1e-9) {
+                format_decade(s, mantissas[i], power, a->own[a->count]);
+                a->text[a->count] = a->own[a->count];
+                a->at[a->count++] = mantissas[i] * pow(10, power);
+            }
+        }
+    }
+}
+
+void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
+{
+    assert(a != NULL && from != NULL);
+    a->from = from;
+    a->count = 0;
+    a->even = (ticks){.minor = 1};
+    if (from->ticks != NULL) {
+        use_given_ticks(a);
+    } else if (a->scale.kind == SCALE_LOGARITHMIC) {
+        choose_decades(a, wanted);
+    } else {
+        choose_even_ticks(a, wanted);
+    }
+}
+
+int axis_wish(double length, double spacing, int least, int most)
+{
+    double count = length / spacing;
+    return count < least ? least : count > most ? most : (int)count;
+}
+
+// ---- minor ticks
+
+// Parts of the step beside and between major ticks.
+static int minor_even(const axis *a, double length, double *at)
+{
+    const ticks *t = &a->even;
+    int count = 0;
+    if (t->count < 2 || t->minor < 2) {
+        return 0;
+    }
+    double part = t->step / t->minor, spacing = part / (a->scale.high - a->scale.low) * length;
+    for (int k = -t->minor; k <= t->minor * t->count && spacing > MINOR_SPACING; k++) {
+        double value = t->value[0] + k * part;
+        if (k % t->minor != 0 && scale_holds(&a->scale, value) && count < AXIS_MINOR) {
+            at[count++] = value;
+        }
+    }
+    return count;
+}
+
+int axis_minor_ticks(const axis *a, double length, double at[AXIS_MINOR])
+{
+    const axis_scale *s = &a->scale;
+    if (s->kind == SCALE_LINEAR) {
+        return minor_even(a, length, at);
+    }
+
+    // 2 ... 9 of every decade, unless the ninth would touch the next power
+    int count = 0;
+    bool room = (1 - log10(9)) / (s->high - s->low) * length > 1;
+    for (int power = (int)floor(s->low); power <= (int)ceil(s->high) && room; power++) {
+        for (int mantissa = 2; mantissa < 10 && count < AXIS_MINOR; mantissa++) {
+            double value = mantissa * pow(10, power);
+            if (scale_holds(s, value)) {
+                at[count++] = value;
+            }
+        }
+    }
+    return count;
+}
+
+// ---- labels
+
+// A unit with its factor, as markup that is never broken into lines.
+static char *unit_markup(const char *unit, int exponent)
+{
+    char shown[64], factor[64] = "";
+    bool has_unit = unit != NULL && unit[0] != '\0';
+    const ticks scaled = {.exponent = exponent};
+    text_unit(has_unit ? unit : "", shown, sizeof shown);
+    tick_factor(&scaled, factor, sizeof factor);
+
+    // before a unit the factor goes without its multiplication sign
+    const char *power = has_unit && factor[0] ? factor + strlen("\u00d7") : factor;
+    // Pango would break the line after a slash
+    char **parts = g_strsplit(shown, "/", -1), *unbroken = g_strjoinv("\u2060/\u2060", parts);
+    char *whole =
+        g_strdup_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "", unbroken);
+    g_strfreev(parts);
+    g_free(unbroken);
+    return whole;
+}
+
+char *axis_label(const char *label, const char *unit, int exponent)
+{
+    bool bare = (unit == NULL || unit[0] == '\0') && exponent == 0;
+    if (bare) {
+        return g_strdup(label ? label : "");
+    }
+    char *whole = unit_markup(unit, exponent);
+    bool named = label != NULL && label[0] != '\0';
+    char *both = g_strconcat(named ? label : "", named ? " " : "", whole, NULL);
+    g_free(whole);
+    return both;
+}
+
+char *axis_title(const axis *a)
+{
+    assert(a != NULL && a->from != NULL);
+    return axis_label(a->from->label, a->from->unit, a->even.exponent);
+}

@@ -1,0 +1,175 @@
+// Inside the figure library: a figure on its way to the page, and the strokes all layers draw with.
+#pragma once
+
+#include "render/page/palette.h"
+#include "render/page/text.h"
+#include "render/plot/axis.h"
+#include "render/plot/curve.h"
+#include "render/plot/placement.h"
+
+enum { MARKS_LABELLED = 64, MARK_ROWS = 4 };
+
+// Lengths [pt].
+#define POINTS_PER_MM (72 / 25.4)
+#define PAGE_MARGIN   6.0
+#define TICK_LENGTH   3.0
+#define MINOR_LENGTH  1.7
+#define TICK_SPACE    2.0  // between a tick and its label
+#define LABEL_SPACE   4.0  // between tick labels and the axis' label
+#define PANEL_SPACE   8.0  // between panels
+#define HEADING_ROW   11.0 // height of a panel's heading
+#define MARK_ROW      9.0  // height of a row of event labels
+#define STRIP_HEIGHT  20.0 // of the strip for impulses
+#define STRIP_SPACE   5.0  // between it and its panel
+#define SWATCH        18.0 // length of a line in a legend
+#define SWATCH_SPACE  4.0
+#define LEGEND_MARGIN 5.0
+
+// Line widths [pt].
+#define CURVE_WIDTH     0.95
+#define SECONDARY_WIDTH 0.65
+#define AXIS_WIDTH      0.55
+#define GRID_WIDTH      0.4
+#define MARK_WIDTH      0.45
+
+// How a figure looks: made once from its description and handed down.
+typedef struct plot_style {
+    figure_theme theme;
+    const palette *colours;
+    const char *font;                 // family
+    double title, label, tick, small; // sizes of letters [pt]
+} plot_style;
+
+typedef struct panel_layout {
+    const figure_panel *panel;
+    int row, column;
+    plane plane;
+    axis y;
+    axis colours;       // of the colour scale, if the panel has one
+    double strip_top;   // of the strip for impulses, if there are any
+    bool legend_row;    // the legend stands above the panel
+    bool legend_column; // it does, with its entries one above the other
+    bool legend_inside; // it stands within the panel
+    figure_rect legend; // width 0: none
+    figure_rect inset;  // with its labels; width 0: none
+    plane inset_plane;
+    axis inset_x, inset_y;
+    double end_label_y[PANEL_SERIES]; // top of the labels at the curves' ends; NaN: none
+} panel_layout;
+
+typedef struct column_layout {
+    double edge;        // left end of everything
+    double left, right; // of its panels
+} column_layout;
+
+typedef struct drawing {
+    cairo_t *cr;
+    PangoContext *context;
+    const figure *fig;
+    plot_style style;
+    figure_report *report;
+    figure_rect page;
+    int rows, columns; // of panels
+    axis x;
+    double left, right; // of all panels
+    column_layout column[FIGURE_PANELS];
+    double title_y, legend_y, caption_y, x_label_y;
+    double marks_bottom;                // of the lowest row of event labels
+    int mark_row[MARKS_LABELLED];       // counted upwards; -1: no label
+    double mark_text_x[MARKS_LABELLED]; // in the first column
+    panel_layout panels[FIGURE_PANELS];
+} drawing;
+
+// Places everything. STATUS_BAD_ARGUMENT if the page is too small or an axis has nothing to show.
+status layout_figure(drawing *d, fault *f);
+
+// --- text: drawing.c
+
+// A text in the figure's font.
+text_block figure_text_of(const drawing *d, const char *markup, double size);
+
+double width_of(const drawing *d, const char *markup, double size);
+double height_of(const drawing *d, text_block t);
+
+// Where a text's anchor is, as parts of its width and height.
+typedef struct anchor {
+    double x, y;
+} anchor;
+
+void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c);
+// Draws t upwards; (x, y) is the middle of its upper edge, which is on the left.
+void draw_rotated(drawing *d, text_block t, double x, double y, colour c);
+
+// --- strokes: drawing.c
+
+void draw_line(cairo_t *cr, double x0, double y0, double x1, double y1);
+void set_plain_line(cairo_t *cr, colour c, double width);
+void clip_to(cairo_t *cr, const figure_rect *box, double space);
+void fill_box(cairo_t *cr, const figure_rect *box, colour c);
+
+// --- axes: axes.c
+
+double widest_tick(const drawing *d, const axis *a, double size);
+// Height of the axis' title, wrapped beside an axis of the given length; 0 without a title.
+double axis_title_height(const drawing *d, const axis *a, double length);
+void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y);
+// Spines, ticks and their labels, at the left and below.
+typedef struct axes_look {
+    bool x_labels;
+    bool framed; // a line at the right and above, too
+    double size; // of the labels
+} axes_look;
+void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_look look);
+void draw_y_title(drawing *d, const panel_layout *l);
+void draw_x_titles(drawing *d);
+
+// --- series: series.c
+
+void draw_series(const drawing *d, const panel_layout *l, const plane *p);
+// A short line and a marker that stand for a series.
+void draw_swatch(drawing *d, const figure_panel *panel, int index, double x, double y);
+// Sets colour and pattern of a series; returns the line's width.
+double set_series(const drawing *d, const figure_panel *panel, int index);
+
+// --- maps: map.c
+
+// Chooses the range of a panel's colour scale.
+void map_choose_scale(panel_layout *l);
+// Widens the axes until they hold the map's cells.
+void map_include(const figure_map *map, axis_scale *x, axis_scale *y);
+double colour_bar_width(const drawing *d, const panel_layout *l);
+void set_shade(const drawing *d, const panel_layout *l, double value);
+void draw_map(drawing *d, const panel_layout *l);
+void draw_colour_bar(drawing *d, const panel_layout *l);
+
+// --- marks: marks.c
+
+// Finds rows for the labels of marks; returns how many.
+int place_marks(drawing *d);
+void draw_intervals(const drawing *d, const plane *p);
+void draw_marks(drawing *d);
+void draw_levels(drawing *d, const panel_layout *l);
+// Marks where levels and marks will be.
+void ink_of_marks(const drawing *d, const panel_layout *l, placement *grid);
+
+// --- impulses: impulses.c
+
+void draw_impulses(drawing *d, const panel_layout *l);
+
+// --- legends: legend.c
+
+bool has_end_labels(const figure_panel *panel);
+double widest_end_label(const drawing *d, const figure_panel *panel);
+void place_end_labels(const drawing *d, panel_layout *l);
+// Returns false if there is no room inside the panel.
+bool place_legend(const drawing *d, panel_layout *l, const placement *grid);
+// Height of the legend for all panels; 0: none.
+double common_legend_height(drawing *d);
+void draw_legend(drawing *d, const panel_layout *l);
+void draw_common_legend(drawing *d);
+void draw_end_labels(drawing *d, const panel_layout *l);
+
+// --- the inset: inset.c
+
+void place_inset(const drawing *d, panel_layout *l, placement *grid);
+void draw_inset(drawing *d, const panel_layout *l);

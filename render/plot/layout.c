@@ -1,0 +1,362 @@
+// Where everything on a page goes: ranges of the axes, columns, rows, and what stands in the
+// panels.
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/plot/drawing.h"
+
+#define LEAST_WIDTH    50.0 // of a panel [pt]
+#define LEAST_HEIGHT   16.0
+#define RANGE_SPACE    0.06 // of the data's range, kept free above and below them
+#define END_LABEL_LEAD 12.0 // from the axis' end to the labels at the curves' ends
+#define RIGHT_SPACE    10.0 // of a panel without anything beside it
+#define BAR_TICK       16.0 // of a colour bar to a tick
+#define FIRST_LEFT     40.0 // where the panels begin before anything is known
+
+// ---- ranges
+
+// An axis' own ends; false if it takes those of the data.
+static bool has_own_ends(const figure_axis *from, axis_scale *s)
+{
+    *s = scale_empty(from->scale);
+    if (from->low < from->high) {
+        scale_include(s, from->low);
+        scale_include(s, from->high);
+        return !scale_is_empty(s);
+    }
+    return false;
+}
+
+static status check_range(const axis_scale *s, const figure_axis *from, fault *f)
+{
+    if (s->kind == SCALE_LOGARITHMIC && scale_is_empty(s)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "the logarithmic axis '%s' has no point above zero to show",
+                         from->name != NULL ? from->name : "");
+    }
+    return STATUS_OK;
+}
+
+static status choose_x_range(drawing *d, fault *f)
+{
+    const figure *fig = d->fig;
+    axis_scale *x = &d->x.scale;
+    if (has_own_ends(&fig->x, x)) {
+        return STATUS_OK;
+    }
+    for (int p = 0; p < fig->panel_count; p++) {
+        const figure_panel *panel = &fig->panels[p];
+        axis_scale unused = scale_empty(panel->y.scale);
+        for (int s = 0; s < panel->series_count; s++) {
+            series_include_x(&panel->series[s], x);
+        }
+        if (panel->map != NULL) {
+            map_include(panel->map, x, &unused);
+        }
+    }
+    status code = check_range(x, &fig->x, f);
+    scale_widen(x, fig->x.room);
+    return code;
+}
+
+static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
+{
+    const figure_panel *panel = l->panel;
+    axis_scale *y = &l->plane.y, unused = scale_empty(d->x.scale.kind);
+    if (has_own_ends(&panel->y, y)) {
+        return STATUS_OK;
+    }
+
+    // the data of all layers
+    for (int s = 0; s < panel->series_count; s++) {
+        series_include_y(&panel->series[s], &d->x.scale, y);
+    }
+    for (int i = 0; i < panel->level_count; i++) {
+        scale_include(y, panel->levels[i].y);
+    }
+    if (panel->map != NULL) {
+        map_include(panel->map, &unused, y);
+    }
+
+    // what is said about the axis
+    if (panel->y.with_zero && !scale_is_empty(y)) {
+        scale_include(y, 0);
+    }
+    status code = check_range(y, &panel->y, f);
+    scale_widen(y, panel->y.room > 0 ? panel->y.room : panel->map != NULL ? 0 : RANGE_SPACE);
+    return code;
+}
+
+// ---- columns
+
+static double left_space(const drawing *d, const panel_layout *l)
+{
+    double left = axis_title_height(d, &l->y, l->plane.box.height + PANEL_SPACE) + LABEL_SPACE +
+                  widest_tick(d, &l->y, d->style.tick) + TICK_SPACE + TICK_LENGTH;
+    if (l->panel->impulse_count > 0 && l->panel->impulse_label != NULL) {
+        left = fmax(left, width_of(d, l->panel->impulse_label, d->style.small) + LABEL_SPACE);
+    }
+    return left;
+}
+
+static double right_space(const drawing *d, const panel_layout *l)
+{
+    double right = colour_bar_width(d, l);
+    if (has_end_labels(l->panel)) {
+        right = fmax(right, widest_end_label(d, l->panel) + END_LABEL_LEAD + SWATCH_SPACE);
+    }
+    return right;
+}
+
+// Left and right ends of the panels, from the labels beside them: all panels are equally wide.
+static void place_columns(drawing *d)
+{
+    double left[FIGURE_PANELS] = {0}, right[FIGURE_PANELS], between = 0;
+    double last_label = widest_tick(d, &d->x, d->style.tick) / 2;
+    for (int c = 0; c < d->columns; c++) {
+        right[c] = fmax(RIGHT_SPACE, last_label);
+    }
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        const panel_layout *l = &d->panels[i];
+        left[l->column] = fmax(left[l->column], left_space(d, l));
+        right[l->column] = fmax(right[l->column], right_space(d, l));
+    }
+    for (int c = 0; c + 1 < d->columns; c++) {
+        between += right[c] + left[c + 1];
+    }
+
+    // the ends of all, then of each
+    d->left = PAGE_MARGIN + left[0];
+    d->right = d->page.width - PAGE_MARGIN - right[d->columns - 1];
+    double width = (d->right - d->left - between) / d->columns, x = d->left;
+    for (int c = 0; c < d->columns; c++) {
+        bool last = c + 1 == d->columns;
+        d->column[c] =
+            (column_layout){c == 0 ? PAGE_MARGIN : x - left[c], x, last ? d->right : x + width};
+        x += width + right[c] + (last ? 0 : left[c + 1]);
+    }
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        panel_layout *l = &d->panels[i];
+        const column_layout *c = &d->column[l->column];
+        l->plane.box.x = c->left;
+        l->plane.box.width = c->right - c->left;
+        l->plane.x = d->x.scale;
+    }
+}
+
+// ---- rows
+
+static double space_above(const panel_layout *l)
+{
+    return (l->legend_column ? l->legend.height + 2
+            : l->legend_row  ? 11
+                             : 0) +
+           (l->panel->heading != NULL ? HEADING_ROW : 0) +
+           (l->panel->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0);
+}
+
+static double weight_of(const figure_panel *panel)
+{
+    return panel->weight > 0 ? panel->weight : 1;
+}
+
+// Space above a row of panels and its share of the height: the largest of its panels.
+static void row_needs(const drawing *d, int row, double *above, double *weight)
+{
+    *above = *weight = 0;
+    for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns; i++) {
+        *above = fmax(*above, space_above(&d->panels[i]));
+        *weight = fmax(*weight, weight_of(&d->fig->panels[i]));
+    }
+}
+
+// Places what stands above and below the panels; gives the ends of what is left.
+static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
+{
+    const figure *fig = d->fig;
+    double y = PAGE_MARGIN, end = d->page.height - PAGE_MARGIN;
+    d->title_y = y;
+    if (fig->title != NULL) {
+        char *title = text_escape(fig->title);
+        text_block t = figure_text_of(d, title, d->style.title);
+        t.bold = true;
+        t.width = d->right - d->left;
+        y += height_of(d, t) + 3;
+        g_free(title);
+    }
+    d->legend_y = y;
+    y += common_legend_height(d);
+    d->marks_bottom = y += MARK_ROW * mark_rows + 2;
+
+    // from the bottom: caption, title of the axis, labels of its ticks
+    if (fig->caption != NULL) {
+        text_block t = figure_text_of(d, fig->caption, d->style.small);
+        t.width = d->right - d->left;
+        end -= height_of(d, t);
+        d->caption_y = end;
+        end -= 3;
+    }
+    double line = height_of(d, figure_text_of(d, "0", d->style.tick));
+    end -= height_of(d, figure_text_of(d, "X", d->style.label));
+    d->x_label_y = end;
+    end -= 1 + line + TICK_SPACE + TICK_LENGTH;
+    *top = y;
+    *bottom = end;
+}
+
+static void place_rows(drawing *d, int mark_rows)
+{
+    double y, bottom, weights = 0, above, weight;
+    place_texts(d, mark_rows, &y, &bottom);
+    double free_height = bottom - y - PANEL_SPACE * (d->rows - 1);
+    for (int row = 0; row < d->rows; row++) {
+        row_needs(d, row, &above, &weight);
+        free_height -= above;
+        weights += weight;
+    }
+    for (int row = 0; row < d->rows; row++) {
+        row_needs(d, row, &above, &weight);
+        y += above;
+        double height = free_height * weight / weights;
+        for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns; i++) {
+            panel_layout *l = &d->panels[i];
+            l->strip_top = y - STRIP_HEIGHT - STRIP_SPACE;
+            l->plane.box.y = y;
+            l->plane.box.height = height;
+        }
+        y += height + PANEL_SPACE;
+    }
+}
+
+// ---- inside the panels
+
+typedef struct ink_sink {
+    placement *grid;
+    double x, y;
+} ink_sink;
+
+static void mark_ink(void *context, stroke_kind kind, double x, double y)
+{
+    ink_sink *s = context;
+    if (kind == STROKE_LINE) {
+        placement_line(s->grid, s->x, s->y, x, y, INK_CURVE);
+    } else if (kind == STROKE_DOT) {
+        placement_line(s->grid, x, y, x, y, INK_CURVE);
+    }
+    s->x = x;
+    s->y = y;
+}
+
+static void collect_ink(const drawing *d, const panel_layout *l, placement *grid)
+{
+    ink_sink sink = {.grid = grid};
+    placement_init(grid, l->plane.box);
+    for (int i = 0; i < l->panel->series_count; i++) {
+        curve_trace(&l->plane, &l->panel->series[i], mark_ink, &sink);
+    }
+    ink_of_marks(d, l, grid);
+}
+
+// Fills every panel; returns whether a legend had to go out of its panel.
+static bool fill_panels(drawing *d, placement *grid)
+{
+    bool moved = false;
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        panel_layout *l = &d->panels[i];
+        collect_ink(d, l, grid);
+        place_inset(d, l, grid);
+        bool column = l->legend_column;
+        if (!place_legend(d, l, grid)) {
+            l->legend_row = moved = true;
+        }
+        moved = moved || l->legend_column != column;
+        if (has_end_labels(l->panel)) {
+            place_end_labels(d, l);
+        }
+    }
+    return moved;
+}
+
+// ---- the whole
+
+static void choose_panel_ticks(panel_layout *l)
+{
+    double height = l->plane.box.height;
+    bool decades = l->plane.y.kind == SCALE_LOGARITHMIC;
+    l->y.scale = l->plane.y;
+    axis_choose_ticks(&l->y, &l->panel->y, axis_wish(height, decades ? 14 : 20, 2, 8));
+    if (l->panel->colours != NULL) {
+        axis_choose_ticks(&l->colours, &l->panel->colours->axis, axis_wish(height, BAR_TICK, 2, 8));
+    }
+}
+
+static void place_all(drawing *d, int *mark_rows)
+{
+    // sides depend on heights through the ticks, and heights on sides through wrapped texts
+    for (int pass = 0; pass < 3; pass++) {
+        place_rows(d, *mark_rows);
+        for (int i = 0; i < d->fig->panel_count; i++) {
+            choose_panel_ticks(&d->panels[i]);
+        }
+        place_columns(d);
+        double width = d->column[0].right - d->column[0].left;
+        axis_choose_ticks(&d->x, &d->fig->x, axis_wish(width, 42, 2, 12));
+        *mark_rows = place_marks(d);
+    }
+}
+
+static status check_room(const drawing *d, fault *f)
+{
+    int panels = d->fig->panel_count;
+    for (int i = 0; i < panels; i++) {
+        const figure_rect *box = &d->panels[i].plane.box;
+        if (!(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT)) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected "
+                             "a larger page",
+                             d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels,
+                             panels == 1 ? "" : "s");
+        }
+    }
+    return STATUS_OK;
+}
+
+status layout_figure(drawing *d, fault *f)
+{
+    assert(d != NULL && d->fig != NULL && d->context != NULL);
+    const figure *fig = d->fig;
+    int mark_rows = 0;
+    placement *grid = malloc(sizeof *grid);
+    if (grid == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for the layout of a figure");
+    }
+
+    // rows and columns, and what the axes show
+    d->columns = fig->columns > 0 ? fig->columns : 1;
+    d->rows = (fig->panel_count + d->columns - 1) / d->columns;
+    d->x.from = &fig->x;
+    d->left = FIRST_LEFT;
+    d->right = d->page.width - PAGE_MARGIN;
+    status code = choose_x_range(d, f);
+    for (int i = 0; i < fig->panel_count && code == STATUS_OK; i++) {
+        panel_layout *l = &d->panels[i];
+        l->panel = &fig->panels[i];
+        l->row = i / d->columns;
+        l->column = i % d->columns;
+        code = choose_y_range(d, l, f);
+        if (l->panel->colours != NULL) {
+            map_choose_scale(l);
+        }
+    }
+
+    // legends that find no room inside move out and shrink the panels: again
+    bool again = true;
+    for (int pass = 0; pass < 4 && again && code == STATUS_OK; pass++) {
+        place_all(d, &mark_rows);
+        code = check_room(d, f);
+        again = code == STATUS_OK && fill_panels(d, grid);
+    }
+    free(grid);
+    return code;
+}

@@ -1,0 +1,242 @@
+// Legends: inside a panel, in a row or column above it, at the ends of its curves, or one for all
+// panels.
+#include <math.h>
+
+#include "render/plot/drawing.h"
+
+static int labelled_series(const figure_panel *panel)
+{
+    int count = 0;
+    for (int i = 0; i < panel->series_count; i++) {
+        count += panel->series[i].label != NULL;
+    }
+    return count;
+}
+
+bool has_end_labels(const figure_panel *panel)
+{
+    return panel->legend == LEGEND_ENDS && labelled_series(panel) > 0;
+}
+
+// y of a series' last finite point inside the horizontal axis; false if there is none.
+static bool series_end(const drawing *d, const figure_series *s, double *y)
+{
+    for (size_t i = s->count; i > 0; i--) {
+        double x = series_x(s, i - 1);
+        *y = series_y(s, i - 1);
+        if (scale_holds(&d->x.scale, x) && isfinite(*y)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// ---- where they go
+
+double widest_end_label(const drawing *d, const figure_panel *panel)
+{
+    double widest = 0;
+    for (int i = 0; i < panel->series_count; i++) {
+        if (panel->series[i].label != NULL) {
+            widest = fmax(widest, width_of(d, panel->series[i].label, d->style.tick));
+        }
+    }
+    return widest;
+}
+
+// Size of a legend whose entries stand in a row or one above the other.
+static void legend_size(const drawing *d, const figure_panel *panel, bool row, double *width,
+                        double *height)
+{
+    *width = *height = 0;
+    for (int i = 0; i < panel->series_count; i++) {
+        if (panel->series[i].label == NULL) {
+            continue;
+        }
+        double w, h;
+        text_block t = figure_text_of(d, panel->series[i].label, d->style.tick);
+        text_measure(d->context, &t, &w, &h);
+        w += SWATCH + SWATCH_SPACE;
+        if (row) {
+            *width += w + (*width > 0 ? 2 * SWATCH_SPACE : 0);
+            *height = fmax(*height, h);
+        } else {
+            *width = fmax(*width, w);
+            *height += h;
+        }
+    }
+}
+
+// Returns false if there is no room inside the panel.
+bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
+{
+    double width, height;
+    l->legend = (figure_rect){0};
+    l->legend_inside = false;
+    if (d->fig->common_legend || l->panel->legend != LEGEND_AUTO || labelled_series(l->panel) < 2) {
+        l->legend_row = l->legend_column = false;
+        return true;
+    }
+    legend_size(d, l->panel, l->legend_row, &width, &height);
+
+    // a row that is wider than the panel becomes a column
+    if (l->legend_row && width > d->column[l->column].right - d->column[l->column].left) {
+        l->legend_column = true;
+        legend_size(d, l->panel, false, &width, &height);
+    }
+    if (l->legend_row) {
+        l->legend = (figure_rect){d->column[l->column].right - width, l->plane.box.y - height - 1,
+                                  width, height};
+        if (l->panel->impulse_count > 0) {
+            l->legend.y = l->strip_top - height;
+        }
+        return true;
+    }
+    l->legend_inside = true;
+    return placement_find(grid, width, height, LEGEND_MARGIN, &l->legend) < INK_CURVE;
+}
+
+// Moves `count` ascending tops of labels apart by `height` each, as little as possible in the mean
+// square: what is left of each after its rank's share must not descend, so descending neighbours
+// are pooled at their mean.
+static void spread(double *top, int count, double height, double highest, double lowest)
+{
+    double mean[PANEL_SERIES];
+    int size[PANEL_SERIES], blocks = 0;
+    for (int k = 0; k < count; k++) {
+        mean[blocks] = top[k] - k * height;
+        size[blocks++] = 1;
+        for (; blocks > 1 && mean[blocks - 1] < mean[blocks - 2]; blocks--) {
+            int both = size[blocks - 2] + size[blocks - 1];
+            mean[blocks - 2] =
+                (mean[blocks - 2] * size[blocks - 2] + mean[blocks - 1] * size[blocks - 1]) / both;
+            size[blocks - 2] = both;
+        }
+    }
+
+    // each block at its mean, within the limits
+    for (int b = 0, k = 0; b < blocks; b++) {
+        for (int i = 0; i < size[b]; i++, k++) {
+            double limited = fmin(mean[b], lowest - (count - 1) * height);
+            top[k] = fmax(limited, highest) + k * height;
+        }
+    }
+}
+
+// Spreads labels at the curves' ends so that none covers another.
+void place_end_labels(const drawing *d, panel_layout *l)
+{
+    int order[PANEL_SERIES], count = 0;
+    double height = height_of(d, figure_text_of(d, "X<sub>1</sub>", d->style.tick)), y,
+           top[PANEL_SERIES];
+    const figure_rect *box = &l->plane.box;
+    for (int i = 0; i < l->panel->series_count; i++) {
+        l->end_label_y[i] = (double)NAN;
+        if (l->panel->series[i].label == NULL || !series_end(d, &l->panel->series[i], &y)) {
+            continue;
+        }
+        l->end_label_y[i] = plane_y(&l->plane, y) - height / 2;
+        // sorted from top to bottom, equal ones in their own order
+        int k = count++;
+        for (; k > 0 && l->end_label_y[order[k - 1]] > l->end_label_y[i]; k--) {
+            order[k] = order[k - 1];
+        }
+        order[k] = i;
+    }
+
+    // moved apart
+    for (int k = 0; k < count; k++) {
+        top[k] = l->end_label_y[order[k]];
+    }
+    spread(top, count, height, box->y - 3, box->y + box->height - height + 3);
+    for (int k = 0; k < count; k++) {
+        l->end_label_y[order[k]] = top[k];
+    }
+}
+
+// ---- strokes
+
+void draw_legend(drawing *d, const panel_layout *l)
+{
+    double x = l->legend.x, y = l->legend.y;
+    if (l->legend.width > 0 && !l->legend_inside) {
+        // hairlines of marks do not cross it
+        fill_box(d->cr, &l->legend, d->style.colours->page);
+    }
+    for (int i = 0; i < l->panel->series_count && l->legend.width > 0; i++) {
+        double width, height;
+        const char *label = l->panel->series[i].label;
+        if (label == NULL) {
+            continue;
+        }
+        text_block t = figure_text_of(d, label, d->style.tick);
+        text_measure(d->context, &t, &width, &height);
+        draw_swatch(d, l->panel, i, x, y + 0.55 * height);
+        draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
+        if (l->legend_inside || l->legend_column) {
+            y += height;
+        } else {
+            x += width + SWATCH + 3 * SWATCH_SPACE;
+        }
+    }
+}
+
+void draw_end_labels(drawing *d, const panel_layout *l)
+{
+    const figure_rect *box = &l->plane.box;
+    for (int i = 0; i < l->panel->series_count; i++) {
+        double y, width, height;
+        if (isnan(l->end_label_y[i]) || !series_end(d, &l->panel->series[i], &y)) {
+            continue;
+        }
+        text_block t = figure_text_of(d, l->panel->series[i].label, d->style.tick);
+        text_measure(d->context, &t, &width, &height);
+        double end = box->x + box->width, middle = l->end_label_y[i] + 0.55 * height;
+        set_series(d, l->panel, i);
+        cairo_set_line_width(d->cr, SECONDARY_WIDTH);
+        cairo_set_dash(d->cr, NULL, 0, 0);
+        draw_line(d->cr, end + 2, fmax(box->y, fmin(box->y + box->height, plane_y(&l->plane, y))),
+                  end + 10, middle);
+        draw_text(d, t, end + 12, l->end_label_y[i], (anchor){0, 0}, d->style.colours->text);
+    }
+}
+
+// ---- one for all panels
+
+// Lines and labels of the first panel's series, in rows that are wrapped where they are too long.
+// Returns their height.
+static double common_legend(drawing *d, bool draw)
+{
+    const figure_panel *panel = &d->fig->panels[0];
+    double x = d->left, y = d->legend_y, line = 0;
+    for (int i = 0; d->fig->common_legend && i < panel->series_count; i++) {
+        double width, height;
+        text_block t = figure_text_of(d, panel->series[i].label, d->style.tick);
+        if (t.markup == NULL) {
+            continue;
+        }
+        text_measure(d->context, &t, &width, &height);
+        width += SWATCH + SWATCH_SPACE;
+        if (x > d->left && x + width > d->right) {
+            x = d->left;
+            y += line;
+        }
+        line = fmax(line, height);
+        if (draw) {
+            draw_swatch(d, panel, i, x, y + 0.55 * height);
+            draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
+        }
+        x += width + 2 * SWATCH_SPACE;
+    }
+    return y + line - d->legend_y;
+}
+
+double common_legend_height(drawing *d)
+{
+    return common_legend(d, false);
+}
+
+void draw_common_legend(drawing *d)
+{
+    common_legend(d, true);
+}

@@ -1,0 +1,243 @@
+// Maps: coloured cells over a grid of points, contour lines, and the bar that says what the colours
+// mean.
+#include <math.h>
+
+#include "render/plot/contour.h"
+#include "render/plot/drawing.h"
+
+#define BAR_DISTANCE 9.0 // from the panel [pt]
+#define BAR_WIDTH    9.0
+#define HATCH        4.0  // distance of hatching lines
+#define OVERLAP      0.4  // of a cell under its later neighbours
+#define BRIGHT       0.55 // share of the colour scale above which lines over it are dark
+
+// ---- scales
+
+// The border between points i - 1 and i in coordinates; i = 0 and i = count are the outer ends.
+static double cell_edge(scale_kind kind, const double *points, size_t count, size_t i)
+{
+    double before = scale_coordinate(kind, points[i > 0 ? i - 1 : 0]);
+    double after = scale_coordinate(kind, points[i < count ? i : count - 1]);
+    if (count == 1) {
+        return i == 0 ? before - 0.5 : before + 0.5;
+    }
+    if (i == 0) {
+        return before - 0.5 * (scale_coordinate(kind, points[1]) - before);
+    }
+    if (i == count) {
+        return after + 0.5 * (after - scale_coordinate(kind, points[count - 2]));
+    }
+    return 0.5 * (before + after);
+}
+
+void map_include(const figure_map *map, axis_scale *x, axis_scale *y)
+{
+    for (int end = 0; end < 2; end++) {
+        size_t column = end == 0 ? 0 : map->columns, row = end == 0 ? 0 : map->rows;
+        scale_include(x, scale_value(x->kind, cell_edge(x->kind, map->x, map->columns, column)));
+        scale_include(y, scale_value(y->kind, cell_edge(y->kind, map->y, map->rows, row)));
+    }
+}
+
+void map_choose_scale(panel_layout *l)
+{
+    const figure_panel *panel = l->panel;
+    const figure_axis *from = &panel->colours->axis;
+    axis_scale *s = &l->colours.scale;
+    *s = scale_empty(from->scale);
+    if (from->low < from->high) {
+        scale_include(s, from->low);
+        scale_include(s, from->high);
+        return;
+    }
+    for (size_t i = 0; panel->map != NULL && i < panel->map->columns * panel->map->rows; i++) {
+        scale_include(s, panel->map->z[i]);
+    }
+    for (int k = 0; k < panel->series_count; k++) {
+        for (size_t i = 0; panel->series[k].shade != NULL && i < panel->series[k].count; i++) {
+            scale_include(s, series_shade(&panel->series[k], i));
+        }
+    }
+    scale_widen(s, 0);
+}
+
+// ---- cells
+
+static double shade_share(const panel_layout *l, double value)
+{
+    double share = fmin(1, fmax(0, scale_share(&l->colours.scale, value)));
+    return l->panel->colours->reversed ? 1 - share : share;
+}
+
+void set_shade(const drawing *d, const panel_layout *l, double value)
+{
+    set_colour(d->cr, palette_shade(shade_share(l, value)));
+}
+
+// Grey with hatching: a cell without a value.
+static void fill_missing(const drawing *d, const figure_rect *r)
+{
+    cairo_save(d->cr);
+    clip_to(d->cr, r, 0);
+    set_colour(d->cr, d->style.colours->grid);
+    cairo_paint(d->cr);
+    cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
+    set_plain_line(d->cr, d->style.colours->mark, GRID_WIDTH);
+    // lines at fixed places of the page, so that they run on from cell to cell
+    double from = floor((r->x + r->y) / HATCH) * HATCH, to = r->x + r->width + r->y + r->height;
+    for (double sum = from; sum <= to; sum += HATCH) {
+        draw_line(d->cr, sum - r->y, r->y, sum - r->y - r->height, r->y + r->height);
+    }
+    cairo_restore(d->cr);
+}
+
+// Where a coordinate lies on the page.
+static double page_x(const plane *p, double at)
+{
+    return p->box.x + p->box.width * (at - p->x.low) / (p->x.high - p->x.low);
+}
+
+static double page_y(const plane *p, double at)
+{
+    return p->box.y + p->box.height * (p->y.high - at) / (p->y.high - p->y.low);
+}
+
+static void draw_cells(const drawing *d, const panel_layout *l)
+{
+    const figure_map *map = l->panel->map;
+    const plane *p = &l->plane;
+    // neighbours would show a hairline between them if edges were smoothed, or if a viewer smooths
+    // them: every cell reaches a little under its later neighbours
+    cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_NONE);
+    for (size_t i = 0; i < map->columns; i++) {
+        double left = page_x(p, cell_edge(p->x.kind, map->x, map->columns, i));
+        double right = page_x(p, cell_edge(p->x.kind, map->x, map->columns, i + 1));
+        for (size_t j = 0; j < map->rows; j++) {
+            double top = page_y(p, cell_edge(p->y.kind, map->y, map->rows, j + 1)) - OVERLAP;
+            double bottom = page_y(p, cell_edge(p->y.kind, map->y, map->rows, j));
+            figure_rect r = {left, top, right - left + OVERLAP, bottom - top};
+            double value = map->z[i * map->rows + j];
+            if (isfinite(value)) {
+                fill_box(d->cr, &r, palette_shade(shade_share(l, value)));
+            } else {
+                fill_missing(d, &r);
+            }
+        }
+    }
+    cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
+}
+
+// ---- contour lines
+
+// White on the dark half of the colours, black on the bright one.
+static void set_contour_line(const drawing *d, const panel_layout *l, double level)
+{
+    bool dark = shade_share(l, level) < BRIGHT;
+    set_plain_line(d->cr, (colour){dark, dark, dark}, SECONDARY_WIDTH);
+    cairo_set_source_rgba(d->cr, dark, dark, dark, 0.85);
+}
+
+static void draw_contour(const drawing *d, const panel_layout *l, double level)
+{
+    const figure_map *map = l->panel->map;
+    const plane *p = &l->plane;
+    for (size_t i = 0; i + 1 < map->columns; i++) {
+        for (size_t j = 0; j + 1 < map->rows; j++) {
+            contour_piece pieces[2];
+            const double *a = &map->z[i * map->rows + j], *b = a + map->rows;
+            int count = contour_square((const double[]){a[0], b[0], a[1], b[1]}, level, pieces);
+            double x0 = plane_x(p, map->x[i]), x1 = plane_x(p, map->x[i + 1]);
+            double y0 = plane_y(p, map->y[j]), y1 = plane_y(p, map->y[j + 1]);
+            for (int k = 0; k < count; k++) {
+                const contour_piece *q = &pieces[k];
+                cairo_move_to(d->cr, x0 + q->x0 * (x1 - x0), y0 + q->y0 * (y1 - y0));
+                cairo_line_to(d->cr, x0 + q->x1 * (x1 - x0), y0 + q->y1 * (y1 - y0));
+            }
+        }
+    }
+    cairo_stroke(d->cr);
+}
+
+void draw_map(drawing *d, const panel_layout *l)
+{
+    const figure_map *map = l->panel->map;
+    if (map == NULL) {
+        return;
+    }
+    cairo_save(d->cr);
+    clip_to(d->cr, &l->plane.box, 0);
+    draw_cells(d, l);
+    for (int i = 0; map->contours && i < l->colours.count; i++) {
+        set_contour_line(d, l, l->colours.at[i]);
+        draw_contour(d, l, l->colours.at[i]);
+    }
+    cairo_restore(d->cr);
+}
+
+// ---- the bar
+
+static bool has_bar(const panel_layout *l)
+{
+    return l->panel->colours != NULL && l->panel->colours->bar;
+}
+
+double colour_bar_width(const drawing *d, const panel_layout *l)
+{
+    if (!has_bar(l)) {
+        return 0;
+    }
+    return BAR_DISTANCE + BAR_WIDTH + TICK_LENGTH + TICK_SPACE +
+           widest_tick(d, &l->colours, d->style.tick) + LABEL_SPACE +
+           axis_title_height(d, &l->colours, l->plane.box.height);
+}
+
+// The colours as stripes that reach to the top, so that no gap is left between them.
+static void fill_bar(const drawing *d, const panel_layout *l, const figure_rect *bar)
+{
+    enum { STRIPES = 256 };
+    cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_NONE);
+    for (int i = 0; i < STRIPES; i++) {
+        double share = (i + 0.5) / STRIPES, height = bar->height * (1 - (double)i / STRIPES);
+        fill_box(d->cr, &(figure_rect){bar->x, bar->y, bar->width, height},
+                 palette_shade(l->panel->colours->reversed ? 1 - share : share));
+    }
+    cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
+}
+
+void draw_colour_bar(drawing *d, const panel_layout *l)
+{
+    const figure_rect *box = &l->plane.box;
+    if (!has_bar(l)) {
+        return;
+    }
+    const figure_rect bar = {box->x + box->width + BAR_DISTANCE, box->y, BAR_WIDTH, box->height};
+    double right = bar.x + bar.width;
+    fill_bar(d, l, &bar);
+
+    // ticks with labels; where there are contour lines the bar shows theirs
+    for (int i = 0; i < l->colours.count; i++) {
+        double y = bar.y + bar.height * (1 - scale_share(&l->colours.scale, l->colours.at[i]));
+        if (l->panel->map != NULL && l->panel->map->contours) {
+            set_contour_line(d, l, l->colours.at[i]);
+            draw_line(d->cr, bar.x, y, right, y);
+        }
+        set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
+        draw_line(d->cr, right, y, right + TICK_LENGTH, y);
+        draw_text(d, figure_text_of(d, l->colours.text[i], d->style.tick),
+                  right + TICK_LENGTH + TICK_SPACE, y, (anchor){0, 0.5}, d->style.colours->text);
+    }
+    set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
+    cairo_rectangle(d->cr, bar.x, bar.y, bar.width, bar.height);
+    cairo_stroke(d->cr);
+
+    // what it is, upwards at the right
+    char *title = axis_title(&l->colours);
+    text_block t = figure_text_of(d, title, d->style.label);
+    t.align = TEXT_CENTRE;
+    t.width = box->height;
+    draw_rotated(d, t,
+                 right + TICK_LENGTH + TICK_SPACE + widest_tick(d, &l->colours, d->style.tick) +
+                     LABEL_SPACE,
+                 box->y + box->height / 2, d->style.colours->text);
+    g_free(title);
+}

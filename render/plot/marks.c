@@ -1,0 +1,158 @@
+// Marks at instants and levels, shaded intervals, and where their labels go.
+#include <math.h>
+
+#include "render/plot/drawing.h"
+
+#define LEVEL_ROOM 10.0 // above a level, for its label [pt]
+
+// ---- where labels go
+
+// Labels of marks stand like flags at the right of their lines. Where one would meet the next flag
+// or its line it goes a row higher, so that no line crosses a label. Returns the number of rows.
+int place_marks(drawing *d)
+{
+    int rows = 0, count = d->fig->mark_count < MARKS_LABELLED ? d->fig->mark_count : MARKS_LABELLED;
+    double begins[MARKS_LABELLED], ends[MARKS_LABELLED];
+    bool done[MARKS_LABELLED] = {false};
+    for (int n = 0; n < count; n++) {
+        // the rightmost that is left
+        int next = -1;
+        for (int i = 0; i < count; i++) {
+            if (!done[i] && (next < 0 || d->fig->marks[i].x >= d->fig->marks[next].x)) {
+                next = i;
+            }
+        }
+        done[next] = true;
+
+        // at the right of its line if the page has room there
+        const figure_mark *m = &d->fig->marks[next];
+        d->mark_row[next] = -1;
+        begins[next] = ends[next] = -1;
+        if (m->label == NULL || !scale_holds(&d->x.scale, m->x)) {
+            continue;
+        }
+        double x = plane_x(&d->panels[0].plane, m->x),
+               width = width_of(d, m->label, d->style.small);
+        bool fits = x + 2 + width <= d->page.width - PAGE_MARGIN;
+        begins[next] = fits ? x + 2 : x - 2 - width;
+        ends[next] = begins[next] + width;
+
+        // above every label it would meet
+        int row = 0;
+        for (int i = 0; i < count; i++) {
+            if (i != next && done[i] && d->mark_row[i] >= row && ends[next] + 3 > begins[i] - 2 &&
+                begins[next] < ends[i] + 3) {
+                row = d->mark_row[i] + 1;
+            }
+        }
+        d->mark_row[next] = row < MARK_ROWS ? row : -1;
+        d->mark_text_x[next] = begins[next];
+        rows = row < MARK_ROWS && row + 1 > rows ? row + 1 : rows;
+    }
+    return rows;
+}
+
+// Whether a level's label stands above its line, or below because there is no room.
+static bool level_label_above(const panel_layout *l, int index)
+{
+    return plane_y(&l->plane, l->panel->levels[index].y) - l->plane.box.y > LEVEL_ROOM;
+}
+
+void ink_of_marks(const drawing *d, const panel_layout *l, placement *grid)
+{
+    const figure_rect *box = &l->plane.box;
+    for (int i = 0; i < l->panel->level_count; i++) {
+        double y = plane_y(&l->plane, l->panel->levels[i].y);
+        placement_line(grid, box->x, y, box->x + box->width, y, INK_CURVE);
+        if (l->panel->levels[i].label != NULL) {
+            double width = width_of(d, l->panel->levels[i].label, d->style.small) + 4;
+            double above = level_label_above(l, i) ? LEVEL_ROOM : 0;
+            placement_block(
+                grid, (figure_rect){box->x + box->width - width, y - above, width, LEVEL_ROOM},
+                INK_CURVE);
+        }
+    }
+    for (int i = 0; i < d->fig->mark_count; i++) {
+        double x = plane_x(&l->plane, d->fig->marks[i].x);
+        if (x >= box->x && x <= box->x + box->width) {
+            placement_line(grid, x, box->y, x, box->y + box->height, INK_FAINT);
+        }
+    }
+}
+
+// ---- strokes
+
+void draw_intervals(const drawing *d, const plane *p)
+{
+    const figure_rect *box = &p->box;
+    cairo_save(d->cr);
+    clip_to(d->cr, box, 0);
+    set_colour(d->cr, d->style.colours->shade);
+    for (int i = 0; i < d->fig->interval_count; i++) {
+        const figure_interval *v = &d->fig->intervals[i];
+        double low = scale_value(p->x.kind, p->x.low), high = scale_value(p->x.kind, p->x.high);
+        double from = plane_x(p, fmax(v->from, low)), to = plane_x(p, fmin(v->to, high));
+        if (to >= from) {
+            cairo_rectangle(d->cr, from, box->y, fmax(to - from, GRID_WIDTH), box->height);
+        }
+    }
+    cairo_fill(d->cr);
+    cairo_restore(d->cr);
+}
+
+static void set_mark_line(const drawing *d)
+{
+    static const double pattern[] = {2.4, 1.8};
+    set_plain_line(d->cr, d->style.colours->mark, MARK_WIDTH);
+    cairo_set_dash(d->cr, pattern, 2, 0);
+}
+
+// The marks of a column of panels, `shift` to the right of the first column.
+static void draw_column_marks(drawing *d, const plane *first, const plane *last, double shift)
+{
+    for (int i = 0; i < d->fig->mark_count; i++) {
+        const figure_mark *m = &d->fig->marks[i];
+        if (!scale_holds(&d->x.scale, m->x)) {
+            continue;
+        }
+        double x = plane_x(first, m->x), top = first->box.y;
+        if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
+            text_block t = figure_text_of(d, m->label, d->style.small);
+            top = d->marks_bottom - MARK_ROW * (d->mark_row[i] + 1);
+            draw_text(d, t, d->mark_text_x[i] + shift, top, (anchor){0, 0}, d->style.colours->text);
+        }
+        set_mark_line(d);
+        draw_line(d->cr, x, top + 1, x, last->box.y + last->box.height);
+    }
+}
+
+// The hairlines of all marks, from their labels down through all panels.
+void draw_marks(drawing *d)
+{
+    for (int column = 0; column < d->columns; column++) {
+        int first_panel = column, last_panel = column;
+        while (last_panel + d->columns < d->fig->panel_count) {
+            last_panel += d->columns;
+        }
+        draw_column_marks(d, &d->panels[first_panel].plane, &d->panels[last_panel].plane,
+                          d->column[column].left - d->column[0].left);
+    }
+}
+
+void draw_levels(drawing *d, const panel_layout *l)
+{
+    const figure_rect *box = &l->plane.box;
+    for (int i = 0; i < l->panel->level_count; i++) {
+        const figure_level *level = &l->panel->levels[i];
+        double y = plane_y(&l->plane, level->y);
+        if (!(y >= box->y && y <= box->y + box->height)) {
+            continue;
+        }
+        set_mark_line(d);
+        draw_line(d->cr, box->x, y, box->x + box->width, y);
+        if (level->label != NULL) {
+            draw_text(d, figure_text_of(d, level->label, d->style.small), box->x + box->width - 2,
+                      y, (anchor){1, level_label_above(l, i) ? 1 : 0}, d->style.colours->text);
+        }
+    }
+}

@@ -1,0 +1,172 @@
+// Series on the page: lines and markers.
+#include <math.h>
+
+#include "render/plot/drawing.h"
+
+#define MARKER_RADIUS 1.6
+#define RIM           0.8 // of the page's colour, at either side of what needs one
+
+enum { STYLES = 4 };
+
+// The style of the series `index` among a panel's: its own, or the next that no earlier one has.
+static line_style free_style(const figure_series *series, int index)
+{
+    // the orders in which styles give way keep the lines as plain as possible
+    static const line_style others[] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT, LINE_DOTTED};
+    bool taken[STYLES] = {false};
+    line_style style = LINE_SOLID;
+    for (int i = 0; i <= index; i++) {
+        style = series[i].style;
+        if (series[i].secondary) {
+            continue;
+        }
+        for (int k = 0; k < STYLES && taken[style]; k++) {
+            style = taken[others[k]] ? style : others[k];
+        }
+        taken[style] = true;
+    }
+    return series[index].secondary ? LINE_DASHED : style;
+}
+
+double set_series(const drawing *d, const figure_panel *panel, int index)
+{
+    const figure_series *s = &panel->series[index];
+    double width = s->secondary ? SECONDARY_WIDTH : CURVE_WIDTH;
+    // a line over a map keeps the pattern it asks for
+    line_style style = s->rim ? s->style : free_style(panel->series, index);
+    set_colour(d->cr, palette_series(d->style.theme, s->colour, index));
+    set_line_style(d->cr, style, width);
+    return width;
+}
+
+// ---- markers
+
+static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double r)
+{
+    cairo_new_path(cr);
+    switch (kind) {
+    case MARKER_NONE:
+        return;
+    case MARKER_CIRCLE:
+        cairo_arc(cr, x, y, r, 0, 2 * G_PI);
+        break;
+    case MARKER_SQUARE:
+        cairo_rectangle(cr, x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r);
+        break;
+    case MARKER_TRIANGLE:
+        cairo_move_to(cr, x, y - 1.2 * r);
+        cairo_line_to(cr, x + 1.1 * r, y + 0.8 * r);
+        cairo_line_to(cr, x - 1.1 * r, y + 0.8 * r);
+        break;
+    case MARKER_CROSS:
+        cairo_move_to(cr, x - r, y - r);
+        cairo_line_to(cr, x + r, y + r);
+        cairo_move_to(cr, x - r, y + r);
+        cairo_line_to(cr, x + r, y - r);
+        return;
+    }
+    cairo_close_path(cr);
+}
+
+static double radius_of(const figure_series *s)
+{
+    return s->radius > 0 ? s->radius : MARKER_RADIUS;
+}
+
+// A marker in the series' colour; one with a shade has that inside and an outline.
+static void draw_marker(const drawing *d, const panel_layout *l, const figure_series *s, double x,
+                        double y, double shade)
+{
+    bool open = s->shade != NULL || s->marker == MARKER_CROSS;
+    add_marker(d->cr, s->marker, x, y, radius_of(s));
+    if (!open) {
+        cairo_fill(d->cr);
+        return;
+    }
+    cairo_save(d->cr);
+    cairo_set_dash(d->cr, NULL, 0, 0);
+    if (isfinite(shade) && l != NULL) {
+        set_shade(d, l, shade);
+        cairo_fill_preserve(d->cr);
+    }
+    if (s->rim) {
+        set_colour(d->cr, palette_of(THEME_COLOUR)->page);
+        cairo_set_line_width(d->cr, CURVE_WIDTH + 2 * RIM);
+        cairo_stroke_preserve(d->cr);
+    }
+    set_colour(d->cr, s->rim ? palette_of(THEME_COLOUR)->text : d->style.colours->axis);
+    cairo_set_line_width(d->cr, s->rim ? CURVE_WIDTH : GRID_WIDTH);
+    cairo_stroke(d->cr);
+    cairo_restore(d->cr);
+}
+
+static void draw_markers(const drawing *d, const panel_layout *l, const plane *p,
+                         const figure_series *s)
+{
+    const figure_rect *box = &p->box;
+    for (size_t i = 0; s->marker != MARKER_NONE && i < s->count; i++) {
+        double x = plane_x(p, series_x(s, i)), y = plane_y(p, series_y(s, i));
+        if (x >= box->x && x <= box->x + box->width && y >= box->y && y <= box->y + box->height) {
+            draw_marker(d, l, s, x, y, s->shade != NULL ? series_shade(s, i) : (double)NAN);
+        }
+    }
+}
+
+// ---- lines
+
+typedef struct stroke_context {
+    cairo_t *cr;
+    double radius; // of a lone point
+} stroke_context;
+
+static void stroke(void *context, stroke_kind kind, double x, double y)
+{
+    stroke_context *s = context;
+    if (kind == STROKE_DOT) {
+        cairo_stroke(s->cr);
+        cairo_arc(s->cr, x, y, s->radius, 0, 2 * G_PI);
+        cairo_fill(s->cr);
+    } else if (kind == STROKE_MOVE) {
+        cairo_move_to(s->cr, x, y);
+    } else {
+        cairo_line_to(s->cr, x, y);
+    }
+}
+
+void draw_series(const drawing *d, const panel_layout *l, const plane *p)
+{
+    cairo_save(d->cr);
+    clip_to(d->cr, &p->box, 1);
+    for (int i = 0; i < l->panel->series_count; i++) {
+        const figure_series *s = &l->panel->series[i];
+        double width = set_series(d, l->panel, i);
+        stroke_context context = {.cr = d->cr, .radius = 0.75 * width};
+
+        // a wider line below makes the rim
+        if (s->rim && !s->no_line) {
+            set_plain_line(d->cr, palette_of(THEME_COLOUR)->page, width + 2 * RIM);
+            curve_trace(p, s, stroke, &context);
+            cairo_stroke(d->cr);
+            set_series(d, l->panel, i);
+            set_colour(d->cr, palette_of(THEME_COLOUR)->text);
+        }
+
+        if (!s->no_line) {
+            curve_trace(p, s, stroke, &context);
+            cairo_stroke(d->cr);
+        }
+        draw_markers(d, l, p, s);
+    }
+    cairo_restore(d->cr);
+}
+
+void draw_swatch(drawing *d, const figure_panel *panel, int index, double x, double y)
+{
+    const figure_series *s = &panel->series[index];
+    set_series(d, panel, index);
+    cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_BUTT);
+    if (!s->no_line) {
+        draw_line(d->cr, x, y, x + SWATCH, y);
+    }
+    draw_marker(d, NULL, s, x + SWATCH / 2, y, (double)NAN);
+}
