@@ -1,5 +1,6 @@
 #include "src/study/sensor_view.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "src/solve/motion.h"
@@ -233,4 +234,37 @@ double sensor_beam_momentum(const parameters *p, double speed, double time)
 double sensor_beam_peak(const parameters *p, double speed, double time_constant)
 {
     return 2 * beam_constant(p, speed) / sqrt(time_constant) * DAWSON_LARGEST;
+}
+
+// --- the study ------------------------------------------------------------------------------
+
+status sensor_study_compute(const scenario *s, sensor_study *study, fault *f)
+{
+    static const int links[SENSOR_LENGTHS] = {2, 3, 5, 8, 12, 16, 24, 32};
+    assert(s != NULL && study != NULL);
+    for (int i = 0; i < SENSOR_LENGTHS; i++) {
+        sensor_view *view = &study->views[i];
+        status code = sensor_view_compute(s, links[i], view, f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+
+        // the chain
+        study->links[i] = links[i];
+        study->impulse[i] = view->impulse;
+        study->peak[i] = view->peak;
+        study->momentum[i] = view->momentum;
+        for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+            study->sensed[k][i] = view->sensed[k];
+        }
+
+        // the beam that is stopped from the same speed
+        study->beam_momentum[i] =
+            sensor_beam_momentum(&s->parameters, view->speed, MOMENTUM_WINDOW);
+        for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+            study->beam_peak[k][i] =
+                sensor_beam_peak(&s->parameters, view->speed, sensor_constants[k]);
+        }
+    }
+    return STATUS_OK;
 }

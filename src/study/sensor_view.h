@@ -58,3 +58,20 @@ status sensor_view_compute(const scenario *s, int links, sensor_view *view, faul
 // integral D, which is largest at t = 0.854 tau.
 double sensor_beam_momentum(const parameters *p, double speed, double time);
 double sensor_beam_peak(const parameters *p, double speed, double time_constant);
+
+enum { SENSOR_LENGTHS = 8 }; // numbers of links of the study: 2 to 32
+
+// What is computed for each number of links, and what theory says of a beam that touches with the
+// same speed.
+typedef struct sensor_study {
+    sensor_view views[SENSOR_LENGTHS];
+    // columns of `views`, as curves need them
+    double links[SENSOR_LENGTHS], impulse[SENSOR_LENGTHS], peak[SENSOR_LENGTHS];
+    double momentum[SENSOR_LENGTHS];
+    double sensed[SENSOR_CONSTANTS][SENSOR_LENGTHS];
+    double beam_momentum[SENSOR_LENGTHS];               // over MOMENTUM_WINDOW [N s]
+    double beam_peak[SENSOR_CONSTANTS][SENSOR_LENGTHS]; // [N]
+} sensor_study;
+
+// sensor_view_compute for every number of links. Fails as that does.
+status sensor_study_compute(const scenario *s, sensor_study *study, fault *f);

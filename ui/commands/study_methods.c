@@ -1,0 +1,143 @@
+// impactlab study methods: error against cost of the methods of time integration.
+#include "ui/commands/study_topics.h"
+
+#include <math.h>
+
+#include "src/base/json.h"
+#include "src/study/convergence.h"
+
+static json_t *methods_object(const scenario *s, const method_study *study)
+{
+    json_t *object = json_object(), *reference = json_object(), *points = json_array();
+    json_object_set_new(object, "scenario", json_text(s->name));
+    json_object_set_new(reference, "method", json_string("event"));
+    json_object_set_new(reference, "step_s", json_number(study->reference_step));
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        json_object_set_new(reference, study_keys[k], json_number(study->reference[k]));
+    }
+    json_object_set_new(object, "reference", reference);
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        for (int i = 0; i < STUDY_STEPS; i++) {
+            const study_point *point = &study->points[m][i];
+            json_t *line = json_object(), *errors = json_object();
+            json_object_set_new(line, "method", json_string(study_methods[m]));
+            json_object_set_new(line, "step_s", json_number(point->step));
+            json_object_set_new(line, "computing_time_s", json_number(point->cost));
+            for (int k = 0; k < STUDY_QUANTITIES; k++) {
+                json_object_set_new(errors, study_keys[k], json_number(point->error[k]));
+            }
+            json_object_set_new(line, "errors", errors);
+            json_array_append_new(points, line);
+        }
+    }
+    json_object_set_new(object, "methods", points);
+    return object;
+}
+
+// A number in a column of the given width, "-" where there is none.
+static void print_cell(int width, double value)
+{
+    char text[32] = "-";
+    if (!isnan(value)) {
+        snprintf(text, sizeof text, "%.3g", value);
+    }
+    printf(" %*s", width, text);
+}
+
+static void print_methods(const scenario *s, const method_study *study)
+{
+    printf("%s: error against cost\nreference: event method at %g s; first contact %.12g s, first "
+           "pulse peak %.12g N,\nsteady force %.12g N\n",
+           s->name, study->reference_step, study->reference[0], study->reference[1],
+           study->reference[2]);
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        printf("\n%-18s %10s %12s %12s %12s\n", study_methods[m], "cost", "contact", "peak",
+               "steady");
+        printf("%-18s %10s %12s %12s %12s\n", "step [s]", "[ms]", "[s]", "[N]", "[N]");
+        for (int i = 0; i < STUDY_STEPS; i++) {
+            const study_point *point = &study->points[m][i];
+            printf("%-18g", point->step);
+            print_cell(10, 1e3 * point->cost);
+            for (int k = 0; k < STUDY_QUANTITIES; k++) {
+                print_cell(12, point->error[k]);
+            }
+            printf("\n");
+        }
+    }
+    printf("\nLeast cost for an error of the first pulse's peak of at most\n");
+    for (double error = 1e-2; error > 0.9e-8; error /= 100) {
+        printf("  %7.0e N:", error);
+        for (int m = 0; m < STUDY_METHODS; m++) {
+            double step = 0, cost = method_study_cost(study, m, 1, error, &step);
+            if (isnan(cost)) {
+                printf("   %s: none", study_methods[m]);
+            } else {
+                printf("   %s: %.3g ms at %g s", study_methods[m], 1e3 * cost, step);
+            }
+        }
+        printf("\n");
+    }
+}
+
+static status plot_methods(const scenario *s, const method_study *study, const char *path, fault *f)
+{
+    static const char *const labels[STUDY_METHODS] = {"Newmark", "generalised-alpha",
+                                                      "event method"};
+    static const marker_kind markers[STUDY_METHODS] = {MARKER_SQUARE, MARKER_TRIANGLE,
+                                                       MARKER_CIRCLE};
+    static const int colours[STUDY_METHODS] = {1, 2, 0};
+    static const char *const names[STUDY_QUANTITIES] = {
+        "error of first contact", "error of first pulse\u2019s peak", "error of steady force"};
+    static const char *const plain[STUDY_QUANTITIES] = {"first_contact", "first_pulse_peak",
+                                                        "steady_force"};
+    static const char *const units[STUDY_QUANTITIES] = {"s", "N", "N"};
+    figure_series series[STUDY_QUANTITIES][STUDY_METHODS];
+    figure_panel panels[STUDY_QUANTITIES];
+    char title[256];
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        for (int m = 0; m < STUDY_METHODS; m++) {
+            series[k][m] = (figure_series){.name = study_methods[m],
+                                           .label = labels[m],
+                                           .x = &study->points[m][0].cost,
+                                           .y = &study->points[m][0].error[k],
+                                           .count = STUDY_STEPS,
+                                           .stride = sizeof(study_point),
+                                           .colour = colours[m],
+                                           .marker = markers[m]};
+        }
+        panels[k] = (figure_panel){.y = {.name = plain[k],
+                                         .label = names[k],
+                                         .unit = units[k],
+                                         .scale = SCALE_LOGARITHMIC},
+                                   .series = series[k],
+                                   .series_count = STUDY_METHODS};
+    }
+    snprintf(title, sizeof title, "%s: error against cost", s->name);
+    figure fig = {.title = title,
+                  .caption =
+                      "Steps 10 ms, 5 ms, 2 ms ... 1 µs from left to right (the event "
+                      "method strides over several where it can). Left and low is better. "
+                      "What lies below 10<sup>−13</sup> is rounding; the gap is the reference.",
+                  .x = {.name = "computing time", .label = "computing time", .unit = "s"},
+                  .panels = panels,
+                  .panel_count = STUDY_QUANTITIES};
+    return write_study_figure(&fig, s, "methods", path, f);
+}
+
+int study_of_methods(const arguments *a, scenario *s)
+{
+    method_study study;
+    fault f = {0};
+    if (method_study_compute(s, &study, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (summary_wanted(a)) {
+        print_methods(s, &study);
+    }
+    int result = a->json != NULL ? write_json(a->json, methods_object(s, &study)) : EXIT_DONE;
+    if (result == EXIT_DONE && a->plot != NULL &&
+        plot_methods(s, &study, a->plot, &f) != STATUS_OK) {
+        result = complain_fault(&f);
+    }
+    return result;
+}
