@@ -2,7 +2,7 @@
 // there are, on which processors compute slowly. A run must not be caught there.
 #include <time.h>
 
-#include "src/solve/motion.h"
+#include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 static double computing_time(void)

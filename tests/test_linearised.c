@@ -3,6 +3,7 @@
 
 #include "src/run/run.h"
 #include "src/predict/linearised.h"
+#include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 static const double stiffness[] = {492, 49.2, 4.92};

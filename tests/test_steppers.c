@@ -1,7 +1,7 @@
 // Order, damping and stability of the steppers, on motions with known solutions.
 #include <math.h>
 
-#include "src/solve/motion.h"
+#include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 // One link on a spring whose hub never lets go: a linear oscillator,

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/run/recording.h"
-#include "src/solve/motion.h"
+#include "src/solve/contact_machine.h"
 
 typedef struct corrected_run {
     recording *recording;

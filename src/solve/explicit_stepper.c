@@ -146,4 +146,4 @@ static status step(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
-const stepper explicit_stepper = {"Runge-Kutta 8", step, LONG_STAGES};
+const stepper explicit_stepper = {"Runge-Kutta 8", step, LONG_STAGES, 0};

@@ -28,7 +28,7 @@
 //     dF = P da_{k-1} + p_f dq_{k-1} + F0,   dT = p_t' da_{k-1} + y dq_{k-1} + T0.
 // Only the small change of the contact point's lever with the base's displacement is left out
 // (it is of order f l against I / h^2), so Newton converges a little slower than quadratically.
-#include "src/solve/implicit_stepper.h"
+#include "src/solve/motion.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,6 +38,17 @@
 // converges quadratically, or by 1e-5 a step where the lever is left out, so that what is left is
 // below 1e-12.
 #define NEWTON_TOLERANCE 1e-8
+
+// One link's share of the tangent system, kept between the two sweeps of its solution.
+typedef struct implicit_sweep {
+    double c, s;             // direction of the link
+    double com_x, com_y;     // acceleration of its centre of mass [m/s2]
+    double force_x, force_y; // force it gives to the links beyond [N]
+    double zx, zy;           // d(node acceleration)/d(angle) / l [1/s2]
+    double vx, vy;           // dependence on the base's acceleration, over the pivot
+    double to_parent;        // dependence on the parent's angle, over the pivot
+    double free, unit;       // right-hand sides over the pivot
+} implicit_sweep;
 
 typedef struct tangent {
     double beta;  // beta': acceleration per angle [1/s2]
@@ -445,5 +456,5 @@ static status step(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
-const stepper newmark_stepper = {"Newmark", step, 0};
-const stepper generalized_alpha_stepper = {"generalised-alpha", step, 0};
+const stepper newmark_stepper = {"Newmark", step, 0, sizeof(implicit_sweep)};
+const stepper generalized_alpha_stepper = {"generalised-alpha", step, 0, sizeof(implicit_sweep)};

@@ -1,17 +1,17 @@
-// The mutable side of a simulation: one contiguous state vector, scratch, and the machine that
-// moves it through free flight, impact, contact and release, sliding and sticking.
+// The mutable side of a simulation: one contiguous state vector, its scratch, and a step of its
+// smooth motion.
 //
-//     free -> impact -> contact -> release -> free,      gap >= 0, f >= 0, gap f = 0
-//
-// Between events a stepper (explicit or implicit) advances the smooth motion. A function that
-// leaves its admissible side within a step is located by stepping again from the start of the
-// step with a shorter one, bracketed until the bracket is as narrow as time resolves, and the far
-// side is taken. Impacts are jumps of the velocities; what holds afterwards follows from the one
-// combination of contact and hub friction that violates nothing.
+// Between events a stepper (explicit or implicit) advances the motion in one contact state. Events
+// and what they change are the contact machine's (contact_machine.h), which stands on this and on
+// locate.h.
 #pragma once
 
 #include "src/arm/chain.h"
 #include "src/base/status.h"
+
+// Steps of a fraction of a time step keep (fastest rate) x (step) below this; the 8th-order method
+// then loses a few parts in 1e12 of the fastest mode's energy in one.
+#define EXPLICIT_RESOLUTION 0.36
 
 // Bookkeeping at the head of the state vector; angles, velocities and the rest follow.
 enum motion_slot {
@@ -43,7 +43,7 @@ enum motion_quadrature {
 };
 
 typedef struct motion {
-    // A snapshot is a copy of `state`, size doubles:
+    // A checkpoint is a copy of `state`, size doubles:
     // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n].
     double *state;
     int size;
@@ -53,8 +53,8 @@ typedef struct motion {
     // how the smooth motion is advanced
     const struct stepper *stepper;
     double nominal_step; // method.step [s]
-    bool brief;          // explicit: the stride takes the method of order 6
-    double cut; // an instant at which a stride ends without being made for it [s]; HUGE_VAL: none
+    bool brief;          // explicit: the step takes the method of order 6
+    double cut; // an instant at which a step ends without being made for it [s]; HUGE_VAL: none
     double alpha_m, alpha_f, beta, gamma; // implicit steppers' coefficients [-]
 
     // scratch, nothing of it outlives a step
@@ -73,15 +73,16 @@ typedef struct motion {
     double failure_time;        // where a step could not be taken [s]
 } motion;
 
-// Advances `m->state` by h into `m->trial` under the mode the state is in: angles, velocities,
+// Advances `m->state` by h into `m->trial` in the contact state it is in: angles, velocities,
 // quadratures, algorithmic accelerations.
 typedef struct stepper {
     const char *name;
     status (*step)(const arm *a, motion *m, double h);
     int scratch_vectors; // how many vectors of the state's smooth length it wants in stages
+    size_t link_scratch; // bytes a link it wants in sweeps
 } stepper;
 
-extern const stepper explicit_stepper; // Runge-Kutta of order 8, of order 6 in brief strides
+extern const stepper explicit_stepper; // Runge-Kutta of order 8, of order 6 in brief steps
 extern const stepper newmark_stepper;
 extern const stepper generalized_alpha_stepper; // the same step with other coefficients
 
@@ -123,70 +124,19 @@ static inline int smooth_length(const motion *m)
 motion *motion_create(const arm *a, const method_parameters *method);
 void motion_destroy(motion *m); // m may be NULL
 
-// Puts all bodies at `angle` [rad] with `velocity` [rad/s] at time 0 and finds the mode.
-void motion_start(const arm *a, motion *m, double angle, double velocity);
-
-// Kinds of event the machine meets.
-typedef enum motion_event {
-    MOTION_REACHED, // the wanted time
-    MOTION_IMPACT,
-    MOTION_TOUCH, // contact begins without an approach velocity
-    MOTION_RELEASE,
-    MOTION_STICK,
-    MOTION_SLIP,
-} motion_event;
-
-typedef struct motion_report {
-    motion_event event;
-    double impulse; // of an impact [N s]
-    double speed;   // approach speed of an impact [m/s]
-    double loss;    // energy lost in an impact [J]
-    bool holds;     // after an impact: contact goes on
-} motion_report;
-
-// Makes one stride towards `until`, or to the first event if that comes first. The implicit methods
-// stride by `step`, the event method by as many steps as its accuracy allows (a fraction of one, if
-// need be); an arm that contact and friction hold still strides to `until` at once. At an event the
-// state is on the event's far side, before its jump: let the caller look at it, then call
-// motion_apply.
-//
-// A stride that would go beyond m->cut is first tried as if the cut were not there, and ends at the
-// cut only if no event comes before it. So what happens before the cut, to the last bit, is what
-// happens without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
-// state is then the last good one.
-status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
-
-// Strides until `until` or the first event.
-status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report);
-
-// The state at `time` within the last stride, by stepping again from its start; a pointer that is
-// good until the next call of any function here. To be called before motion_apply. NULL if the step
-// fails.
-double *motion_between(const arm *a, motion *m, double time);
-
-// Applies the jump and change of mode of the event motion_advance reported; completes *report.
-void motion_apply(const arm *a, motion *m, motion_report *report);
-
-// A push: an impulse [N s] at the tip, across the last link, towards growing angle. In contact the
-// wall answers; *report is then an impact, else MOTION_REACHED.
-void motion_push(const arm *a, motion *m, double impulse, motion_report *report);
-
-// To be called after the constants of the arm changed under a motion (`before` is the old arm): the
-// change of strain energy is booked as external work and the mode found anew.
-void motion_rebind(const arm *before, const arm *after, motion *m);
-
-// To be called after nothing but the motor's torque changed from `before` [N m]: accelerations and
-// reactions jump with it, and the mode is found anew where it may have changed.
-void motion_retorque(const arm *a, motion *m, double before);
-
 // Forgets the recorded peak: the next one counts from the present state.
 void motion_watch(motion *m);
 
-// Evaluates accelerations, reactions and gap of a state under its own mode.
+// Evaluates accelerations, reactions and gap of a state in its own contact state.
 void motion_evaluate(const arm *a, motion *m, double *state);
 
 // Whether contact and friction together leave the arm no way to move.
-bool motion_held_still(const motion *m);
+static inline bool motion_held_still(const motion *m)
+{
+    contact_state now = contact_state_of(m->state);
+    int holds = now.contact + (now.friction == HUB_STICK);
+    return m->dof == 1 ? holds > 0 : holds >= m->dof;
+}
 
 // Advances m->state by h into m->trial, books the ledger, and checks the result for finiteness.
 status motion_try_step(const arm *a, motion *m, double h);
@@ -197,7 +147,10 @@ status motion_try_step(const arm *a, motion *m, double h);
 void motion_project(const arm *a, motion *m, double *state);
 
 // Whether the motion's steps are too long for the arm's fastest modes, as with many links.
-bool motion_unresolved(const arm *a, const motion *m);
+static inline bool motion_unresolved(const arm *a, const motion *m)
+{
+    return m->stepper != &explicit_stepper && m->nominal_step * a->fastest_rate > 1;
+}
 
 // Energy that the ledger does not account for at a state of this motion [J].
 double motion_energy_residual(const arm *a, const motion *m, double *state);

@@ -10,7 +10,7 @@
 #include "src/run/run.h"
 #include "src/study/thesis_tables.h"
 #include "src/predict/linearised.h"
-#include "src/solve/motion.h"
+#include "src/solve/contact_machine.h"
 #include "src/base/json.h"
 
 #define LEAST_TIME    0.01 // of one measurement [s]

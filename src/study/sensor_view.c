@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "src/solve/motion.h"
+#include "src/solve/contact_machine.h"
 
 #define RESOLVING 20.0 // fastest rate times step, at most: the event method then steps explicitly
 

@@ -1,0 +1,469 @@
+// The contact machine: an arm in free flight or on its wall, its hub stuck or sliding.
+//
+// Between events motion_step() moves the arm in one contact state; it ends a step at the first
+// event, on its far side. motion_apply() then takes the transition:
+//
+//                   gap closes:  impact() at a speed,  touch() without
+//     motion_start  +--------+ --------------------------> +---------+
+//     ------------> |  FREE  |                             | CONTACT | --+  impact():
+//               +-> |        | <-------------------------- |         | <-+  motion_push() into
+//               |   +--------+   force falls below zero:   +---------+      the wall
+//               |       |               release()
+//               +-------+
+//          impact() that rebounds
+//
+//                     hub comes to rest:  stick()
+//         +---------+ --------------------------> +-------+
+//     +-- | SLIDING |                             | STUCK |      SLIDING is forwards or backwards
+//     +-> |         | <-------------------------- |       |
+//         +---------+  torque beyond stiction:    +-------+
+//       stick() where        slip()
+//       nothing holds it
+//
+// The two are coupled: an impact may set a stuck hub sliding, a hub that sticks may lift the arm
+// off. So each transition says only what the event itself fixes (a velocity, that the wall is
+// touched) and leaves the rest to resolve(), which finds the one pair of states that violates
+// nothing. From outside motion_push(), motion_retorque() and motion_rebind() end there too.
+// Where steps do not resolve the fastest modes, accelerations at an instant are no information:
+// release(), stick() and slip() then take what the event says, and the next step corrects it.
+//
+// After every transition hold:
+//
+//   1  contact is 0 or 1; friction is one of stuck, forwards, backwards
+//   2  without a wall there is no contact
+//   3  without contact there is no force
+//   4  a stuck hub does not turn
+//   5  a hub with friction does not slide against the direction its friction is for
+//   6  an arm that contact and friction hold still is at rest
+//   7  an impact takes energy or leaves it, it gives none
+//
+// 4 to 6 wait where an impact is yet to be delivered by the next step (SLOT_IMPULSE).
+#include "src/solve/contact_machine.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/arm/impact.h"
+#include "src/solve/locate.h"
+
+// Steps over several time steps, which slow arms take, may go this far in (fastest rate) x (step):
+// they are few, and what they lose in a second is less than the short ones of fast arms do.
+#define LONG_RESOLUTION 0.45
+// Steps that are cut short and stay below this take the explicit method's brief form, and with them
+// all that is located within.
+#define BRIEF_RESOLUTION 0.2
+// The explicit method takes at most this many time steps at once.
+#define MOST_AT_ONCE    12
+
+#define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
+#define MOST_HALVINGS   8     // of a step that does not converge or makes energy
+#define LEAST_AFTER_CUT 1e-9  // share of a step; what is left of one before a cut is longer
+
+// --- what holds at an instant -----------------------------------------------------------------
+
+// The numbered invariants, once an event.
+static void check_invariants(const arm *a, const motion *m)
+{
+    const double *state = m->state;
+    const double friction = state[SLOT_FRICTION], hub_velocity = state[SLOT_COUNT + m->dof];
+    const bool contact = state[SLOT_CONTACT] != 0, settled = state[SLOT_IMPULSE] == 0;
+
+    assert(state[SLOT_CONTACT] == 0 || state[SLOT_CONTACT] == 1);                         // 1
+    assert(friction == HUB_STICK || friction == HUB_FORWARD || friction == HUB_BACKWARD); // 1
+    assert(!contact || a->wall != WALL_NONE);                                             // 2
+    assert(contact || state[SLOT_FORCE] == 0);                                            // 3
+    assert(!settled || friction != HUB_STICK || hub_velocity == 0);                       // 4
+    assert(!settled || a->motor.stiction == 0 || !(friction * hub_velocity < 0));         // 5
+    assert(!settled || !motion_held_still(m) || hub_velocity == 0);                       // 6
+    (void)a, (void)friction, (void)hub_velocity, (void)contact, (void)settled;
+}
+
+// How far the state violates what its contact state promises: tension in contact, penetration to
+// come in a released touch, friction beyond its limit, sliding against the chosen direction.
+static double violation(const arm *a, const motion *m, const double *state, bool touching,
+                        bool hub_rests)
+{
+    contact_state now = contact_state_of(state);
+    double worst = 0;
+    if (now.contact) {
+        worst = fmax(worst, -state[SLOT_FORCE]);
+    } else if (touching) {
+        worst = fmax(worst, -state[SLOT_GAP_ACCELERATION]);
+    }
+    if (now.friction == HUB_STICK) {
+        worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction);
+    } else if (hub_rests) {
+        worst = fmax(worst, -now.friction * state[SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT]);
+    }
+    return worst;
+}
+
+// Finds the one combination of contact and hub friction that violates nothing and evaluates the
+// state under it. Gauss's principle makes the problem a strictly convex one, since the friction
+// torque is bounded independently of the contact force: there is exactly one solution. At an event
+// two combinations agree to rounding; `event` says which of them the motion has just left.
+static void resolve(const arm *a, motion *m, bool touching, motion_event event)
+{
+    static const hub_friction sticking_first[] = {HUB_STICK, HUB_FORWARD, HUB_BACKWARD};
+    static const hub_friction sliding_first[] = {HUB_FORWARD, HUB_BACKWARD, HUB_STICK};
+    const hub_friction *at_rest = event == MOTION_SLIP ? sliding_first : sticking_first;
+    double *state = m->state;
+    double hub_velocity = state_velocities(m, state)[0];
+    bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
+    hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
+    int choices = hub_rests ? 3 : 1, ways = touching ? 2 : 1;
+    double least = 0;
+    contact_state best = {false, sliding};
+
+    // at a release the released arm is tried first, else the one in contact
+    for (int i = 0; i < ways * choices; i++) {
+        bool second = i >= choices;
+        state[SLOT_CONTACT] = touching && second == (event == MOTION_RELEASE);
+        state[SLOT_FRICTION] = hub_rests ? at_rest[i % choices] : sliding;
+        motion_evaluate(a, m, state);
+        double v = violation(a, m, state, touching, hub_rests);
+        if (i == 0 || v < least) {
+            least = v;
+            best = contact_state_of(state);
+        }
+        if (v <= FORCE_TOLERANCE / 1000) {
+            best = contact_state_of(state);
+            break;
+        }
+    }
+
+    state[SLOT_CONTACT] = best.contact;
+    state[SLOT_FRICTION] = best.friction;
+    if (motion_held_still(m)) {
+        memset(state_velocities(m, state), 0, (size_t)m->dof * sizeof(double));
+    }
+    motion_evaluate(a, m, state);
+    if (motion_held_still(m)) {
+        memset(state_accelerations(m, state), 0, (size_t)m->dof * sizeof(double));
+    }
+
+    // the implicit methods start anew from the accelerations of this instant
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
+    state[SLOT_JUMPED] = 1;
+}
+
+// --- the transitions -----------------------------------------------------------------------------
+
+// The jump of an impact, and what holds after it. Slower than the rest speed it is plastic: a
+// sequence of ever smaller bounces ends in contact.
+static void impact(const arm *a, motion *m, motion_report *report)
+{
+    double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    double *increment = m->scratch;
+
+    // what the wall gives
+    double e = chain_penetration_rate(a, q, w) < a->rest_speed ? 0 : a->restitution;
+    impact_result result = impact_velocity_increments(a, m->links, q, w, e, increment);
+    report->speed = result.speed;
+    report->impulse = result.impulse;
+    report->loss = result.loss;
+    assert(!(result.loss < 0)); // 7
+    if (motion_unresolved(a, m) && e == 0) {
+        // the impact happens within the next step, whose own damping takes the loss (after Moreau)
+        m->state[SLOT_CONTACT] = 1;
+        m->state[SLOT_FORCE] = 0;
+        m->state[SLOT_IMPULSE] = result.impulse;
+        m->state[SLOT_JUMPED] = 1;
+        return;
+    }
+
+    m->state[SLOT_IMPACT_LOSS] += result.loss;
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += increment[i];
+    }
+    resolve(a, m, e == 0, MOTION_IMPACT);
+}
+
+// The arm comes to the wall without an approach velocity, as at a bounce's end.
+static void touch(const arm *a, motion *m)
+{
+    resolve(a, m, true, MOTION_TOUCH);
+}
+
+// The wall would have to pull: the arm leaves it.
+static void release(const arm *a, motion *m)
+{
+    if (motion_unresolved(a, m)) {
+        m->state[SLOT_CONTACT] = m->state[SLOT_FORCE] = 0;
+        m->state[SLOT_JUMPED] = 1;
+    } else {
+        resolve(a, m, true, MOTION_RELEASE);
+    }
+}
+
+// The hub comes to rest: friction holds it, or it turns back.
+static void stick(const arm *a, motion *m)
+{
+    const bool contact = m->state[SLOT_CONTACT] != 0;
+    state_velocities(m, m->state)[0] = 0;
+    if (contact && motion_unresolved(a, m)) {
+        m->state[SLOT_FRICTION] = HUB_STICK;
+        m->state[SLOT_JUMPED] = 1;
+    } else {
+        resolve(a, m, contact, MOTION_STICK);
+    }
+}
+
+// The stuck hub breaks away.
+static void slip(const arm *a, motion *m)
+{
+    double *state = m->state;
+    if (motion_unresolved(a, m)) {
+        bool forward = state[SLOT_FRICTION_TORQUE] < 0; // friction resists the way the hub goes
+        state[SLOT_FRICTION] = forward ? HUB_FORWARD : HUB_BACKWARD;
+        state[SLOT_FRICTION_TORQUE] = forward ? -a->motor.stiction : a->motor.stiction;
+        state[SLOT_JUMPED] = 1;
+    } else {
+        resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_SLIP);
+    }
+}
+
+void motion_apply(const arm *a, motion *m, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL);
+    switch (report->event) {
+    case MOTION_REACHED:
+        return;
+    case MOTION_IMPACT:
+        impact(a, m, report);
+        break;
+    case MOTION_TOUCH:
+        touch(a, m);
+        break;
+    case MOTION_RELEASE:
+        release(a, m);
+        break;
+    case MOTION_STICK:
+        stick(a, m);
+        break;
+    case MOTION_SLIP:
+        slip(a, m);
+        break;
+    }
+    report->holds = m->state[SLOT_CONTACT] != 0;
+    check_invariants(a, m);
+}
+
+// --- between events ----------------------------------------------------------------------------
+
+static void accept(motion *m, double step)
+{
+    double *previous = m->state;
+    m->state = m->trial;
+    m->trial = previous;
+    double passed = m->state[SLOT_TIME] - previous[SLOT_TIME];
+    m->steps += (long)fmax(1, ceil(passed / step - 1e-6));
+    m->largest_penetration = fmax(m->largest_penetration, -m->state[SLOT_GAP]);
+}
+
+// How long the next step may be, and by which form of the explicit method.
+static double step_length(const arm *a, motion *m, double remaining, double step)
+{
+    m->brief = false;
+    if (motion_held_still(m)) {
+        return remaining;
+    }
+    double longest = step;
+    if (m->stepper == &explicit_stepper) {
+        double steps = floor(LONG_RESOLUTION / (step * fmax(a->fastest_rate, 1e-3)));
+        longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step
+                             : step / ceil(step * a->fastest_rate / EXPLICIT_RESOLUTION);
+    }
+    // a step that something cuts to half or less, such as the next sample of a controller
+    m->brief = remaining < 0.5 * longest && remaining * a->fastest_rate <= BRIEF_RESOLUTION;
+    return remaining < longest * (1 + 1e-9) ? remaining : longest;
+}
+
+static motion_event event_of(const motion *m, watch w)
+{
+    switch (w) {
+    case WATCH_GAP:
+        return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
+    case WATCH_FORCE:
+        return MOTION_RELEASE;
+    case WATCH_HUB:
+        return MOTION_STICK;
+    case WATCH_STICTION:
+        return MOTION_SLIP;
+    }
+    return MOTION_REACHED;
+}
+
+// Tries a step of *h, shorter if need be; *h and m->trial end at the first event, if there is
+// one.
+static status step_to_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    status s = motion_try_step(a, m, *h);
+    for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
+        *h /= 2;
+        s = motion_try_step(a, m, *h);
+    }
+    return s == STATUS_OK ? locate_first_event(a, m, h, first, any) : s;
+}
+
+// Ends a step of the `wanted` length that was just tried at m->cut if it goes beyond, or ends
+// within rounding of it.
+static status cut_step(const arm *a, motion *m, double step, status tried, double wanted, double *h,
+                       watch *first, bool *any)
+{
+    double left = m->cut - m->state[SLOT_TIME];
+    double reached = tried == STATUS_OK ? *h : wanted;
+    double spare = tried == STATUS_OK && *any ? 0 : LEAST_AFTER_CUT * step;
+    if (reached <= left - spare) {
+        return tried;
+    }
+    *h = left;
+    *any = false;
+    status s = tried == STATUS_OK ? motion_try_step(a, m, left) : tried;
+    return s == STATUS_OK ? s : step_to_event(a, m, h, first, any);
+}
+
+status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL && step > 0);
+    *report = (motion_report){.event = MOTION_REACHED};
+
+    // as far as accuracy allows, the cut, or the first event
+    double wanted = step_length(a, m, until - m->state[SLOT_TIME], step), h = wanted;
+    watch first = WATCH_GAP;
+    bool any = false;
+    status s = step_to_event(a, m, &h, &first, &any);
+    s = cut_step(a, m, step, s, wanted, &h, &first, &any);
+    if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
+        s = locate_peak(a, m, h);
+    }
+    if (s != STATUS_OK) {
+        m->failure_time = m->state[SLOT_TIME] + h;
+        return s;
+    }
+
+    accept(m, step);
+    if (any) {
+        report->event = event_of(m, first);
+    }
+    // an instant that was meant is met to the last bit
+    double stop = fmin(until, m->cut);
+    if (stop - m->state[SLOT_TIME] <= 1e-12 * fmax(1, stop)) {
+        m->state[SLOT_TIME] = stop;
+    }
+    return STATUS_OK;
+}
+
+status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL && !isnan(until));
+    status s = STATUS_OK;
+    *report = (motion_report){.event = MOTION_REACHED};
+    while (s == STATUS_OK && report->event == MOTION_REACHED && m->state[SLOT_TIME] < until) {
+        s = motion_step(a, m, until, step, report);
+    }
+    return s;
+}
+
+double *motion_between(const arm *a, motion *m, double time)
+{
+    assert(a != NULL && m != NULL && isfinite(time));
+    // step again from the step's start, which is where m->trial was left, into m->between
+    double *now = m->state, *start = m->trial;
+    m->state = start;
+    m->trial = m->between;
+    status s = motion_try_step(a, m, time - start[SLOT_TIME]);
+    m->state = now;
+    m->trial = start;
+    m->between[SLOT_TIME] = time;
+    return s == STATUS_OK ? m->between : NULL;
+}
+
+// --- from outside ------------------------------------------------------------------------------
+
+void motion_start(const arm *a, motion *m, double angle, double velocity)
+{
+    assert(a != NULL && m != NULL && isfinite(angle) && isfinite(velocity));
+    memset(m->state, 0, (size_t)m->size * sizeof(double));
+    for (int i = 0; i < m->dof; i++) {
+        state_angles(m, m->state)[i] = angle;
+        state_velocities(m, m->state)[i] = velocity;
+    }
+
+    m->start_energy =
+        chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
+        chain_strain_energy(a, state_angles(m, m->state));
+    m->steps = 0;
+    m->largest_penetration = 0;
+    motion_watch(m);
+
+    double g, rate;
+    chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
+    resolve(a, m, g >= 0 && rate >= 0, MOTION_REACHED);
+    check_invariants(a, m);
+}
+
+void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL && isfinite(impulse));
+    double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    double *response = m->scratch, before = chain_kinetic_energy(a, q, w);
+
+    *report = (motion_report){.event = MOTION_REACHED};
+    chain_tip_response(a, m->links, q, response);
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += impulse * response[i];
+    }
+    m->state[SLOT_EXTERNAL_WORK] += chain_kinetic_energy(a, q, w) - before;
+
+    // in contact the wall answers what goes into it
+    if (contact && chain_penetration_rate(a, q, w) > 0) {
+        report->event = MOTION_IMPACT;
+        impact(a, m, report);
+    } else {
+        resolve(a, m, contact && chain_penetration_rate(a, q, w) == 0, MOTION_REACHED);
+    }
+    report->holds = m->state[SLOT_CONTACT] != 0;
+    check_invariants(a, m);
+}
+
+void motion_retorque(const arm *a, motion *m, double before)
+{
+    assert(a != NULL && m != NULL);
+    if (motion_unresolved(a, m)) {
+        return; // an instant's accelerations say nothing: the next step finds out
+    }
+
+    // a stuck hub: friction takes up what the motor does, the rest stays
+    double *state = m->state;
+    const bool sticks = contact_state_of(state).friction == HUB_STICK;
+    double friction = state[SLOT_FRICTION_TORQUE] - (a->motor.torque - before);
+    if (sticks && m->dof > 1 && fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
+        state[SLOT_FRICTION_TORQUE] = friction;
+        return;
+    }
+
+    // a hub that moves goes on as it did, unless the contact is lost
+    motion_evaluate(a, m, state);
+    bool moves = !sticks && state_velocities(m, state)[0] != 0;
+    if (!moves || (state[SLOT_CONTACT] != 0 && state[SLOT_FORCE] <= 0)) {
+        resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_REACHED);
+        check_invariants(a, m);
+        return;
+    }
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
+    state[SLOT_JUMPED] = 1;
+}
+
+void motion_rebind(const arm *before, const arm *after, motion *m)
+{
+    assert(before != NULL && after != NULL && m != NULL && after->dof == m->dof);
+    const double *q = state_angles(m, m->state);
+    m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
+    resolve(after, m, m->state[SLOT_CONTACT] != 0, MOTION_REACHED);
+    check_invariants(after, m);
+}

@@ -1,0 +1,69 @@
+// The machine that moves an arm through free flight, impact, contact and release, sliding and
+// sticking:
+//
+//     free -> impact -> contact -> release -> free,      gap >= 0, f >= 0, gap f = 0
+//
+// A function that leaves its admissible side within a step is located by stepping again from the
+// start of the step with a shorter one, bracketed until the bracket is as narrow as time resolves,
+// and the far side is taken (locate.h). Impacts are jumps of the velocities; what holds afterwards
+// follows from the one combination of contact and hub friction that violates nothing. The state
+// diagram stands over contact_machine.c.
+#pragma once
+
+#include "src/solve/motion.h"
+
+// Kinds of event the machine meets.
+typedef enum motion_event {
+    MOTION_REACHED, // the wanted time
+    MOTION_IMPACT,
+    MOTION_TOUCH, // contact begins without an approach velocity
+    MOTION_RELEASE,
+    MOTION_STICK,
+    MOTION_SLIP,
+} motion_event;
+
+typedef struct motion_report {
+    motion_event event;
+    double impulse; // of an impact [N s]
+    double speed;   // approach speed of an impact [m/s]
+    double loss;    // energy lost in an impact [J]
+    bool holds;     // after an event: the arm is in contact
+} motion_report;
+
+// Puts all bodies at `angle` [rad] with `velocity` [rad/s] at time 0 and finds the contact state.
+void motion_start(const arm *a, motion *m, double angle, double velocity);
+
+// Makes one step towards `until`, or to the first event if that comes first. The implicit methods
+// step by `step`, the event method by as many of them as its accuracy allows (a fraction of one, if
+// need be); an arm that contact and friction hold still goes to `until` at once. At an event the
+// state is on the event's far side, before its jump: let the caller look at it, then call
+// motion_apply.
+//
+// A step that would go beyond m->cut is first tried as if the cut were not there, and ends at the
+// cut only if no event comes before it. So what happens before the cut, to the last bit, is what
+// happens without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
+// state is then the last good one.
+status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
+
+// Steps until `until` or the first event.
+status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report);
+
+// The state at `time` within the last step, by stepping again from its start; a pointer that is
+// good until the next call of any function here. To be called before motion_apply. NULL if the step
+// fails.
+double *motion_between(const arm *a, motion *m, double time);
+
+// Takes the transition of the event that motion_step or motion_advance reported; completes *report.
+void motion_apply(const arm *a, motion *m, motion_report *report);
+
+// A push: an impulse [N s] at the tip, across the last link, towards growing angle. In contact the
+// wall answers; *report is then an impact, else MOTION_REACHED.
+void motion_push(const arm *a, motion *m, double impulse, motion_report *report);
+
+// To be called after the constants of the arm changed under a motion (`before` is the old arm): the
+// change of strain energy is booked as external work and the contact state found anew.
+void motion_rebind(const arm *before, const arm *after, motion *m);
+
+// To be called after nothing but the motor's torque changed from `before` [N m]: accelerations and
+// reactions jump with it, and the contact state is found anew where it may have changed.
+void motion_retorque(const arm *a, motion *m, double before);
