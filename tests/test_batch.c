@@ -33,7 +33,7 @@ static void batches_equal_single_runs_to_the_last_bit(void **state)
     summary *batch = calloc(RUNS, sizeof *batch);
     for (int jobs = 1; jobs <= 3; jobs++) {
         memset(batch, 0, RUNS * sizeof *batch);
-        batch_run(make, NULL, RUNS, jobs, batch);
+        assert_int_equal(batch_run(make, NULL, RUNS, jobs, batch), STATUS_OK);
         for (size_t i = 0; i < RUNS; i++) {
             scenario s = {0};
             run_result single;
@@ -56,7 +56,7 @@ static void a_failing_run_does_not_touch_the_others(void **state)
 {
     (void)state;
     summary *batch = calloc(RUNS, sizeof *batch);
-    batch_run(make_bad, NULL, RUNS, 2, batch);
+    assert_int_equal(batch_run(make_bad, NULL, RUNS, 2, batch), STATUS_OK);
     for (int i = 0; i < RUNS; i++) {
         assert_int_equal(batch[i].status, i == 7 ? STATUS_NOT_FINITE : STATUS_OK);
     }

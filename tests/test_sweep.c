@@ -10,7 +10,9 @@
 #include "render/plot/contour.h"
 #include "render/plot/sweep_plot.h"
 #include "render/page/text.h"
-#include "src/study/sweep_store.h"
+#include "src/run/run.h"
+#include "src/study/sweep_rows.h"
+#include "src/study/sweep_run.h"
 #include "tests/check.h"
 
 static char folder[] = "/tmp/sweep-XXXXXX";

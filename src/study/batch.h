@@ -1,4 +1,4 @@
-// Many runs at once, summaries only: what sweeps, Monte Carlo studies and tuning are made of.
+// Many runs at once, summaries only: what Monte Carlo studies and tuning are made of.
 #pragma once
 
 #include "src/run/run.h"
@@ -8,7 +8,8 @@
 // more than what differs.
 typedef void (*batch_maker)(void *context, size_t i, scenario *made);
 
-// Runs scenarios 0 ... count - 1 on `jobs` threads and writes summaries[count]. Each summary is the
-// same to the last bit as that of a single run_scenario, whatever the number of threads; a run that
-// fails says so in its own summary. Threads that cannot be started are done without.
-void batch_run(batch_maker make, void *context, size_t count, int jobs, summary *summaries);
+// Runs scenarios 0 ... count - 1 on `jobs` threads (as many as can be started, of 1 to
+// POOL_MOST_THREADS) and writes summaries[count]. Each summary is the same to the last bit as that
+// of a single run_scenario, whatever the number of threads; a run that fails says so in its own
+// summary. STATUS_NO_MEMORY if there is no room for the threads' results.
+status batch_run(batch_maker make, void *context, size_t count, int jobs, summary *summaries);

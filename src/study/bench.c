@@ -384,7 +384,8 @@ static status measure_batch(double *value, fault *f)
         return code != STATUS_OK ? code : fault_set(f, STATUS_NO_MEMORY, "no memory for a batch");
     }
     double start = clock_on_the_wall(), steps = 0;
-    batch_run(make_batch_run, &s, BATCH_RUNS, (int)sysconf(_SC_NPROCESSORS_ONLN), summaries);
+    int threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    code = batch_run(make_batch_run, &s, BATCH_RUNS, threads, summaries);
     double elapsed = clock_on_the_wall() - start;
     for (int i = 0; i < BATCH_RUNS && code == STATUS_OK; i++) {
         steps += summaries[i].steps;

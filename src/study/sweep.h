@@ -4,12 +4,12 @@
 // of threads nor on the order in which they were computed, and any part can be computed later.
 #pragma once
 
-#include <signal.h>
 #include <stdint.h>
 
-#include "src/run/run.h"
+#include "src/scenario/scenario.h"
+#include "src/study/sweep_axis.h"
 
-enum { SWEEP_MOST_AXES = 8, SWEEP_MOST_RUNS = 10000000, SWEEP_MOST_JOBS = 256 };
+enum { SWEEP_MOST_AXES = 8 };
 
 // How the values are chosen: every combination, independently at random, or so that each of as many
 // equal parts of every range as there are runs is met exactly once (Latin hypercube).
@@ -17,17 +17,6 @@ typedef enum sweep_sampling { SWEEP_GRID, SWEEP_RANDOM, SWEEP_LATIN } sweep_samp
 
 // "grid", "random", "latin"
 const char *sweep_sampling_name(sweep_sampling sampling);
-
-// One varied parameter. Words and truth values are numbers here, as in parameter_get.
-typedef struct sweep_axis {
-    int parameter;    // index in parameter_table
-    double *values;   // those of a list, or of a range in a grid; NULL for a range to draw from
-    size_t count;     // of values
-    double low, high; // of a range, as given; low may be the larger one
-    bool is_range;
-    bool logarithmic; // a range spaced evenly in the logarithm
-    char *text;       // what is varied, in one way of writing: "1:10:5", "0.1:10:3:log", "a,b"
-} sweep_axis;
 
 typedef struct sweep {
     const scenario *base; // borrowed
@@ -69,27 +58,3 @@ status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f);
 // Splits a summary's key into name and unit: "contact_impulse_Ns" gives "contact_impulse", "N s";
 // "impacts" has the unit "". name has `size` bytes.
 void quantity_name(const char *key, char *name, size_t size, const char **unit);
-
-// How far a sweep has come.
-typedef struct sweep_progress {
-    size_t done, total; // runs in the store, and of the sweep
-    size_t failed;      // of those done now: runs that failed
-    size_t done_now;    // since sweep_run began
-    double elapsed_s;   // since sweep_run began
-} sweep_progress;
-
-typedef struct sweep_options {
-    int jobs;                          // threads that compute, 1 ... SWEEP_MOST_JOBS
-    const volatile sig_atomic_t *stop; // becomes true to end early; NULL if nothing does
-    void (*report)(void *context, const sweep_progress *p); // about ten times a second, or NULL
-    void *context;
-} sweep_options;
-
-struct sweep_store;
-
-// Computes the runs that are missing in the store. Rows are committed at least every second (as
-// soon as the runs themselves let it). If *stop becomes true the runs in hand are finished and
-// committed, and STATUS_OK is returned with progress->done < progress->total. On failure of the
-// store, or without memory, what was committed stays and f says why.
-status sweep_run(const sweep *s, struct sweep_store *store, const sweep_options *options,
-                 sweep_progress *progress, fault *f);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "render/plot/sweep_plot.h"
+#include "src/study/sweep_rows.h"
 
 enum { ROWS_SHOWN = 40 };
 

@@ -1,7 +1,7 @@
 // What impactlab sweep writes and prints of its runs.
 #pragma once
 
-#include "src/study/sweep_store.h"
+#include "src/study/sweep_run.h"
 #include "ui/commands/command.h"
 
 // What the command line asks for, read.

@@ -1,0 +1,240 @@
+#include "src/study/pool.h"
+
+#include <assert.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define TICK_INTERVAL 0.1 // [s]
+
+enum { QUEUE_LENGTH = 256 };
+
+// A queue of finished pieces.
+typedef struct finished_pieces {
+    size_t *pieces;
+    char *results;
+    int count;
+} finished_pieces;
+
+// What the threads share. The mutex guards everything that changes, except `taken`, which is the
+// calling thread's.
+typedef struct pool {
+    const pool_work *work;
+    pthread_mutex_t mutex;
+    pthread_cond_t changed; // a piece was finished, or room was made, or a thread has ended
+    size_t next;            // the first piece that no thread has taken
+    int working;            // threads that have not ended
+    bool stop;
+    finished_pieces finished, taken; // they change places when results are taken
+} pool;
+
+typedef struct pool_thread {
+    pool *pool;
+    pthread_t thread;
+    void *scratch, *result;
+} pool_thread;
+
+// Takes the next piece that is wanted; false if there is none. The mutex is held.
+static bool take_piece(pool *p, size_t *piece)
+{
+    const pool_work *w = p->work;
+    while (p->next < w->count && w->done != NULL && w->done[p->next]) {
+        p->next++;
+    }
+    if (p->stop || p->next >= w->count) {
+        return false;
+    }
+    *piece = p->next++;
+    return true;
+}
+
+static void *work_on_pieces(void *argument)
+{
+    pool_thread *self = argument;
+    pool *p = self->pool;
+    const pool_work *w = p->work;
+    size_t piece;
+    pthread_mutex_lock(&p->mutex);
+    while (take_piece(p, &piece)) {
+        pthread_mutex_unlock(&p->mutex);
+        w->compute(w->context, piece, self->scratch, self->result);
+        pthread_mutex_lock(&p->mutex);
+
+        // hand it over, when the calling thread has left room
+        while (p->finished.count == QUEUE_LENGTH) {
+            pthread_cond_wait(&p->changed, &p->mutex);
+        }
+        int at = p->finished.count++;
+        p->finished.pieces[at] = piece;
+        memcpy(p->finished.results + (size_t)at * w->result_size, self->result, w->result_size);
+        pthread_cond_broadcast(&p->changed);
+    }
+    p->working--;
+    pthread_cond_broadcast(&p->changed);
+    pthread_mutex_unlock(&p->mutex);
+    return NULL;
+}
+
+// Takes what is finished into p->taken, waiting a little for it. False if all threads have ended
+// and nothing is left.
+static bool take_finished(pool *p, bool stop)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_nsec += (long)(1e9 * TICK_INTERVAL);
+    if (until.tv_nsec >= 1000000000) {
+        until.tv_sec++;
+        until.tv_nsec -= 1000000000;
+    }
+
+    pthread_mutex_lock(&p->mutex);
+    p->stop = p->stop || stop;
+    int waited = 0;
+    while (p->finished.count == 0 && p->working > 0 && waited == 0) {
+        waited = pthread_cond_timedwait(&p->changed, &p->mutex, &until);
+    }
+    bool more = p->finished.count > 0 || p->working > 0;
+    finished_pieces full = p->finished;
+    p->finished = p->taken;
+    p->finished.count = 0;
+    p->taken = full;
+    pthread_cond_broadcast(&p->changed);
+    pthread_mutex_unlock(&p->mutex);
+    return more;
+}
+
+static double monotonic_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static bool asked_to_stop(const pool_work *w)
+{
+    return w->stop != NULL && *w->stop;
+}
+
+// Collects what the threads finish until they have ended. After a failure they are only waited for.
+static status collect_results(pool *p, fault *f)
+{
+    const pool_work *w = p->work;
+    status code = STATUS_OK;
+    double ticked = monotonic_seconds();
+    for (bool more = true; more;) {
+        more = take_finished(p, code != STATUS_OK || asked_to_stop(w));
+        for (int i = 0; i < p->taken.count && code == STATUS_OK; i++) {
+            const char *result = p->taken.results + (size_t)i * w->result_size;
+            code = w->collect(w->context, p->taken.pieces[i], result, f);
+        }
+        double now = monotonic_seconds();
+        if (code == STATUS_OK && w->tick != NULL && (!more || now - ticked >= TICK_INTERVAL)) {
+            code = w->tick(w->context, !more, f);
+            ticked = now;
+        }
+    }
+    return code;
+}
+
+// Does without threads.
+static status work_alone(pool *p, pool_thread *self, fault *f)
+{
+    const pool_work *w = p->work;
+    status code = STATUS_OK;
+    size_t piece;
+    while (code == STATUS_OK && !asked_to_stop(w) && take_piece(p, &piece)) {
+        w->compute(w->context, piece, self->scratch, self->result);
+        code = w->collect(w->context, piece, self->result, f);
+        if (code == STATUS_OK && w->tick != NULL) {
+            code = w->tick(w->context, false, f);
+        }
+    }
+    return code == STATUS_OK && w->tick != NULL ? w->tick(w->context, true, f) : code;
+}
+
+// Starts up to `wanted` threads. Returns how many there are.
+static int start_threads(pool *p, pool_thread *threads, int wanted)
+{
+    sigset_t all, before;
+    int started = 0;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    pthread_mutex_lock(&p->mutex);
+    while (started < wanted &&
+           pthread_create(&threads[started].thread, NULL, work_on_pieces, &threads[started]) == 0) {
+        started++;
+    }
+    p->working = started;
+    pthread_mutex_unlock(&p->mutex);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return started;
+}
+
+static bool allocate_queue(finished_pieces *queue, size_t result_size)
+{
+    queue->count = 0;
+    queue->pieces = calloc(QUEUE_LENGTH, sizeof *queue->pieces);
+    queue->results = calloc(QUEUE_LENGTH, result_size);
+    return queue->pieces != NULL && queue->results != NULL;
+}
+
+// Both queues, and each thread's own storage; false without memory.
+static bool allocate(pool *p, pool_thread *threads, int count)
+{
+    const pool_work *w = p->work;
+    bool allocated =
+        allocate_queue(&p->finished, w->result_size) && allocate_queue(&p->taken, w->result_size);
+    for (int i = 0; i < count && allocated; i++) {
+        threads[i].pool = p;
+        threads[i].scratch = calloc(1, w->scratch_size + 1);
+        threads[i].result = calloc(1, w->result_size);
+        allocated = threads[i].scratch != NULL && threads[i].result != NULL;
+    }
+    return allocated;
+}
+
+static void release(pool *p, pool_thread *threads, int count)
+{
+    for (int i = 0; i < count; i++) {
+        free(threads[i].scratch);
+        free(threads[i].result);
+    }
+    free(p->finished.pieces);
+    free(p->finished.results);
+    free(p->taken.pieces);
+    free(p->taken.results);
+}
+
+static void init_locks(pool *p)
+{
+    pthread_condattr_t monotonic;
+    pthread_mutex_init(&p->mutex, NULL);
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_cond_init(&p->changed, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+}
+
+status pool_run(const pool_work *work, int threads, fault *f)
+{
+    assert(work != NULL && work->compute != NULL && work->collect != NULL);
+    assert(work->result_size > 0 && threads >= 1 && threads <= POOL_MOST_THREADS);
+    pool p = {.work = work};
+    pool_thread each[POOL_MOST_THREADS] = {0};
+    status code;
+    init_locks(&p);
+    if (allocate(&p, each, threads)) {
+        int started = start_threads(&p, each, threads);
+        code = started > 0 ? collect_results(&p, f) : work_alone(&p, &each[0], f);
+        for (int i = 0; i < started; i++) {
+            pthread_join(each[i].thread, NULL);
+        }
+    } else {
+        code = fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+    release(&p, each, threads);
+    pthread_cond_destroy(&p.changed);
+    pthread_mutex_destroy(&p.mutex);
+    return code;
+}

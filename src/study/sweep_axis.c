@@ -1,0 +1,226 @@
+#include "src/study/sweep_axis.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+
+static status no_memory(fault *f)
+{
+    return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+}
+
+const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
+{
+    assert(axis->parameter >= 0 && axis->parameter < parameter_count);
+    return &parameter_table[axis->parameter];
+}
+
+// Checks and reads one value of the axis.
+static status read_value(const sweep_axis *axis, const char *text, double *value, fault *f)
+{
+    parameters scratch = {0};
+    status code = parameter_set_text(&scratch, axis->parameter, text, f);
+    *value = parameter_get(&scratch, axis->parameter);
+    return code;
+}
+
+void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size)
+{
+    parameters scratch = {0};
+    parameter_set_number(&scratch, axis->parameter, value, NULL);
+    parameter_format(&scratch, axis->parameter, text, size);
+}
+
+// Cuts text at every separator. Returns the number of pieces, at most `most` + 1; those beyond
+// `most` are not stored.
+static size_t split(char *text, char separator, char **pieces, size_t most)
+{
+    size_t count = 0;
+    for (char *next = text; next != NULL && count <= most; count++) {
+        char *end = strchr(next, separator);
+        if (count < most) {
+            pieces[count] = next;
+        }
+        if (end != NULL) {
+            *end++ = '\0';
+        }
+        next = end;
+    }
+    return count;
+}
+
+// Point number i of the n that span the range.
+static double range_point(const sweep_axis *axis, size_t i, size_t n)
+{
+    double x = (double)i, last = (double)(n - 1), value;
+    if (i == 0 || i == n - 1) {
+        return i == 0 ? axis->low : axis->high;
+    }
+    if (axis->logarithmic) {
+        value = axis->low * pow(axis->high / axis->low, x / last);
+    } else {
+        value = (axis->low * (last - x) + axis->high * x) / last;
+    }
+    // a whole number as near as there is one; an even spacing that misses them is refused instead
+    return axis->logarithmic && sweep_axis_parameter(axis)->type == PARAMETER_INTEGER ? round(value)
+                                                                                      : value;
+}
+
+static status fill_range(sweep_axis *axis, size_t n, fault *f)
+{
+    axis->values = malloc(n * sizeof *axis->values);
+    if (axis->values == NULL) {
+        return no_memory(f);
+    }
+    axis->count = n;
+    for (size_t i = 0; i < n; i++) {
+        parameters scratch = {0};
+        axis->values[i] = range_point(axis, i, n);
+        status code = parameter_set_number(&scratch, axis->parameter, axis->values[i], f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        if (i > 0 && axis->values[i] == axis->values[i - 1]) {
+            char text[128];
+            sweep_axis_format(axis, axis->values[i], text, sizeof text);
+            return fault_set(f, STATUS_BAD_ARGUMENT, "%zu values give %s twice", n, text);
+        }
+    }
+    return STATUS_OK;
+}
+
+// Reads the number of values in a range.
+static status read_count(const char *text, size_t *count, fault *f)
+{
+    const char *rest;
+    double value;
+    if (!decimal_read(text, &value, &rest) || *rest != '\0' || value != floor(value) || value < 2 ||
+        value > SWEEP_MOST_RUNS) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%.40s' is no number of values, expected a whole number from 2 to %d",
+                         text, SWEEP_MOST_RUNS);
+    }
+    *count = (size_t)value;
+    return STATUS_OK;
+}
+
+// The range's text in one way of writing, for comparing sweeps.
+static status describe_range(sweep_axis *axis, size_t n, fault *f)
+{
+    char low[128], high[128], count[32] = "";
+    sweep_axis_format(axis, axis->low, low, sizeof low);
+    sweep_axis_format(axis, axis->high, high, sizeof high);
+    if (n > 0) {
+        snprintf(count, sizeof count, ":%zu", n);
+    }
+    if (asprintf(&axis->text, "%s:%s%s%s", low, high, count, axis->logarithmic ? ":log" : "") < 0) {
+        axis->text = NULL;
+        return no_memory(f);
+    }
+    return STATUS_OK;
+}
+
+// Reads "a:b", "a:b:n" or either with ":log".
+static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
+{
+    char *pieces[4];
+    size_t count = split(text, ':', pieces, 4), n = 0;
+    axis->is_range = true;
+    if (sweep_axis_parameter(axis)->choices != NULL ||
+        sweep_axis_parameter(axis)->type == PARAMETER_BOOLEAN) {
+        char words[128];
+        snprintf(words, sizeof words, "%s",
+                 sweep_axis_parameter(axis)->choices ? sweep_axis_parameter(axis)->choices
+                                                     : "true|false");
+        for (char *c = words; *c != '\0'; c++) {
+            *c = *c == '|' ? ',' : *c;
+        }
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%s takes words, which have no range; expected a list such as %s",
+                         sweep_axis_parameter(axis)->path, words);
+    }
+    axis->logarithmic = count > 2 && count <= 4 && strcmp(pieces[count - 1], "log") == 0;
+    count -= axis->logarithmic;
+    if (count > 3 || (count < 3 && !drawn)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "expected %s (first, last, number of values), with :log for an even "
+                         "spacing of the logarithm",
+                         drawn ? "a:b or a:b:n" : "a:b:n");
+    }
+    status code = read_value(axis, pieces[0], &axis->low, f);
+    code = code == STATUS_OK ? read_value(axis, pieces[1], &axis->high, f) : code;
+    code = code == STATUS_OK && count == 3 ? read_count(pieces[2], &n, f) : code;
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (axis->low == axis->high) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "a range needs two different ends");
+    }
+    if (axis->logarithmic && !(axis->low > 0 && axis->high > 0)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "a logarithmic range needs ends above zero");
+    }
+    code = describe_range(axis, drawn ? 0 : n, f);
+    return code == STATUS_OK && !drawn ? fill_range(axis, n, f) : code;
+}
+
+// Reads "v1,v2,v3".
+static status read_list(sweep_axis *axis, char *text, fault *f)
+{
+    size_t most = 1;
+    for (const char *c = text; *c != '\0'; c++) {
+        most += *c == ',';
+    }
+    char **pieces = malloc(most * sizeof *pieces);
+    axis->values = malloc(most * sizeof *axis->values);
+    axis->text = calloc(most, 128);
+    status code = pieces && axis->values && axis->text ? STATUS_OK : no_memory(f);
+    axis->count = code == STATUS_OK ? split(text, ',', pieces, most) : 0;
+    char *end = axis->text;
+    for (size_t i = 0; i < axis->count && code == STATUS_OK; i++) {
+        code = read_value(axis, pieces[i], &axis->values[i], f);
+        for (size_t j = 0; j < i && code == STATUS_OK; j++) {
+            if (axis->values[i] == axis->values[j]) {
+                code = fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' stands there twice", pieces[i]);
+            }
+        }
+        if (code == STATUS_OK) {
+            char value[127];
+            sweep_axis_format(axis, axis->values[i], value, sizeof value);
+            end += sprintf(end, "%s%s", i > 0 ? "," : "", value);
+        }
+    }
+    free(pieces);
+    return code;
+}
+
+status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f)
+{
+    assert(axis != NULL && text != NULL);
+    // a list of ranges is none: the comma wins, and the value with the colon is complained about
+    bool range = strchr(text, ':') != NULL && strchr(text, ',') == NULL;
+    return range ? read_range(axis, text, drawn, f) : read_list(axis, text, f);
+}
+
+void sweep_axis_finish(sweep_axis *axis)
+{
+    free(axis->values);
+    free(axis->text);
+}
+
+double sweep_axis_value_at(const sweep_axis *axis, double share)
+{
+    double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
+    if (!axis->is_range) {
+        return axis->values[(size_t)(share * (double)axis->count)];
+    }
+    bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
+    // each whole number owns the unit interval round it
+    double from = whole ? low - 0.5 : low, to = whole ? high + 0.5 : high;
+    double value =
+        axis->logarithmic ? from * exp(share * log(to / from)) : from + share * (to - from);
+    return fmin(fmax(whole ? floor(value + 0.5) : value, low), high);
+}

@@ -1,0 +1,34 @@
+// One parameter that a sweep varies, and the grammar of --vary that says over which values.
+#pragma once
+
+#include "src/quantities/parameters.h"
+
+enum { SWEEP_MOST_RUNS = 10000000, SWEEP_VALUE_TEXT = 128 };
+
+// One varied parameter. Words and truth values are numbers here, as in parameter_get.
+typedef struct sweep_axis {
+    int parameter;    // index in parameter_table
+    double *values;   // those of a list, or of a range in a grid; NULL for a range to draw from
+    size_t count;     // of values
+    double low, high; // of a range, as given; low may be the larger one
+    bool is_range;
+    bool logarithmic; // a range spaced evenly in the logarithm
+    char *text;       // what is varied, in one way of writing: "1:10:5", "0.1:10:3:log", "a,b"
+} sweep_axis;
+
+// Reads the values "a:b:n", "a:b:n:log" or "v1,v2,v3" of the axis, whose parameter is set; n may be
+// left out if values are drawn from a range. Changes the text. On failure f says what was expected;
+// sweep_axis_finish in either case.
+status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f);
+
+void sweep_axis_finish(sweep_axis *axis);
+
+// The varied parameter.
+const parameter_info *sweep_axis_parameter(const sweep_axis *axis);
+
+// A value of the axis as a scenario file would give it, exact ("newmark", "0.1").
+void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size);
+
+// The value at share u of the axis, 0 <= u < 1: equal shares for the values of a list, equal
+// lengths (or ratios, if logarithmic) for a range.
+double sweep_axis_value_at(const sweep_axis *axis, double share);

@@ -1,0 +1,34 @@
+// The database under a sweep's store: what its parts share.
+#pragma once
+
+#include <sqlite3.h>
+
+#include "src/study/sweep.h"
+
+// Of the table `run`: number of the run, then the varied values, status and message, then the
+// quantities of the summary.
+enum { RUN_FIRST_VALUE = 1, RUN_OUTCOME_COLUMNS = 2 };
+
+typedef struct sweep_store {
+    const sweep *sweep;
+    sqlite3 *database;
+    sqlite3_stmt *insert;
+    char *path; // NULL: in memory
+    int lock;   // descriptor that holds the lock, -1 if there is none
+    bool in_transaction;
+} sweep_store;
+
+// STATUS_NO_MEMORY, with its general text.
+status database_no_memory(fault *f);
+
+// What the database complains about, as a fault.
+status database_fault(const sweep_store *store, fault *f);
+
+// Executes statements that give no rows.
+status database_execute(sweep_store *store, const char *sql, fault *f);
+
+// Prepares a statement; the caller finalizes it, also on failure.
+status database_prepare(sweep_store *store, sqlite3_stmt **statement, const char *sql, fault *f);
+
+// The first number that a query gives, 0 if it gives none.
+status database_query_number(sweep_store *store, const char *sql, long long *number, fault *f);

@@ -1,0 +1,167 @@
+#include "src/study/sweep_rows.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/csv.h"
+#include "src/study/sweep_database.h"
+
+status sweep_store_present(sweep_store *store, unsigned char *present, size_t *count, fault *f)
+{
+    assert(store != NULL && present != NULL && count != NULL);
+    sqlite3_stmt *rows;
+    size_t total = store->sweep->run_count;
+    memset(present, 0, total);
+    *count = 0;
+    status code = database_prepare(store, &rows, "SELECT run FROM run", f);
+    while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
+        long long run = sqlite3_column_int64(rows, 0);
+        if (run < 1 || (unsigned long long)run > total) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu",
+                             store->path, run, total);
+        } else {
+            present[run - 1] = 1;
+            (*count)++;
+        }
+    }
+    if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
+        code = database_fault(store, f);
+    }
+    return code;
+}
+
+static void bind_number(sqlite3_stmt *statement, int column, double value)
+{
+    if (isfinite(value)) {
+        sqlite3_bind_double(statement, column, value);
+    } else {
+        sqlite3_bind_null(statement, column);
+    }
+}
+
+static void bind_row(sweep_store *store, size_t run, const summary *result)
+{
+    const sweep *s = store->sweep;
+    sqlite3_stmt *row = store->insert;
+    int column = 1;
+    sqlite3_bind_int64(row, column++, (sqlite3_int64)run + 1);
+    for (int i = 0; i < s->axis_count; i++) {
+        parameter_type type = parameter_table[s->axes[i].parameter].type;
+        if (type == PARAMETER_CHOICE || type == PARAMETER_BOOLEAN) {
+            char text[128];
+            sweep_value_text(s, run, i, text, sizeof text);
+            sqlite3_bind_text(row, column++, text, -1, SQLITE_TRANSIENT);
+        } else {
+            sqlite3_bind_double(row, column++, sweep_value(s, run, i));
+        }
+    }
+    sqlite3_bind_text(row, column++, result->status == STATUS_OK ? "ok" : "failed", -1,
+                      SQLITE_STATIC);
+    sqlite3_bind_text(row, column++, result->message, -1, SQLITE_TRANSIENT);
+    for (int i = 0; i < summary_count; i++) {
+        double value = (double)NAN;
+        summary_get(result, summary_table[i].key, &value);
+        bind_number(row, column++, value);
+    }
+}
+
+status sweep_store_put(sweep_store *store, size_t run, const summary *result, fault *f)
+{
+    assert(store != NULL && result != NULL && run < store->sweep->run_count);
+    if (!store->in_transaction) {
+        status code = database_execute(store, "BEGIN IMMEDIATE", f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        store->in_transaction = true;
+    }
+    bind_row(store, run, result);
+    int done = sqlite3_step(store->insert);
+    status code = done == SQLITE_DONE ? STATUS_OK : database_fault(store, f);
+    sqlite3_reset(store->insert);
+    return code;
+}
+
+status sweep_store_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
+                            fault *f)
+{
+    size_t total = store->sweep->run_count, failures = 0;
+    sqlite3_stmt *rows = NULL;
+    for (size_t i = 0; i < total; i++) {
+        values[i] = (double)NAN;
+    }
+    char *sql = sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key);
+    status code = sql ? database_prepare(store, &rows, sql, f) : database_no_memory(f);
+    while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
+        bool ok = strcmp((const char *)sqlite3_column_text(rows, 1), "ok") == 0;
+        failures += !ok;
+        if (ok && sqlite3_column_type(rows, 2) != SQLITE_NULL) {
+            values[sqlite3_column_int64(rows, 0) - 1] = sqlite3_column_double(rows, 2);
+        }
+    }
+    if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
+        code = database_fault(store, f);
+    }
+    sqlite3_free(sql);
+    if (failed != NULL) {
+        *failed = failures;
+    }
+    return code;
+}
+
+static void write_headings(csv_writer *csv, const sweep *s)
+{
+    csv_heading(csv, "run", "");
+    for (int i = 0; i < s->axis_count; i++) {
+        const parameter_info *info = &parameter_table[s->axes[i].parameter];
+        csv_heading(csv, info->path, info->unit);
+    }
+    csv_heading(csv, "status", "");
+    csv_heading(csv, "message", "");
+    for (int i = 0; i < summary_count; i++) {
+        if (!summary_table[i].timing) {
+            char name[64];
+            const char *unit;
+            quantity_name(summary_table[i].key, name, sizeof name, &unit);
+            csv_heading(csv, name, unit);
+        }
+    }
+    csv_end_row(csv);
+}
+
+static void write_field(csv_writer *csv, sqlite3_stmt *row, int column)
+{
+    switch (sqlite3_column_type(row, column)) {
+    case SQLITE_TEXT:
+        csv_text(csv, (const char *)sqlite3_column_text(row, column));
+        break;
+    case SQLITE_NULL:
+        csv_number(csv, (double)NAN);
+        break;
+    default:
+        csv_number(csv, sqlite3_column_double(row, column));
+    }
+}
+
+status sweep_store_csv(sweep_store *store, FILE *stream, fault *f)
+{
+    sqlite3_stmt *rows;
+    int first_quantity = RUN_FIRST_VALUE + store->sweep->axis_count + RUN_OUTCOME_COLUMNS;
+    status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    csv_writer csv = csv_begin(stream);
+    write_headings(&csv, store->sweep);
+    while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
+        for (int i = 0; i < first_quantity + summary_count; i++) {
+            if (i < first_quantity || !summary_table[i - first_quantity].timing) {
+                write_field(&csv, rows, i);
+            }
+        }
+        csv_end_row(&csv);
+    }
+    return sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
+}

@@ -1,0 +1,138 @@
+#include "src/study/sweep_run.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "src/run/run.h"
+#include "src/study/sweep_rows.h"
+
+#define COMMIT_INTERVAL 0.5 // [s]
+
+// A sweep being computed; all but the first is the calling thread's.
+typedef struct sweep_execution {
+    const sweep *sweep;
+    sweep_store *store;
+    const sweep_options *options;
+    sweep_progress *progress;
+    double start, committed; // instants by the clock [s]
+} sweep_execution;
+
+static double seconds(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// The summary of a run that could not begin.
+static void summarise_refusal(summary *s, const fault *why)
+{
+    memset(s, 0, sizeof *s);
+    for (int i = 0; i < summary_count; i++) {
+        double none = (double)NAN;
+        memcpy((char *)s + summary_table[i].offset, &none, sizeof none);
+    }
+    s->status = why->code;
+    snprintf(s->message, sizeof s->message, "%s", why->text);
+}
+
+static void compute_run(void *context, size_t run, void *scratch, void *result)
+{
+    const sweep_execution *e = context;
+    summary *s = result;
+    scenario derived;
+    fault f = {0};
+    (void)scratch;
+    // the computing time of this thread alone
+    double start = seconds(CLOCK_THREAD_CPUTIME_ID);
+    if (sweep_scenario(e->sweep, run, &derived, &f) == STATUS_OK) {
+        run_result computed;
+        run_scenario(&derived, false, &computed);
+        *s = computed.summary;
+        run_finish(&computed);
+    } else {
+        summarise_refusal(s, &f);
+    }
+    s->wall_time_s = seconds(CLOCK_THREAD_CPUTIME_ID) - start;
+}
+
+static status store_run(void *context, size_t run, const void *result, fault *f)
+{
+    sweep_execution *e = context;
+    const summary *s = result;
+    if (s->status == STATUS_NO_MEMORY) {
+        // says nothing about the scenario: the run has to be done again
+        return fault_set(f, STATUS_NO_MEMORY, "run %zu: %s", run + 1, s->message);
+    }
+    status code = sweep_store_put(e->store, run, s, f);
+    if (code == STATUS_OK) {
+        e->progress->done++;
+        e->progress->done_now++;
+        e->progress->failed += s->status != STATUS_OK;
+    }
+    return code;
+}
+
+static void report(const sweep_execution *e)
+{
+    e->progress->elapsed_s = seconds(CLOCK_MONOTONIC) - e->start;
+    if (e->options->report != NULL) {
+        e->options->report(e->options->context, e->progress);
+    }
+}
+
+// Commits what was stored every now and then, and at the end; tells how far the sweep is.
+static status commit_and_report(void *context, bool over, fault *f)
+{
+    sweep_execution *e = context;
+    status code = STATUS_OK;
+    if (over || seconds(CLOCK_MONOTONIC) - e->committed >= COMMIT_INTERVAL) {
+        code = sweep_store_commit(e->store, f);
+        e->committed = seconds(CLOCK_MONOTONIC);
+    }
+    if (!over) {
+        report(e); // the end is reported in any case, see sweep_run
+    }
+    return code;
+}
+
+// Computes what is not present.
+static status run_missing(sweep_execution *e, const unsigned char *present, fault *f)
+{
+    const pool_work work = {.context = e,
+                            .count = e->sweep->run_count,
+                            .done = present,
+                            .result_size = sizeof(summary),
+                            .compute = compute_run,
+                            .collect = store_run,
+                            .tick = commit_and_report,
+                            .stop = e->options->stop};
+    size_t missing = e->sweep->run_count - e->progress->done;
+    int jobs = missing < (size_t)e->options->jobs ? (int)missing : e->options->jobs;
+    return pool_run(&work, jobs > 0 ? jobs : 1, f);
+}
+
+status sweep_run(const sweep *s, sweep_store *store, const sweep_options *options,
+                 sweep_progress *progress, fault *f)
+{
+    assert(s != NULL && store != NULL && progress != NULL);
+    assert(options != NULL && options->jobs >= 1 && options->jobs <= SWEEP_MOST_JOBS);
+    double now = seconds(CLOCK_MONOTONIC);
+    sweep_execution e = {s, store, options, progress, .start = now, .committed = now};
+    *progress = (sweep_progress){.total = s->run_count};
+    unsigned char *present = malloc(s->run_count);
+    if (present == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+    status code = sweep_store_present(store, present, &progress->done, f);
+    if (code == STATUS_OK) {
+        code = run_missing(&e, present, f);
+        report(&e);
+    }
+    free(present);
+    return code;
+}

@@ -1,0 +1,30 @@
+// Computes the runs of a sweep on several threads and stores them as they finish.
+#pragma once
+
+#include "src/study/pool.h"
+#include "src/study/sweep.h"
+#include "src/study/sweep_store.h"
+
+enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
+
+// How far a sweep has come.
+typedef struct sweep_progress {
+    size_t done, total; // runs in the store, and of the sweep
+    size_t failed;      // of those done now: runs that failed
+    size_t done_now;    // since sweep_run began
+    double elapsed_s;   // since sweep_run began
+} sweep_progress;
+
+typedef struct sweep_options {
+    int jobs;                          // threads that compute, 1 ... SWEEP_MOST_JOBS
+    const volatile sig_atomic_t *stop; // becomes true to end early; NULL if nothing does
+    void (*report)(void *context, const sweep_progress *p); // about ten times a second, or NULL
+    void *context;
+} sweep_options;
+
+// Computes the runs that are missing in the store. Rows are committed at least every second (as
+// soon as the runs themselves let it). If *stop becomes true the runs in hand are finished and
+// committed, and STATUS_OK is returned with progress->done < progress->total. On failure of the
+// store, or without memory, what was committed stays and f says why.
+status sweep_run(const sweep *s, sweep_store *store, const sweep_options *options,
+                 sweep_progress *progress, fault *f);
