@@ -1,5 +1,6 @@
 #include "src/rig/estimator.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -29,6 +30,8 @@ static void multiply(double out[EXTENDED][EXTENDED], double x[EXTENDED][EXTENDED
 
 void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double input[N], double h)
 {
+    assert(m != NULL && n > 0 && n <= N && isfinite(h));
+
     // exponential of the system extended by its constant input: Taylor's series of a 2^-HALVINGS
     // part of the step, squared back
     enum { HALVINGS = 8, TERMS = 12 };
@@ -40,6 +43,7 @@ void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double
         }
         x[i][N] = input[i];
     }
+
     for (int i = 0; i < EXTENDED; i++) {
         sum[i][i] = power[i][i] = 1;
     }
@@ -52,6 +56,8 @@ void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double
     for (int i = 0; i < HALVINGS; i++) {
         multiply(sum, sum, sum, 1);
     }
+
+    // the state's part, and the constant input's column
     memset(m, 0, sizeof *m);
     m->n = n;
     for (int i = 0; i < n; i++) {
@@ -66,6 +72,8 @@ void estimator_predict(estimator *e, const sampled_model *m, double u, const dou
 {
     const int n = m->n;
     double z[N], ap[N][N];
+
+    // z = A z + b u, and A P on the way to A P A'
     for (int i = 0; i < n; i++) {
         z[i] = m->b[i] * u;
         for (int j = 0; j < n; j++) {
@@ -77,6 +85,8 @@ void estimator_predict(estimator *e, const sampled_model *m, double u, const dou
         }
     }
     memcpy(e->z, z, (size_t)n * sizeof z[0]);
+
+    // P = A P A' + noise
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             e->p[i][j] = i == j ? noise[i] : 0;
@@ -91,6 +101,8 @@ void estimator_correct(estimator *e, int n, const double *row, double offset, do
                        double variance)
 {
     double spread[N], expected = offset, total = variance;
+
+    // P row', the reading expected, and its variance row P row' + variance
     for (int i = 0; i < n; i++) {
         spread[i] = 0;
         for (int j = 0; j < n; j++) {
@@ -99,6 +111,8 @@ void estimator_correct(estimator *e, int n, const double *row, double offset, do
         expected += row[i] * e->z[i];
         total += row[i] * spread[i];
     }
+
+    // gain P row' / total
     for (int i = 0; i < n; i++) {
         e->z[i] += spread[i] / total * (reading - expected);
         for (int j = 0; j < n; j++) {
@@ -119,6 +133,8 @@ static bool riccati(double a[2][2], double g[2][2], double q[2][2], double p[2][
     double det = a[0][0] * a[1][1] - a[0][1] * a[1][0];
     double t[2][2] = {{a[1][1] / det, -a[1][0] / det}, {-a[0][1] / det, a[0][0] / det}}; // a^-T
     double z[16], vs[16], wr[4], wi[4], work[64];
+
+    // [a + g a^-T q, -g a^-T; -a^-T q, a^-T]
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {
             double gt = g[i][0] * t[0][j] + g[i][1] * t[1][j];
@@ -132,10 +148,13 @@ static bool riccati(double a[2][2], double g[2][2], double q[2][2], double p[2][
             z[i + 2 + 4 * (j + 2)] = t[i][j];
         }
     }
+
+    // its Schur vectors, those of stable eigenvalues first
     const int four = 4, length = 64;
     int found = 0, info = 0, flags[4];
     dgees_("V", "S", is_stable, &four, z, &four, &found, wr, wi, vs, &four, work, &length, flags,
            &info);
+
     // p = u21 u11^-1 of the first two Schur vectors
     double u = vs[0] * vs[5] - vs[4] * vs[1];
     if (info != 0 || found != 2 || !(fabs(u) > 1e-12)) {
@@ -153,6 +172,8 @@ static bool riccati(double a[2][2], double g[2][2], double q[2][2], double p[2][
 bool optimal_gain(const sampled_model *m, const double output[2], double direct, double effort,
                   double growth, double k[2])
 {
+    assert(m != NULL && m->n == 2 && growth > 0);
+
     // the cross term output x direct goes with u = v - s z / r
     double r = direct * direct + effort, grown[2][2], a[2][2], b[2], q[2][2], g[2][2], p[2][2];
     double s[2] = {output[0] * direct, output[1] * direct};
@@ -175,6 +196,8 @@ bool optimal_gain(const sampled_model *m, const double output[2], double direct,
     if (!riccati(a, g, q, p)) {
         return false;
     }
+
+    // k = (r + b' P b)^-1 (b' P a + s)
     double bp[2] = {b[0] * p[0][0] + b[1] * p[1][0], b[0] * p[0][1] + b[1] * p[1][1]};
     double weight = r + bp[0] * b[0] + bp[1] * b[1];
     for (int j = 0; j < 2; j++) {

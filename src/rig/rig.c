@@ -48,12 +48,14 @@ static controller_setup nominal_setup(const rig *r, const parameters *p)
 // Memory, values and the controller's own start, once it is known which controller it is.
 static status start_controller(rig *r, const parameters *p, fault *f)
 {
+    // at least one of each, as nothing allocated would look like no memory
     size_t count = (size_t)(r->law->parameter_count > 0 ? r->law->parameter_count : 1);
     r->memory = calloc(1, r->law->memory_size + 1);
     r->values = calloc(count, sizeof *r->values);
     if (r->memory == NULL || r->values == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for the controller '%s'", r->law->name);
     }
+
     status s = controller_values(r->law, p, r->values, f);
     if (s != STATUS_OK) {
         return s;
@@ -68,6 +70,7 @@ static status start_controller(rig *r, const parameters *p, fault *f)
     return STATUS_OK;
 }
 
+// Instant of the next sample, scattered evenly over the jitter's width; the first is not [s].
 static double sampling_instant(rig *r)
 {
     double nominal = (double)r->samples * r->period;
@@ -77,24 +80,34 @@ static double sampling_instant(rig *r)
     return nominal + r->jitter * (random_uniform(&r->clock) - 0.5);
 }
 
+// What a controller answers that fills in nothing.
+static controller_output no_answer(void)
+{
+    return (controller_output){.desired_angle = (double)NAN,
+                               .desired_velocity = (double)NAN,
+                               .calculated_force = (double)NAN};
+}
+
 status rig_create(rig **created, const parameters *p, fault *f)
 {
+    assert(created != NULL && p != NULL && p->control.law != LAW_NONE && p->control.rate > 0);
     rig *r = calloc(1, sizeof *r);
     *created = NULL;
     if (r == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for the rig");
     }
+
+    // the loop before its first sample, at t = 0
     r->period = 1 / p->control.rate;
     r->delay = p->control.delay + p->control.delay_periods * r->period;
     r->jitter = p->control.jitter;
     r->voltage_limit = p->motor.voltage_limit;
     r->effect_time = HUGE_VAL;
-    r->output = (controller_output){.desired_angle = (double)NAN,
-                                    .desired_velocity = (double)NAN,
-                                    .calculated_force = (double)NAN};
+    r->output = no_answer();
     sensors_init(&r->sensors, &p->sensor, p->control.seed);
     random_seed(&r->clock, ~(uint64_t)p->control.seed);
 
+    // the controller, which may refuse the lock, its settings or the arm
     status s = STATUS_OK;
     r->law = controller_of(p->control.law);
     if (p->control.law == LAW_PLUGIN) {
@@ -107,6 +120,7 @@ status rig_create(rig **created, const parameters *p, fault *f)
         rig_destroy(r);
         return s;
     }
+
     *created = r;
     return STATUS_OK;
 }
@@ -128,6 +142,7 @@ double rig_next_time(const rig *r)
     return fmin(r->sample_time, r->effect_time);
 }
 
+// The pending command goes out.
 static void apply(rig *r, bool *changed)
 {
     *changed = *changed || r->pending != r->voltage;
@@ -135,24 +150,29 @@ static void apply(rig *r, bool *changed)
     r->effect_time = HUGE_VAL;
 }
 
-static status take_sample(rig *r, double time, const sensed_motion *now, fault *f)
+// What a controller gets to see of a reading.
+static controller_input input_of(const rig *r, double time)
 {
     const sensor_reading *read = &r->reading;
-    r->reading = sensors_read(&r->sensors, now);
-    controller_input input = {.time = time,
+    bool piezo = r->sensors.p.force == FORCE_BY_PIEZO;
+    return (controller_input){.time = time,
                               .encoder = read->encoder,
                               .tachometer = read->tachometer,
-                              .force = r->sensors.p.force == FORCE_BY_PIEZO ? read->piezo_force
-                                                                            : read->force_reading,
+                              .force = piezo ? read->piezo_force : read->force_reading,
                               .voltage = r->voltage,
                               .piezo_force = read->piezo_force,
                               .film = read->film,
                               .accelerometer = read->accelerometer,
                               .wanted_mode = r->lock};
+}
+
+// One sample: sensors, controller, D/A; the command is pending for the delay.
+static status take_sample(rig *r, double time, const sensed_motion *now, fault *f)
+{
+    r->reading = sensors_read(&r->sensors, now);
+    controller_input input = input_of(r, time);
     controller_output *out = &r->output;
-    *out = (controller_output){.desired_angle = (double)NAN,
-                               .desired_velocity = (double)NAN,
-                               .calculated_force = (double)NAN};
+    *out = no_answer();
     r->law->sample(r->memory, &input, out);
     if (!isfinite(out->command)) {
         return fault_set(
@@ -161,9 +181,12 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
             "number; its sensors read %.6g rad, %.6g rad/s and %.6g N",
             time, r->law->name, out->command, input.encoder, input.tachometer, input.force);
     }
+
+    // what the D/A makes of it goes out after the delay
     r->pending = converter_value(out->command, r->sensors.p.dac_bits, r->voltage_limit);
     r->largest_command = fmax(r->largest_command, fabs(r->pending));
     r->effect_time = time + r->delay;
+
     r->samples++;
     r->sample_time = sampling_instant(r);
     return STATUS_OK;
@@ -173,16 +196,19 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
 {
     const double late = 1e-9 * r->period; // instants of another grid may miss ours by rounding
     const int mode = r->output.mode;
-    status s = STATUS_OK;
     *changed = false;
     const bool samples = r->sample_time <= time + late;
+
     // with jitter the next sample may come before a late command: it goes out then
     if (r->effect_time <= time + late || (samples && r->effect_time < HUGE_VAL)) {
         apply(r, changed);
     }
+
+    status s = STATUS_OK;
     if (samples) {
         s = take_sample(r, time, now, f);
     }
+    // without a delay the new command takes effect at once
     if (s == STATUS_OK && r->effect_time <= time + late) {
         apply(r, changed);
     }

@@ -1,5 +1,6 @@
 #include "src/rig/sensors.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "src/base/sincos.h"
@@ -42,6 +43,7 @@ double converter_value(double value, int bits, double range)
     if (bits == 0) {
         return within;
     }
+
     // whole steps from the lower end of the range: a conversion that rounds positive numbers
     int64_t codes = INT64_C(1) << bits;
     double step = 2 * range / (double)codes;
@@ -64,16 +66,21 @@ static void idealise(sensor_parameters *p)
 
 void sensors_init(sensors *s, const sensor_parameters *p, int seed)
 {
+    assert(s != NULL && p != NULL);
     const uint64_t other_sensor = UINT64_C(1) << 32; // beyond any seed
     *s = (sensors){.p = *p, .seen_velocity = (double)NAN};
     if (p->ideal) {
         idealise(&s->p);
     }
+
+    // lags and leaks, all at rest
     s->fsr.time_constant = s->p.fsr_rise_time / RISE_OVER_TIME_CONSTANT;
     s->piezo_rise.time_constant = s->p.piezo_rise_time / RISE_OVER_TIME_CONSTANT;
     s->piezo_leak.time_constant = s->p.piezo_leak_time;
     s->film_leak.time_constant = s->p.film_leak_time;
     s->acceleration.time_constant = s->p.accelerometer_rise_time / RISE_OVER_TIME_CONSTANT;
+
+    // each sensor that need not be there has numbers of its own
     noise_start(&s->noise, (uint64_t)seed);
     noise_start(&s->piezo_noise, (uint64_t)seed + other_sensor);
     noise_start(&s->film_noise, (uint64_t)seed + 2 * other_sensor);
@@ -91,6 +98,7 @@ static void lag_follow(first_order_lag *y, double h, double first, double last, 
     if (lag == 0 || h <= 0) {
         return;
     }
+
     double curve = 3 * (first + last) - 6 * mean, slope = last - first - curve;
     if (h < SHORT_STRIDE * lag) {
         // the integrals of u^n exp(-(1 - u) x) over the stride as series in x
@@ -101,6 +109,7 @@ static void lag_follow(first_order_lag *y, double h, double first, double last, 
         y->value += x * ((first - y->value) * of_one + slope * of_u + curve * of_square);
         return;
     }
+
     // the particular solution f - lag f' + lag^2 f'' and a transient that dies
     double r = lag / h;
     double at_start = first - r * slope + 2 * r * r * curve;
@@ -135,15 +144,20 @@ void sensors_follow(sensors *s, double h, const sensed_motion *first, const sens
                     double mean_force)
 {
     lag_follow(&s->fsr, h, first->force, last->force, mean_force);
+
     if (s->p.piezo) {
         lag_follow(&s->piezo_rise, h, first->force, last->force, mean_force);
         lag_follow(&s->piezo_leak, h, first->force, last->force, mean_force);
     }
+
+    // the mean of the cubic through both ends' values and rates
     if (s->p.film) {
         double mean = (first->bending + last->bending) / 2 +
                       h * (first->bending_rate - last->bending_rate) / 12;
         lag_follow(&s->film_leak, h, first->bending, last->bending, mean);
     }
+
+    // a jump between strides is a pulse; within the stride the velocity gained is the mean
     if (s->p.accelerometer) {
         feel_jump(s, first->velocity);
         if (h > SHORTEST_GAIN) {
@@ -242,12 +256,16 @@ static double read_accelerometer(sensors *s, const sensed_motion *now)
 sensor_reading sensors_read(sensors *s, const sensed_motion *now)
 {
     const sensor_parameters *p = &s->p;
+    // the ripple turns with the shaft
     double wave, unused;
     inline_sincos(p->tachometer_ripple_count * now->angle, &wave, &unused);
     double ripple = 1 + p->tachometer_ripple * wave;
     double tachometer =
         convert(s, &s->noise, p->tachometer_gain * now->velocity * ripple, p->tachometer_noise);
+
     double fsr = convert(s, &s->noise, fsr_volts(p, lag_output(&s->fsr, now->force)), p->fsr_noise);
+
+    // the others draw from noise of their own, in any order
     return (sensor_reading){.encoder = read_encoder(s, now->angle),
                             .tachometer = tachometer / p->tachometer_gain,
                             .force_reading = fsr_force(p, fsr),

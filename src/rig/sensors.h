@@ -58,6 +58,7 @@ typedef struct sensor_reading {
     double accelerometer; // hub acceleration [rad/s2]
 } sensor_reading;
 
+// Starts sensors at rest, their noise from the seed; sensor.ideal takes every imperfection away.
 void sensors_init(sensors *s, const sensor_parameters *p, int seed);
 
 // Lets the sensors with a lag or a leak follow the arm over a time h [s]. Force, bending and hub

@@ -123,6 +123,8 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
     double angle = a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * (a[4] + t * a[5]))));
     double velocity = a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
     double acceleration = 2 * a[2] + t * (6 * a[3] + t * (12 * a[4] + t * 20 * a[5]));
+
+    // the model's torque along the plan, (5.24)
     double torque = m->rig.hub_damping * velocity + m->rig.stiction * sign(velocity) -
                     spring_torque(m, angle) + contact_inertia(m) * acceleration;
     out->desired_angle = angle;
@@ -144,6 +146,7 @@ double hybrid_force_command(const hybrid_memory *m, const controller_input *in,
 double hybrid_command(hybrid_memory *m, const controller_input *in, controller_output *out,
                       double approach)
 {
+    // approach ends with contact, the impact mode with t_f
     bool chooses = !hybrid_held(m, in);
     if (chooses && (m->mode == APPROACH || m->mode == RECOVER) && in->force > m->threshold) {
         hybrid_begin(m, IMPACT, in);
@@ -151,6 +154,7 @@ double hybrid_command(hybrid_memory *m, const controller_input *in, controller_o
     if (chooses && m->mode == IMPACT && in->time - m->since >= m->transition) {
         hybrid_begin(m, FORCE, in);
     }
+
     out->mode = m->mode;
     out->calculated_force = m->mode == APPROACH ? 0 : hybrid_calculated_force(m, in);
     return m->mode == IMPACT  ? impact_command(m, in, out)

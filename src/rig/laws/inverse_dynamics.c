@@ -100,6 +100,8 @@ static moment piece_at(const inverse_memory *m, int piece, double time)
             .bend_rate = at_w * w * (A * c + B * s),
         };
     }
+
+    // at the wall: the force rises, then stays
     moment pressed = {
         .tip = m->rig.wall_angle, .force = m->force, .bend = -m->per_force * m->force / s2};
     if (piece == RISE) {
@@ -179,6 +181,8 @@ static const char *start(void *memory, const controller_setup *setup)
     if (!(m12 > m22)) {
         return "the tip's motion has no bounded inverse with a link inertia of m l^2/4 or more";
     }
+
+    // the linear arm, (a) and the sum of both links' equations
     m->rig = *setup;
     m->force = p[FORCE_WANTED];
     m->threshold = p[THRESHOLD];
@@ -187,6 +191,8 @@ static const char *start(void *memory, const controller_setup *setup)
     m->per_force = 2 * l / (m12 - m22);
     m->whole_inertia = m11 + 2 * m12 + m22;
     m->bend_inertia = (m22 - m11) / 2;
+
+    // the plan: frequencies of its pieces and the times of their joints
     m->arrival_rate = p[ARRIVAL_SPEED] / (2 * l);
     m->travel = 2 * PI / p[TRAVEL_TIME];
     m->rise = PI / p[TRANSITION];
@@ -216,11 +222,13 @@ static void sample(void *memory, const controller_input *in, controller_output *
     if (!m->started) {
         plan(m, in);
     }
+
     double time = in->time - m->departure;
     if (time < m->joint[TOUCH] - EARLY / m->zero && in->force > m->threshold) {
         m->departure = in->time - m->joint[TOUCH];
         time = m->joint[TOUCH];
     }
+
     moment now = plan_at(m, time);
     moment held = plan_at(m, time + m->rig.delay + m->rig.period / 2);
     out->mode = time < m->joint[TOUCH] ? MODE_TRAVEL : MODE_PRESS;

@@ -27,8 +27,12 @@ static void model_flight(optimal_memory *m)
     double ml2 = r->link_mass * r->link_length * r->link_length;
     double m11 = r->hub_inertia + r->link_inertia + 1.25 * ml2, m12 = 0.5 * ml2;
     double m22 = r->link_inertia + 0.25 * ml2, det = m11 * m22 - m12 * m12;
+
+    // what the impact makes of both links' velocities, (4.10)-(4.17)
     m->jump[0] = (m11 - m12) / m->inertia;
     m->jump[1] = (m12 - m22) / m->inertia;
+
+    // accelerations M^-1 (torque e1 - D q1' e1 - K q)
     double bend_first = r->k2 * (m22 + m12) / det, bend_last = -r->k2 * (m12 + m11) / det;
     double rate[4][4] = {
         [FREE_FIRST] = {[FREE_FIRST_RATE] = 1},
@@ -40,6 +44,8 @@ static void model_flight(optimal_memory *m)
     sampled_model_init(&m->flight, 4, rate, input, r->period);
 }
 
+// In contact, on x and its rate, the wall's angle and a constant torque T:
+// M x'' = torque + T - D x' - 4 k2 x, over a time h.
 static void model_contact(optimal_memory *m, double h, sampled_model *model)
 {
     double k = m->stiffness / m->inertia, d = m->rig.hub_damping / m->inertia;
@@ -54,11 +60,14 @@ const char *state_feedback_start(void *memory, const controller_setup *setup)
     assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     optimal_memory *m = memory;
     const double l = setup->link_length, quarter = setup->link_mass * l * l / 4;
+
     m->rig = *setup;
     m->force = setup->parameters[FORCE_WANTED];
     m->approach_voltage = setup->parameters[APPROACH_VOLTAGE];
     m->threshold = setup->parameters[THRESHOLD];
     m->force_limit = HUGE_VAL;
+
+    // the one degree of freedom in contact
     m->inertia = setup->hub_inertia + 2 * setup->link_inertia + 2 * quarter;
     m->stiffness = 4 * setup->k2;
     m->spring_force = 2 * setup->k2 / l;
@@ -67,9 +76,11 @@ const char *state_feedback_start(void *memory, const controller_setup *setup)
     if (!(setup->torque_per_volt > 0) || !(m->inertia > 0)) {
         return "it needs a motor that turns the hub and an arm with inertia";
     }
+
     model_flight(m);
     model_contact(m, setup->period, &m->contact);
     model_contact(m, setup->delay, &m->during_delay);
+
     // force of deviations from rest: x and its rate, and a command's immediate effect
     sampled_model plant = {.n = 2};
     for (int i = 0; i < 2; i++) {
@@ -133,6 +144,8 @@ static void enter_contact(optimal_memory *m, const controller_input *in)
     double before = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2;
     predict_flight(m, in);
     double after = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2, way = after - before;
+
+    // anywhere on the way between the two samples: variance way^2/12
     estimator e = {.z = {in->encoder, in->tachometer, (before + after) / 2, 0}};
     e.p[PRESSED_ANGLE][PRESSED_ANGLE] = ANGLE_VARIANCE;
     e.p[PRESSED_RATE][PRESSED_RATE] = RATE_VARIANCE;
@@ -217,11 +230,13 @@ static void predict_contact(const optimal_memory *m, const sampled_model *model,
     double rest_angle = z[PRESSED_ANGLE];
     bool rests = fabs(z[PRESSED_RATE]) < 0.01 && fabs(torque) <= m->rig.stiction;
     double held = friction(m, z[PRESSED_RATE], torque);
+
     // a stiffness believed wrongly shows as a wall that moves with the hub
     double noise[4], wandering = K2_DOUBT * z[PRESSED_RATE] * m->rig.period;
     memcpy(noise, contact_noise, sizeof noise);
     noise[PRESSED_WALL] += wandering * wandering;
     estimator_predict(e, model, drive - held, noise);
+
     if (rests) {
         z[PRESSED_ANGLE] = rest_angle;
         z[PRESSED_RATE] = 0;
@@ -236,6 +251,7 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
     predict_contact(m, &m->contact, e, drive);
     estimator_correct(e, 4, angle_row, 0, in->encoder, ANGLE_VARIANCE);
     estimator_correct(e, 4, rate_row, 0, in->tachometer, RATE_VARIANCE);
+
     // the force is linear in the state but for friction: row times state, plus what is left
     double whole = m->spring_force + m->mass_force * m->stiffness / m->inertia;
     double row[4] = {whole, m->mass_force * m->rig.hub_damping / m->inertia, -whole,
@@ -244,6 +260,8 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
     for (int i = 0; i < 4; i++) {
         linear += row[i] * e->z[i];
     }
+
+    // the sensor is worth less the harder it is pressed
     double deviation = 0.02 + 0.02 * in->force; // [N]
     estimator_correct(e, 4, row, contact_force(m, e->z, drive) - linear, in->force,
                       deviation * deviation);
@@ -260,6 +278,8 @@ static double limit_command(optimal_memory *m, const double *z, double command)
     if (excess > 0) {
         m->ceiling = fmax(m->ceiling, braking_force(m, stopping));
     }
+
+    // the force at once falls by per_volt for each volt: braking presses
     double per_volt = m->mass_force / m->inertia * m->rig.torque_per_volt;
     double force = contact_force(m, z, motor_torque(m, command));
     double wanted = fmax(least, fmin(force, m->ceiling));
@@ -298,6 +318,8 @@ static double hold(optimal_memory *m, const controller_input *in)
 {
     const double smoothing = 0.05;
     m->held_force += smoothing * (in->force - m->held_force);
+
+    // off the command: press again, the wall being where this force puts it
     bool wanted = in->wanted_mode == HOLD;
     if (!wanted && fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
         m->mode = PRESS;
@@ -321,10 +343,13 @@ static double seek_wall(const optimal_memory *m)
 
 static double press(optimal_memory *m, const controller_input *in)
 {
+    // the state when the command takes effect
     estimator ahead = m->e;
     if (m->rig.delay > 0) {
         predict_contact(m, &m->during_delay, &ahead, motor_torque(m, in->voltage));
     }
+
+    // at rest within the tolerance there is nothing left to do but to hold
     const double *z = ahead.z;
     double shortfall = fmin(SHORTFALL * m->force, MOST_SHORTFALL);
     double aim = m->force * (1 - shortfall) / m->spring_force,
@@ -337,6 +362,8 @@ static double press(optimal_memory *m, const controller_input *in)
         begin_hold(m, x);
         return m->hold_command;
     }
+
+    // what keeps the aim, friction included, and the feedback round it
     double against = rests ? copysign(m->rig.stiction, error) : friction(m, velocity, 0);
     double steady = (m->stiffness * aim - z[PRESSED_TORQUE] + against) / m->rig.torque_per_volt;
     return limit_command(m, z, steady + m->gain[0] * error - m->gain[1] * velocity);
@@ -371,11 +398,13 @@ void state_feedback_sample(void *memory, const controller_input *in, controller_
                    : m->mode == HOLD   ? hold(m, in)
                    : m->flies          ? seek_wall(m)
                                        : press(m, in);
+
     out->mode = m->mode;
     if (m->mode == APPROACH) {
         out->calculated_force = m->force_limit == HUGE_VAL ? 0 : force_of_touch(m);
         return;
     }
+
     double wall = m->flies ? m->rig.wall_angle : m->e.z[PRESSED_WALL];
     out->desired_angle = wall + m->force / m->spring_force;
     out->desired_velocity = 0;

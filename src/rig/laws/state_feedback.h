@@ -37,8 +37,7 @@ typedef struct optimal_memory {
     double jump[2];     // rate of x after an impact, of both links' velocities before it
     int mode;
     bool started;
-    bool flies; // the estimate is of the free flight
-    int samples_in_contact;
+    bool flies;          // the estimate is of the free flight
     double inertia;      // M [kg m2]
     double stiffness;    // 4 k2 [N m/rad]
     double spring_force; // of x: 2 k2/l [N/rad]

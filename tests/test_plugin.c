@@ -1,0 +1,91 @@
+// Controllers from shared objects: test_plugin SOFT_PUSH BROKEN OUTDATED.
+#include <string.h>
+
+#include "src/rig/rig.h"
+#include "tests/rig_fixture.h"
+
+static const char *soft_push_file, *broken_file, *outdated_file;
+
+static const char *plugin_setting(char *text, size_t size, const char *file)
+{
+    snprintf(text, size, "control.plugin=%s", file);
+    return text;
+}
+
+static void plugin_controls_the_arm(void **state)
+{
+    (void)state;
+    char file[160];
+    plugin_setting(file, sizeof file, soft_push_file);
+    summary s = rig_summary(SETTINGS("control.law=plugin", file, "control.force=1.5"));
+    check_close(s.separations, 0, 0);
+    check_relative(s.steady_force_N, 1.5, 0.06);
+    summary slow = rig_summary(SETTINGS("control.law=plugin", file, "control.force=1.5",
+                                        "control.settings=rise_time=0.4 damping=1"));
+    check_below(s.settling_time_s, slow.settling_time_s);
+}
+
+static void check_refused(const char *const *settings, const char *sentence)
+{
+    run_result r;
+    scenario s = {.parameters = rig_parameters(settings)};
+    assert_int_not_equal(run_scenario(&s, false, &r), STATUS_OK);
+    if (strstr(r.summary.message, sentence) == NULL) {
+        fail_msg("'%s' does not say '%s'", r.summary.message, sentence);
+    }
+    run_finish(&r);
+}
+
+static void wrong_plugins_are_refused(void **state)
+{
+    (void)state;
+    char file[160];
+    plugin_setting(file, sizeof file, soft_push_file);
+    check_refused(SETTINGS("control.law=plugin", "control.plugin=/nonexistent.so"),
+                  "/nonexistent.so");
+    check_refused(SETTINGS("control.law=plugin", file, "control.settings=dampin=1"),
+                  "did you mean 'damping'?");
+    check_refused(SETTINGS("control.law=plugin", file, "control.settings=damping=-1"),
+                  "from 0 to 100");
+    check_refused(SETTINGS("control.law=plugin", file, "control.lock=force"),
+                  "expected none, approach or push");
+    check_refused(SETTINGS("control.law=plugin", file, "control.settings=damping"),
+                  "damping=NUMBER");
+    check_refused(SETTINGS("control.law=plugin", file, "motor.amplifier_gain=0"), "no torque");
+    plugin_setting(file, sizeof file, outdated_file);
+    check_refused(SETTINGS("control.law=plugin", file), "compile it again");
+}
+
+static void command_that_is_not_finite_stops_the_run(void **state)
+{
+    (void)state;
+    char file[160];
+    const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
+    for (int i = 0; i < 2; i++) {
+        run_result r;
+        plugin_setting(file, sizeof file, broken_file);
+        scenario s = {.parameters =
+                          rig_parameters(SETTINGS("control.law=plugin", file, models[i]))};
+        assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
+        assert_non_null(strstr(r.summary.message, "at t = 0.1 s the controller 'broken'"));
+        check_close(r.trace.rows[r.trace.row_count - 1].time, 0.1, 0.0011);
+        run_finish(&r);
+    }
+}
+
+int main(int count, char **arguments)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plugin_controls_the_arm),
+        cmocka_unit_test(wrong_plugins_are_refused),
+        cmocka_unit_test(command_that_is_not_finite_stops_the_run),
+    };
+    if (count != 4) {
+        fprintf(stderr, "usage: test_plugin SOFT_PUSH.so BROKEN.so OUTDATED.so\n");
+        return 2;
+    }
+    soft_push_file = arguments[1];
+    broken_file = arguments[2];
+    outdated_file = arguments[3];
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

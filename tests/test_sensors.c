@@ -1,0 +1,185 @@
+// Sensors and converters against their data.
+#include "src/rig/sensors.h"
+#include "tests/rig_fixture.h"
+
+#define PI 3.14159265358979323846
+
+static sensors fresh_sensors(const char *const *settings, int seed)
+{
+    sensors s;
+    parameters p = rig_parameters(settings);
+    sensors_init(&s, &p.sensor, seed);
+    return s;
+}
+
+static sensor_reading read_hub(sensors *s, double angle, double velocity, double force)
+{
+    return sensors_read(s, &(sensed_motion){.angle = angle, .velocity = velocity, .force = force});
+}
+
+// A stride of the force alone.
+static void follow_force(sensors *s, double h, double first, double last, double mean)
+{
+    sensors_follow(s, h, &(sensed_motion){.force = first}, &(sensed_motion){.force = last}, mean);
+}
+
+static void encoder_steps_by_one_count(void **state)
+{
+    (void)state;
+    sensors s = fresh_sensors(SETTINGS("sensor.encoder_counts=500"), 1);
+    const double count = 2 * PI / 500;
+    double last = read_hub(&s, -0.1, 0, 0).encoder;
+    int steps = 0;
+    for (double angle = -0.1; angle < 0.1; angle += count / 50) {
+        double read = read_hub(&s, angle, 0, 0).encoder;
+        check_close(read, angle, count / 2 * (1 + 1e-9));
+        check_close(read / count, round(read / count), 1e-9);
+        if (read != last) {
+            check_close(read - last, count, 1e-12);
+            steps++;
+        }
+        last = read;
+    }
+    assert_in_range(steps, 15, 16); // 0.2 rad of 500 counts a revolution
+}
+
+static void converter_has_its_bits_and_range(void **state)
+{
+    (void)state;
+    const double step = 20.0 / 4096;
+    check_close(converter_value(0.4 * step, 12, 10), 0, 0);
+    check_close(converter_value(0.6 * step, 12, 10), step, 1e-15);
+    check_close(converter_value(3, 12, 10), round(3 / step) * step, 1e-12);
+    check_close(converter_value(25, 12, 10), 10 - step, 1e-12);
+    check_close(converter_value(-25, 12, 10), -10, 0);
+    check_close(converter_value(1.23456789, 0, 10), 1.23456789, 0);
+    check_close(converter_value(25, 0, 10), 10, 0);
+}
+
+// Time at which the lagged force crosses a level after a step of 1 N.
+static double rise_to(double level)
+{
+    sensors s = fresh_sensors(NULL, 1);
+    const double h = 1e-6;
+    double t = 0;
+    for (; s.fsr.value < level && t < 1; t += h) {
+        follow_force(&s, h, 1, 1, 1);
+    }
+    return t;
+}
+
+static void force_sensor_rises_in_its_time(void **state)
+{
+    (void)state;
+    check_close(rise_to(0.9) - rise_to(0.1), 1.5e-3, 4e-6);
+}
+
+static void force_sensor_follows_a_stride_exactly(void **state)
+{
+    (void)state;
+    // f = 2 - 3 u + 5 u^2 over 4 ms, at once and in a thousand short strides
+    const double h = 4e-3;
+    sensors once = fresh_sensors(NULL, 1), often = once;
+    once.fsr.value = often.fsr.value = 0.7;
+    follow_force(&once, h, 2, 4, 2 - 1.5 + 5.0 / 3);
+    for (int i = 0; i < 1000; i++) {
+        double a = i / 1000.0, b = (i + 1) / 1000.0;
+        double mean = 2 - 1.5 * (a + b) + 5.0 / 3 * (a * a + a * b + b * b);
+        follow_force(&often, h / 1000, 2 - 3 * a + 5 * a * a, 2 - 3 * b + 5 * b * b, mean);
+    }
+    check_close(once.fsr.value, often.fsr.value, 1e-9);
+    // a stride of no length changes nothing
+    double before = once.fsr.value;
+    follow_force(&once, 1e-17, 1, 3, 1e9);
+    check_close(once.fsr.value, before, 1e-4);
+}
+
+static void impulse_arrives_whole(void **state)
+{
+    (void)state;
+    sensors s = fresh_sensors(NULL, 1);
+    double arrived = 0;
+    const double h = 1e-6, impulse = 0.02;
+    sensors_strike(&s, impulse);
+    for (int i = 0; i < 20000; i++) {
+        double before = s.fsr.value;
+        follow_force(&s, h, 0, 0, 0);
+        arrived += h * (before + s.fsr.value) / 2;
+    }
+    check_relative(arrived, impulse, 1e-4);
+}
+
+static void divider_follows_the_power_law(void **state)
+{
+    (void)state;
+    parameters p = rig_parameters(NULL);
+    // half the supply where the sensor has the measuring resistor's 40 kohm: 30 kohm f^-0.75
+    double force = pow(40.0 / 30, -1 / 0.75);
+    check_close(fsr_volts(&p.sensor, force), 5, 1e-12);
+    check_close(fsr_volts(&p.sensor, 1), 10 * 40.0 / 70, 1e-12);
+    check_close(fsr_volts(&p.sensor, 0), 0, 0);
+    check_close(fsr_volts(&p.sensor, 50), fsr_volts(&p.sensor, 10), 0);
+    for (double f = 0.01; f < 10; f *= 1.3) {
+        check_relative(fsr_force(&p.sensor, fsr_volts(&p.sensor, f)), f, 1e-12);
+    }
+    check_close(fsr_force(&p.sensor, 11), 10, 0);
+    check_close(fsr_force(&p.sensor, -0.1), 0, 0);
+}
+
+static void noise_has_its_spread_and_follows_its_seed(void **state)
+{
+    (void)state;
+    const char *const *quiet = SETTINGS("sensor.tachometer_ripple=0", "sensor.adc_bits=0");
+    sensors s = fresh_sensors(quiet, 7), twin = fresh_sensors(quiet, 7);
+    sensors other = fresh_sensors(quiet, 8);
+    double sum = 0, squares = 0;
+    const int count = 40000;
+    int same = 0;
+    for (int i = 0; i < count; i++) {
+        double v = read_hub(&s, 0, 0.5, 1).tachometer - 0.5;
+        assert_true(read_hub(&twin, 0, 0.5, 1).tachometer - 0.5 == v);
+        same += read_hub(&other, 0, 0.5, 1).tachometer - 0.5 == v;
+        sum += v;
+        squares += v * v;
+    }
+    // 10 mV at 2 V s/rad
+    check_relative(sqrt(squares / count), 0.005, 0.02);
+    check_close(sum / count, 0, 0.0001);
+    assert_true(same < 10);
+}
+
+static void ripple_follows_the_shaft(void **state)
+{
+    (void)state;
+    sensors s = fresh_sensors(
+        SETTINGS("sensor.tachometer_noise=0", "sensor.adc_bits=0", "sensor.tachometer_ripple=0.05"),
+        1);
+    check_close(read_hub(&s, 0.5 * PI / 79, 2, 0).tachometer, 2.1, 1e-9);
+    check_close(read_hub(&s, 1.5 * PI / 79, 2, 0).tachometer, 1.9, 1e-9);
+}
+
+static void ideal_sensors_tell_the_truth(void **state)
+{
+    (void)state;
+    sensors s = fresh_sensors(SETTINGS("sensor.ideal=true"), 1);
+    sensor_reading r = read_hub(&s, 0.1234567, -1.2345678, 3.456789);
+    check_close(r.encoder, 0.1234567, 0);
+    check_close(r.tachometer, -1.2345678, 1e-12);
+    check_close(r.force_reading, 3.456789, 1e-12);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(encoder_steps_by_one_count),
+        cmocka_unit_test(converter_has_its_bits_and_range),
+        cmocka_unit_test(force_sensor_rises_in_its_time),
+        cmocka_unit_test(force_sensor_follows_a_stride_exactly),
+        cmocka_unit_test(impulse_arrives_whole),
+        cmocka_unit_test(divider_follows_the_power_law),
+        cmocka_unit_test(noise_has_its_spread_and_follows_its_seed),
+        cmocka_unit_test(ripple_follows_the_shaft),
+        cmocka_unit_test(ideal_sensors_tell_the_truth),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
