@@ -74,7 +74,7 @@ static void varied_values_have_columns(void **state)
 {
     (void)state;
     fault f;
-    const int varied[] = {parameter_find("control.force"), parameter_find("control.gains")};
+    const int varied[] = {PARAMETER_INDEX(control.force), PARAMETER_INDEX(control.gains)};
     compare_row rows[4], references[2];
     for (int i = 0; i < 4; i++) {
         rows[i] = (compare_row){.scenario = i % 2 ? "b" : "a",

@@ -12,7 +12,7 @@ static const char *manual; // path of docs/control.md
 static void every_word_chooses_the_controller_of_that_name(void **state)
 {
     (void)state;
-    const int index = parameter_find("control.law");
+    const int index = PARAMETER_INDEX(control.law);
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
         parameters p;
         fault f;
@@ -70,7 +70,7 @@ static void settings_go_before_the_scenario_and_that_before_the_default(void **s
     while (strcmp(law->parameters[kp].name, "kp") != 0) {
         kp++;
     }
-    double initial = parameter_table[parameter_find("control.kp")].default_corrected;
+    double initial = parameter_table[PARAMETER_INDEX(control.kp)].default_corrected;
     check_close(value_of(kp, SETTINGS("control.law=hybrid")), initial, 0);
     check_close(value_of(kp, SETTINGS("control.law=hybrid", "control.kp=3")), 3, 0);
     check_close(
@@ -91,7 +91,7 @@ static void initial_values_of_ones_own_parameters_take_effect(void **state)
     assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
     check_close(values[0], 7, 0);
     check_close(values[1], 0.5, 0);
-    check_close(values[2], parameter_table[parameter_find("control.kv")].default_corrected, 0);
+    check_close(values[2], parameter_table[PARAMETER_INDEX(control.kv)].default_corrected, 0);
     p = rig_parameters(SETTINGS("control.kp=2"));
     assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
     check_close(values[0], 2, 0);

@@ -22,11 +22,10 @@ static scenario parse(const char *text)
 // A result as a run that was stopped would leave it.
 static run_result stopped_result(void)
 {
-    run_result result = {.summary = {.status = STATUS_NEWTON_FAILED, .message = "stopped"}};
-    for (int i = 0; i < summary_count; i++) {
-        double none = (double)NAN;
-        memcpy((char *)&result.summary + summary_table[i].offset, &none, sizeof none);
-    }
+    run_result result = {0};
+    summary_init(&result.summary);
+    result.summary.status = STATUS_NEWTON_FAILED;
+    strcpy(result.summary.message, "stopped");
     result.summary.first_contact_s = 0.25;
     result.summary.impacts = 1;
     trace_init(&result.trace, 3);

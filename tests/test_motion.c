@@ -186,8 +186,8 @@ static void without_a_trace_the_summary_is_the_same(void **state)
     assert_int_equal(without.trace.row_count, 0);
     for (int i = 0; i < summary_count; i++) {
         double x = 0, y = 0;
-        summary_get(&with.summary, summary_table[i].key, &x);
-        summary_get(&without.summary, summary_table[i].key, &y);
+        x = summary_value(&with.summary, i);
+        y = summary_value(&without.summary, i);
         assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
     }
     run_finish(&with);
@@ -199,8 +199,8 @@ static void script_acts_at_its_time_and_is_booked(void **state)
     (void)state;
     action todo[] = {
         {.time = 0.70005, .kind = ACTION_PUSH, .value = 0.02},
-        {.time = 1.0, .kind = ACTION_SET, .parameter = parameter_find("motor.voltage"), .value = 2},
-        {.time = 1.2, .kind = ACTION_SET, .parameter = parameter_find("arm.k2"), .value = 10},
+        {.time = 1.0, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(motor.voltage), .value = 2},
+        {.time = 1.2, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k2), .value = 10},
         {.time = 1.4, .kind = ACTION_PUSH, .value = -0.2}, // away from the wall
     };
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=2")),

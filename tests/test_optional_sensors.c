@@ -59,11 +59,11 @@ static void choice_of_the_piezo_fits_it(void **state)
     fault f;
     parameters p = rig_parameters(SETTINGS("sensor.force=piezo"));
     assert_true(p.sensor.piezo);
-    parameter_set_text(&p, parameter_find("sensor.piezo"), "false", &f);
+    parameter_set_text(&p, PARAMETER_INDEX(sensor.piezo), "false", &f);
     assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "sensor.piezo = false"));
-    parameter_set_text(&p, parameter_find("sensor.piezo"), "true", &f);
-    parameter_set_text(&p, parameter_find("sensor.piezo_leak_time"), "1e-5", &f);
+    parameter_set_text(&p, PARAMETER_INDEX(sensor.piezo), "true", &f);
+    parameter_set_text(&p, PARAMETER_INDEX(sensor.piezo_leak_time), "1e-5", &f);
     assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "sensor.piezo_leak_time"));
 }

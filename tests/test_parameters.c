@@ -34,6 +34,7 @@ static void check_refused(const char *path, const char *text, const char *expect
     }
     assert_int_equal(f.code, STATUS_BAD_SCENARIO);
     assert_memory_equal(&p, &before, sizeof p);
+    assert_string_equal(f.path, path);
     if (strstr(f.text, path) == NULL || strstr(f.text, expected) == NULL) {
         fail_msg("'%s' does not mention %s and '%s'", f.text, path, expected);
     }
@@ -233,7 +234,7 @@ static void numbers_are_checked_too(void **state)
     (void)state;
     parameters p = fresh(ARM_CORRECTED);
     fault f;
-    int links = parameter_find("arm.links"), model = parameter_find("arm.model");
+    int links = PARAMETER_INDEX(arm.links), model = PARAMETER_INDEX(arm.model);
     assert_int_equal(parameter_set_number(&p, links, 2.5, &f), STATUS_BAD_SCENARIO);
     assert_int_equal(parameter_set_number(&p, links, (double)NAN, &f), STATUS_BAD_SCENARIO);
     assert_int_equal(parameter_set_number(&p, links, (double)INFINITY, &f), STATUS_BAD_SCENARIO);
@@ -286,7 +287,7 @@ static void a_link_is_a_uniform_rod_unless_told(void **state)
     for (size_t i = 0; i < sizeof links / sizeof links[0]; i++) {
         parameters p = fresh(ARM_CORRECTED);
         fault f;
-        assert_int_equal(parameter_set_number(&p, parameter_find("arm.links"), links[i], &f),
+        assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.links), links[i], &f),
                          STATUS_OK);
         assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
         double n = links[i];
@@ -311,6 +312,9 @@ static void check_conflict(const char *first, const char *first_text, const char
     if (strstr(f.text, expected) == NULL) {
         fail_msg("'%s' does not say '%s'", f.text, expected);
     }
+    // to blame is the one that the sentence begins with, of those that were given
+    assert_true(strcmp(f.path, first) == 0 || strcmp(f.path, second) == 0);
+    assert_non_null(strstr(f.text, f.path));
 }
 
 static void impossible_combinations_are_refused(void **state)

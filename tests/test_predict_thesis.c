@@ -22,7 +22,7 @@ static parameters corrected_with(hub_joint_kind joint)
 {
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
-    assert_int_equal(parameter_set_number(&p, parameter_find("arm.hub_joint"), joint, NULL),
+    assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.hub_joint), joint, NULL),
                      STATUS_OK);
     assert_int_equal(parameters_resolve(&p, NULL), STATUS_OK);
     return p;
@@ -370,7 +370,7 @@ static void more_links_are_predicted_as_the_two_link_arm(void **state)
     (void)state;
     parameters two = corrected_with(HUB_RIGID), many;
     parameters_defaults(&many, ARM_CORRECTED);
-    assert_int_equal(parameter_set_number(&many, parameter_find("arm.links"), 12, NULL), STATUS_OK);
+    assert_int_equal(parameter_set_number(&many, PARAMETER_INDEX(arm.links), 12, NULL), STATUS_OK);
     assert_int_equal(parameters_resolve(&many, NULL), STATUS_OK);
     three_body_state s = {{0.1, 0.1, 0.1}, {1, 1, 1}};
     for (int i = 0; i < 3; i++) {

@@ -13,7 +13,7 @@
 // The rig's run with the law held in a mode from LOCK_TIME to RELEASE_TIME.
 static run_result locked_run(const char *const *settings, const char *mode)
 {
-    const int lock = parameter_find("control.lock");
+    const int lock = PARAMETER_INDEX(control.lock);
     action script[2] = {{.time = LOCK_TIME, .kind = ACTION_SET, .parameter = lock},
                         {.time = RELEASE_TIME, .kind = ACTION_SET, .parameter = lock}};
     snprintf(script[0].text, sizeof script[0].text, "%s", mode);
@@ -167,7 +167,7 @@ static void unknown_modes_are_refused(void **state)
         snprintf(setting, sizeof setting, "control.lock=%s", cases[i].mode);
         assert_int_equal(scenario_override(&s, setting, &f), STATUS_BAD_SCENARIO);
         assert_non_null(strstr(f.text, cases[i].why));
-        check_close(parameter_get(&s.parameters, parameter_find("control.lock")), 0, 0);
+        check_close(parameter_get(&s.parameters, PARAMETER_INDEX(control.lock)), 0, 0);
         assert_int_equal(scenario_override(&s, "control.lock=none", &f), STATUS_OK);
     }
     // without a law it says nothing, like every parameter of the rig
@@ -217,7 +217,7 @@ static void assert_same_rows(const trace *a, const trace *b)
 static void lock_is_an_input_that_a_saved_scenario_repeats(void **state)
 {
     (void)state;
-    const int lock = parameter_find("control.lock");
+    const int lock = PARAMETER_INDEX(control.lock);
     scenario s, saved;
     session e;
     fault f = {0};

@@ -113,9 +113,9 @@ static void a_whole_scenario_is_read(void **state)
     check_close(s.actions[0].time, 0.4, 0);
     check_close(s.actions[0].value, 2, 0);
     check_close(s.actions[1].value, 3, 0);
-    assert_int_equal(s.actions[2].parameter, parameter_find("arm.k2"));
+    assert_int_equal(s.actions[2].parameter, PARAMETER_INDEX(arm.k2));
     assert_int_equal(s.expectation_count, 2);
-    assert_string_equal(s.expectations[0].quantity, "first_contact_s");
+    assert_int_equal(s.expectations[0].quantity, SUMMARY_INDEX(first_contact_s));
     check_close(s.expectations[0].value, 0.312, 0);
     check_close(s.expectations[0].tolerance, 0.002, 0);
     assert_false(s.expectations[0].is_null);

@@ -275,7 +275,7 @@ static void test_ranges_of_long_runs_are_exact_and_quick(void **state)
     carry_out(&l, "seek end");
     const trace *t = &l.session.run.trace;
     assert_true(t->row_count > 90000);
-    int velocity = signal_find("last_velocity"), angle = signal_find("last_angle");
+    int velocity = SIGNAL_INDEX(last_velocity), angle = SIGNAL_INDEX(last_angle);
     carry_out(&l, "trace last_velocity last_angle");
     static const double parts[][2] = {{0.2, 0.7}, {0.3, 0.9}, {10, 90}, {0.29, 0.2935}};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {

@@ -65,9 +65,9 @@ static void test_ranges_over_decades_are_logarithmic(void **state)
 {
     (void)state;
     slider_scale k2, kp, damping;
-    assert_true(lab_slider_scale(parameter_find("arm.k2"), 4.92, &k2));
-    assert_true(lab_slider_scale(parameter_find("control.kp"), 10.15, &kp));
-    assert_true(lab_slider_scale(parameter_find("arm.damping_ratio"), 0.1, &damping));
+    assert_true(lab_slider_scale(PARAMETER_INDEX(arm.k2), 4.92, &k2));
+    assert_true(lab_slider_scale(PARAMETER_INDEX(control.kp), 10.15, &kp));
+    assert_true(lab_slider_scale(PARAMETER_INDEX(arm.damping_ratio), 0.1, &damping));
     assert_true(k2.logarithmic && k2.low == 0.01 && k2.high == 1000);
     assert_true(!kp.logarithmic && kp.low == -50 && kp.high == 50);
     assert_true(!damping.logarithmic && damping.low == 0 && damping.high == 1);
@@ -76,7 +76,7 @@ static void test_ranges_over_decades_are_logarithmic(void **state)
 static void test_a_drag_takes_effect_when_the_mouse_lets_go(void **state)
 {
     (void)state;
-    const int voltage = parameter_find("motor.voltage");
+    const int voltage = PARAMETER_INDEX(motor.voltage);
     lab l;
     open_lab(&l, "corrected/first-impact");
     press(&l, ":seek 0.2<Enter>");
@@ -107,7 +107,7 @@ static void test_a_drag_takes_effect_when_the_mouse_lets_go(void **state)
 static void test_clicks_select_and_the_wheel_nudges(void **state)
 {
     (void)state;
-    const int limit = parameter_find("motor.voltage_limit");
+    const int limit = PARAMETER_INDEX(motor.voltage_limit);
     lab l;
     open_lab(&l, "corrected/first-impact");
     lab_spot s = slider_of(&l, limit);

@@ -146,7 +146,7 @@ static void what_cannot_be_viewed_is_said(void **state)
     sensor_view view;
     fault f;
     s.parameters.run.duration = 0.01;
-    s.parameters.set[parameter_find("run.duration")] = 1;
+    s.parameters.set[PARAMETER_INDEX(run.duration)] = 1;
     assert_int_equal(sensor_view_compute(&s, 2, &view, &f), STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "no contact"));
     s.parameters.arm.model = ARM_PRINTED;

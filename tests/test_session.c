@@ -207,16 +207,16 @@ static void test_a_refused_change_changes_nothing(void **state)
     fault f = {0};
     open_session(&s, "corrected/first-impact");
     unsigned version = s.version;
-    assert_int_not_equal(session_change(&s, parameter_find("motor.voltage"), "strong", &f), 0);
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "strong", &f), 0);
     assert_non_null(strstr(f.text, "motor.voltage"));
-    assert_int_not_equal(session_change(&s, parameter_find("wall.angle"), "77", &f), 0);
-    assert_int_not_equal(session_change(&s, parameter_find("method.step"), "1e-7", &f), 0);
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(wall.angle), "77", &f), 0);
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(method.step), "1e-7", &f), 0);
     assert_non_null(strstr(f.text, "MiB"));
     assert_int_not_equal(session_push(&s, (double)NAN, &f), 0);
     change(&s, "motor.voltage", "2");
     assert_int_equal(s.version, version + 1);
     // a combination that is refused takes its input out again
-    assert_int_not_equal(session_change(&s, parameter_find("arm.link_inertia"), "-1", &f), 0);
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(arm.link_inertia), "-1", &f), 0);
     assert_int_equal(s.input_count, 1);
     session_finish(&s);
 }

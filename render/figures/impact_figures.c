@@ -85,7 +85,7 @@ static figure_series *add_series(impact_figure *fig, int panel, figure_series s)
 static void add_signal(impact_figure *fig, int panel, const char *name, const char *label)
 {
     const trace *t = &fig->run.result.trace;
-    const signal_info *signal = &signal_table[signal_find(name)];
+    const signal_info *signal = &signal_table[signal_index(name)];
     const char *base = (const char *)t->rows;
     fig->panels[panel].y.name = signal->name;
     fig->panels[panel].y.unit = signal->unit;

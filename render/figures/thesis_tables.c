@@ -121,7 +121,7 @@ status table_stability(const char *title, const figure_options *o, artwork *out,
     arm a;
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
-    status code = parameter_set_text(&p, parameter_find("arm.hub_joint"), "spring", f);
+    status code = parameter_set_text(&p, PARAMETER_INDEX(arm.hub_joint), "spring", f);
     code = code == STATUS_OK ? parameters_resolve(&p, f) : code;
     if (code != STATUS_OK) {
         return code;

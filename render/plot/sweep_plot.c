@@ -9,6 +9,7 @@
 #include "render/page/text.h"
 #include "render/plot/figure_file.h"
 #include "src/base/version.h"
+#include "src/quantities/summary.h"
 
 #define PAGE_WIDTH  150.0 // [mm]
 #define PAGE_HEIGHT 100.0
@@ -168,11 +169,9 @@ static double *drawn_places(sweep_figure *s, const sweep *from, int axis)
 // The axis of the quantity itself.
 static figure_axis quantity_axis(sweep_figure *s, const char *key)
 {
-    char name[64];
-    const char *unit;
-    quantity_name(key, name, sizeof name, &unit);
-    g_strdelimit(name, "_", ' ');
-    return (figure_axis){.name = key, .label = own(s, text_escape(name)), .unit = unit};
+    const summary_info *info = &summary_table[summary_index(key)];
+    return (figure_axis){
+        .name = key, .label = own(s, text_escape(info->label)), .unit = info->unit};
 }
 
 // ---- layers

@@ -309,7 +309,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
     const scenario *s = runs[run].scenario;
     bool alone = from->signals[1] == NULL, named = false;
     for (int i = 0; i < TRACE_SIGNALS && from->signals[i] != NULL; i++) {
-        int index = signal_find(from->signals[i]);
+        int index = signal_index(from->signals[i]);
         bool twin = !alone && signal_table[index].body == BODY_FIRST_LINK && hub_is_first_link(s);
         bool points = run > 0 && runs[run].points;
         if (twin || (points && !trace_has(&runs[run].result->trace, index))) {
@@ -356,7 +356,7 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
                            const trace_run *runs, int run_count, GPtrArray *texts)
 {
     figure_panel *panel = &t->panels[index];
-    const signal_info *first = &signal_table[signal_find(from->signals[0])];
+    const signal_info *first = &signal_table[signal_index(from->signals[0])];
     const wall_parameters *wall = &runs[0].scenario->parameters.wall;
     panel->y.name = first->name;
     panel->y.unit = first->unit;
@@ -371,7 +371,7 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
         panel->impulses = t->impulses;
         panel->impulse_count = impact_impulses(&runs[0].result->trace, t->impulses);
         panel->impulse_label = "Impulse";
-        panel->impulse_unit = signal_table[signal_find("impulse")].unit;
+        panel->impulse_unit = signal_table[SIGNAL_INDEX(impulse)].unit;
     }
     if (from->wall && wall->kind != WALL_NONE) {
         t->wall = (figure_level){wall->angle, "wall"};

@@ -20,21 +20,21 @@ status k2_table_read(k2_table *t, const char *text, fault *f)
         const char *entry = rest;
         int i = t->count, length = (int)strcspn(entry, " ");
         if (i == K2_TABLE_MOST) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "control.k2_table has more than %d entries of FORCE:K2",
-                             K2_TABLE_MOST);
+            return fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
+                                "control.k2_table has more than %d entries of FORCE:K2",
+                                K2_TABLE_MOST);
         }
         if (!read_entry(entry, &t->force[i], &t->k2[i], &rest)) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "control.k2_table: '%.*s' is wrong, expected FORCE:K2 such as "
-                             "1.5:4.92, a force from 0 N and a stiffness above 0 N m/rad",
-                             length, entry);
+            return fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
+                                "control.k2_table: '%.*s' is wrong, expected FORCE:K2 such as "
+                                "1.5:4.92, a force from 0 N and a stiffness above 0 N m/rad",
+                                length, entry);
         }
         if (i > 0 && !(t->force[i] > t->force[i - 1])) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "control.k2_table: the force of '%.*s' is not above the one before "
-                             "it, expected growing forces",
-                             length, entry);
+            return fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
+                                "control.k2_table: the force of '%.*s' is not above the one before "
+                                "it, expected growing forces",
+                                length, entry);
         }
         t->count++;
     }

@@ -1,5 +1,6 @@
 #include "src/quantities/parameters.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,15 +11,20 @@
 #include "src/base/words.h"
 #include "src/base/numbers.h"
 
-#define AT(field) offsetof(parameters, field)
-#define REAL      PARAMETER_REAL
-#define INTEGER   PARAMETER_INTEGER
-#define BOOLEAN   PARAMETER_BOOLEAN
-#define CHOICE    PARAMETER_CHOICE
-#define TEXT      PARAMETER_TEXT
-#define DERIVED   (double)NAN // the default follows from other parameters, see parameters_resolve
-#define TIMED     true
-#define NOT_TIMED false
+// What a row of the table is written with; a range includes both its ends.
+#define PATH(field)              .path = #field, .offset = offsetof(parameters, field)
+#define REAL(in, from, to)       .type = PARAMETER_REAL, .unit = in, .minimum = from, .maximum = to
+#define INTEGER(from, to)        .type = PARAMETER_INTEGER, .unit = "", .minimum = from, .maximum = to
+#define BOOLEAN                  .type = PARAMETER_BOOLEAN, .unit = "", .maximum = 1
+#define CHOICE(last, words)      .type = PARAMETER_CHOICE, .unit = "", .maximum = last, .choices = words
+#define TEXT(without)            .type = PARAMETER_TEXT, .unit = "", .maximum = 1, .choices = without
+#define DEFAULT(value)           .default_corrected = value, .default_printed = value
+#define DEFAULTS(ours, printed_) .default_corrected = ours, .default_printed = printed_
+#define TIMED                    .timed = true
+#define MEANING(sentence)        .description = sentence
+
+// The default follows from other parameters, see parameters_resolve.
+#define DERIVED (double)NAN
 
 // k1 with which the printed model reproduces the thesis's tables. The thesis prints
 // 169 468 N m/rad, with which its own algorithm at h = 1 ms chatters; 90 lies in the range
@@ -30,220 +36,222 @@
 #define TORQUE_CONSTANT (0.249092 * 9.80665)
 
 const parameter_info parameter_table[] = {
-    // path, unit, type, offset, default (corrected), default (printed), min, max, choices, timed,
-    // description
-    {"arm.model", "", CHOICE, AT(arm.model), ARM_CORRECTED, ARM_PRINTED, 0, 1, "corrected|printed",
-     NOT_TIMED, "equations of motion: derived anew, or as the thesis prints them"},
-    {"arm.links", "", INTEGER, AT(arm.links), 2, 2, 1, 1024, NULL, NOT_TIMED,
-     "number of rigid links the beam is cut into (N)"},
-    {"arm.hub_joint", "", CHOICE, AT(arm.hub_joint), HUB_RIGID, HUB_SPRING, 0, 1, "rigid|spring",
-     NOT_TIMED, "joint between hub and first link: one body, or the spring k1"},
-    {"arm.length", "m", REAL, AT(arm.length), 1.0, 1.0, 0.01, 100, NULL, NOT_TIMED,
-     "length of the beam, all links together"},
-    {"arm.mass", "kg", REAL, AT(arm.mass), 0.40108, 0.40108, 1e-4, 1e4, NULL, NOT_TIMED,
-     "mass of the beam, all links together"},
-    {"arm.hub_inertia", "kg m2", REAL, AT(arm.hub_inertia), 5.2e-3, 5.2e-3, 0, 1e4, NULL, NOT_TIMED,
-     "moment of inertia of hub and motor shaft (I1)"},
-    {"arm.link_inertia", "kg m2", REAL, AT(arm.link_inertia), DERIVED, 1.67e-5, 0, 1e4, NULL,
-     NOT_TIMED, "moment of inertia of a link about its centre of mass (I2 = I3, N = 2 only)"},
-    {"arm.k1", "N m/rad", REAL, AT(arm.k1), K1_THESIS, K1_PRINTED_TABLES, 1e-6, 1e9, NULL, TIMED,
-     "stiffness of the hub joint (arm.hub_joint = spring)"},
-    {"arm.k2", "N m/rad", REAL, AT(arm.k2), 4.92, 4.92, 1e-6, 1e9, NULL, TIMED,
-     "stiffness of the middle joint of the two-link beam; each joint of N links has k2 N/2"},
-    {"arm.damping_ratio", "", REAL, AT(arm.damping_ratio), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "structural damping ratio of the first clamped-free mode"},
-    {"motor.voltage", "V", REAL, AT(motor.voltage), 1, 1, -1000, 1000, NULL, TIMED,
-     "command to the amplifier, held constant"},
-    {"motor.voltage_limit", "V", REAL, AT(motor.voltage_limit), 10, 10, 0, 1000, NULL, TIMED,
-     "largest command either way; beyond it the command saturates"},
-    {"motor.amplifier_gain", "", REAL, AT(motor.amplifier_gain), 6.02, 6.02, 0, 1000, NULL,
-     NOT_TIMED, "volts at the motor per volt of command"},
-    {"motor.torque_constant", "N m/A", REAL, AT(motor.torque_constant), TORQUE_CONSTANT,
-     TORQUE_CONSTANT, 0, 1000, NULL, NOT_TIMED, "torque per ampere (kT)"},
-    {"motor.back_emf", "V s/rad", REAL, AT(motor.back_emf), 2.443, 2.443, 0, 1000, NULL, NOT_TIMED,
-     "back electromotive force (kB)"},
-    {"motor.resistance", "ohm", REAL, AT(motor.resistance), 33.6, 33.6, 1e-3, 1e6, NULL, NOT_TIMED,
-     "armature resistance (Ra)"},
-    {"motor.viscous_friction", "N m s/rad", REAL, AT(motor.viscous_friction), 5.4192e-3, 5.4192e-3,
-     0, 1000, NULL, TIMED, "viscous friction at the hub (kfr)"},
-    {"motor.stiction", "N m", REAL, AT(motor.stiction), 0.045, 0.045, 0, 1000, NULL, TIMED,
-     "Coulomb friction torque at the hub, sliding and sticking (kst)"},
-    {"wall.kind", "", CHOICE, AT(wall.kind), WALL_POINT, WALL_POINT, 0, 2, "point|plane|none",
-     NOT_TIMED,
-     "a fixed point the last link's line may not pass, a flat wall the tip may not pass, or none"},
-    {"wall.angle", "rad", REAL, AT(wall.angle), 0.1, 0.1, -3, 3, NULL, NOT_TIMED,
-     "direction of contact point or flat wall as seen from the hub axis"},
-    {"wall.restitution", "", REAL, AT(wall.restitution), 0, 0, 0, 1, NULL, TIMED,
-     "coefficient of restitution e of an impact (0: plastic)"},
-    {"method.name", "", CHOICE, AT(method.name), METHOD_EVENT, METHOD_NEWMARK, 0, 2,
-     "event|newmark|generalized-alpha", NOT_TIMED, "time integration"},
-    {"method.step", "s", REAL, AT(method.step), 1e-3, 1e-3, 1e-7, 1, NULL, NOT_TIMED,
-     "time step h, and the spacing of the recorded rows"},
-    {"method.beta", "", REAL, AT(method.beta), 0.4, 0.4, 0.01, 2, NULL, NOT_TIMED,
-     "Newmark's beta"},
-    {"method.gamma", "", REAL, AT(method.gamma), 0.5, 0.5, 0, 2, NULL, NOT_TIMED,
-     "Newmark's gamma"},
-    {"method.spectral_radius", "", REAL, AT(method.spectral_radius), 0.8, 0.8, 0, 1, NULL,
-     NOT_TIMED, "what generalised-alpha leaves of the highest modes in one step (rho at infinity)"},
-    {"method.rest_speed", "m/s", REAL, AT(method.rest_speed), 1e-4, 1e-4, 0, 1, NULL, NOT_TIMED,
-     "rest rule: an impact slower than this is plastic whatever e is"},
-    {"printed.spring_counted_twice", "", BOOLEAN, AT(printed.spring_counted_twice), 1, 1, 0, 1,
-     NULL, NOT_TIMED, "printed model: (2.16) carries the spring k2 that belongs in (2.17) alone"},
-    {"printed.force_at_link_end", "", BOOLEAN, AT(printed.force_at_link_end), 1, 1, 0, 1, NULL,
-     NOT_TIMED,
-     "printed model: the contact force acts at the link's end instead of the contact point"},
-    {"printed.sign_dead_band", "", BOOLEAN, AT(printed.sign_dead_band), 1, 1, 0, 1, NULL, NOT_TIMED,
-     "printed model: sign() takes -0.01 for the lower edge of its dead band instead of -1e-5"},
-    {"printed.energy_cross_term", "", BOOLEAN, AT(printed.energy_cross_term), 1, 1, 0, 1, NULL,
-     NOT_TIMED, "printed model: kinetic energy of the predictor has eps w2 w3 for 2 l eps w2 w3"},
-    {"printed.reevaluation", "", CHOICE, AT(printed.reevaluation), REEVALUATE_RHS, REEVALUATE_RHS,
-     0, 1, "rhs|listing", NOT_TIMED,
-     "printed model: where the re-evaluation puts 2 l sin(d) w2 w3, as (3.13) has it or as the "
-     "listing has it"},
-    {"printed.force_after_release", "", BOOLEAN, AT(printed.force_after_release), 1, 1, 0, 1, NULL,
-     NOT_TIMED,
-     "printed model: the force is evaluated from the constrained system after release too"},
-    {"printed.feed_newmark_acceleration", "", BOOLEAN, AT(printed.feed_newmark_acceleration), 0, 0,
-     0, 1, NULL, NOT_TIMED,
-     "printed model: the next step starts from Newmark's own acceleration, not the re-evaluated "
-     "one"},
-    {"printed.newton_iterations", "", INTEGER, AT(printed.newton_iterations), 2, 2, 1, 100, NULL,
-     NOT_TIMED, "printed model: Newton solves per time step"},
-    {"initial.angle", "rad", REAL, AT(initial.angle), 0, 0, -3, 3, NULL, NOT_TIMED,
-     "angle of hub and all links at the start"},
-    {"initial.velocity", "rad/s", REAL, AT(initial.velocity), 0, 0, -1000, 1000, NULL, NOT_TIMED,
-     "angular velocity of hub and all links at the start"},
-    {"run.duration", "s", REAL, AT(run.duration), 1, 1, 1e-6, 1e5, NULL, NOT_TIMED,
-     "simulated time"},
-    {"control.law", "", CHOICE, AT(control.law), LAW_NONE, LAW_NONE, 0, LAW_PLUGIN,
-     CONTROL_LAW_CHOICES, NOT_TIMED,
-     "control law on the rig, or none: the bare arm under motor.voltage"},
-    {"control.plugin", "", TEXT, AT(control.plugin), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "shared object with a controller of one's own (control.law = plugin)"},
-    {"control.settings", "", TEXT, AT(control.settings), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "a plug-in's own parameters, written name=value and separated by spaces"},
-    {"control.lock", "", TEXT, AT(control.lock), 0, 0, 0, 1, "none", TIMED,
-     "mode that the law is held in, by its name, or none: the law chooses"},
-    {"control.rate", "Hz", REAL, AT(control.rate), 200, 200, 1, 1e5, NULL, NOT_TIMED,
-     "samples a second"},
-    {"control.delay", "s", REAL, AT(control.delay), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "from a sample to the instant its command takes effect, at most one period"},
-    {"control.delay_periods", "", REAL, AT(control.delay_periods), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "the same in sampling periods, on top of it; 1: a command goes out with the next sample"},
-    {"control.jitter", "s", REAL, AT(control.jitter), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "width over which the sampling instants scatter, at most half a period"},
-    {"control.seed", "", INTEGER, AT(control.seed), 1, 1, 0, 2147483647, NULL, NOT_TIMED,
-     "seed of all noise of the rig"},
-    {"control.force", "N", REAL, AT(control.force), 1, 1, 0, 1000, NULL, NOT_TIMED,
-     "commanded contact force"},
-    {"control.approach_voltage", "V", REAL, AT(control.approach_voltage), 1, 1, -1000, 1000, NULL,
-     NOT_TIMED, "constant command of the approach"},
-    {"control.kp", "", REAL, AT(control.kp), 10.15, 10.15, -1e6, 1e6, NULL, NOT_TIMED,
-     "position gain, per rad, of a torque in N m or of volts (control.gains)"},
-    {"control.kv", "", REAL, AT(control.kv), 0.75, 0.75, -1e6, 1e6, NULL, NOT_TIMED,
-     "velocity gain, per rad/s, of a torque in N m or of volts (control.gains)"},
-    {"control.gains", "", CHOICE, AT(control.gains), 0, 0, 0, 2, "torque|volts|printed", NOT_TIMED,
-     "hybrid: what kp and kv give; printed: torque in the impact mode and volts in the force mode"},
-    {"control.coefficients", "", CHOICE, AT(control.coefficients), 0, 0, 0, 1, "corrected|printed",
-     NOT_TIMED, "hybrid: factors of its model, 4 k2 and 2 f l, or 6 k2 and 3 f l as printed"},
-    {"control.transition_time", "s", REAL, AT(control.transition_time), 0.35, 0.35, 1e-3, 100, NULL,
-     NOT_TIMED,
-     "hybrid: length of the impact mode (t_f); inverse-dynamics: how long the force rises"},
-    {"control.contact_threshold", "N", REAL, AT(control.contact_threshold), 0.05, 0.05, 0, 1000,
-     NULL, NOT_TIMED, "force reading that a controller takes for contact"},
-    {"control.k2_factor", "", REAL, AT(control.k2_factor), 1, 1, 0.01, 100, NULL, NOT_TIMED,
-     "k2 that the controller believes in, divided by the arm's (by that of control.k2_table)"},
-    {"control.k2_table", "", TEXT, AT(control.k2_table), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "k2 by commanded force as calibrate measures it, written FORCE:K2 and separated by spaces"},
-    {"control.wall_error", "rad", REAL, AT(control.wall_error), 0, 0, -3, 3, NULL, NOT_TIMED,
-     "wall angle that the controller believes in, minus the wall's"},
-    {"control.force_gain", "V/N", REAL, AT(control.force_gain), 1, 1, -1000, 1000, NULL, NOT_TIMED,
-     "gain of the force error"},
-    {"control.integral_gain", "V/(N s)", REAL, AT(control.integral_gain), 5, 5, -1e4, 1e4, NULL,
-     NOT_TIMED, "gain of the integrated force error"},
-    {"control.speed_limit", "rad/s", REAL, AT(control.speed_limit), 0.3, 0.3, 0, 1000, NULL,
-     NOT_TIMED, "speed-limit: hub velocity of the approach"},
-    {"control.reverse_time", "s", REAL, AT(control.reverse_time), 0.02, 0.02, 0, 10, NULL,
-     NOT_TIMED, "reverse-torque: how long the motor pulls back after contact"},
-    {"control.switch_share", "", REAL, AT(control.switch_share), 0.5, 0.5, 0, 1, NULL, NOT_TIMED,
-     "bang-bang: share of the way to the wall at which the command is reversed"},
-    {"control.force_limit", "N", REAL, AT(control.force_limit), 2, 2, 0, 1000, NULL, NOT_TIMED,
-     "predictive: force that an impact may not exceed wherever it happens"},
-    {"control.travel_time", "s", REAL, AT(control.travel_time), 0.35, 0.35, 1e-3, 100, NULL,
-     NOT_TIMED, "inverse-dynamics: how long the tip moves to the wall"},
-    {"control.arrival_speed", "m/s", REAL, AT(control.arrival_speed), 0, 0, 0, 1000, NULL,
-     NOT_TIMED, "inverse-dynamics: speed with which the tip is to meet the wall"},
-    {"sensor.ideal", "", BOOLEAN, AT(sensor.ideal), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "switches off every imperfection of sensors and converters"},
-    {"sensor.force", "", CHOICE, AT(sensor.force), FORCE_BY_FSR, FORCE_BY_FSR, 0, 1, "fsr|piezo",
-     NOT_TIMED, "force sensor whose reading the controller gets as the force"},
-    {"sensor.encoder_counts", "", INTEGER, AT(sensor.encoder_counts), 8000, 8000, 0, 1000000000,
-     NULL, NOT_TIMED, "counts of the encoder per revolution, 0 for a continuous reading"},
-    {"sensor.tachometer_gain", "V s/rad", REAL, AT(sensor.tachometer_gain), 2, 2, 1e-6, 1000, NULL,
-     NOT_TIMED, "volts of the tachometer per hub velocity"},
-    {"sensor.tachometer_ripple", "", REAL, AT(sensor.tachometer_ripple), 0.01, 0.01, 0, 1, NULL,
-     NOT_TIMED, "amplitude of the tachometer's ripple as a share of its reading"},
-    {"sensor.tachometer_ripple_count", "", INTEGER, AT(sensor.tachometer_ripple_count), 79, 79, 0,
-     100000, NULL, NOT_TIMED, "ripples a revolution"},
-    {"sensor.tachometer_noise", "V", REAL, AT(sensor.tachometer_noise), 0.01, 0.01, 0, 10, NULL,
-     NOT_TIMED, "standard deviation of the tachometer's noise"},
-    {"sensor.fsr_rise_time", "s", REAL, AT(sensor.fsr_rise_time), 1.5e-3, 1.5e-3, 0, 1, NULL,
-     NOT_TIMED, "rise time of the force sensor from 10 % to 90 %, 0 for an instant one"},
-    {"sensor.fsr_resistance", "ohm", REAL, AT(sensor.fsr_resistance), 30e3, 30e3, 1, 1e9, NULL,
-     NOT_TIMED, "resistance of the force sensor at 1 N"},
-    {"sensor.fsr_exponent", "", REAL, AT(sensor.fsr_exponent), 0.75, 0.75, 0.1, 3, NULL, NOT_TIMED,
-     "exponent of its power law, resistance = fsr_resistance (force/1 N)^-fsr_exponent"},
-    {"sensor.fsr_divider", "ohm", REAL, AT(sensor.fsr_divider), 40e3, 40e3, 1, 1e9, NULL, NOT_TIMED,
-     "measuring resistor of the voltage divider (R_M)"},
-    {"sensor.fsr_supply", "V", REAL, AT(sensor.fsr_supply), 5, 5, 1e-3, 1000, NULL, NOT_TIMED,
-     "voltage across the divider"},
-    {"sensor.fsr_gain", "", REAL, AT(sensor.fsr_gain), 2, 2, 1e-3, 1000, NULL, NOT_TIMED,
-     "gain of the stage behind the divider, 1 + R5/R6"},
-    {"sensor.fsr_saturation", "N", REAL, AT(sensor.fsr_saturation), 10, 10, 1e-3, 1e6, NULL,
-     NOT_TIMED, "force beyond which the sensor's resistance falls no further"},
-    {"sensor.fsr_noise", "V", REAL, AT(sensor.fsr_noise), 0.02, 0.02, 0, 10, NULL, NOT_TIMED,
-     "standard deviation of the force channel's noise"},
-    {"sensor.piezo", "", BOOLEAN, AT(sensor.piezo), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "fits a piezoelectric force sensor at the tip (sensor.force = piezo fits it too)"},
-    {"sensor.piezo_gain", "V/N", REAL, AT(sensor.piezo_gain), 1, 1, 1e-6, 1e6, NULL, NOT_TIMED,
-     "volts of its charge amplifier per force"},
-    {"sensor.piezo_rise_time", "s", REAL, AT(sensor.piezo_rise_time), 5e-5, 5e-5, 0, 1, NULL,
-     NOT_TIMED,
-     "rise time of the piezoelectric force sensor from 10 % to 90 %, 0 for an instant one"},
-    {"sensor.piezo_leak_time", "s", REAL, AT(sensor.piezo_leak_time), 5, 5, 0, 1e6, NULL, NOT_TIMED,
-     "time constant with which its charge leaks away, 0 for a charge that stays"},
-    {"sensor.piezo_range", "N", REAL, AT(sensor.piezo_range), 10, 10, 0, 1e6, NULL, NOT_TIMED,
-     "force beyond which it is off scale either way, 0 for no such limit"},
-    {"sensor.piezo_noise", "V", REAL, AT(sensor.piezo_noise), 5e-3, 5e-3, 0, 10, NULL, NOT_TIMED,
-     "standard deviation of the piezoelectric force sensor's noise"},
-    {"sensor.film", "", BOOLEAN, AT(sensor.film), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "fits a piezo film along the beam that shows its bending, last link's angle minus the "
-     "first's"},
-    {"sensor.film_gain", "V/rad", REAL, AT(sensor.film_gain), 10, 10, 1e-6, 1e6, NULL, NOT_TIMED,
-     "volts of the film's amplifier per bending"},
-    {"sensor.film_leak_time", "s", REAL, AT(sensor.film_leak_time), 1, 1, 0, 1e6, NULL, NOT_TIMED,
-     "time constant with which the film's charge leaks away, 0 for a charge that stays"},
-    {"sensor.film_noise", "V", REAL, AT(sensor.film_noise), 0.01, 0.01, 0, 10, NULL, NOT_TIMED,
-     "standard deviation of the film's noise"},
-    {"sensor.accelerometer", "", BOOLEAN, AT(sensor.accelerometer), 0, 0, 0, 1, NULL, NOT_TIMED,
-     "fits a tangential accelerometer to the hub that shows its angular acceleration"},
-    {"sensor.accelerometer_gain", "V s2/rad", REAL, AT(sensor.accelerometer_gain), 0.02, 0.02, 1e-9,
-     1e6, NULL, NOT_TIMED, "volts of the accelerometer per angular acceleration of the hub"},
-    {"sensor.accelerometer_rise_time", "s", REAL, AT(sensor.accelerometer_rise_time), 3.5e-4,
-     3.5e-4, 0, 1, NULL, NOT_TIMED,
-     "rise time of the accelerometer from 10 % to 90 % (0.35 over its bandwidth), 0 for an instant "
-     "one"},
-    {"sensor.accelerometer_range", "rad/s2", REAL, AT(sensor.accelerometer_range), 500, 500, 0, 1e9,
-     NULL, NOT_TIMED,
-     "angular acceleration beyond which it is off scale either way, 0 for no such limit"},
-    {"sensor.accelerometer_noise", "V", REAL, AT(sensor.accelerometer_noise), 5e-3, 5e-3, 0, 10,
-     NULL, NOT_TIMED, "standard deviation of the accelerometer's noise"},
-    {"sensor.adc_bits", "", INTEGER, AT(sensor.adc_bits), 12, 12, 0, 32, NULL, NOT_TIMED,
-     "bits of the A/D converter, 0 for a continuous one"},
-    {"sensor.dac_bits", "", INTEGER, AT(sensor.dac_bits), 12, 12, 0, 32, NULL, NOT_TIMED,
-     "bits of the D/A converter, 0 for a continuous one"},
-    {"sensor.adc_range", "V", REAL, AT(sensor.adc_range), 10, 10, 1e-3, 1000, NULL, NOT_TIMED,
-     "range of the A/D converter either way"},
+    {PATH(arm.model), CHOICE(1, "corrected|printed"), DEFAULTS(ARM_CORRECTED, ARM_PRINTED),
+     MEANING("equations of motion: derived anew, or as the thesis prints them")},
+    {PATH(arm.links), INTEGER(1, 1024), DEFAULT(2),
+     MEANING("number of rigid links the beam is cut into (N)")},
+    {PATH(arm.hub_joint), CHOICE(1, "rigid|spring"), DEFAULTS(HUB_RIGID, HUB_SPRING),
+     MEANING("joint between hub and first link: one body, or the spring k1")},
+    {PATH(arm.length), REAL("m", 0.01, 100), DEFAULT(1.0),
+     MEANING("length of the beam, all links together")},
+    {PATH(arm.mass), REAL("kg", 1e-4, 1e4), DEFAULT(0.40108),
+     MEANING("mass of the beam, all links together")},
+    {PATH(arm.hub_inertia), REAL("kg m2", 0, 1e4), DEFAULT(5.2e-3),
+     MEANING("moment of inertia of hub and motor shaft (I1)")},
+    {PATH(arm.link_inertia), REAL("kg m2", 0, 1e4), DEFAULTS(DERIVED, 1.67e-5),
+     MEANING("moment of inertia of a link about its centre of mass (I2 = I3, N = 2 only)")},
+    {PATH(arm.k1), REAL("N m/rad", 1e-6, 1e9), DEFAULTS(K1_THESIS, K1_PRINTED_TABLES), TIMED,
+     MEANING("stiffness of the hub joint (arm.hub_joint = spring)")},
+    {PATH(arm.k2), REAL("N m/rad", 1e-6, 1e9), DEFAULT(4.92), TIMED,
+     MEANING(
+         "stiffness of the middle joint of the two-link beam; each joint of N links has k2 N/2")},
+    {PATH(arm.damping_ratio), REAL("", 0, 1), DEFAULT(0),
+     MEANING("structural damping ratio of the first clamped-free mode")},
+
+    {PATH(motor.voltage), REAL("V", -1000, 1000), DEFAULT(1), TIMED,
+     MEANING("command to the amplifier, held constant")},
+    {PATH(motor.voltage_limit), REAL("V", 0, 1000), DEFAULT(10), TIMED,
+     MEANING("largest command either way; beyond it the command saturates")},
+    {PATH(motor.amplifier_gain), REAL("", 0, 1000), DEFAULT(6.02),
+     MEANING("volts at the motor per volt of command")},
+    {PATH(motor.torque_constant), REAL("N m/A", 0, 1000), DEFAULT(TORQUE_CONSTANT),
+     MEANING("torque per ampere (kT)")},
+    {PATH(motor.back_emf), REAL("V s/rad", 0, 1000), DEFAULT(2.443),
+     MEANING("back electromotive force (kB)")},
+    {PATH(motor.resistance), REAL("ohm", 1e-3, 1e6), DEFAULT(33.6),
+     MEANING("armature resistance (Ra)")},
+    {PATH(motor.viscous_friction), REAL("N m s/rad", 0, 1000), DEFAULT(5.4192e-3), TIMED,
+     MEANING("viscous friction at the hub (kfr)")},
+    {PATH(motor.stiction), REAL("N m", 0, 1000), DEFAULT(0.045), TIMED,
+     MEANING("Coulomb friction torque at the hub, sliding and sticking (kst)")},
+
+    {PATH(wall.kind), CHOICE(2, "point|plane|none"), DEFAULT(WALL_POINT),
+     MEANING("a fixed point the last link's line may not pass, a flat wall the tip may not pass, "
+             "or none")},
+    {PATH(wall.angle), REAL("rad", -3, 3), DEFAULT(0.1),
+     MEANING("direction of contact point or flat wall as seen from the hub axis")},
+    {PATH(wall.restitution), REAL("", 0, 1), DEFAULT(0), TIMED,
+     MEANING("coefficient of restitution e of an impact (0: plastic)")},
+
+    {PATH(method.name), CHOICE(2, "event|newmark|generalized-alpha"),
+     DEFAULTS(METHOD_EVENT, METHOD_NEWMARK), MEANING("time integration")},
+    {PATH(method.step), REAL("s", 1e-7, 1), DEFAULT(1e-3),
+     MEANING("time step h, and the spacing of the recorded rows")},
+    {PATH(method.beta), REAL("", 0.01, 2), DEFAULT(0.4), MEANING("Newmark's beta")},
+    {PATH(method.gamma), REAL("", 0, 2), DEFAULT(0.5), MEANING("Newmark's gamma")},
+    {PATH(method.spectral_radius), REAL("", 0, 1), DEFAULT(0.8),
+     MEANING("what generalised-alpha leaves of the highest modes in one step (rho at infinity)")},
+    {PATH(method.rest_speed), REAL("m/s", 0, 1), DEFAULT(1e-4),
+     MEANING("rest rule: an impact slower than this is plastic whatever e is")},
+
+    {PATH(printed.spring_counted_twice), BOOLEAN, DEFAULT(true),
+     MEANING("printed model: (2.16) carries the spring k2 that belongs in (2.17) alone")},
+    {PATH(printed.force_at_link_end), BOOLEAN, DEFAULT(true),
+     MEANING(
+         "printed model: the contact force acts at the link's end instead of the contact point")},
+    {PATH(printed.sign_dead_band), BOOLEAN, DEFAULT(true),
+     MEANING(
+         "printed model: sign() takes -0.01 for the lower edge of its dead band instead of -1e-5")},
+    {PATH(printed.energy_cross_term), BOOLEAN, DEFAULT(true),
+     MEANING("printed model: kinetic energy of the predictor has eps w2 w3 for 2 l eps w2 w3")},
+    {PATH(printed.reevaluation), CHOICE(1, "rhs|listing"), DEFAULT(REEVALUATE_RHS),
+     MEANING("printed model: where the re-evaluation puts 2 l sin(d) w2 w3, as (3.13) has it or as "
+             "the listing has it")},
+    {PATH(printed.force_after_release), BOOLEAN, DEFAULT(true),
+     MEANING(
+         "printed model: the force is evaluated from the constrained system after release too")},
+    {PATH(printed.feed_newmark_acceleration), BOOLEAN, DEFAULT(false),
+     MEANING("printed model: the next step starts from Newmark's own acceleration, not the "
+             "re-evaluated one")},
+    {PATH(printed.newton_iterations), INTEGER(1, 100), DEFAULT(2),
+     MEANING("printed model: Newton solves per time step")},
+
+    {PATH(initial.angle), REAL("rad", -3, 3), DEFAULT(0),
+     MEANING("angle of hub and all links at the start")},
+    {PATH(initial.velocity), REAL("rad/s", -1000, 1000), DEFAULT(0),
+     MEANING("angular velocity of hub and all links at the start")},
+
+    {PATH(run.duration), REAL("s", 1e-6, 1e5), DEFAULT(1), MEANING("simulated time")},
+
+    {PATH(control.law), CHOICE(LAW_PLUGIN, CONTROL_LAW_CHOICES), DEFAULT(LAW_NONE),
+     MEANING("control law on the rig, or none: the bare arm under motor.voltage")},
+    {PATH(control.plugin), TEXT(NULL),
+     MEANING("shared object with a controller of one's own (control.law = plugin)")},
+    {PATH(control.settings), TEXT(NULL),
+     MEANING("a plug-in's own parameters, written name=value and separated by spaces")},
+    {PATH(control.lock), TEXT("none"), TIMED,
+     MEANING("mode that the law is held in, by its name, or none: the law chooses")},
+    {PATH(control.rate), REAL("Hz", 1, 1e5), DEFAULT(200), MEANING("samples a second")},
+    {PATH(control.delay), REAL("s", 0, 1), DEFAULT(0),
+     MEANING("from a sample to the instant its command takes effect, at most one period")},
+    {PATH(control.delay_periods), REAL("", 0, 1), DEFAULT(0),
+     MEANING(
+         "the same in sampling periods, on top of it; 1: a command goes out with the next sample")},
+    {PATH(control.jitter), REAL("s", 0, 1), DEFAULT(0),
+     MEANING("width over which the sampling instants scatter, at most half a period")},
+    {PATH(control.seed), INTEGER(0, 2147483647), DEFAULT(1),
+     MEANING("seed of all noise of the rig")},
+    {PATH(control.force), REAL("N", 0, 1000), DEFAULT(1), MEANING("commanded contact force")},
+    {PATH(control.approach_voltage), REAL("V", -1000, 1000), DEFAULT(1),
+     MEANING("constant command of the approach")},
+    {PATH(control.kp), REAL("", -1e6, 1e6), DEFAULT(10.15),
+     MEANING("position gain, per rad, of a torque in N m or of volts (control.gains)")},
+    {PATH(control.kv), REAL("", -1e6, 1e6), DEFAULT(0.75),
+     MEANING("velocity gain, per rad/s, of a torque in N m or of volts (control.gains)")},
+    {PATH(control.gains), CHOICE(2, "torque|volts|printed"), DEFAULT(0),
+     MEANING("hybrid: what kp and kv give; printed: torque in the impact mode and volts in the "
+             "force mode")},
+    {PATH(control.coefficients), CHOICE(1, "corrected|printed"), DEFAULT(0),
+     MEANING("hybrid: factors of its model, 4 k2 and 2 f l, or 6 k2 and 3 f l as printed")},
+    {PATH(control.transition_time), REAL("s", 1e-3, 100), DEFAULT(0.35),
+     MEANING(
+         "hybrid: length of the impact mode (t_f); inverse-dynamics: how long the force rises")},
+    {PATH(control.contact_threshold), REAL("N", 0, 1000), DEFAULT(0.05),
+     MEANING("force reading that a controller takes for contact")},
+    {PATH(control.k2_factor), REAL("", 0.01, 100), DEFAULT(1),
+     MEANING(
+         "k2 that the controller believes in, divided by the arm's (by that of control.k2_table)")},
+    {PATH(control.k2_table), TEXT(NULL),
+     MEANING("k2 by commanded force as calibrate measures it, written FORCE:K2 and separated by "
+             "spaces")},
+    {PATH(control.wall_error), REAL("rad", -3, 3), DEFAULT(0),
+     MEANING("wall angle that the controller believes in, minus the wall's")},
+    {PATH(control.force_gain), REAL("V/N", -1000, 1000), DEFAULT(1),
+     MEANING("gain of the force error")},
+    {PATH(control.integral_gain), REAL("V/(N s)", -1e4, 1e4), DEFAULT(5),
+     MEANING("gain of the integrated force error")},
+    {PATH(control.speed_limit), REAL("rad/s", 0, 1000), DEFAULT(0.3),
+     MEANING("speed-limit: hub velocity of the approach")},
+    {PATH(control.reverse_time), REAL("s", 0, 10), DEFAULT(0.02),
+     MEANING("reverse-torque: how long the motor pulls back after contact")},
+    {PATH(control.switch_share), REAL("", 0, 1), DEFAULT(0.5),
+     MEANING("bang-bang: share of the way to the wall at which the command is reversed")},
+    {PATH(control.force_limit), REAL("N", 0, 1000), DEFAULT(2),
+     MEANING("predictive: force that an impact may not exceed wherever it happens")},
+    {PATH(control.travel_time), REAL("s", 1e-3, 100), DEFAULT(0.35),
+     MEANING("inverse-dynamics: how long the tip moves to the wall")},
+    {PATH(control.arrival_speed), REAL("m/s", 0, 1000), DEFAULT(0),
+     MEANING("inverse-dynamics: speed with which the tip is to meet the wall")},
+
+    {PATH(sensor.ideal), BOOLEAN, DEFAULT(false),
+     MEANING("switches off every imperfection of sensors and converters")},
+    {PATH(sensor.force), CHOICE(1, "fsr|piezo"), DEFAULT(FORCE_BY_FSR),
+     MEANING("force sensor whose reading the controller gets as the force")},
+    {PATH(sensor.encoder_counts), INTEGER(0, 1000000000), DEFAULT(8000),
+     MEANING("counts of the encoder per revolution, 0 for a continuous reading")},
+    {PATH(sensor.tachometer_gain), REAL("V s/rad", 1e-6, 1000), DEFAULT(2),
+     MEANING("volts of the tachometer per hub velocity")},
+    {PATH(sensor.tachometer_ripple), REAL("", 0, 1), DEFAULT(0.01),
+     MEANING("amplitude of the tachometer's ripple as a share of its reading")},
+    {PATH(sensor.tachometer_ripple_count), INTEGER(0, 100000), DEFAULT(79),
+     MEANING("ripples a revolution")},
+    {PATH(sensor.tachometer_noise), REAL("V", 0, 10), DEFAULT(0.01),
+     MEANING("standard deviation of the tachometer's noise")},
+    {PATH(sensor.fsr_rise_time), REAL("s", 0, 1), DEFAULT(1.5e-3),
+     MEANING("rise time of the force sensor from 10 % to 90 %, 0 for an instant one")},
+    {PATH(sensor.fsr_resistance), REAL("ohm", 1, 1e9), DEFAULT(30e3),
+     MEANING("resistance of the force sensor at 1 N")},
+    {PATH(sensor.fsr_exponent), REAL("", 0.1, 3), DEFAULT(0.75),
+     MEANING("exponent of its power law, resistance = fsr_resistance (force/1 N)^-fsr_exponent")},
+    {PATH(sensor.fsr_divider), REAL("ohm", 1, 1e9), DEFAULT(40e3),
+     MEANING("measuring resistor of the voltage divider (R_M)")},
+    {PATH(sensor.fsr_supply), REAL("V", 1e-3, 1000), DEFAULT(5),
+     MEANING("voltage across the divider")},
+    {PATH(sensor.fsr_gain), REAL("", 1e-3, 1000), DEFAULT(2),
+     MEANING("gain of the stage behind the divider, 1 + R5/R6")},
+    {PATH(sensor.fsr_saturation), REAL("N", 1e-3, 1e6), DEFAULT(10),
+     MEANING("force beyond which the sensor's resistance falls no further")},
+    {PATH(sensor.fsr_noise), REAL("V", 0, 10), DEFAULT(0.02),
+     MEANING("standard deviation of the force channel's noise")},
+    {PATH(sensor.piezo), BOOLEAN, DEFAULT(false),
+     MEANING("fits a piezoelectric force sensor at the tip (sensor.force = piezo fits it too)")},
+    {PATH(sensor.piezo_gain), REAL("V/N", 1e-6, 1e6), DEFAULT(1),
+     MEANING("volts of its charge amplifier per force")},
+    {PATH(sensor.piezo_rise_time), REAL("s", 0, 1), DEFAULT(5e-5),
+     MEANING(
+         "rise time of the piezoelectric force sensor from 10 % to 90 %, 0 for an instant one")},
+    {PATH(sensor.piezo_leak_time), REAL("s", 0, 1e6), DEFAULT(5),
+     MEANING("time constant with which its charge leaks away, 0 for a charge that stays")},
+    {PATH(sensor.piezo_range), REAL("N", 0, 1e6), DEFAULT(10),
+     MEANING("force beyond which it is off scale either way, 0 for no such limit")},
+    {PATH(sensor.piezo_noise), REAL("V", 0, 10), DEFAULT(5e-3),
+     MEANING("standard deviation of the piezoelectric force sensor's noise")},
+    {PATH(sensor.film), BOOLEAN, DEFAULT(false),
+     MEANING("fits a piezo film along the beam that shows its bending, last link's angle minus the "
+             "first's")},
+    {PATH(sensor.film_gain), REAL("V/rad", 1e-6, 1e6), DEFAULT(10),
+     MEANING("volts of the film's amplifier per bending")},
+    {PATH(sensor.film_leak_time), REAL("s", 0, 1e6), DEFAULT(1),
+     MEANING("time constant with which the film's charge leaks away, 0 for a charge that stays")},
+    {PATH(sensor.film_noise), REAL("V", 0, 10), DEFAULT(0.01),
+     MEANING("standard deviation of the film's noise")},
+    {PATH(sensor.accelerometer), BOOLEAN, DEFAULT(false),
+     MEANING("fits a tangential accelerometer to the hub that shows its angular acceleration")},
+    {PATH(sensor.accelerometer_gain), REAL("V s2/rad", 1e-9, 1e6), DEFAULT(0.02),
+     MEANING("volts of the accelerometer per angular acceleration of the hub")},
+    {PATH(sensor.accelerometer_rise_time), REAL("s", 0, 1), DEFAULT(3.5e-4),
+     MEANING("rise time of the accelerometer from 10 % to 90 % (0.35 over its bandwidth), 0 for an "
+             "instant one")},
+    {PATH(sensor.accelerometer_range), REAL("rad/s2", 0, 1e9), DEFAULT(500),
+     MEANING("angular acceleration beyond which it is off scale either way, 0 for no such limit")},
+    {PATH(sensor.accelerometer_noise), REAL("V", 0, 10), DEFAULT(5e-3),
+     MEANING("standard deviation of the accelerometer's noise")},
+    {PATH(sensor.adc_bits), INTEGER(0, 32), DEFAULT(12),
+     MEANING("bits of the A/D converter, 0 for a continuous one")},
+    {PATH(sensor.dac_bits), INTEGER(0, 32), DEFAULT(12),
+     MEANING("bits of the D/A converter, 0 for a continuous one")},
+    {PATH(sensor.adc_range), REAL("V", 1e-3, 1000), DEFAULT(10),
+     MEANING("range of the A/D converter either way")},
 };
 
 const int parameter_count = (int)(sizeof parameter_table / sizeof parameter_table[0]);
@@ -251,14 +259,32 @@ const int parameter_count = (int)(sizeof parameter_table / sizeof parameter_tabl
 _Static_assert(sizeof parameter_table / sizeof parameter_table[0] <= sizeof(((parameters *)0)->set),
                "parameters.set has room for every parameter");
 
+int parameter_at(size_t offset)
+{
+    int index = 0;
+    while (index < parameter_count && parameter_table[index].offset != offset) {
+        index++;
+    }
+    assert(index < parameter_count);
+    return index;
+}
+
 int parameter_find(const char *path)
 {
+    assert(path != NULL);
     for (int i = 0; i < parameter_count; i++) {
         if (strcmp(parameter_table[i].path, path) == 0) {
             return i;
         }
     }
     return -1;
+}
+
+int parameter_index(const char *path)
+{
+    int index = parameter_find(path);
+    assert(index >= 0);
+    return index;
 }
 
 const char *parameter_suggest(const char *path)
@@ -295,9 +321,16 @@ static void store(parameters *p, const parameter_info *info, double value)
     }
 }
 
+// The row of an index that a look-up gave.
+static const parameter_info *row_of(int index)
+{
+    assert(index >= 0 && index < parameter_count);
+    return &parameter_table[index];
+}
+
 double parameter_get(const parameters *p, int index)
 {
-    const parameter_info *info = &parameter_table[index];
+    const parameter_info *info = row_of(index);
     const char *at = (const char *)p + info->offset;
     double real;
     bool truth;
@@ -334,22 +367,25 @@ void parameters_defaults(parameters *p, arm_model_kind model)
 
 status parameter_set_number(parameters *p, int index, double value, fault *f)
 {
-    const parameter_info *info = &parameter_table[index];
+    const parameter_info *info = row_of(index);
     const char *unit = info->unit, *space = unit[0] ? " " : "";
     if (info->type == PARAMETER_TEXT) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s is a text and takes no number", info->path);
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s is a text and takes no number",
+                            info->path);
     }
     if (!isfinite(value)) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s is not a finite number, expected %g to %g%s%s",
-                         info->path, info->minimum, info->maximum, space, unit);
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s is not a finite number, expected %g to %g%s%s", info->path,
+                            info->minimum, info->maximum, space, unit);
     }
     if (info->type != PARAMETER_REAL && value != floor(value)) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s = %g is not a whole number", info->path,
-                         value);
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s = %g is not a whole number",
+                            info->path, value);
     }
     if (value < info->minimum || value > info->maximum) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s = %g is out of range, expected %g to %g%s%s",
-                         info->path, value, info->minimum, info->maximum, space, unit);
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = %g is out of range, expected %g to %g%s%s", info->path, value,
+                            info->minimum, info->maximum, space, unit);
     }
     store(p, info, value);
     p->set[index] = 1;
@@ -379,81 +415,96 @@ static status parse_quantity(const parameter_info *info, const char *text, doubl
         // strtod's own words for what is not finite, with or without YAML's dot
         bool infinite = strncasecmp(digits, "inf", 3) == 0 || strncasecmp(digits, "nan", 3) == 0;
         const char *type = info->type == PARAMETER_INTEGER ? "a whole number" : "a number";
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is not %s, expected %g to %g%s%s",
-                         info->path, text, infinite ? "finite" : type, info->minimum, info->maximum,
-                         info->unit[0] ? " " : "", info->unit);
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = '%.60s' is not %s, expected %g to %g%s%s", info->path, text,
+                            infinite ? "finite" : type, info->minimum, info->maximum,
+                            info->unit[0] ? " " : "", info->unit);
     }
     if (*unit != '\0' && strcmp(unit, info->unit) != 0) {
         if (info->unit[0] == '\0') {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "%s = '%.60s' carries a unit, expected a pure number", info->path,
-                             text);
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s = '%.60s' carries a unit, expected a pure number", info->path,
+                                text);
         }
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is in '%.20s', expected %s",
-                         info->path, text, unit, info->unit);
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = '%.60s' is in '%.20s', expected %s", info->path, text, unit,
+                            info->unit);
     }
     return STATUS_OK;
 }
 
+// A text of one line is stored as it is.
+static status store_text(parameters *p, int index, const char *text, size_t length, fault *f)
+{
+    const parameter_info *info = row_of(index);
+    for (size_t i = 0; i < length; i++) {
+        if (iscntrl((unsigned char)text[i])) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s holds a control character, expected one line of text",
+                                info->path);
+        }
+    }
+    char *at = (char *)p + info->offset;
+    memset(at, 0, PARAMETER_TEXT_SIZE);
+    memcpy(at, text, length);
+    p->set[index] = 1;
+    return STATUS_OK;
+}
+
+// Reads a word without surrounding space as the number of a parameter that is no text.
+static status parse_word(const parameter_info *info, const char *word, double *value, fault *f)
+{
+    size_t length = strlen(word);
+    if (info->type == PARAMETER_CHOICE) {
+        int choice = choice_index(info->choices, word, length);
+        *value = choice;
+        return choice >= 0 ? STATUS_OK
+                           : fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                          "%s = '%.60s' is not known, expected one of %s",
+                                          info->path, word, info->choices);
+    }
+    if (info->type == PARAMETER_BOOLEAN) {
+        int choice = choice_index("false|true|no|yes|off|on|0|1", word, length);
+        *value = choice % 2;
+        return choice >= 0
+                   ? STATUS_OK
+                   : fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                  "%s = '%.60s' is neither true nor false", info->path, word);
+    }
+    return parse_quantity(info, word, value, f);
+}
+
 status parameter_set_text(parameters *p, int index, const char *text, fault *f)
 {
-    const parameter_info *info = &parameter_table[index];
-    while (isspace((unsigned char)*text)) {
-        text++;
-    }
+    assert(p != NULL && text != NULL);
+    const parameter_info *info = row_of(index);
+
+    // what counts is what stands between the blanks
+    text += strspn(text, " \t\n\v\f\r");
     size_t length = strlen(text);
     while (length > 0 && isspace((unsigned char)text[length - 1])) {
         length--;
     }
-    char word[PARAMETER_TEXT_SIZE];
-    if (info->type == PARAMETER_TEXT && length < sizeof word) {
-        for (size_t i = 0; i < length; i++) {
-            if (iscntrl((unsigned char)text[i])) {
-                return fault_set(f, STATUS_BAD_SCENARIO,
-                                 "%s holds a control character, expected one line of text",
-                                 info->path);
-            }
-        }
-        char *at = (char *)p + info->offset;
-        memset(at, 0, PARAMETER_TEXT_SIZE);
-        memcpy(at, text, length);
-        p->set[index] = 1;
-        return STATUS_OK;
+    if (info->type == PARAMETER_TEXT && length < PARAMETER_TEXT_SIZE) {
+        return store_text(p, index, text, length, f);
     }
+
+    char word[PARAMETER_TEXT_SIZE];
     if (length == 0 || length >= sizeof word) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s has %s", info->path,
-                         length ? "a value of more than 127 characters" : "no value");
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s has %s", info->path,
+                            length ? "a value of more than 127 characters" : "no value");
     }
     memcpy(word, text, length);
     word[length] = '\0';
+
     double value = 0;
-    if (info->type == PARAMETER_CHOICE) {
-        int choice = choice_index(info->choices, word, length);
-        if (choice < 0) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "%s = '%.60s' is not known, expected one of %s", info->path, word,
-                             info->choices);
-        }
-        value = choice;
-    } else if (info->type == PARAMETER_BOOLEAN) {
-        int choice = choice_index("false|true|no|yes|off|on|0|1", word, length);
-        if (choice < 0) {
-            return fault_set(f, STATUS_BAD_SCENARIO, "%s = '%.60s' is neither true nor false",
-                             info->path, word);
-        }
-        value = choice % 2;
-    } else {
-        status s = parse_quantity(info, word, &value, f);
-        if (s != STATUS_OK) {
-            return s;
-        }
-    }
-    return parameter_set_number(p, index, value, f);
+    status code = parse_word(info, word, &value, f);
+    return code == STATUS_OK ? parameter_set_number(p, index, value, f) : code;
 }
 
 void parameter_format(const parameters *p, int index, char *text, size_t size)
 {
-    const parameter_info *info = &parameter_table[index];
+    const parameter_info *info = row_of(index);
     double value = parameter_get(p, index);
     if (info->type == PARAMETER_TEXT) {
         snprintf(text, size, "%s", (const char *)p + info->offset);
@@ -474,26 +525,109 @@ void parameter_format(const parameters *p, int index, char *text, size_t size)
     }
 }
 
-static bool is_set(const parameters *p, const char *path)
+// Whether the parameter of a field was given.
+#define IS_SET(p, field) ((p)->set[PARAMETER_INDEX(field)] != 0)
+
+// The path of the first of some parameters, ended by -1, that was given: of those that contradict
+// one another it is the one to blame. "" if all are defaults.
+static const char *first_given(const parameters *p, const int *indices)
 {
-    return p->set[parameter_find(path)] != 0;
+    for (; *indices >= 0; indices++) {
+        if (p->set[*indices]) {
+            return parameter_table[*indices].path;
+        }
+    }
+    return "";
+}
+
+// A fault that several parameters make together, in the order in which they are to blame.
+#define BLAME1(p, a)    first_given(p, (const int[]){PARAMETER_INDEX(a), -1})
+#define BLAME2(p, a, b) first_given(p, (const int[]){PARAMETER_INDEX(a), PARAMETER_INDEX(b), -1})
+#define BLAME3(p, a, b, c)                                                                         \
+    first_given(p, (const int[]){PARAMETER_INDEX(a), PARAMETER_INDEX(b), PARAMETER_INDEX(c), -1})
+
+// What was not given follows the model, and the inertia of a link its shape.
+static void resolve_defaults(parameters *p)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        if (!p->set[i] && i != PARAMETER_INDEX(arm.model)) {
+            store(p, info, default_value(info, p->arm.model));
+        }
+    }
+}
+
+static status resolve_arm(parameters *p, fault *f)
+{
+    if (IS_SET(p, arm.link_inertia) && p->arm.links != 2) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.link_inertia, arm.links),
+                            "arm.link_inertia is for two links only, but arm.links = %d (other N "
+                            "take the inertia of a uniform rod)",
+                            p->arm.links);
+    }
+    if (isnan(p->arm.link_inertia)) {
+        double m = p->arm.mass / p->arm.links, l = p->arm.length / p->arm.links;
+        p->arm.link_inertia = m * l * l / 12; // uniform rod (errata B3)
+    }
+    if (p->wall.kind != WALL_NONE && p->initial.angle > p->wall.angle) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, initial.angle, wall.angle),
+            "initial.angle = %g rad lies behind the wall, expected at most wall.angle = "
+            "%g rad",
+            p->initial.angle, p->wall.angle);
+    }
+    return STATUS_OK;
+}
+
+static status check_control(const parameters *p, fault *f)
+{
+    const control_parameters *c = &p->control;
+    double period = 1 / c->rate;
+    if (c->law == LAW_PLUGIN && c->plugin[0] == '\0') {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.plugin),
+            "control.law = plugin needs the file of a shared object in control.plugin");
+    }
+    if (c->delay * c->rate > 1) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, control.delay, control.rate),
+                            "control.delay = %g s is longer than the period of %g s (control.rate)",
+                            c->delay, period);
+    }
+    if (c->delay * c->rate + c->delay_periods > 1) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME3(p, control.delay_periods, control.delay, control.rate),
+            "control.delay_periods = %g and control.delay = %g s are together longer than the "
+            "period of %g s (control.rate)",
+            c->delay_periods, c->delay, period);
+    }
+    k2_table table;
+    if (k2_table_read(&table, c->k2_table, f) != STATUS_OK) {
+        return STATUS_BAD_SCENARIO;
+    }
+    if (c->jitter * c->rate > 0.5) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.jitter, control.rate),
+            "control.jitter = %g s is more than half the period of %g s (control.rate)", c->jitter,
+            period);
+    }
+    return STATUS_OK;
 }
 
 // A controller that is to get the piezoelectric sensor's force needs one that shows something.
 static status resolve_piezo(parameters *p, fault *f)
 {
-    if (p->sensor.force == FORCE_BY_PIEZO && !is_set(p, "sensor.piezo")) {
+    if (p->sensor.force == FORCE_BY_PIEZO && !IS_SET(p, sensor.piezo)) {
         p->sensor.piezo = true;
     }
     if (p->sensor.force == FORCE_BY_PIEZO && !p->sensor.piezo) {
-        return fault_set(
-            f, STATUS_BAD_SCENARIO,
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, sensor.force, sensor.piezo),
             "sensor.force = piezo needs the sensor that sensor.piezo = false leaves out");
     }
     double leak = p->sensor.piezo_leak_time;
     if (leak > 0 && leak < p->sensor.piezo_rise_time) {
-        return fault_set(
-            f, STATUS_BAD_SCENARIO,
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, sensor.piezo_leak_time, sensor.piezo_rise_time),
             "sensor.piezo_leak_time = %g s is shorter than sensor.piezo_rise_time = %g "
             "s, expected a longer one or 0",
             leak, p->sensor.piezo_rise_time);
@@ -501,78 +635,34 @@ static status resolve_piezo(parameters *p, fault *f)
     return STATUS_OK;
 }
 
-status parameters_resolve(parameters *p, fault *f)
+// The printed equations hold for one arm and one method.
+static status check_printed(const parameters *p, fault *f)
 {
-    for (int i = 0; i < parameter_count; i++) {
-        const parameter_info *info = &parameter_table[i];
-        if (!p->set[i] && strcmp(info->path, "arm.model") != 0) {
-            store(p, info, default_value(info, p->arm.model));
-        }
+    if (p->arm.links != 2) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.links),
+                            "the printed model has two links, but arm.links = %d", p->arm.links);
     }
-    if (is_set(p, "arm.link_inertia") && p->arm.links != 2) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "arm.link_inertia is for two links only, but arm.links = %d (other N take "
-                         "the inertia of a uniform rod)",
-                         p->arm.links);
+    if (p->arm.hub_joint != HUB_SPRING) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.hub_joint),
+                            "the printed model has a hub spring, but arm.hub_joint = rigid");
     }
-    if (isnan(p->arm.link_inertia)) {
-        double m = p->arm.mass / p->arm.links, l = p->arm.length / p->arm.links;
-        p->arm.link_inertia = m * l * l / 12; // uniform rod (errata B3)
+    if (p->method.name != METHOD_NEWMARK) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.name),
+                            "the printed model runs with method.name = newmark only");
     }
-    if (p->wall.kind != WALL_NONE && p->initial.angle > p->wall.angle) {
-        return fault_set(
-            f, STATUS_BAD_SCENARIO,
-            "initial.angle = %g rad lies behind the wall, expected at most wall.angle = "
-            "%g rad",
-            p->initial.angle, p->wall.angle);
-    }
-    if (p->control.law == LAW_PLUGIN && p->control.plugin[0] == '\0') {
-        return fault_set(
-            f, STATUS_BAD_SCENARIO,
-            "control.law = plugin needs the file of a shared object in control.plugin");
-    }
-    if (p->control.delay * p->control.rate > 1) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "control.delay = %g s is longer than the period of %g s (control.rate)",
-                         p->control.delay, 1 / p->control.rate);
-    }
-    if (p->control.delay * p->control.rate + p->control.delay_periods > 1) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "control.delay_periods = %g and control.delay = %g s are together longer "
-                         "than the period of %g s (control.rate)",
-                         p->control.delay_periods, p->control.delay, 1 / p->control.rate);
-    }
-    k2_table table;
-    if (k2_table_read(&table, p->control.k2_table, f) != STATUS_OK) {
-        return STATUS_BAD_SCENARIO;
-    }
-    if (p->control.jitter * p->control.rate > 0.5) {
-        return fault_set(
-            f, STATUS_BAD_SCENARIO,
-            "control.jitter = %g s is more than half the period of %g s (control.rate)",
-            p->control.jitter, 1 / p->control.rate);
-    }
-    status sensible = resolve_piezo(p, f);
-    if (sensible != STATUS_OK) {
-        return sensible;
-    }
-    if (p->arm.model == ARM_PRINTED) {
-        if (p->arm.links != 2) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "the printed model has two links, but arm.links = %d", p->arm.links);
-        }
-        if (p->arm.hub_joint != HUB_SPRING) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "the printed model has a hub spring, but arm.hub_joint = rigid");
-        }
-        if (p->method.name != METHOD_NEWMARK) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "the printed model runs with method.name = newmark only");
-        }
-        if (p->wall.kind == WALL_PLANE) {
-            return fault_set(f, STATUS_BAD_SCENARIO,
-                             "the printed model knows wall.kind = point or none, not plane");
-        }
+    if (p->wall.kind == WALL_PLANE) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.kind),
+                            "the printed model knows wall.kind = point or none, not plane");
     }
     return STATUS_OK;
+}
+
+status parameters_resolve(parameters *p, fault *f)
+{
+    assert(p != NULL);
+    resolve_defaults(p);
+    status code = resolve_arm(p, f);
+    code = code == STATUS_OK ? check_control(p, f) : code;
+    code = code == STATUS_OK ? resolve_piezo(p, f) : code;
+    return code == STATUS_OK && p->arm.model == ARM_PRINTED ? check_printed(p, f) : code;
 }

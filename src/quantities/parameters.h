@@ -169,9 +169,9 @@ typedef enum parameter_type {
 
 typedef struct parameter_info {
     const char *path; // "arm.k2"
-    const char *unit; // "N m/rad", "" for a pure number
+    size_t offset;    // in struct parameters
     parameter_type type;
-    size_t offset; // in struct parameters
+    const char *unit; // "N m/rad", "" for a pure number
     double default_corrected;
     double default_printed;
     double minimum, maximum; // both included
@@ -187,6 +187,15 @@ extern const int parameter_count;
 
 // Index of a path in the table, or -1.
 int parameter_find(const char *path);
+
+// Index of the parameter of a field, PARAMETER_INDEX(arm.k2); a misspelt one does not compile.
+#define PARAMETER_INDEX(field) parameter_at(offsetof(parameters, field))
+
+// Index of the parameter that starts at an offset of struct parameters.
+int parameter_at(size_t offset);
+
+// Index of a path that the program itself names: an unknown one fails an assertion.
+int parameter_index(const char *path);
 
 // The path nearest to a misspelt one (for "did you mean"), or NULL if none is near.
 const char *parameter_suggest(const char *path);

@@ -1,6 +1,7 @@
 #include "src/quantities/signals.h"
 
 #include <assert.h>
+#include <assert.h>
 #include <string.h>
 
 #define AT(field) offsetof(sample, field)
@@ -95,6 +96,9 @@ const signal_info signal_table[] = {
 
 const int signal_count = (int)(sizeof signal_table / sizeof signal_table[0]);
 
+_Static_assert(sizeof signal_table / sizeof signal_table[0] == SIGNALS_AT_MOST,
+               "every field of a sample has its row");
+
 int signal_find(const char *name)
 {
     assert(name != NULL);
@@ -116,8 +120,16 @@ const char *signal_body_name(signal_body body)
     return names[body];
 }
 
+int signal_index(const char *name)
+{
+    int index = signal_find(name);
+    assert(index >= 0);
+    return index;
+}
+
 double signal_value(const sample *row, int index)
 {
+    assert(index >= 0 && index < signal_count);
     assert(row != NULL && index >= 0 && index < signal_count);
     double value;
     memcpy(&value, (const char *)row + signal_table[index].offset, sizeof value);

@@ -72,8 +72,15 @@ extern const signal_info signal_table[];
 extern const int signal_count;
 enum { SIGNALS_AT_MOST = sizeof(sample) / sizeof(double) };
 
+// Index of the signal of a field, SIGNAL_INDEX(force): rows and table have one order. A constant,
+// and a misspelt one does not compile.
+#define SIGNAL_INDEX(field) ((int)(offsetof(sample, field) / sizeof(double)))
+
 // Index of a signal by name, or -1.
 int signal_find(const char *name);
+
+// Index of a signal that the program itself names: an unknown one fails an assertion.
+int signal_index(const char *name);
 
 // "hub", "first link", "last link"; "" for BODY_NONE.
 const char *signal_body_name(signal_body body);

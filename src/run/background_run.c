@@ -1,5 +1,6 @@
 #include "src/run/background_run.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>

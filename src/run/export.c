@@ -38,16 +38,14 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
     json_t *array = json_array();
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
-        double value = (double)NAN;
-        bool known = summary_get(&result->summary, e->quantity, &value);
-        bool met = known && (e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance);
+        double value = summary_value(&result->summary, e->quantity);
         json_t *object = json_object();
-        json_object_set_new(object, "quantity", json_string(e->quantity));
+        json_object_set_new(object, "quantity", json_string(summary_table[e->quantity].key));
         json_object_set_new(object, "expected", e->is_null ? json_null() : json_number(e->value));
         json_object_set_new(object, "tolerance",
                             e->is_null ? json_null() : json_number(e->tolerance));
         json_object_set_new(object, "value", json_number(value));
-        json_object_set_new(object, "met", json_boolean(met));
+        json_object_set_new(object, "met", json_boolean(expectation_is_met(e, value)));
         json_array_append_new(array, object);
     }
     return array;
@@ -97,9 +95,7 @@ json_t *export_run(const scenario *s, const run_result *result)
     json_object_set_new(object, "method_used", json_text(m->method));
     json_object_set_new(object, "parameters", parameters_object(&s->parameters));
     for (int i = 0; i < summary_count; i++) {
-        double value = (double)NAN;
-        summary_get(m, summary_table[i].key, &value);
-        json_object_set_new(object, summary_table[i].key, json_number(value));
+        json_object_set_new(object, summary_table[i].key, json_number(summary_value(m, i)));
     }
     if (s->expectation_count > 0) {
         json_object_set_new(object, "expectations", expectations_array(s, result));

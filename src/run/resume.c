@@ -1,6 +1,7 @@
 #include "src/run/resume.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +22,7 @@ static bool same_parameter(const parameters *a, const parameters *b, int i)
 // all [s].
 static double same_until(const scenario *a, const scenario *b)
 {
-    const int duration = parameter_find("run.duration");
+    const int duration = PARAMETER_INDEX(run.duration);
     double until = HUGE_VAL;
     for (int i = 0; i < parameter_count; i++) {
         if (same_parameter(&a->parameters, &b->parameters, i)) {

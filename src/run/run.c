@@ -10,13 +10,10 @@
 #include "src/run/printed.h"
 #include "src/run/rig_recording.h"
 
-static void summary_clear(summary *s)
+// What a run counts and adds up begins with nothing.
+static void summary_start(summary *s)
 {
-    memset(s, 0, sizeof *s);
-    for (int i = 0; i < summary_count; i++) {
-        double none = (double)NAN;
-        memcpy((char *)s + summary_table[i].offset, &none, sizeof none);
-    }
+    summary_init(s);
     s->impacts = s->separations = s->steps = s->max_penetration_m = 0;
     s->motor_work_J = s->energy_residual_J = 0;
 }
@@ -42,7 +39,7 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
     double start = computing_time();
     if (!options->resume) {
         memset(result, 0, sizeof *result);
-        summary_clear(&result->summary);
+        summary_start(&result->summary);
     }
     status code = recording_start_rig(&r, &f);
     if (code == STATUS_OK) {
@@ -69,22 +66,22 @@ int run_check_expectations(const scenario *s, const run_result *result, fault_ha
     int missed = 0;
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
-        char sentence[512], found[64] = "nothing (null)";
-        double value = (double)NAN;
-        summary_get(&result->summary, e->quantity, &value);
-        bool met = e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance;
-        if (met) {
+        const char *key = summary_table[e->quantity].key;
+        double value = summary_value(&result->summary, e->quantity);
+        if (expectation_is_met(e, value)) {
             continue;
         }
+
+        char sentence[512], found[64] = "nothing (null)";
         if (!isnan(value)) {
             snprintf(found, sizeof found, "%.9g", value);
         }
         if (e->is_null) {
             snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected null", s->file,
-                     e->line, e->column, e->quantity, found);
+                     e->line, e->column, key, found);
         } else {
             snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected %.9g within %g",
-                     s->file, e->line, e->column, e->quantity, found, e->value, e->tolerance);
+                     s->file, e->line, e->column, key, found, e->value, e->tolerance);
         }
         report(context, sentence);
         missed++;

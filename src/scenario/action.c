@@ -1,4 +1,6 @@
 // What the actions of a script set, and to what.
+#include <assert.h>
+#include <math.h>
 #include <string.h>
 
 #include "src/scenario/scenario.h"
@@ -6,6 +8,7 @@
 
 status action_apply(const action *a, parameters *p, fault *f)
 {
+    assert(a != NULL && p != NULL);
     if (a->kind != ACTION_SET) {
         return STATUS_OK;
     }
@@ -24,6 +27,12 @@ void action_format_value(const action *a, char *text, size_t size)
     parameter_format(&p, a->parameter, text, size);
 }
 
+bool expectation_is_met(const expectation *e, double value)
+{
+    assert(e != NULL);
+    return e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance;
+}
+
 parameters scenario_parameters_at(const scenario *s, double time)
 {
     parameters p = s->parameters;
@@ -35,7 +44,7 @@ parameters scenario_parameters_at(const scenario *s, double time)
 
 status scenario_check_locks(const scenario *s, const controller *law, fault *f)
 {
-    const int lock = parameter_find("control.lock");
+    const int lock = PARAMETER_INDEX(control.lock);
     int mode;
     if (law == NULL) {
         return STATUS_OK;

@@ -1,5 +1,6 @@
 // Scenarios as files: reading one, finding one by name, listing the folder of those that ship.
 
+#include <assert.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdarg.h>
@@ -69,12 +70,14 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
         snprintf(what, sizeof what, "cannot be opened (%s)", strerror(errno));
         return report_file(path, what, report, context);
     }
+
     // one byte more than is allowed, so that the parser sees what is too long
     size_t room = (size_t)TREE_MAX_BYTES + 1;
     char *text = malloc(room);
     size_t length = text != NULL ? fread(text, 1, room, file) : 0;
     bool failed = ferror(file) != 0;
     fclose(file);
+
     status result = STATUS_NO_MEMORY;
     if (text == NULL) {
         report_file(path, "there is no memory to read it", report, context);
@@ -202,6 +205,7 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     size_t length = strlen(wanted), tail = sizeof suffix - 1;
     bool has_suffix = length > tail && strcmp(wanted + length - tail, suffix) == 0;
     char *stem = strndup(wanted, has_suffix ? length - tail : length);
+
     nearest_word near = nearest_begin(stem != NULL ? stem : wanted);
     scenario_list(&names, &count, NULL);
     for (int i = 0; i < count; i++) {
@@ -243,12 +247,15 @@ static bool find_name(const char *wanted, char **path)
 
 status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context)
 {
+    assert(s != NULL && name_or_file != NULL);
     char *path;
     if (find_name(name_or_file, &path)) {
         status result = scenario_read(s, path, name_or_file, report, context);
         free(path);
         return result;
     }
+
+    // a file, with or without its ending
     if (is_file(name_or_file)) {
         return scenario_read(s, name_or_file, NULL, report, context);
     }

@@ -33,6 +33,8 @@ void reader_report_at(reader *r, int line, int column, const char *format, ...)
     va_start(args, format);
     vsnprintf(what, sizeof what, format, args);
     va_end(args);
+
+    // the list has the place of each fault, so that they can be sorted
     found_fault *grown = realloc(r->found, (size_t)(r->faults + 1) * sizeof *grown);
     if (grown != NULL) {
         r->found = grown;

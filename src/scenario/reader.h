@@ -26,7 +26,7 @@ typedef struct reader {
     bool duration_known;                         // false if a fault may hide run.duration
 } reader;
 
-// --- faults and nodes: scenario_reader.c
+// --- faults and nodes: reader.c
 
 // malloc'ed memory is there, or the reader knows that it is not.
 bool reader_have_memory(reader *r, const void *memory);
@@ -56,7 +56,7 @@ const char *reader_key(reader *r, const tree_node *map, const tree_node *child);
 // True for a map; otherwise a fault that shows an example.
 bool reader_expect_map(reader *r, const tree_node *node, const char *what, const char *example);
 
-// Reads a finite number that may carry its unit ("0.4 s"); false after a fault.
+// Parses a finite number that may carry its unit ("0.4 s"); false after a fault.
 bool reader_quantity(reader *r, const tree_node *node, const char *what, const char *unit,
                      double *value);
 
@@ -71,15 +71,15 @@ bool reader_is_group(const char *word);
 // The text of a parameter's value; NULL after a fault.
 const char *reader_value_text(reader *r, const tree_node *node, const char *path);
 
-// Reads the values of a group into the scenario.
+// Parses the values of a group into the scenario.
 void reader_group(reader *r, const tree_node *map, const char *group);
 
-// Resolves the parameters. To report every fault, a blamed one is put back to its default and the
-// rest is resolved again.
+// Resolves the parameters. To report every fault, the one to blame (fault.path) is put back to its
+// default and the rest is resolved again.
 void reader_resolve(reader *r);
 
-// Reads the script's actions; the parameters must have been resolved.
+// Parses the script's actions; the parameters must have been resolved.
 void reader_script(reader *r, const tree_node *list);
 
-// Reads what is expected of the run.
+// Parses what is expected of the run.
 void reader_expectations(reader *r, const tree_node *map);

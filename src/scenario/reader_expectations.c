@@ -4,48 +4,35 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/words.h"
+#include "src/quantities/summary.h"
 
-#include "src/run/run.h"
-
-static const summary_info *find_quantity(const char *key)
+// Index in the summary of a quantity that two machines agree about; -1 after a fault.
+static int parse_quantity(reader *r, const tree_node *key)
 {
-    for (int i = 0; i < summary_count; i++) {
-        if (strcmp(summary_table[i].key, key) == 0) {
-            return &summary_table[i];
-        }
+    int index = summary_find(key->text);
+    if (index >= 0 && !summary_table[index].timing) {
+        return index;
     }
-    return NULL;
-}
-
-// True if a run's summary has the quantity and two machines agree about it.
-static bool check_quantity(reader *r, const tree_node *key)
-{
-    const summary_info *info = find_quantity(key->text);
-    if (info != NULL && info->timing) {
+    if (index >= 0) {
         report_node(r, key, "%s depends on the computer, expected a quantity of the arm",
                     key->text);
-        return false;
-    }
-    if (info == NULL) {
-        nearest_word near = nearest_begin(key->text);
-        for (int i = 0; i < summary_count; i++) {
-            nearest_try(&near, summary_table[i].key);
-        }
+    } else {
+        const char *near = summary_suggest(key->text);
         report_node(r, key, "unknown quantity '%.60s', %s%s%s", key->text,
-                    near.best ? "did you mean '" : "expected a key of 'run --json'",
-                    near.best ? near.best : "", near.best ? "'?" : "");
+                    near ? "did you mean '" : "expected a key of 'run --json'", near ? near : "",
+                    near ? "'?" : "");
     }
-    return info != NULL;
+    return -1;
 }
 
-// Reads {value: ..., tolerance: ...}; false after a fault.
-static bool read_value_and_tolerance(reader *r, const tree_node *map, expectation *e)
+// Parses {value: ..., tolerance: ...}; false after a fault.
+static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectation *e)
 {
+    const char *quantity = summary_table[e->quantity].key;
     const tree_node *value = NULL, *tolerance = NULL;
     int faults = r->faults;
     if (map->kind != TREE_MAP) {
-        report_node(r, map, "%s is %s, expected {value: ..., tolerance: ...} or null", e->quantity,
+        report_node(r, map, "%s is %s, expected {value: ..., tolerance: ...} or null", quantity,
                     node_kind_name(map));
         return false;
     }
@@ -60,11 +47,11 @@ static bool read_value_and_tolerance(reader *r, const tree_node *map, expectatio
             tolerance = child;
         } else {
             report_node(r, child->key, "unknown key '%.60s' in %s, expected value and tolerance",
-                        key, e->quantity);
+                        key, quantity);
         }
     }
     if (value == NULL || tolerance == NULL) {
-        report_node(r, map, "%s has no %s, expected {value: ..., tolerance: ...}", e->quantity,
+        report_node(r, map, "%s has no %s, expected {value: ..., tolerance: ...}", quantity,
                     value == NULL ? "value" : "tolerance");
     }
     if (value != NULL) {
@@ -93,13 +80,14 @@ void reader_expectations(reader *r, const tree_node *map)
     }
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, map, child);
-        if (key == NULL || !check_quantity(r, child->key)) {
+        int quantity = key != NULL ? parse_quantity(r, child->key) : -1;
+        if (quantity < 0) {
             continue;
         }
-        expectation e = {.line = child->key->line, .column = child->key->column};
-        snprintf(e.quantity, sizeof e.quantity, "%s", key);
+        expectation e = {
+            .quantity = quantity, .line = child->key->line, .column = child->key->column};
         e.is_null = node_is_null(child);
-        if (e.is_null || read_value_and_tolerance(r, child, &e)) {
+        if (e.is_null || parse_value_and_tolerance(r, child, &e)) {
             s->expectations[s->expectation_count++] = e;
         }
     }

@@ -94,51 +94,22 @@ void reader_group(reader *r, const tree_node *map, const char *group)
     }
 }
 
-// Position of a parameter's path in a sentence, as a whole word; NULL if it is not there.
-static const char *mention(const char *sentence, const char *path)
-{
-    size_t length = strlen(path);
-    for (const char *at = strstr(sentence, path); at != NULL; at = strstr(at + 1, path)) {
-        char next = at[length];
-        bool goes_on = next == '_' || (next >= 'a' && next <= 'z') || (next >= '0' && next <= '9');
-        if (!goes_on) {
-            return at;
-        }
-    }
-    return NULL;
-}
-
-// The parameter given in the file that a sentence mentions first, or -1.
-static int blamed_parameter(const reader *r, const parameters *p, const char *sentence)
-{
-    int blamed = -1;
-    const char *first = NULL;
-    for (int i = 0; i < parameter_count; i++) {
-        const char *at = mention(sentence, parameter_table[i].path);
-        if (at != NULL && p->set[i] && r->given[i].line > 0 && (first == NULL || at < first)) {
-            blamed = i;
-            first = at;
-        }
-    }
-    return blamed;
-}
-
 void reader_resolve(reader *r)
 {
     fault f;
     parameters trial = r->s->parameters;
+    const place *model = &r->given[PARAMETER_INDEX(arm.model)];
     while (parameters_resolve(&trial, &f) != STATUS_OK) {
-        int blamed = blamed_parameter(r, &trial, f.text);
-        place at = {1, 1};
-        if (blamed >= 0) {
-            at = r->given[blamed];
-        } else if (r->given[parameter_find("arm.model")].line > 0) {
-            at = r->given[parameter_find("arm.model")];
-        }
+        // a parameter that the file gives is to blame, or the model that wants another default
+        int blamed = parameter_find(f.path);
+        bool given = blamed >= 0 && r->given[blamed].line > 0;
+        place at = given ? r->given[blamed] : model->line > 0 ? *model : (place){1, 1};
         reader_report_at(r, at.line, at.column, "%s", f.text);
-        if (blamed < 0) {
+        if (!given) {
             break;
         }
+
+        // with its default the others may show faults of their own
         trial.set[blamed] = 0;
     }
     r->s->parameters = trial;

@@ -16,6 +16,7 @@ static bool add_action(reader *r, action a)
         return false;
     }
     s->actions = grown;
+
     int i = s->action_count++;
     for (; i > 0 && grown[i - 1].time > a.time; i--) {
         grown[i] = grown[i - 1];
@@ -31,43 +32,47 @@ static void check_lock(reader *r, const tree_node *node, const action *a)
     fault f;
     scenario locked = {.parameters = r->s->parameters};
     action_apply(a, &locked.parameters, NULL);
-    if (a->parameter == parameter_find("control.lock") &&
+    if (a->parameter == PARAMETER_INDEX(control.lock) &&
         scenario_check_locks(&locked, controller_of(locked.parameters.control.law), &f) !=
             STATUS_OK) {
         report_node(r, node, "%s", f.text);
     }
 }
 
-static void read_set(reader *r, const tree_node *map, bool timed, double time)
+// Index of the parameter that a key of `set` names; -1 after a fault.
+static int find_timed_parameter(reader *r, const tree_node *key)
+{
+    int index = parameter_find(key->text);
+    if (index < 0) {
+        const char *near = parameter_suggest(key->text);
+        report_node(r, key, "unknown parameter '%.60s'%s%s%s", key->text,
+                    near ? ", did you mean '" : ", expected one that 'show' lists",
+                    near ? near : "", near ? "'?" : "");
+    } else if (!parameter_table[index].timed) {
+        report_node(r, key, "%s cannot change during a run, expected it at the top of the file",
+                    key->text);
+        index = -1;
+    }
+    return index;
+}
+
+// Parses `set`; without a time its values are only checked.
+static void parse_set(reader *r, const tree_node *map, bool timed, double time)
 {
     if (!reader_expect_map(r, map, "set", "motor.voltage: 2 V")) {
         return;
     }
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
-        fault f;
         const char *path = reader_key(r, map, child);
-        if (path == NULL) {
-            continue;
-        }
-        int index = parameter_find(path);
-        if (index < 0) {
-            const char *near = parameter_suggest(path);
-            report_node(r, child->key, "unknown parameter '%.60s'%s%s%s", path,
-                        near ? ", did you mean '" : ", expected one that 'show' lists",
-                        near ? near : "", near ? "'?" : "");
-            continue;
-        }
-        if (!parameter_table[index].timed) {
-            report_node(r, child->key,
-                        "%s cannot change during a run, expected it at the top of the file", path);
-            continue;
-        }
-        // a scratch copy checks and converts the value
-        parameters scratch = r->s->parameters;
-        const char *text = reader_value_text(r, child, path);
+        int index = path != NULL ? find_timed_parameter(r, child->key) : -1;
+        const char *text = index >= 0 ? reader_value_text(r, child, path) : NULL;
         if (text == NULL) {
             continue;
         }
+
+        // a scratch copy checks and converts the value
+        fault f;
+        parameters scratch = r->s->parameters;
         if (parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
         } else if (timed) {
@@ -84,7 +89,7 @@ static void read_set(reader *r, const tree_node *map, bool timed, double time)
     }
 }
 
-static void read_push(reader *r, const tree_node *node, bool timed, double time)
+static void parse_push(reader *r, const tree_node *node, bool timed, double time)
 {
     double impulse;
     if (r->s->parameters.arm.model == ARM_PRINTED) {
@@ -98,8 +103,8 @@ static void read_push(reader *r, const tree_node *node, bool timed, double time)
     }
 }
 
-// Reads the instant of an action and checks it against the run's duration.
-static bool read_time(reader *r, const tree_node *node, double *time)
+// Parses the instant of an action and checks it against the run's duration.
+static bool parse_time(reader *r, const tree_node *node, double *time)
 {
     double duration = r->s->parameters.run.duration;
     if (!reader_quantity(r, node, "at", "s", time)) {
@@ -142,13 +147,14 @@ static void find_action_parts(reader *r, const tree_node *map, const tree_node *
     }
 }
 
-static void read_action(reader *r, const tree_node *map)
+static void parse_action(reader *r, const tree_node *map)
 {
     const tree_node *at = NULL, *deed = NULL;
     double time = 0;
     if (!reader_expect_map(r, map, "an action", "at: 0.4 s")) {
         return;
     }
+
     // a misspelt key already explains what is missing
     int faults = r->faults;
     find_action_parts(r, map, &at, &deed);
@@ -158,11 +164,12 @@ static void read_action(reader *r, const tree_node *map)
     if (deed == NULL && r->faults == faults) {
         report_node(r, map, "an action that does nothing, expected 'set:' or 'push:'");
     }
-    bool timed = at != NULL && read_time(r, at, &time);
+
+    bool timed = at != NULL && parse_time(r, at, &time);
     if (deed != NULL && strcmp(deed->key->text, "set") == 0) {
-        read_set(r, deed, timed, time);
+        parse_set(r, deed, timed, time);
     } else if (deed != NULL) {
-        read_push(r, deed, timed, time);
+        parse_push(r, deed, timed, time);
     }
 }
 
@@ -174,6 +181,6 @@ void reader_script(reader *r, const tree_node *list)
         return;
     }
     for (const tree_node *child = list->first; child != NULL; child = child->next) {
-        read_action(r, child);
+        parse_action(r, child);
     }
 }

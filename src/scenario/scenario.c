@@ -10,12 +10,14 @@
 enum { LONGEST_TITLE = 200 }; // bytes
 
 // Copies prose; only the description may have several lines. NULL after a fault.
-static char *read_prose(reader *r, const tree_node *node, const char *what, bool many_lines)
+static char *parse_prose(reader *r, const tree_node *node, const char *what, bool many_lines)
 {
     if (!node_is_scalar(node) || node->text[0] == '\0') {
         report_node(r, node, "%s is %s, expected text", what, node_kind_name(node));
         return NULL;
     }
+
+    // trailing blanks are no part of it, control characters not allowed
     size_t length = strlen(node->text);
     while (length > 0 && strchr(" \t\r\n", node->text[length - 1]) != NULL) {
         length--;
@@ -31,6 +33,7 @@ static char *read_prose(reader *r, const tree_node *node, const char *what, bool
             return NULL;
         }
     }
+
     if (!many_lines && length > LONGEST_TITLE) {
         report_node(r, node, "%s has %zu bytes, expected at most %d", what, length, LONGEST_TITLE);
         return NULL;
@@ -44,6 +47,8 @@ static void report_unknown_top(reader *r, const tree_node *key)
 {
     static const char *const others[] = {"title", "description", "script", "expect"};
     nearest_word near = nearest_begin(key->text);
+
+    // a parameter's whole path, which belongs under its group
     int index = parameter_find(key->text);
     if (index >= 0) {
         const char *dot = strchr(key->text, '.');
@@ -51,6 +56,8 @@ static void report_unknown_top(reader *r, const tree_node *key)
                     (int)(dot - key->text), key->text);
         return;
     }
+
+    // all groups, in case none is near
     char groups[256] = "";
     for (int i = 0; i < parameter_count; i++) {
         const char *path = parameter_table[i].path;
@@ -82,7 +89,7 @@ static void report_unknown_top(reader *r, const tree_node *key)
 static void check_lock(reader *r)
 {
     fault f;
-    const place *at = &r->given[parameter_find("control.lock")];
+    const place *at = &r->given[PARAMETER_INDEX(control.lock)];
     const controller *law = controller_of(r->s->parameters.control.law);
     scenario unscripted = {.parameters = r->s->parameters};
     if (at->line > 0 && scenario_check_locks(&unscripted, law, &f) != STATUS_OK) {
@@ -91,7 +98,7 @@ static void check_lock(reader *r)
 }
 
 // Reads everything; script and expect come after the parameters that they depend on.
-static void read_root(reader *r, const tree_node *root)
+static void parse_root(reader *r, const tree_node *root)
 {
     const tree_node *script = NULL, *expect = NULL;
     if (!reader_expect_map(r, root, "the file", "title: ...")) {
@@ -103,9 +110,9 @@ static void read_root(reader *r, const tree_node *root)
             continue;
         }
         if (strcmp(key, "title") == 0) {
-            r->s->title = read_prose(r, child, "title", false);
+            r->s->title = parse_prose(r, child, "title", false);
         } else if (strcmp(key, "description") == 0) {
-            r->s->description = read_prose(r, child, "description", true);
+            r->s->description = parse_prose(r, child, "description", true);
         } else if (strcmp(key, "script") == 0) {
             script = child;
         } else if (strcmp(key, "expect") == 0) {
@@ -116,7 +123,9 @@ static void read_root(reader *r, const tree_node *root)
             report_unknown_top(r, child->key);
         }
     }
-    r->duration_known = r->given[parameter_find("run.duration")].line > 0 || r->faults == 0;
+
+    // what depends on all parameters
+    r->duration_known = r->given[PARAMETER_INDEX(run.duration)].line > 0 || r->faults == 0;
     reader_resolve(r);
     check_lock(r);
     if (script != NULL) {
@@ -148,18 +157,22 @@ static void complete(reader *r, const char *name)
 status scenario_parse(scenario *s, const char *text, size_t length, const char *path,
                       const char *name, fault_handler report, void *context)
 {
-    tree_fault f;
+    assert(s != NULL && text != NULL && path != NULL);
+    fault f;
     reader r = {.path = path, .s = s};
     *s = (scenario){0};
     parameters_defaults(&s->parameters, ARM_CORRECTED);
+
     tree_node *root = tree_parse(text, length, &f);
     if (root == NULL) {
-        r.no_memory = f.no_memory;
+        r.no_memory = f.code == STATUS_NO_MEMORY;
         reader_report_at(&r, f.line, f.column, "%s", f.text);
     } else {
-        read_root(&r, root);
+        parse_root(&r, root);
         tree_free(root);
     }
+
+    // faults are reported together, and whoever has some gets no scenario
     if (r.faults == 0 && !r.no_memory) {
         complete(&r, name);
     }
@@ -191,6 +204,7 @@ static status assign(parameters *p, const char *assignment, fault *f)
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "not an assignment, expected PATH=VALUE such as arm.k2=49.2");
     }
+
     snprintf(path, sizeof path, "%.*s", (int)length, assignment);
     int index = parameter_find(path);
     if (index < 0) {
@@ -223,6 +237,7 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
 
 status scenario_override(scenario *s, const char *assignment, fault *f)
 {
+    assert(s != NULL && assignment != NULL);
     fault inner;
     parameters p = s->parameters;
     status result = assign(&p, assignment, &inner);
@@ -230,7 +245,7 @@ status scenario_override(scenario *s, const char *assignment, fault *f)
         result = resolve_changed(s, &p, &inner);
     }
     if (result != STATUS_OK) {
-        fault_set(f, result, "--set %.200s: %.700s", assignment, inner.text);
+        fault_set_at(f, result, inner.path, "--set %.200s: %.700s", assignment, inner.text);
         if (f != NULL) {
             reader_make_printable(f->text);
         }

@@ -18,11 +18,11 @@ typedef struct action {
 
 // A quantity of the run's summary that the file expects.
 typedef struct expectation {
-    char quantity[48]; // key of `run --json`, "first_contact_s"
-    bool is_null;      // expected not to have occurred
-    double value;      // in the quantity's unit
-    double tolerance;  // absolute, in the quantity's unit
-    int line, column;  // where it stands in the file, from 1
+    int quantity;     // index in summary_table
+    bool is_null;     // expected not to have occurred
+    double value;     // in the quantity's unit
+    double tolerance; // absolute, in the quantity's unit
+    int line, column; // where it stands in the file, from 1
 } expectation;
 
 typedef struct scenario {
@@ -41,6 +41,9 @@ typedef struct scenario {
 status action_apply(const action *a, parameters *p, fault *f);
 // The value that an ACTION_SET gives, as a scenario file would have it.
 void action_format_value(const action *a, char *text, size_t size);
+
+// Whether a value of the expected quantity (NaN: it did not occur) is as expected.
+bool expectation_is_met(const expectation *e, double value);
 
 // The parameters as the script has set them until an instant, that included [s].
 parameters scenario_parameters_at(const scenario *s, double time);

@@ -1,4 +1,5 @@
 // Writing a scenario as a file that gives it again.
+#include <assert.h>
 #include <string.h>
 
 #include "src/scenario/scenario.h"
@@ -80,6 +81,7 @@ static void write_actions(FILE *stream, const scenario *s)
 
 void scenario_write(FILE *stream, const scenario *s)
 {
+    assert(stream != NULL && s != NULL);
     fputs("title: ", stream);
     write_text(stream, s->title != NULL ? s->title : "");
     if (s->description != NULL && s->description[0] != '\0') {

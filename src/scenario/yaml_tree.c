@@ -1,6 +1,6 @@
 #include "src/scenario/yaml_tree.h"
 
-#include <stdarg.h>
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,21 +11,18 @@ typedef struct builder {
     const char *text; // without a byte order mark
     size_t length;
     int nodes;
-    tree_fault *fault;
+    fault *fault;
 } builder;
 
-// Records the fault and returns NULL, so that it can end any function that makes a node.
-__attribute__((format(printf, 4, 5))) static tree_node *refuse(builder *b, int line, int column,
-                                                               const char *format, ...)
+static tree_node *no_node(status code)
 {
-    va_list args;
-    b->fault->line = line;
-    b->fault->column = column;
-    va_start(args, format);
-    vsnprintf(b->fault->text, sizeof b->fault->text, format, args);
-    va_end(args);
+    (void)code;
     return NULL;
 }
+
+// Records a fault and returns NULL, so that it can end any function that makes a node; printf-like.
+#define refuse(b, line, column, ...)                                                               \
+    no_node(fault_set_place((b)->fault, STATUS_BAD_SCENARIO, line, column, __VA_ARGS__))
 
 static tree_node *refuse_at(builder *b, yaml_mark_t mark, const char *sentence)
 {
@@ -34,8 +31,8 @@ static tree_node *refuse_at(builder *b, yaml_mark_t mark, const char *sentence)
 
 static tree_node *refuse_for_memory(builder *b)
 {
-    b->fault->no_memory = true;
-    return refuse(b, 1, 1, "out of memory");
+    fault_set_place(b->fault, STATUS_NO_MEMORY, 1, 1, "%s", status_text(STATUS_NO_MEMORY));
+    return NULL;
 }
 
 // Refuses at a byte of the text; a column counts characters, that is, bytes that begin one.
@@ -263,10 +260,10 @@ static tree_node *build_document(builder *b)
     return NULL;
 }
 
-tree_node *tree_parse(const char *text, size_t length, tree_fault *f)
+tree_node *tree_parse(const char *text, size_t length, fault *f)
 {
+    assert(text != NULL && f != NULL);
     builder b = {.text = text, .length = length, .fault = f};
-    *f = (tree_fault){.line = 1, .column = 1};
     if (length > TREE_MAX_BYTES) {
         return refuse(&b, 1, 1, "the file is larger than %d bytes, expected a scenario",
                       TREE_MAX_BYTES);

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "src/base/fault.h"
+
 enum {
     TREE_MAX_DEPTH = 64,      // maps and lists inside one another
     TREE_MAX_NODES = 10000,   // keys included
@@ -26,16 +28,9 @@ typedef struct tree_node {
     struct tree_node *next;  // next child of the same parent
 } tree_node;
 
-// Where and why a text is no tree.
-typedef struct tree_fault {
-    int line, column; // from 1
-    bool no_memory;
-    char text[512]; // what was wrong, what was expected
-} tree_fault;
-
-// Parses `length` bytes of text. Returns the root, to be given to tree_free, or NULL with *f
-// filled in.
-tree_node *tree_parse(const char *text, size_t length, tree_fault *f);
+// Parses `length` bytes of text. Returns the root, to be given to tree_free, or NULL with a
+// fault that has its place: STATUS_BAD_SCENARIO, or STATUS_NO_MEMORY.
+tree_node *tree_parse(const char *text, size_t length, fault *f);
 
 // Frees a node with all below it; NULL is fine.
 void tree_free(tree_node *node);

@@ -1,5 +1,6 @@
 #include "src/session/session.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,16 +98,6 @@ static status check_memory(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// A summary of what is known of an incomplete run: nothing yet.
-static void clear_summary(summary *m)
-{
-    memset(m, 0, sizeof *m);
-    for (int i = 0; i < summary_count; i++) {
-        double none = (double)NAN;
-        memcpy((char *)m + summary_table[i].offset, &none, sizeof none);
-    }
-}
-
 // The largest force so far, which the run's summary has at the end only.
 static void survey_force(session *s)
 {
@@ -158,7 +149,7 @@ static status start_run(session *s, const scenario *effective, fault *f)
         c = NULL;
     } else {
         run.before_impact = NULL; // the background run's
-        clear_summary(&run.summary);
+        summary_init(&run.summary);
         run.history = (run_history){0};
     }
     // a run that diverges is worth looking at; one without a single row is not

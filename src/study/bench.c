@@ -165,7 +165,7 @@ static status timed_parameters(parameters *p, const char *const (*settings)[2], 
 {
     parameters_defaults(p, ARM_CORRECTED);
     for (int i = 0; settings[i][0] != NULL; i++) {
-        status code = parameter_set_text(p, parameter_find(settings[i][0]), settings[i][1], f);
+        status code = parameter_set_text(p, parameter_index(settings[i][0]), settings[i][1], f);
         if (code != STATUS_OK) {
             return code;
         }

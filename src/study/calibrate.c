@@ -33,7 +33,7 @@ static status pressing(const scenario *s, double command, int number, scenario *
     under->action_count = 0;
     status code = STATUS_OK;
     for (size_t i = 0; i < sizeof changes / sizeof changes[0] && code == STATUS_OK; i++) {
-        code = parameter_set_number(p, parameter_find(changes[i].path), changes[i].value, f);
+        code = parameter_set_number(p, parameter_index(changes[i].path), changes[i].value, f);
     }
     return code == STATUS_OK ? parameters_resolve(p, f) : code;
 }

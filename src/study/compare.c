@@ -1,5 +1,6 @@
 #include "src/study/compare.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "src/predict/best_stop.h"

@@ -57,7 +57,7 @@ status convergence_compute(const scenario *s, convergence_panel *panel, fault *f
         convergence_row *row = &panel->rows[k];
         row->key = panel_keys[k];
         for (int i = 0; i < PANEL_STEPS; i++) {
-            summary_get(&results[i], row->key, &row->value[i]);
+            row->value[i] = summary_value(&results[i], summary_index(row->key));
         }
         row->order = observed_order(row->value[0], row->value[1], row->value[2]);
     }
@@ -88,7 +88,7 @@ static status run_again(void *context)
 static void values_of(const summary *s, double values[STUDY_QUANTITIES])
 {
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
-        summary_get(s, study_keys[k], &values[k]);
+        values[k] = summary_value(s, summary_index(study_keys[k]));
     }
 }
 

@@ -183,7 +183,7 @@ status sensor_view_compute(const scenario *s, int links, sensor_view *view, faul
     *view = (sensor_view){.links = links};
     status code = check_scenario(s, f);
     if (code == STATUS_OK) {
-        code = parameter_set_number(&p, parameter_find("arm.links"), links, f);
+        code = parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, f);
     }
     if (code == STATUS_OK) {
         code = parameters_resolve(&p, f);

@@ -242,22 +242,3 @@ void sweep_finish(sweep *s)
     free(s->drawn);
     memset(s, 0, sizeof *s);
 }
-
-void quantity_name(const char *key, char *name, size_t size, const char **unit)
-{
-    static const struct {
-        const char *suffix, *unit;
-    } units[] = {{"_Ns", "N s"}, {"_percent", "%"}, {"_s", "s"}, {"_N", "N"},
-                 {"_J", "J"},    {"_m", "m"},       {"_V", "V"}};
-    size_t length = strlen(key);
-    *unit = "";
-    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
-        size_t tail = strlen(units[i].suffix);
-        if (length > tail && strcmp(key + length - tail, units[i].suffix) == 0) {
-            length -= tail;
-            *unit = units[i].unit;
-            break;
-        }
-    }
-    snprintf(name, size, "%.*s", (int)length, key);
-}

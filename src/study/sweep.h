@@ -54,7 +54,3 @@ void sweep_value_text(const sweep *s, size_t run, int axis, char *text, size_t s
 // The scenario of one run. It borrows everything but its parameters from the base: do not call
 // scenario_finish. Fails, with the reason in f, if the values do not go together.
 status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f);
-
-// Splits a summary's key into name and unit: "contact_impulse_Ns" gives "contact_impulse", "N s";
-// "impacts" has the unit "". name has `size` bytes.
-void quantity_name(const char *key, char *name, size_t size, const char **unit);

@@ -60,9 +60,7 @@ static void bind_row(sweep_store *store, size_t run, const summary *result)
                       SQLITE_STATIC);
     sqlite3_bind_text(row, column++, result->message, -1, SQLITE_TRANSIENT);
     for (int i = 0; i < summary_count; i++) {
-        double value = (double)NAN;
-        summary_get(result, summary_table[i].key, &value);
-        bind_number(row, column++, value);
+        bind_number(row, column++, summary_value(result, i));
     }
 }
 
@@ -121,10 +119,7 @@ static void write_headings(csv_writer *csv, const sweep *s)
     csv_heading(csv, "message", "");
     for (int i = 0; i < summary_count; i++) {
         if (!summary_table[i].timing) {
-            char name[64];
-            const char *unit;
-            quantity_name(summary_table[i].key, name, sizeof name, &unit);
-            csv_heading(csv, name, unit);
+            csv_heading(csv, summary_table[i].name, summary_table[i].unit);
         }
     }
     csv_end_row(csv);

@@ -31,11 +31,7 @@ static double seconds(clockid_t clock)
 // The summary of a run that could not begin.
 static void summarise_refusal(summary *s, const fault *why)
 {
-    memset(s, 0, sizeof *s);
-    for (int i = 0; i < summary_count; i++) {
-        double none = (double)NAN;
-        memcpy((char *)s + summary_table[i].offset, &none, sizeof none);
-    }
+    summary_init(s);
     s->status = why->code;
     snprintf(s->message, sizeof s->message, "%s", why->text);
 }

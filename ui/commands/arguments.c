@@ -141,16 +141,12 @@ static int check_choice(const option_row *o, const char *text)
 
 static int check_quantity(const option_row *o, const char *key)
 {
-    nearest_word near = nearest_begin(key);
-    for (int i = 0; i < summary_count; i++) {
-        if (strcmp(summary_table[i].key, key) == 0) {
-            return EXIT_DONE;
-        }
-        nearest_try(&near, summary_table[i].key);
+    const char *near = summary_suggest(key);
+    if (summary_find(key) >= 0) {
+        return EXIT_DONE;
     }
-    if (near.best != NULL) {
-        return complain("--%s %s: there is no such quantity, did you mean %s?", o->name, key,
-                        near.best);
+    if (near != NULL) {
+        return complain("--%s %s: there is no such quantity, did you mean %s?", o->name, key, near);
     }
     return complain("--%s %s: there is no such quantity (impactlab run --json lists them)", o->name,
                     key);

@@ -1,5 +1,6 @@
 #include "ui/commands/command.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "src/study/calibrate.h"
@@ -81,7 +82,7 @@ static int write_scenario(const char *path, const scenario *s, const char *table
     fault f = {0};
     scenario calibrated = *s;
     status code =
-        parameter_set_text(&calibrated.parameters, parameter_find("control.k2_table"), table, &f);
+        parameter_set_text(&calibrated.parameters, PARAMETER_INDEX(control.k2_table), table, &f);
     code = code == STATUS_OK ? whole_file_open(&file, path, &f) : code;
     if (code == STATUS_OK) {
         scenario_write(file.stream, &calibrated);

@@ -1,6 +1,5 @@
 #include "ui/commands/command.h"
 
-#include "src/study/sweep.h"
 #include "src/base/json.h"
 
 #include <assert.h>
@@ -153,14 +152,6 @@ bool summary_wanted(const arguments *a)
         alone = alone || (path != NULL && strcmp(path, "-") == 0);
     }
     return !a->quiet && !alone;
-}
-
-void key_label(const char *key, char *label, size_t size, const char **unit)
-{
-    quantity_name(key, label, size, unit);
-    for (char *c = label; *c != '\0'; c++) {
-        *c = *c == '_' ? ' ' : *c;
-    }
 }
 
 bool terminal_has_utf8(void)

@@ -162,9 +162,6 @@ int worse(int a, int b);
 // True unless --quiet was given or a result goes to the standard output, where it stays alone.
 bool summary_wanted(const arguments *a);
 
-// Label and unit of a summary's key: "first_contact_s" gives "first contact" and "s".
-void key_label(const char *key, char *label, size_t size, const char **unit);
-
 // A paragraph of a longer text.
 typedef struct paragraph {
     const char *start;

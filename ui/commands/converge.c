@@ -42,7 +42,7 @@ static bool all_digits_agree(const convergence_row *row)
 static void print_panel(const scenario *s, const convergence_panel *panel)
 {
     char step[PANEL_STEPS][32], method[32];
-    parameter_format(&s->parameters, parameter_find("method.name"), method, sizeof method);
+    parameter_format(&s->parameters, PARAMETER_INDEX(method.name), method, sizeof method);
     printf("%s: %s\nmethod %s\n\n  %-26s", s->name, s->title, method, "step [s]");
     for (int i = 0; i < PANEL_STEPS; i++) {
         snprintf(step[i], sizeof step[i], "%g", panel->step[i]);
@@ -51,10 +51,8 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
     printf("   %s\n", "order");
     for (int k = 0; k < panel->row_count; k++) {
         const convergence_row *row = &panel->rows[k];
-        char label[64];
-        const char *unit;
-        key_label(row->key, label, sizeof label, &unit);
-        printf("  %-26s", label);
+        const summary_info *quantity = &summary_table[summary_index(row->key)];
+        printf("  %-26s", quantity->label);
         for (int i = 0; i < PANEL_STEPS; i++) {
             if (isnan(row->value[i])) {
                 printf(" %15s", "-");
@@ -62,7 +60,7 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
                 printf(" %15.10g", row->value[i]);
             }
         }
-        printf(" %-4s", unit);
+        printf(" %-4s", quantity->unit);
         if (all_digits_agree(row)) {
             printf("agree\n");
         } else if (isnan(row->order)) {

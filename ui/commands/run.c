@@ -16,7 +16,7 @@ enum { EVENTS_SHOWN = 16 };
 // The value of a parameter as text; text has 128 bytes.
 static const char *value_text(const parameters *p, const char *path, char *text)
 {
-    parameter_format(p, parameter_find(path), text, 128);
+    parameter_format(p, parameter_index(path), text, 128);
     return text;
 }
 
@@ -35,11 +35,8 @@ static void print_heading(const scenario *s)
 static void print_quantities(const summary *m)
 {
     for (int i = 0; i < summary_count; i++) {
-        char label[64];
-        const char *unit;
-        double value = (double)NAN;
-        summary_get(m, summary_table[i].key, &value);
-        key_label(summary_table[i].key, label, sizeof label, &unit);
+        const char *label = summary_table[i].label, *unit = summary_table[i].unit;
+        double value = summary_value(m, i);
         if (isnan(value)) {
             printf("  %-28s           -\n", label);
         } else if (unit[0] == '\0') {
@@ -90,13 +87,11 @@ static void print_expectations(const scenario *s, const summary *m)
     printf("\nExpected:\n");
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
-        char label[64], found[64], wanted[64];
-        const char *unit, *space;
-        double value = (double)NAN;
-        summary_get(m, e->quantity, &value);
-        key_label(e->quantity, label, sizeof label, &unit);
-        space = unit[0] ? " " : "";
-        bool met = e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance;
+        char found[64], wanted[64];
+        const char *label = summary_table[e->quantity].label;
+        const char *unit = summary_table[e->quantity].unit, *space = unit[0] ? " " : "";
+        double value = summary_value(m, e->quantity);
+        bool met = expectation_is_met(e, value);
         snprintf(found, sizeof found, isnan(value) ? "none" : "%.5g%s%s", value, space, unit);
         snprintf(wanted, sizeof wanted, e->is_null ? "none" : "%g within %g", e->value,
                  e->tolerance);

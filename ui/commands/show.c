@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "src/quantities/summary.h"
 #include "src/quantities/parameters.h"
 
 static void print_range(const parameter_info *info)
@@ -48,9 +49,9 @@ static void print_expectations(const scenario *s)
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
         if (e->is_null) {
-            printf("  %s does not occur\n", e->quantity);
+            printf("  %s does not occur\n", summary_table[e->quantity].key);
         } else {
-            printf("  %s = %g within %g\n", e->quantity, e->value, e->tolerance);
+            printf("  %s = %g within %g\n", summary_table[e->quantity].key, e->value, e->tolerance);
         }
     }
 }

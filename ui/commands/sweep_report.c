@@ -71,17 +71,16 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
 {
     const sweep *s = &o->sweep;
     const arguments *a = o->arguments;
-    char label[64];
-    const char *unit;
+    const summary_info *quantity = &summary_table[summary_index(o->quantity)];
+    const char *unit = quantity->unit;
 
     // how many runs there were
-    key_label(o->quantity, label, sizeof label, &unit);
     printf("%s: %zu run%s (%s), %zu failed", o->scenario.name, s->run_count,
            s->run_count == 1 ? "" : "s", sweep_sampling_name(s->sampling), failed);
     if (p->done_now < p->total) {
         printf(", %zu were there already", p->total - p->done_now);
     }
-    printf("\n%s%s%s%s\n", label, unit[0] ? " [" : "", unit, unit[0] ? "]" : "");
+    printf("\n%s%s%s%s\n", quantity->label, unit[0] ? " [" : "", unit, unit[0] ? "]" : "");
 
     // each value, where no file has them
     if (a->csv == NULL && a->db == NULL && a->plot == NULL) {

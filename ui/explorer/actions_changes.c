@@ -161,7 +161,7 @@ bool act_exchange_model(lab *l, const char *argument)
 {
     (void)argument;
     bool printed = l->session.effective.parameters.arm.model == ARM_PRINTED;
-    return lab_change(l, parameter_find("arm.model"), printed ? "corrected" : "printed");
+    return lab_change(l, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
 }
 
 bool act_extend(lab *l, const char *argument)
@@ -173,7 +173,7 @@ bool act_extend(lab *l, const char *argument)
     }
     double seen = l->session.seen;
     number_format(text, duration + more);
-    if (!lab_change(l, parameter_find("run.duration"), text)) {
+    if (!lab_change(l, PARAMETER_INDEX(run.duration), text)) {
         return false;
     }
     l->session.seen = seen;

@@ -11,7 +11,7 @@ static bool is_release(const char *word)
 // A complaint about a lock that another law cannot keep says what helps.
 static bool change_law(lab *l, const char *name)
 {
-    if (lab_change(l, parameter_find("control.law"), name)) {
+    if (lab_change(l, PARAMETER_INDEX(control.law), name)) {
         return true;
     }
     if (strncmp(l->message, "control.lock", strlen("control.lock")) == 0) {
@@ -26,7 +26,7 @@ bool act_law(lab *l, const char *argument)
 {
     char present[LAB_TEXT];
     const parameters *p = &l->session.effective.parameters;
-    const int law = parameter_find("control.law");
+    const int law = PARAMETER_INDEX(control.law);
     parameter_format(p, law, present, sizeof present);
     if (lab_has_law(l)) {
         snprintf(l->last_law, sizeof l->last_law, "%s", present);
@@ -74,7 +74,7 @@ static bool locked_just_now(const session *s)
     }
     const session_input *last = &s->inputs[s->input_count - 1];
     return last->kind == SESSION_INPUT_TIMED && last->time == s->now &&
-           last->parameter == parameter_find("control.lock");
+           last->parameter == PARAMETER_INDEX(control.lock);
 }
 
 static void tell_modes(lab *l)
@@ -98,7 +98,7 @@ static bool lock(lab *l, const char *wanted)
     }
     parameters p = session_parameters_at(s, s->now);
     bool same = strcmp(p.control.lock, wanted) == 0;
-    bool done = same || lab_change(l, parameter_find("control.lock"), wanted);
+    bool done = same || lab_change(l, PARAMETER_INDEX(control.lock), wanted);
     if (!done && replaces) {
         session_redo(s, &ignored);
     }

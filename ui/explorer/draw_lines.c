@@ -57,10 +57,10 @@ static int write_status(const lab *l, status_item items[8])
                                                              : "paused";
     char model[64], law[64] = "", speed[32] = "", progress[80];
     int n = 0;
-    parameter_format(p, parameter_find("arm.model"), model, sizeof model);
+    parameter_format(p, PARAMETER_INDEX(arm.model), model, sizeof model);
     if (p->control.law != LAW_NONE) {
         char name[40];
-        parameter_format(p, parameter_find("control.law"), name, sizeof name);
+        parameter_format(p, PARAMETER_INDEX(control.law), name, sizeof name);
         snprintf(law, sizeof law, ", %s", name);
     }
     if (l->playing) {

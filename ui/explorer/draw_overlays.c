@@ -87,13 +87,11 @@ void draw_list(lab *l, screen *s)
 static bool compare_quantity(const session *e, int index, int width, char *columns, size_t size,
                              bool *differs)
 {
-    const char *key = summary_table[index].key;
-    double value = (double)NAN, other = (double)NAN;
+    double value = summary_value(&e->run.summary, index), other = (double)NAN;
     char one[32], two[32] = "", change[32] = "";
-    summary_get(&e->run.summary, key, &value);
     draw_number(one, sizeof one, value);
     if (e->has_other) {
-        summary_get(&e->other.summary, key, &other);
+        other = summary_value(&e->other.summary, index);
         draw_number(two, sizeof two, other);
         draw_number(change, sizeof change, value - other);
     }

@@ -1,6 +1,7 @@
 // Opening, closing and advancing the terminal lab.
 #include "ui/explorer/lab.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +44,7 @@ status lab_open_patiently(lab *l, scenario *s, double patience, fault *f)
     }
     l->speed = 0.2;
     l->mouse = true;
-    l->parameter = parameter_find("motor.voltage");
+    l->parameter = PARAMETER_INDEX(motor.voltage);
     look_afresh(l);
     fault ignored;
     if (scenario_list(&l->names, &l->name_count, &ignored) != STATUS_OK) {

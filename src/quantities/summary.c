@@ -1,0 +1,107 @@
+#include "src/quantities/summary.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/words.h"
+
+#define NUMBER(field, ...) [SUMMARY_INDEX(field)] = {#field, __VA_ARGS__}
+#define TIMING             true
+
+const summary_info summary_table[] = {
+    // number, name, label, unit, description, whether it depends on the machine
+    NUMBER(first_contact_s, "first_contact", "first contact", "s",
+           "the arm touches the wall for the first time"),
+    NUMBER(contact_impulse_Ns, "contact_impulse", "contact impulse", "N s",
+           "impulse of the first impact"),
+    NUMBER(first_pulse_peak_N, "first_pulse_peak", "first pulse peak", "N",
+           "largest force from first contact to first release"),
+    NUMBER(first_pulse_time_to_peak_s, "first_pulse_time_to_peak", "first pulse time to peak", "s",
+           "from first contact to that force"),
+    NUMBER(first_pulse_s, "first_pulse", "first pulse", "s", "from first contact to first release"),
+    NUMBER(peak_force_N, "peak_force", "peak force", "N", "largest force of the whole run"),
+    NUMBER(time_to_peak_s, "time_to_peak", "time to peak", "s", "from first contact to that force"),
+    NUMBER(impacts, "impacts", "impacts", "", "impacts of the whole run"),
+    NUMBER(separations, "separations", "separations", "",
+           "times that the arm leaves the wall by more than 1 um"),
+    NUMBER(steady_force_N, "steady_force", "steady force", "N", "mean force over the last 0.1 s"),
+    NUMBER(force_overshoot_percent, "force_overshoot", "force overshoot", "%",
+           "largest force over the steady one"),
+    NUMBER(settling_time_s, "settling_time", "settling time", "s",
+           "from first contact until the force is steady within 5 % for good"),
+    NUMBER(max_penetration_m, "max_penetration", "max penetration", "m",
+           "largest depth of the arm behind the wall"),
+    NUMBER(motor_work_J, "motor_work", "motor work", "J", "work done by the motor torque"),
+    NUMBER(energy_residual_J, "energy_residual", "energy residual", "J",
+           "largest energy that the ledger does not account for"),
+    NUMBER(force_command_N, "force_command", "force command", "N",
+           "force that the controller is to hold"),
+    NUMBER(force_over_command_N, "force_over_command", "force over command", "N",
+           "largest force minus the commanded one"),
+    NUMBER(steady_error_N, "steady_error", "steady error", "N",
+           "steady force minus the commanded one"),
+    NUMBER(largest_command_V, "largest_command", "largest command", "V",
+           "largest command to the amplifier either way"),
+    NUMBER(electrical_energy_J, "electrical_energy", "electrical energy", "J",
+           "energy that the amplifier fed into the motor"),
+    NUMBER(steps, "steps", "steps", "", "time steps taken"),
+    NUMBER(wall_time_s, "wall_time", "wall time", "s", "computing time", TIMING),
+};
+
+const int summary_count = (int)(sizeof summary_table / sizeof summary_table[0]);
+
+// the numbers end with the struct, so that none of them is missing from the table
+_Static_assert(sizeof summary_table / sizeof summary_table[0] * sizeof(double) +
+                       offsetof(summary, first_contact_s) ==
+                   sizeof(summary),
+               "every number of a summary has its row");
+
+int summary_find(const char *key)
+{
+    assert(key != NULL);
+    for (int i = 0; i < summary_count; i++) {
+        if (strcmp(summary_table[i].key, key) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int summary_index(const char *key)
+{
+    int index = summary_find(key);
+    assert(index >= 0);
+    return index;
+}
+
+const char *summary_suggest(const char *key)
+{
+    nearest_word nearest = nearest_begin(key);
+    for (int i = 0; i < summary_count; i++) {
+        nearest_try(&nearest, summary_table[i].key);
+    }
+    return nearest.best;
+}
+
+static size_t offset_of(int index)
+{
+    assert(index >= 0 && index < summary_count);
+    return offsetof(summary, first_contact_s) + (size_t)index * sizeof(double);
+}
+
+double summary_value(const summary *s, int index)
+{
+    double value;
+    memcpy(&value, (const char *)s + offset_of(index), sizeof value);
+    return value;
+}
+
+void summary_init(summary *s)
+{
+    const double none = (double)NAN;
+    memset(s, 0, sizeof *s);
+    for (int i = 0; i < summary_count; i++) {
+        memcpy((char *)s + offset_of(i), &none, sizeof none);
+    }
+}

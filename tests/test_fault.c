@@ -1,0 +1,59 @@
+// Faults: a code and places for programs, a sentence for people.
+#include "src/base/fault.h"
+
+#include <string.h>
+
+#include "tests/check.h"
+
+static void a_fault_names_its_parameter(void **state)
+{
+    (void)state;
+    fault f;
+    assert_int_equal(fault_set_at(&f, STATUS_BAD_SCENARIO, "wall.angle", "%s is %d", "it", 7),
+                     STATUS_BAD_SCENARIO);
+    assert_int_equal(f.code, STATUS_BAD_SCENARIO);
+    assert_string_equal(f.text, "it is 7");
+    assert_string_equal(f.path, "wall.angle");
+    assert_int_equal(f.line, 0);
+    // the next one forgets it
+    fault_set(&f, STATUS_SINGULAR, "no");
+    assert_string_equal(f.path, "");
+}
+
+static void a_fault_names_its_place(void **state)
+{
+    (void)state;
+    fault f;
+    fault_set_place(&f, STATUS_BAD_SCENARIO, 3, 14, "here");
+    assert_int_equal(f.line, 3);
+    assert_int_equal(f.column, 14);
+    assert_string_equal(f.path, "");
+    fault_set(&f, STATUS_OK, "again");
+    assert_int_equal(f.line, 0);
+}
+
+static void nobody_has_to_listen(void **state)
+{
+    (void)state;
+    assert_int_equal(fault_set(NULL, STATUS_NO_MEMORY, "lost"), STATUS_NO_MEMORY);
+    assert_int_equal(fault_set_at(NULL, STATUS_SINGULAR, "arm.k2", "lost"), STATUS_SINGULAR);
+}
+
+static void long_sentences_are_cut(void **state)
+{
+    (void)state;
+    fault f;
+    fault_set(&f, STATUS_SINGULAR, "%2000d", 1);
+    assert_int_equal(strlen(f.text), sizeof f.text - 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_fault_names_its_parameter),
+        cmocka_unit_test(a_fault_names_its_place),
+        cmocka_unit_test(nobody_has_to_listen),
+        cmocka_unit_test(long_sentences_are_cut),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,56 @@
+// The table of recorded signals: one order for rows and table, so that a field gives its index.
+#include "src/quantities/signals.h"
+
+#include <string.h>
+
+#include "tests/check.h"
+
+static void every_name_is_unique_and_found(void **state)
+{
+    (void)state;
+    for (int i = 0; i < signal_count; i++) {
+        assert_int_equal(signal_find(signal_table[i].name), i);
+        assert_int_equal(signal_index(signal_table[i].name), i);
+    }
+    assert_int_equal(signal_find("contact_force"), -1);
+    assert_int_equal(signal_find(""), -1);
+}
+
+static void rows_and_table_have_one_order(void **state)
+{
+    (void)state;
+    double numbers[SIGNALS_AT_MOST];
+    sample row;
+    for (int i = 0; i < SIGNALS_AT_MOST; i++) {
+        numbers[i] = 10 + i;
+    }
+    memcpy(&row, numbers, sizeof row);
+    for (int i = 0; i < signal_count; i++) {
+        check_close(signal_value(&row, i), 10 + i, 0);
+    }
+    check_close(signal_value(&row, SIGNAL_INDEX(force)), row.force, 0);
+    assert_int_equal(SIGNAL_INDEX(force), signal_find("force"));
+    assert_int_equal(SIGNAL_INDEX(gap_velocity), signal_find("gap_velocity"));
+}
+
+static void every_signal_is_described(void **state)
+{
+    (void)state;
+    for (int i = 0; i < signal_count; i++) {
+        assert_true(signal_table[i].symbol[0] != '\0' && signal_table[i].ascii[0] != '\0');
+        assert_true(signal_table[i].description[0] != '\0');
+        for (const char *c = signal_table[i].ascii; *c != '\0'; c++) {
+            assert_true((unsigned char)*c < 0x80);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_name_is_unique_and_found),
+        cmocka_unit_test(rows_and_table_have_one_order),
+        cmocka_unit_test(every_signal_is_described),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,82 @@
+// The table of a run's results: its keys end in their units, and every number is found.
+#include "src/quantities/summary.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tests/check.h"
+
+static void every_key_is_unique_and_found(void **state)
+{
+    (void)state;
+    for (int i = 0; i < summary_count; i++) {
+        assert_int_equal(summary_find(summary_table[i].key), i);
+        assert_int_equal(summary_index(summary_table[i].key), i);
+    }
+    assert_int_equal(summary_find("peak_force"), -1);
+    assert_int_equal(summary_find(""), -1);
+    assert_string_equal(summary_suggest("peak_forse_N"), "peak_force_N");
+    assert_null(summary_suggest("xyzzy"));
+}
+
+// "contact_impulse_Ns" is "contact_impulse" in "N s".
+static void keys_are_names_with_units(void **state)
+{
+    (void)state;
+    for (int i = 0; i < summary_count; i++) {
+        const summary_info *info = &summary_table[i];
+        char key[64], label[64], unit[16] = "";
+        for (const char *c = info->unit; *c != '\0'; c++) {
+            strncat(unit, *c == ' ' ? "" : c, 1);
+        }
+        snprintf(key, sizeof key, "%s%s%s", info->name, unit[0] != '\0' ? "_" : "",
+                 strcmp(unit, "%") == 0 ? "percent" : unit);
+        assert_string_equal(info->key, key);
+        snprintf(label, sizeof label, "%s", info->name);
+        for (char *c = label; *c != '\0'; c++) {
+            *c = *c == '_' ? ' ' : *c;
+        }
+        assert_string_equal(info->label, label);
+        assert_true(info->description[0] != '\0');
+    }
+}
+
+static void indices_lead_to_their_numbers(void **state)
+{
+    (void)state;
+    summary s;
+    summary_init(&s);
+    s.first_contact_s = 1;
+    s.peak_force_N = 2;
+    s.wall_time_s = 3;
+    check_close(summary_value(&s, SUMMARY_INDEX(first_contact_s)), 1, 0);
+    check_close(summary_value(&s, summary_index("peak_force_N")), 2, 0);
+    check_close(summary_value(&s, SUMMARY_INDEX(wall_time_s)), 3, 0);
+    assert_int_equal(SUMMARY_INDEX(wall_time_s), summary_count - 1);
+}
+
+static void nothing_is_known_at_first(void **state)
+{
+    (void)state;
+    summary s;
+    memset(&s, 0x5a, sizeof s);
+    summary_init(&s);
+    assert_int_equal(s.status, STATUS_OK);
+    assert_string_equal(s.message, "");
+    assert_string_equal(s.method, "");
+    for (int i = 0; i < summary_count; i++) {
+        assert_true(isnan(summary_value(&s, i)));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_key_is_unique_and_found),
+        cmocka_unit_test(keys_are_names_with_units),
+        cmocka_unit_test(indices_lead_to_their_numbers),
+        cmocka_unit_test(nothing_is_known_at_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
