@@ -11,11 +11,7 @@ cd -- "$1"
 work=$2/optimisation-levels
 cc=${3:-cc}
 jobs=$(nproc)
-version=''
-for name in VERSION SOURCE_SCENARIOS DATA_SCENARIOS; do
-    version+=" -DIMPACTLAB_$name='\".\"'"
-done
-flags="-std=c17 -D_GNU_SOURCE -ffp-contract=off -I. $(pkg-config --cflags yaml-0.1 jansson lapack)"
+flags="-std=c17 -D_GNU_SOURCE -ffp-contract=off -I. -I$2/.. $(pkg-config --cflags yaml-0.1 jansson lapack)"
 libraries="$(pkg-config --libs yaml-0.1 jansson lapack sqlite3) -ldl -lm -lpthread"
 
 # what a run needs: the library below the studies, which make many runs or time them
@@ -28,7 +24,7 @@ for level in 1 2 3; do
         object=$work/$level/${source//\//_}.o
         if [ ! -e "$object" ] || [ "$source" -nt "$object" ] || [ "$script" -nt "$object" ] ||
             [ "$(stat -c %Y "$object")" -le "${newest_header%.*}" ]; then
-            echo "$cc $flags $version -O$level -c $source -o $object"
+            echo "$cc $flags -O$level -c $source -o $object"
         fi
     done
 done | tr '\n' '\0' | xargs -0 -r -I '{}' -P "$jobs" sh -c '{}'

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "src/base/build_config.h"
 #include "src/scenario/scenario.h"
 #include "src/scenario/yaml_tree.h"
 #include "src/base/words.h"
