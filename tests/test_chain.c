@@ -88,7 +88,7 @@ static double largest_residual(const arm *a, double *q, const double *w, const d
                                const chain_reaction *r)
 {
     double jacobian[LARGEST] = {0}, largest = 0;
-    if (a->wall != WALL_NONE) {
+    if (wall_stands(&a->wall)) {
         numeric_jacobian(a, q, w, jacobian);
     }
     for (int i = 0; i < a->dof; i++) {
@@ -130,7 +130,7 @@ static void satisfies_the_lagrangian(void **state)
     for (int links = 1; links <= 10; links++) {
         for (int choice = 0; choice < 2 * 3 * 3 * 2; choice++) {
             arm a = make_arm(links, hubs[choice % 2], walls[choice / 2 % 3]);
-            contact_state mode = {choice / 18 == 1 && a.wall != WALL_NONE,
+            contact_state mode = {choice / 18 == 1 && wall_stands(&a.wall),
                                   frictions[choice / 6 % 3]};
             if (a.dof == 1 && mode.contact) {
                 continue; // tested below
@@ -147,7 +147,7 @@ static void satisfies_the_lagrangian(void **state)
             } else {
                 check_close(r.friction, -mode.friction * a.motor.stiction, 0);
             }
-            if (a.wall != WALL_NONE) {
+            if (wall_stands(&a.wall)) {
                 double second = numeric_second_rate(&a, q, w, alpha);
                 // differences of rates of order 10 over 2e-6 s carry rounding of order 1e-9 / 1e-6
                 check_close(-r.gap_acceleration, second, 1e-3 + 1e-5 * fabs(second));

@@ -263,9 +263,9 @@ static void constants_are_those_of_the_thesis(void **state)
     check_close(a.motor.torque, 0.4377, 5e-5); // 1 V
     check_close(a.link_mass, 0.20054, 1e-12);
     check_close(a.centre, 0.25, 1e-12);
-    check_close(a.wall_x, cos(0.1), 1e-12);
-    check_close(a.wall_y, sin(0.1), 1e-12);
-    assert_true(a.has_wall);
+    check_close(a.wall.x, cos(0.1), 1e-12);
+    check_close(a.wall.y, sin(0.1), 1e-12);
+    assert_true(wall_stands(&a.wall));
 }
 
 static void dense_solve_pivots_and_refuses_the_singular(void **state)

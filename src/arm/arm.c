@@ -69,7 +69,7 @@ static double highest_frequency(const arm *source)
     static const contact_state free_mode = {false, HUB_FORWARD};
     arm a = *source;
     a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping = a.hub_joint_damping = 0;
-    a.wall = WALL_NONE;
+    a.wall.kind = WALL_NONE;
     chain_link work[LONGEST];
     double q[LONGEST], w[LONGEST], alpha[LONGEST], value = 0;
     const double small = 1e-6; // small angles: the linear range
@@ -132,13 +132,7 @@ void arm_init(arm *a, const parameters *p)
     a->hub_stiffness = a->hub_spring ? p->arm.k1 : 0;
     a->joint_stiffness = p->arm.k2 * a->links / 2;
     motor_init(&a->motor, &p->motor);
-    a->wall = (wall_kind)p->wall.kind;
-    a->wall_cos = cos(p->wall.angle);
-    a->wall_sin = sin(p->wall.angle);
-    a->wall_x = p->arm.length * a->wall_cos;
-    a->wall_y = p->arm.length * a->wall_sin;
-    a->restitution = p->wall.restitution;
-    a->rest_speed = p->method.rest_speed;
+    wall_init(&a->wall, p);
     if (p->arm.damping_ratio > 0 && a->links > 1) {
         // torque c dot(bend) in each spring, c = 2 zeta k / w1, damps the first mode by zeta
         double per_stiffness = 2 * p->arm.damping_ratio / first_clamped_frequency(a);

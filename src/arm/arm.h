@@ -10,6 +10,7 @@
 #pragma once
 
 #include "src/arm/motor.h"
+#include "src/arm/wall.h"
 
 typedef struct arm {
     int links; // N
@@ -25,13 +26,9 @@ typedef struct arm {
     double hub_joint_damping; // structural damping of the hub spring [N m s/rad]
     double joint_damping;     // structural damping of each inner joint [N m s/rad]
     motor_model motor;        // with the command in force
-    wall_kind wall;
-    double wall_cos, wall_sin; // direction of the wall [-]
-    double wall_x, wall_y;     // contact point (a, b) [m]
-    double restitution;        // e [-]
-    double rest_speed;         // impacts slower than this are plastic [m/s]
-    double highest_frequency;  // upper estimate over the arm's free modes [rad/s]
-    double fastest_rate;       // the same or, if faster, weighted decays: sets the steps [1/s]
+    wall_model wall;
+    double highest_frequency; // upper estimate over the arm's free modes [rad/s]
+    double fastest_rate;      // the same or, if faster, weighted decays: sets the steps [1/s]
 } arm;
 
 // Derives the constants from resolved parameters (corrected model); the command is motor.voltage.

@@ -23,8 +23,8 @@ void chain_node(const arm *a, const double *q, int k, double *x, double *y)
 }
 
 // Geometry of contact at q, w.
-static wall_geometry wall_geometry_of(const arm *a, const double *q, const double *w, double *vx,
-                                      double *vy)
+static wall_contact contact_of(const arm *a, const double *q, const double *w, double *vx,
+                               double *vy)
 {
     int last = a->first + a->links - 1;
     double x = 0, y = 0;
@@ -36,22 +36,22 @@ static wall_geometry wall_geometry_of(const arm *a, const double *q, const doubl
         *vx -= a->link_length * s * w[k];
         *vy += a->link_length * c * w[k];
     }
-    return wall_geometry_at(a, x, y, *vx, *vy, cos(q[last]), sin(q[last]), w[last]);
+    return wall_contact_at(&a->wall, a->link_length, x, y, *vx, *vy, cos(q[last]), sin(q[last]),
+                           w[last]);
 }
 
 double chain_penetration_rate(const arm *a, const double *q, const double *v)
 {
     double vx, vy;
     int last = a->first + a->links - 1;
-    wall_geometry wall = wall_geometry_of(a, q, v, &vx, &vy);
-    double arm_of_last =
-        wall.lever + a->link_length * (cos(q[last]) * wall.ey - sin(q[last]) * wall.ex);
-    return wall.ex * vx + wall.ey * vy + arm_of_last * v[last];
+    wall_contact wall = contact_of(a, q, v, &vx, &vy);
+    double lever = wall_last_lever(&wall, a->link_length, cos(q[last]), sin(q[last]));
+    return wall_penetration_rate(&wall, vx, vy, lever, v[last]);
 }
 
 void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate)
 {
-    if (a->wall == WALL_NONE) {
+    if (!wall_stands(&a->wall)) {
         if (g != NULL) {
             *g = -INFINITY;
         }
@@ -62,7 +62,7 @@ void chain_penetration(const arm *a, const double *q, const double *w, double *g
     }
     double vx, vy;
     if (g != NULL) {
-        *g = wall_geometry_of(a, q, w, &vx, &vy).g;
+        *g = contact_of(a, q, w, &vx, &vy).penetration;
     }
     if (rate != NULL) {
         *rate = chain_penetration_rate(a, q, w);
@@ -110,7 +110,7 @@ void chain_contact_response(const arm *a, chain_link *work, const double *q, boo
                             double *response, double *compliance)
 {
     double vx, vy;
-    wall_geometry wall = wall_geometry_of(a, q, q, &vx, &vy); // velocities play no part here
+    wall_contact wall = contact_of(a, q, q, &vx, &vy); // velocities play no part here
     unit_response(a, work, q, wall.ex, wall.ey, wall.lever, hub_locked, response);
     *compliance = -chain_penetration_rate(a, q, response);
 }

@@ -9,41 +9,6 @@
 
 #define KERNEL static inline __attribute__((always_inline))
 
-// Where and how the wall acts on the last link.
-typedef struct wall_geometry {
-    double ex, ey;     // direction of the contact force's reaction, J_j = l t_j'e for inner links
-    double lever;      // distance of the contact point beyond the last link's end, s - l [m]
-    double g;          // penetration [m]
-    double convective; // d2g/dt2 - J alpha - (base acceleration)'e, velocity terms of the last link
-} wall_geometry;
-
-// Geometry of contact from the last link's base (x, y) moving at (vx, vy), its direction (c, s) and
-// angular velocity w. With d = (a, b) - base:
-//   point: g = -t'd (3.9), dg/dt = s_c w + t'v (3.12), s_c = r'd,
-//          d2g/dt2 = s_c alpha + t'a - g w^2 - 2 w r'v (3.13)
-//   plane: g = n'tip, n = (-sin, cos) of the wall's direction
-KERNEL wall_geometry wall_geometry_at(const arm *a, double x, double y, double vx, double vy,
-                                      double c, double s, double w)
-{
-    wall_geometry wall;
-    double l = a->link_length;
-    if (a->wall == WALL_POINT) {
-        double dx = a->wall_x - x, dy = a->wall_y - y;
-        wall.ex = -s;
-        wall.ey = c;
-        wall.lever = c * dx + s * dy - l;
-        wall.g = s * dx - c * dy;
-        wall.convective = -wall.g * w * w - 2 * w * (c * vx + s * vy);
-    } else {
-        wall.ex = -a->wall_sin;
-        wall.ey = a->wall_cos;
-        wall.lever = 0;
-        wall.g = wall.ex * (x + l * c) + wall.ey * (y + l * s);
-        wall.convective = -l * w * w * (wall.ex * c + wall.ey * s);
-    }
-    return wall;
-}
-
 // Accelerations under `mode`; N, hub_spring and contact (which is mode.contact) are passed apart so
 // that they can be compile-time constants. Without `gap` the reaction's gap and its derivatives are
 // left out in free flight. The derivation stands in chain.h.
@@ -69,9 +34,10 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
             vy += l * link[k].c * omega[k];
         }
     }
-    wall_geometry wall = {0};
-    if (wanted && a->wall != WALL_NONE) {
-        wall = wall_geometry_at(a, x, y, vx, vy, link[N - 1].c, link[N - 1].s, omega[N - 1]);
+    wall_contact wall = {0};
+    if (wanted && wall_stands(&a->wall)) {
+        wall =
+            wall_contact_at(&a->wall, l, x, y, vx, vy, link[N - 1].c, link[N - 1].s, omega[N - 1]);
     }
 
     // a single link on a rigid hub is held by the wall alone; friction then has no say
@@ -179,7 +145,7 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     // d2g/dt2 = 0 gives the force
     double last = 0, rate2 = 0, force = 0; // J_N, d2g/dt2
     if (wanted) {
-        last = wall.lever + l * (link[N - 1].c * wall.ey - link[N - 1].s * wall.ex);
+        last = wall_last_lever(&wall, l, link[N - 1].c, link[N - 1].s);
         rate2 = wall.ex * ax + wall.ey * ay + last * out[N - 1] + wall.convective;
     }
     if (contact) {
@@ -192,8 +158,8 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     reaction->force = force;
     if (gap) {
         reaction->gap_acceleration = -rate2;
-        reaction->gap = a->wall == WALL_NONE ? HUGE_VAL : -wall.g;
-        reaction->gap_velocity = -(wall.ex * vx + wall.ey * vy + last * omega[N - 1]);
+        reaction->gap = wall_stands(&a->wall) ? -wall.penetration : HUGE_VAL;
+        reaction->gap_velocity = -wall_penetration_rate(&wall, vx, vy, last, omega[N - 1]);
     }
     reaction->friction = sliding;
     if (hub_spring) {

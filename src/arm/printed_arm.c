@@ -17,9 +17,7 @@ void printed_arm_init(printed_arm *a, const parameters *p)
     a->k1 = p->arm.k1;
     a->k2 = p->arm.k2;
     motor_init(&a->motor, &p->motor);
-    a->has_wall = p->wall.kind != WALL_NONE;
-    a->wall_x = p->arm.length * cos(p->wall.angle);
-    a->wall_y = p->arm.length * sin(p->wall.angle);
+    wall_init(&a->wall, p);
     a->switches = p->printed;
 }
 
@@ -62,8 +60,7 @@ static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
 static void force_levers(const printed_arm *a, const double q[3], double *both, double *last)
 {
     double l = a->link_length, c = cos(q[2] - q[1]);
-    double reach =
-        a->wall_x * cos(q[2]) + a->wall_y * sin(q[2]); // of the contact point, along link 3
+    double reach = wall_along(&a->wall, cos(q[2]), sin(q[2])); // of the contact point, along link 3
     *last = a->switches.force_at_link_end ? l : reach - l * c;
     *both = a->switches.force_at_link_end ? l + l * c : reach;
 }
@@ -99,7 +96,7 @@ static void add_force_derivatives(const printed_arm *a, const double q[3], const
         jacobian[1][1] += force * l * t->s;
         jacobian[1][2] -= force * l * t->s;
     } else {
-        double turn = -a->wall_x * sin(q[2]) + a->wall_y * cos(q[2]); // d reach / d theta3
+        double turn = -wall_right_of(&a->wall, cos(q[2]), sin(q[2])); // d reach / d theta3
         jacobian[1][2] += force * turn;
         jacobian[2][1] -= force * l * t->s;
         jacobian[2][2] += force * (turn + l * t->s);
@@ -134,7 +131,7 @@ void printed_newmark_jacobian(const printed_arm *a, newmark_slopes slopes, const
 
 double printed_penetration(const printed_arm *a, const double q[3])
 {
-    return a->wall_x * sin(q[2]) - a->wall_y * cos(q[2]) - a->link_length * sin(q[2] - q[1]);
+    return wall_right_of(&a->wall, cos(q[2]), sin(q[2])) - a->link_length * sin(q[2] - q[1]);
 }
 
 void printed_constraint_gradient(const printed_arm *a, const double q[3], double gradient[3])
@@ -142,7 +139,7 @@ void printed_constraint_gradient(const printed_arm *a, const double q[3], double
     double projected = a->link_length * cos(q[2] - q[1]);
     gradient[0] = 0;
     gradient[1] = projected;
-    gradient[2] = a->wall_x * cos(q[2]) + a->wall_y * sin(q[2]) - projected;
+    gradient[2] = wall_along(&a->wall, cos(q[2]), sin(q[2])) - projected;
 }
 
 bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[3], double alpha[3],
@@ -156,7 +153,7 @@ bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[
 
     // without accelerations and force the residuals are what the linear system has to balance
     printed_residual(a, q, w, rest, 0, residual);
-    double curvature = -a->wall_x * sin(q[2]) + a->wall_y * cos(q[2]) + l * t.s;
+    double curvature = -wall_right_of(&a->wall, cos(q[2]), sin(q[2])) + l * t.s;
     double cross = 2 * l * t.s * w[1] * w[2];
     bool listed = a->switches.reevaluation == REEVALUATE_LISTING;
     double matrix[9] = {t.m22,       t.m23,       both, //

@@ -21,19 +21,19 @@
 #include <stdbool.h>
 
 #include "src/arm/motor.h"
+#include "src/arm/wall.h"
 
 enum { PRINTED_BODIES = 3, PRINTED_EQUATIONS = 4 };
 
 typedef struct printed_arm {
-    double link_length;    // l [m]
-    double centre;         // e, from a link's joint to its centre of mass [m]
-    double link_mass;      // m2 = m3 [kg]
-    double link_inertia;   // I2 = I3 about the centre of mass [kg m2]
-    double hub_inertia;    // I1 [kg m2]
-    double k1, k2;         // [N m/rad]
-    motor_model motor;     // kfr + kT kB/Ra, kst, and the command in force
-    bool has_wall;         // false: never in contact
-    double wall_x, wall_y; // contact point (a, b) [m]
+    double link_length;  // l [m]
+    double centre;       // e, from a link's joint to its centre of mass [m]
+    double link_mass;    // m2 = m3 [kg]
+    double link_inertia; // I2 = I3 about the centre of mass [kg m2]
+    double hub_inertia;  // I1 [kg m2]
+    double k1, k2;       // [N m/rad]
+    motor_model motor;   // kfr + kT kB/Ra, kst, and the command in force
+    wall_model wall;     // only where it stands, (a, b)
     printed_parameters switches;
 } printed_arm;
 

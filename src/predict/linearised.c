@@ -33,17 +33,17 @@ static arm touching_now(const arm *a, const double *q)
 {
     arm touched = *a;
     double x, y;
-    if (a->wall == WALL_POINT) {
+    if (a->wall.kind == WALL_POINT) {
         double t_x = -sin(q[a->dof - 1]), t_y = cos(q[a->dof - 1]);
         chain_node(a, q, a->links - 1, &x, &y);
-        double across = t_x * (a->wall_x - x) + t_y * (a->wall_y - y);
-        touched.wall_x -= across * t_x;
-        touched.wall_y -= across * t_y;
+        double across = t_x * (a->wall.x - x) + t_y * (a->wall.y - y);
+        touched.wall.x -= across * t_x;
+        touched.wall.y -= across * t_y;
     } else {
         chain_node(a, q, a->links, &x, &y);
         double distance = sqrt(x * x + y * y);
-        touched.wall_cos = x / distance;
-        touched.wall_sin = y / distance;
+        touched.wall.cosine = x / distance;
+        touched.wall.sine = y / distance;
     }
     return touched;
 }
@@ -113,16 +113,16 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     double l = a->link_length, q[2] = {x, 0}, w[2], alpha[2], cx, sx, lever, along;
     chain_reaction r;
     inline_sincos(x, &sx, &cx);
-    if (a->wall == WALL_POINT) {
+    if (a->wall.kind == WALL_POINT) {
         // the second link points from the joint to the contact point, (3.9)
-        double dx = a->wall_x - l * cx, dy = a->wall_y - l * sx, d = sqrt(dx * dx + dy * dy);
+        double dx = a->wall.x - l * cx, dy = a->wall.y - l * sx, d = sqrt(dx * dx + dy * dy);
         q[1] = atan2(dy, dx);
         lever = d;
         along = l * (cx * dx + sx * dy) / d;
     } else {
         // both links lean away from the wall alike
-        q[1] = 2 * atan2(a->wall_sin, a->wall_cos) - x;
-        lever = along = l * (cx * a->wall_cos + sx * a->wall_sin);
+        q[1] = 2 * atan2(a->wall.sine, a->wall.cosine) - x;
+        lever = along = l * (cx * a->wall.cosine + sx * a->wall.sine);
     }
     w[0] = v;
     w[1] = -along / lever * v; // (3.12)
@@ -380,7 +380,7 @@ status predict_linearised(const arm *a, motion *work, const double *q, const dou
     double *after = work->scratch, *alpha = work->scratch + n;
     chain_reaction r;
     *out = (prediction){.holds = false, .force = NAN, .delay = NAN, .impulse = NAN};
-    if (a->wall == WALL_NONE) {
+    if (!wall_stands(&a->wall)) {
         return STATUS_OK;
     }
     impact_result jump = impact_velocity_increments(&touched, work->links, q, w, 0, after);

@@ -71,7 +71,7 @@ static void check_invariants(const arm *a, const motion *m)
 
     assert(state[SLOT_CONTACT] == 0 || state[SLOT_CONTACT] == 1);                         // 1
     assert(friction == HUB_STICK || friction == HUB_FORWARD || friction == HUB_BACKWARD); // 1
-    assert(!contact || a->wall != WALL_NONE);                                             // 2
+    assert(!contact || wall_stands(&a->wall));                                            // 2
     assert(contact || state[SLOT_FORCE] == 0);                                            // 3
     assert(!settled || friction != HUB_STICK || hub_velocity == 0);                       // 4
     assert(!settled || a->motor.stiction == 0 || !(friction * hub_velocity < 0));         // 5
@@ -159,7 +159,7 @@ static void impact(const arm *a, motion *m, motion_report *report)
     double *increment = m->scratch;
 
     // what the wall gives
-    double e = chain_penetration_rate(a, q, w) < a->rest_speed ? 0 : a->restitution;
+    double e = wall_restitution(&a->wall, chain_penetration_rate(a, q, w));
     impact_result result = impact_velocity_increments(a, m->links, q, w, e, increment);
     report->speed = result.speed;
     report->impulse = result.impulse;

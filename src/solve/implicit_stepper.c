@@ -92,13 +92,8 @@ static contact_point contact_at(const arm *a, const implicit_sweep *link)
         x += l * link[k].c;
         y += l * link[k].s;
     }
-    if (a->wall == WALL_POINT) {
-        double dx = a->wall_x - x, dy = a->wall_y - y;
-        return (contact_point){-end->s, end->c, end->c * dx + end->s * dy - l,
-                               end->s * dx - end->c * dy, 1};
-    }
-    return (contact_point){-a->wall_sin, a->wall_cos, 0,
-                           -a->wall_sin * (x + l * end->c) + a->wall_cos * (y + l * end->s), 0};
+    wall_contact at = wall_contact_at(&a->wall, l, x, y, 0, 0, end->c, end->s, 0);
+    return (contact_point){at.ex, at.ey, at.lever, at.penetration, a->wall.kind == WALL_POINT};
 }
 
 // J v from the directions in `link`.
@@ -119,13 +114,13 @@ static double rate_change(const arm *a, const implicit_sweep *link, contact_poin
     const implicit_sweep *end = &link[a->links - 1];
     const int last = a->links - 1;
     double sum = gamma * rate_along(a, link, p, dq);
-    if (a->wall == WALL_PLANE) {
+    if (a->wall.kind == WALL_PLANE) {
         for (int k = 0; k <= last; k++) {
             sum -= l * (link[k].c * p.ex + link[k].s * p.ey) * v[k] * x[k];
         }
         return sum;
     }
-    // dg/dt = s w + t'v_base with s = r'd, see chain_kernel.h
+    // dg/dt = s w + t'v_base with s = r'd, see wall.h
     double along = 0; // r'v_base
     for (int k = 0; k < last; k++) {
         double sine = end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l sin(q_N - q_k)

@@ -39,7 +39,7 @@ static bool watch_active(const arm *a, const motion *m, watch w)
     bool held = m->dof == 1 && contact;
     switch (w) {
     case WATCH_GAP:
-        return !contact && a->wall != WALL_NONE;
+        return !contact && wall_stands(&a->wall);
     case WATCH_FORCE:
         return contact;
     case WATCH_HUB:

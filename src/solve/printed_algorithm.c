@@ -135,7 +135,7 @@ static status try_step(printed_motion *m, step_result *r)
         if (result != STATUS_OK) {
             return result;
         }
-        bool touched = !m->in_contact && m->contact_steps == 0 && m->arm.has_wall &&
+        bool touched = !m->in_contact && m->contact_steps == 0 && wall_stands(&m->arm.wall) &&
                        printed_penetration(&m->arm, r->angle) >= 0;
         if (!touched) {
             return STATUS_OK;
@@ -165,7 +165,7 @@ static const char *not_finite(const step_result *r, double force)
 
 static double gap_at(const printed_arm *a, const double angle[3])
 {
-    return a->has_wall ? -printed_penetration(a, angle) : HUGE_VAL;
+    return wall_stands(&a->wall) ? -printed_penetration(a, angle) : HUGE_VAL;
 }
 
 // The step's end is what the next one starts from.

@@ -1,0 +1,98 @@
+// The wall: where it stands, how the arm's last link meets it, and what it answers.
+//
+// Geometry. g is the penetration: negative in free flight, zero in contact, gap = -g. With the last
+// link's base at (x, y), its direction r = (c, s), across it t = (-s, c), and d = (a, b) - (x, y):
+//
+//   point: the link's line runs against the point (a, b),
+//          g = -t'd (3.9),   dg/dt = s_c w + t'v (3.12),   s_c = r'd,
+//          d2g/dt2 = s_c alpha + t'a - g w^2 - 2 w r'v (3.13)
+//   plane: the tip runs against the plane through the hub's axis,
+//          g = n'tip,   n = (-sin, cos) of the wall's direction
+//
+// Both give dg/dt = J w with J_k = l t_k'e for the inner links and J_N = l t'e + lever.
+//
+// Law. The wall is rigid: gap >= 0, f >= 0, gap f = 0, and an impact returns the share e of the
+// approach speed (wall_restitution). f is then the constraint's, from d2g/dt2 = 0. All that differs
+// from wall to wall is asked for here, so that another wall is another case of these functions.
+#pragma once
+
+#include <stdbool.h>
+
+#include "src/quantities/parameters.h"
+
+typedef struct wall_model {
+    wall_kind kind;
+    double cosine, sine; // direction of the wall [-]
+    double x, y;         // contact point (a, b) [m]
+    double restitution;  // e [-]
+    double rest_speed;   // impacts slower than this are plastic [m/s]
+} wall_model;
+
+// Where and how the wall acts on the last link.
+typedef struct wall_contact {
+    double ex, ey;      // e, direction of the contact force's reaction [-]
+    double lever;       // distance of the contact point beyond the last link's end, s_c - l [m]
+    double penetration; // g [m]
+    double convective;  // d2g/dt2 - J alpha - (base acceleration)'e: the last link's velocity terms
+} wall_contact;
+
+// The wall of resolved parameters; the contact point lies the arm's length from the hub.
+void wall_init(wall_model *w, const parameters *p);
+
+// Share of the approach speed [m/s] with which the arm bounces: none below the rest speed, so that
+// a sequence of ever smaller bounces ends in contact.
+double wall_restitution(const wall_model *w, double approach_speed);
+
+// Whether there is a wall at all.
+static inline bool wall_stands(const wall_model *w)
+{
+    return w->kind != WALL_NONE;
+}
+
+// Place of the contact point in a frame with direction (c, s) through the hub's axis: along it, and
+// how far it lies to its right [m].
+static inline double wall_along(const wall_model *w, double c, double s)
+{
+    return w->x * c + w->y * s;
+}
+static inline double wall_right_of(const wall_model *w, double c, double s)
+{
+    return w->x * s - w->y * c;
+}
+
+// Geometry of contact from the last link's length l, its base (x, y) moving at (vx, vy), its
+// direction (c, s) and angular velocity omega. For a wall that stands.
+static inline __attribute__((always_inline)) wall_contact
+wall_contact_at(const wall_model *w, double l, double x, double y, double vx, double vy, double c,
+                double s, double omega)
+{
+    wall_contact at;
+    if (w->kind == WALL_POINT) {
+        double dx = w->x - x, dy = w->y - y;
+        at.ex = -s;
+        at.ey = c;
+        at.lever = c * dx + s * dy - l;
+        at.penetration = s * dx - c * dy;
+        at.convective = -at.penetration * omega * omega - 2 * omega * (c * vx + s * vy);
+    } else {
+        at.ex = -w->sine;
+        at.ey = w->cosine;
+        at.lever = 0;
+        at.penetration = at.ex * (x + l * c) + at.ey * (y + l * s);
+        at.convective = -l * omega * omega * (at.ex * c + at.ey * s);
+    }
+    return at;
+}
+
+// J_N, the last link's entry of the Jacobian dg/dq [m].
+static inline double wall_last_lever(const wall_contact *at, double l, double c, double s)
+{
+    return at->lever + l * (c * at->ey - s * at->ex);
+}
+
+// dg/dt [m/s] with the last link's base moving at (vx, vy), J_N and the link's angular velocity.
+static inline double wall_penetration_rate(const wall_contact *at, double vx, double vy,
+                                           double last_lever, double omega)
+{
+    return at->ex * vx + at->ey * vy + last_lever * omega;
+}
