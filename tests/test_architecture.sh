@@ -11,7 +11,7 @@ cd "$1"
 rooms="src/base src/quantities src/arm src/solve src/rig src/rig/laws src/predict src/scenario
     src/run src/session src/study src/api
     render/page render/plot render/scene render/figures
-    ui/terminal ui/explorer ui/commands ui"
+    ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/commands ui"
 
 # "module room header-module header-room" of each include of the project's own files
 list_includes() {

@@ -1,5 +1,5 @@
-// The terminal lab without a terminal: the grid of cells, the panels, keys and commands.
-#include "tests/lab_on_screen.h"
+// The explorer without a terminal: the grid of cells, the panels, keys and commands.
+#include "tests/explorer_on_screen.h"
 
 #include <unistd.h>
 
@@ -46,73 +46,78 @@ static void test_lines_of_dots_stay_within_their_canvas(void **state)
 static void test_every_glyph_has_a_twin_in_ascii(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
     static const char *const pages[] = {"<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab>m"};
     for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
-        press(&l, pages[i]);
-        char *text = picture(&l, 150, 50, GLYPHS_ASCII);
+        press(&ex, pages[i]);
+        char *text = picture(&ex, 150, 50, GLYPHS_ASCII);
         for (const char *c = text; *c; c++) {
             assert_true((*c >= ' ' && *c < 127) || *c == '\n');
         }
         free(text);
     }
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
 static void test_playing_shows_an_impact_within_seconds(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    assert_shows(&l, "free flight");
-    press(&l, "<Space>");
-    lab_advance(&l, 2);
-    assert_shows(&l, "impact 0.0443 N s");
-    assert_shows(&l, "in contact");
-    lab_advance(&l, 100);
-    assert_false(l.playing);
-    assert_shows(&l, "end of the run");
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    assert_shows(&ex, "free flight");
+    press(&ex, "<Space>");
+    explorer_advance(&ex, 2);
+    assert_shows(&ex, "impact 0.0443 N s");
+    assert_shows(&ex, "in contact");
+    explorer_advance(&ex, 100);
+    assert_false(ex.state.playback.playing);
+    assert_shows(&ex, "end of the run");
+    explorer_finish(&ex);
 }
 
 // A newcomer's way: watch, pause, go back to just before contact, lower the voltage, compare.
 static void test_a_lower_voltage_is_compared_with_the_run_before(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, "<Space>");
-    lab_advance(&l, 3);
-    press(&l, "<Space>NNNN<Home>nN");
-    press(&l, ":seek 0.2<Enter>b<Enter>");
-    assert_shows(&l, ":set motor.voltage 1");
-    press(&l, "<Backspace>0.5<Enter>");
-    assert_shows(&l, "motor.voltage = 0.5 V from 0.2000 s on");
-    check_below(l.session.run.summary.peak_force_N, l.session.other.summary.peak_force_N);
-    press(&l, "c");
-    assert_shows(&l, "this run beside the old one");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "<Space>");
+    explorer_advance(&ex, 3);
+    press(&ex, "<Space>NNNN<Home>nN");
+    press(&ex, ":seek 0.2<Enter>b<Enter>");
+    assert_shows(&ex, ":set motor.voltage 1");
+    press(&ex, "<Backspace>0.5<Enter>");
+    assert_shows(&ex, "motor.voltage = 0.5 V from 0.2000 s on");
+    check_below(ex.state.session.run.summary.peak_force_N,
+                ex.state.session.other.summary.peak_force_N);
+    press(&ex, "c");
+    assert_shows(&ex, "this run beside the old one");
     char line[128];
     snprintf(line, sizeof line, "%-28s %11.4g %11.4g", "first_pulse_peak_N",
-             l.session.run.summary.first_pulse_peak_N, l.session.other.summary.first_pulse_peak_N);
-    assert_shows(&l, line);
-    press(&l, "<Esc>u");
-    check_close(l.session.run.summary.peak_force_N, l.session.other.summary.peak_force_N, 0);
-    press(&l, "U");
-    check_below(l.session.run.summary.peak_force_N, l.session.other.summary.peak_force_N);
-    lab_finish(&l);
+             ex.state.session.run.summary.first_pulse_peak_N,
+             ex.state.session.other.summary.first_pulse_peak_N);
+    assert_shows(&ex, line);
+    press(&ex, "<Esc>u");
+    check_close(ex.state.session.run.summary.peak_force_N,
+                ex.state.session.other.summary.peak_force_N, 0);
+    press(&ex, "U");
+    check_below(ex.state.session.run.summary.peak_force_N,
+                ex.state.session.other.summary.peak_force_N);
+    explorer_finish(&ex);
 }
 
 // The number of dots drawn in the column of cells that shows an instant.
-static int tallest_column(lab *l, int width)
+static int tallest_column(explorer *ex, int width)
 {
     screen s = {0};
     int tallest = 0;
     assert_true(screen_resize(&s, width, 40));
-    lab_draw(l, &s);
-    for (int x = l->plot_x; x < l->plot_x + l->plot_width; x++) {
+    explorer_draw(ex, &s);
+    for (int x = ex->layout.plot.x; x < ex->layout.plot.x + ex->layout.plot.width; x++) {
         int cells = 0;
-        for (int y = l->plot_y + 1; y < l->plot_y + l->plot_height - 2; y++) {
+        for (int y = ex->layout.plot.y + 1; y < ex->layout.plot.y + ex->layout.plot.height - 2;
+             y++) {
             uint32_t glyph = s.cells[(long)y * s.width + x].glyph;
             cells += glyph > 0x2800 && glyph < 0x2900;
         }
@@ -125,167 +130,168 @@ static int tallest_column(lab *l, int width)
 static void test_a_spike_of_one_row_is_drawn(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, "134:extend 19<Enter><End>");
-    press(&l, ":trace impulse<Enter>");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "134:extend 19<Enter><End>");
+    press(&ex, ":trace impulse<Enter>");
     // the impulse is one row of twenty thousand, and its line goes up the whole pane
-    assert_true(tallest_column(&l, 120) >= l.plot_height - 4);
-    lab_finish(&l);
+    assert_true(tallest_column(&ex, 120) >= ex.layout.plot.height - 4);
+    explorer_finish(&ex);
 }
 
 static void test_values_show_the_difference_to_the_mark(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, ":seek 0.2<Enter>m<Tab>:seek 0.25<Enter>");
-    assert_shows(&l, "values, minus mark");
-    assert_shows(&l, "from mark 0.05 s");
-    press(&l, "<Esc>");
-    assert_hides(&l, "from mark");
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.2<Enter>m<Tab>:seek 0.25<Enter>");
+    assert_shows(&ex, "values, minus mark");
+    assert_shows(&ex, "from mark 0.05 s");
+    press(&ex, "<Esc>");
+    assert_hides(&ex, "from mark");
+    explorer_finish(&ex);
 }
 
 static void test_the_list_filters_and_opens(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, "/three");
-    assert_shows(&l, "corrected/three-links");
-    assert_shows(&l, "Three links against a flat wall");
-    assert_hides(&l, "five-links");
-    press(&l, "<Enter><Enter>");
-    assert_string_equal(l.session.base.name, "corrected/three-links");
-    press(&l, ":open thesis/fig-3-4<Enter>");
-    assert_string_equal(l.session.base.name, "thesis/fig-3-4");
-    assert_shows(&l, "printed");
-    press(&l, ":open nowhere<Enter>");
-    assert_true(l.warning);
-    assert_string_equal(l.session.base.name, "thesis/fig-3-4");
-    press(&l, "[");
-    assert_string_not_equal(l.session.base.name, "thesis/fig-3-4");
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "/three");
+    assert_shows(&ex, "corrected/three-links");
+    assert_shows(&ex, "Three links against a flat wall");
+    assert_hides(&ex, "five-links");
+    press(&ex, "<Enter><Enter>");
+    assert_string_equal(ex.state.session.base.name, "corrected/three-links");
+    press(&ex, ":open thesis/fig-3-4<Enter>");
+    assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
+    assert_shows(&ex, "printed");
+    press(&ex, ":open nowhere<Enter>");
+    assert_true(ex.state.message.warning);
+    assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
+    press(&ex, "[");
+    assert_string_not_equal(ex.state.session.base.name, "thesis/fig-3-4");
+    explorer_finish(&ex);
 }
 
 static void test_what_is_typed_is_completed(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, ":comp<Tab>");
-    assert_string_equal(l.prompt, "compare ");
-    press(&l, "<C-u>set motor.vol<Tab>");
-    assert_string_equal(l.prompt, "set motor.voltage");
-    assert_shows(&l, "motor.voltage_limit");
-    press(&l, "<Esc>:set motor.voltag 2<Enter>");
-    assert_shows(&l, "did you mean motor.voltage?");
-    press(&l, ":brunch<Enter>");
-    assert_shows(&l, "did you mean branch?");
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":comp<Tab>");
+    assert_string_equal(ex.state.prompt.text, "compare ");
+    press(&ex, "<C-u>set motor.vol<Tab>");
+    assert_string_equal(ex.state.prompt.text, "set motor.voltage");
+    assert_shows(&ex, "motor.voltage_limit");
+    press(&ex, "<Esc>:set motor.voltag 2<Enter>");
+    assert_shows(&ex, "did you mean motor.voltage?");
+    press(&ex, ":brunch<Enter>");
+    assert_shows(&ex, "did you mean branch?");
+    explorer_finish(&ex);
 }
 
 static void test_help_lists_every_key(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, "?");
-    assert_shows(&l, ":branch");
-    press(&l, "<End>");
-    assert_shows(&l, "leave the lab");
-    press(&l, "<Esc>");
-    assert_hides(&l, "leave the lab");
-    assert_false(l.quit);
-    press(&l, "q");
-    assert_true(l.quit);
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "?");
+    assert_shows(&ex, ":branch");
+    press(&ex, "<End>");
+    assert_shows(&ex, "leave the lab");
+    press(&ex, "<Esc>");
+    assert_hides(&ex, "leave the lab");
+    assert_false(ex.state.quit);
+    press(&ex, "q");
+    assert_true(ex.state.quit);
+    explorer_finish(&ex);
 }
 
 static void test_pages_scroll_to_their_ends(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, "?GGjj");
-    assert_shows(&l, ":quit");
-    press(&l, "gkk");
-    assert_shows(&l, ":play");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "?GGjj");
+    assert_shows(&ex, ":quit");
+    press(&ex, "gkk");
+    assert_shows(&ex, ":play");
     // nothing is drawn between these, which would keep the line within the page
-    press(&l, "<Esc>cGjjjgk");
-    assert_shows(&l, "this run");
-    lab_finish(&l);
+    press(&ex, "<Esc>cGjjjgk");
+    assert_shows(&ex, "this run");
+    explorer_finish(&ex);
 }
 
 static void test_saved_scenario_and_screen(void **state)
 {
     (void)state;
-    lab l;
+    explorer ex;
     char folder[] = "/tmp/impactlab-screen-XXXXXX", line[128], path[64];
     assert_non_null(mkdtemp(folder));
-    open_lab(&l, "corrected/first-impact");
-    l.width = 100;
-    l.height = 30;
-    press(&l, ":seek 0.2<Enter>");
-    assert_true(lab_carry_out(&l, "set motor.voltage 0.5"));
+    open_explorer(&ex, "corrected/first-impact");
+    ex.state.size.width = 100;
+    ex.state.size.height = 30;
+    press(&ex, ":seek 0.2<Enter>");
+    assert_true(explorer_carry_out(&ex, "set motor.voltage 0.5"));
     static const char *const endings[] = {"csv", "yaml", "txt", "svg"};
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
         snprintf(line, sizeof line, "save %s/run.%s", folder, endings[i]);
-        if (!lab_carry_out(&l, line)) {
-            fail_msg("%s: %s", line, l.message);
+        if (!explorer_carry_out(&ex, line)) {
+            fail_msg("%s: %s", line, ex.state.message.text);
         }
     }
-    assert_false(lab_carry_out(&l, "save /nowhere/run.csv"));
-    assert_false(lab_carry_out(&l, "save run.doc"));
-    double peak = l.session.run.summary.peak_force_N;
+    assert_false(explorer_carry_out(&ex, "save /nowhere/run.csv"));
+    assert_false(explorer_carry_out(&ex, "save run.doc"));
+    double peak = ex.state.session.run.summary.peak_force_N;
     snprintf(path, sizeof path, "%s/run.yaml", folder);
-    assert_true(lab_open(&l, path));
-    check_close(l.session.run.summary.peak_force_N, peak, 0);
+    snprintf(line, sizeof line, "open %s", path);
+    assert_true(explorer_carry_out(&ex, line));
+    check_close(ex.state.session.run.summary.peak_force_N, peak, 0);
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
         snprintf(path, sizeof path, "%s/run.%s", folder, endings[i]);
         assert_int_equal(unlink(path), 0);
     }
     assert_int_equal(rmdir(folder), 0);
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
 static void test_a_click_moves_the_cursor(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    free(picture(&l, 120, 40, GLYPHS_BRAILLE));
-    lab_click(&l, l.plot_x + l.plot_width / 2, l.plot_y + 3);
-    check_close(l.session.now, 0.5, 0.02);
-    lab_click(&l, 119, 39);
-    lab_click(&l, -5, 1000);
-    check_close(l.session.now, 0.5, 0.02);
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    click_at(&ex, ex.layout.plot.x + ex.layout.plot.width / 2, ex.layout.plot.y + 3);
+    check_close(ex.state.session.now, 0.5, 0.02);
+    click_at(&ex, 119, 39);
+    click_at(&ex, -5, 1000);
+    check_close(ex.state.session.now, 0.5, 0.02);
+    explorer_finish(&ex);
 }
 
 static void test_every_scenario_and_every_size_draws(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
     static const int sizes[][2] = {{1, 1},   {300, 100}, {40, 12}, {41, 13}, {72, 20},
                                    {99, 29}, {100, 30},  {39, 50}, {200, 5}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         static const char *const pages[] = {"",       "?",          "<Esc>o",
                                             "<Esc>c", "<Esc>:set ", "<Esc><Tab>"};
         for (size_t k = 0; k < sizeof pages / sizeof pages[0]; k++) {
-            press(&l, pages[k]);
-            free(picture(&l, sizes[i][0], sizes[i][1], GLYPHS_BLOCKS));
+            press(&ex, pages[k]);
+            free(picture(&ex, sizes[i][0], sizes[i][1], GLYPHS_BLOCKS));
         }
     }
-    free(picture(&l, 20, 3, GLYPHS_ASCII));
-    for (int i = 0; i < l.name_count; i++) {
-        press(&l, "]");
-        session_seek(&l.session, 0.6 * session_end(&l.session));
-        assert_shows(&l, l.session.base.name);
+    free(picture(&ex, 20, 3, GLYPHS_ASCII));
+    for (int i = 0; i < ex.state.scenarios.count; i++) {
+        press(&ex, "]");
+        session_seek(&ex.state.session, 0.6 * session_end(&ex.state.session));
+        assert_shows(&ex, ex.state.session.base.name);
     }
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
 // At the last row before a touch the linearised arm says what "impactlab predict" says, for as many
@@ -293,18 +299,18 @@ static void test_every_scenario_and_every_size_draws(void **state)
 static void test_many_links_are_predicted_while_the_run_rests(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/five-links");
-    press(&l, "i");
-    const trace *t = &l.session.run.trace;
-    const sample *row = session_sample(&l.session);
-    const double *w = t->velocities + l.session.row * (size_t)t->angle_count;
+    explorer ex;
+    open_explorer(&ex, "corrected/five-links");
+    press(&ex, "i");
+    const trace *t = &ex.state.session.run.trace;
+    const sample *row = session_sample(&ex.state.session);
+    const double *w = t->velocities + ex.state.session.row * (size_t)t->angle_count;
     check_close(w[0], row->first_velocity, 0);
     check_close(w[t->angle_count - 1], row->last_velocity, 0);
-    assert_shows(&l, "linearised      3.201 N in 43 ms");
-    press(&l, ":seek 0.1<Enter><Space>");
-    assert_shows(&l, "linearised      -");
-    lab_finish(&l);
+    assert_shows(&ex, "linearised      3.201 N in 43 ms");
+    press(&ex, ":seek 0.1<Enter><Space>");
+    assert_shows(&ex, "linearised      -");
+    explorer_finish(&ex);
 }
 
 static int chance(random_generator *r, int limit)
@@ -333,21 +339,21 @@ static void test_random_keys_do_no_harm(void **state)
                                0};
     random_generator r;
     random_seed(&r, 6);
-    lab l;
-    open_lab(&l, "corrected/first-impact");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
     for (int i = 0; i < 4000; i++) {
-        bool saving =
-            l.prompting && (strncmp(l.prompt, "s", 1) == 0 && strncmp(l.prompt, "set ", 4) != 0);
-        bool lengthens = l.session.effective.parameters.run.duration > 3;
+        bool saving = ex.state.prompt.open && (strncmp(ex.state.prompt.text, "s", 1) == 0 &&
+                                               strncmp(ex.state.prompt.text, "set ", 4) != 0);
+        bool lengthens = ex.state.session.effective.parameters.run.duration > 3;
         int key = chance(&r, 3) > 0 ? ' ' + chance(&r, 95) : keys[chance(&r, 16)];
         key = saving || (lengthens && key == 'x') ? KEY_CODE_ESCAPE : key;
-        lab_key(&l, key);
-        l.quit = false;
+        explorer_key(&ex, key);
+        ex.state.quit = false;
         if (i % 7 == 0) {
-            lab_advance(&l, random_uniform(&r));
-            lab_click(&l, chance(&r, 130), chance(&r, 45));
-            lab_wheel(&l, chance(&r, 2) ? 1 : -1);
-            free(picture(&l, 1 + chance(&r, 160), 1 + chance(&r, 60),
+            explorer_advance(&ex, random_uniform(&r));
+            click_at(&ex, chance(&r, 130), chance(&r, 45));
+            explorer_key(&ex, chance(&r, 2) ? KEY_CODE_DOWN : KEY_CODE_UP);
+            free(picture(&ex, 1 + chance(&r, 160), 1 + chance(&r, 60),
                          (glyph_set)chance(&r, GLYPH_SETS)));
         }
     }
@@ -355,20 +361,20 @@ static void test_random_keys_do_no_harm(void **state)
     char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, &l.session.effective);
+    scenario_write(stream, &ex.state.session.effective);
     fclose(stream);
     scenario saved;
     run_result again;
     assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
                      STATUS_OK);
     run_scenario(&saved, true, &again);
-    const trace *t = &l.session.run.trace;
+    const trace *t = &ex.state.session.run.trace;
     assert_int_equal(again.trace.row_count, t->row_count);
     assert_memory_equal(again.trace.rows, t->rows, t->row_count * sizeof *t->rows);
     run_finish(&again);
     scenario_finish(&saved);
     free(text);
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
 // The lab draws and takes keys while a long run is computed; what it shows in the end is what a
@@ -376,50 +382,50 @@ static void test_random_keys_do_no_harm(void **state)
 static void test_a_long_run_is_drawn_while_it_is_computed(void **state)
 {
     (void)state;
-    lab l, patient;
+    explorer ex, patient;
     scenario s;
     fault f = {0};
     assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
     assert_int_equal(scenario_override(&s, "run.duration=20", &f), STATUS_OK);
-    assert_int_equal(lab_open_patiently(&l, &s, 0, &f), STATUS_OK);
-    assert_shows(&l, "computing");
-    assert_shows(&l, "of 20 s (Esc stops)");
-    press(&l, ":save never-written.csv<Enter>");
-    assert_shows(&l, "wait for its end, or stop it with Esc");
-    press(&l, "b");
-    assert_shows(&l, "the run is still being computed");
-    press(&l, "<Esc>");
-    assert_null(l.session.computing);
-    assert_shows(&l, "stopped at");
-    assert_hides(&l, "computing");
+    assert_int_equal(explorer_init(&ex, &s, 0, &f), STATUS_OK);
+    assert_shows(&ex, "computing");
+    assert_shows(&ex, "of 20 s (Esc stops)");
+    press(&ex, ":save never-written.csv<Enter>");
+    assert_shows(&ex, "wait for its end, or stop it with Esc");
+    press(&ex, "b");
+    assert_shows(&ex, "the run is still being computed");
+    press(&ex, "<Esc>");
+    assert_null(ex.state.session.computing);
+    assert_shows(&ex, "stopped at");
+    assert_hides(&ex, "computing");
     // Space at the end of what there is goes on with it
-    press(&l, "<End><Space>");
-    assert_true(l.playing);
-    assert_shows(&l, "computing");
-    press(&l, ":set run.duration 3<Enter>:stop<Enter>:set run.duration 4<Enter>");
-    while (l.session.computing != NULL) {
-        lab_advance(&l, 0.01);
-        lab_follow(&l);
-        free(picture(&l, 120, 40, GLYPHS_BRAILLE));
+    press(&ex, "<End><Space>");
+    assert_true(ex.state.playback.playing);
+    assert_shows(&ex, "computing");
+    press(&ex, ":set run.duration 3<Enter>:stop<Enter>:set run.duration 4<Enter>");
+    while (ex.state.session.computing != NULL) {
+        explorer_advance(&ex, 0.01);
+        explorer_follow(&ex);
+        free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     }
-    open_lab(&patient, "corrected/twenty-links");
+    open_explorer(&patient, "corrected/twenty-links");
     press(&patient,
           ":set run.duration 20<Enter>:set run.duration 3<Enter>:set run.duration 4<Enter>");
-    patient.playing = l.playing = false;
-    patient.speed = l.speed;
-    press(&l, ":seek 2<Enter>");
+    patient.state.playback.playing = ex.state.playback.playing = false;
+    patient.state.playback.speed = ex.state.playback.speed;
+    press(&ex, ":seek 2<Enter>");
     press(&patient, ":seek end<Enter>:seek 2<Enter>");
-    l.session.seen = patient.session.seen;
-    l.session.base.parameters = patient.session.base.parameters;
-    l.session.input_count = patient.session.input_count;
-    char *one = picture(&l, 150, 50, GLYPHS_BRAILLE);
+    ex.state.session.seen = patient.state.session.seen;
+    ex.state.session.base.parameters = patient.state.session.base.parameters;
+    ex.state.session.input_count = patient.state.session.input_count;
+    char *one = picture(&ex, 150, 50, GLYPHS_BRAILLE);
     char *other = picture(&patient, 150, 50, GLYPHS_BRAILLE);
     assert_string_equal(one, other);
     free(one);
     free(other);
-    l.session.input_count = 0;
-    lab_finish(&l);
-    lab_finish(&patient);
+    ex.state.session.input_count = 0;
+    explorer_finish(&ex);
+    explorer_finish(&patient);
 }
 
 int main(void)

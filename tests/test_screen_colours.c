@@ -1,6 +1,6 @@
-// The colours of the terminal lab: readable on their grounds, told apart by everybody, and the same
+// The colours of the explorer: readable on their grounds, told apart by everybody, and the same
 // choice with fewer of them.
-#include "tests/lab_on_screen.h"
+#include "tests/explorer_on_screen.h"
 
 #include "ui/terminal/ink_colours.h"
 
@@ -125,17 +125,17 @@ static void test_no_colour_in_mono(void **state)
 static void test_the_number_of_colours_is_a_setting(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    assert_int_equal(l.depth, DEPTH_AUTO);
-    press(&l, ":colours true<Enter>");
-    assert_int_equal(l.depth, DEPTH_TRUE);
-    press(&l, ":colours 256<Enter>");
-    assert_int_equal(l.depth, DEPTH_256);
-    press(&l, ":colours 17<Enter>");
-    assert_int_equal(l.depth, DEPTH_256);
-    assert_shows(&l, "'17' is none of auto, true, 256, 16, mono");
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    assert_int_equal(ex.state.looks.depth, DEPTH_AUTO);
+    press(&ex, ":colours true<Enter>");
+    assert_int_equal(ex.state.looks.depth, DEPTH_TRUE);
+    press(&ex, ":colours 256<Enter>");
+    assert_int_equal(ex.state.looks.depth, DEPTH_256);
+    press(&ex, ":colours 17<Enter>");
+    assert_int_equal(ex.state.looks.depth, DEPTH_256);
+    assert_shows(&ex, "'17' is none of auto, true, 256, 16, mono");
+    explorer_finish(&ex);
 }
 
 int main(void)

@@ -1,44 +1,47 @@
 // Keys of the user's own, the help page that shows them, and the settings that keep them.
-#include "tests/lab_on_screen.h"
+#include "tests/explorer_on_screen.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "ui/explorer/panels/help_text.h"
+#include "ui/explorer/settings.h"
+
 static void test_a_key_gets_another_command(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, ":key x step 5<Enter>");
-    assert_shows(&l, "x does 'step 5' now, no longer 'extend'");
-    size_t before = l.session.row;
-    press(&l, "x");
-    assert_int_equal(l.session.row, before + 5);
-    press(&l, ":key \u00e4 seek 0.3<Enter>:key C-t trace 5<Enter>:key F1 seek end<Enter>");
-    lab_key(&l, 0xe4);
-    check_close(l.session.now, 0.3, 0.002);
-    press(&l, "<C-t>");
-    assert_true(l.panes[4].shown);
-    press(&l, "<F1>");
-    check_close(l.session.now, 1, 1e-9);
-    press(&l, ":key x<Enter>");
-    assert_shows(&l, "x does 'step 5'");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":key x step 5<Enter>");
+    assert_shows(&ex, "x does 'step 5' now, no longer 'extend'");
+    size_t before = ex.state.session.row;
+    press(&ex, "x");
+    assert_int_equal(ex.state.session.row, before + 5);
+    press(&ex, ":key \u00e4 seek 0.3<Enter>:key C-t trace 5<Enter>:key F1 seek end<Enter>");
+    explorer_key(&ex, 0xe4);
+    check_close(ex.state.session.now, 0.3, 0.002);
+    press(&ex, "<C-t>");
+    assert_true(ex.state.panes.pane[4].shown);
+    press(&ex, "<F1>");
+    check_close(ex.state.session.now, 1, 1e-9);
+    press(&ex, ":key x<Enter>");
+    assert_shows(&ex, "x does 'step 5'");
     // taken back, then off, then back again
-    press(&l, ":unkey x<Enter>");
-    assert_shows(&l, "x does 'extend' again");
-    press(&l, ":unkey x<Enter>x");
-    assert_shows(&l, "'x' does nothing here");
-    check_close(l.session.effective.parameters.run.duration, 1, 0);
-    press(&l, ":unkey x<Enter>x");
-    check_close(l.session.effective.parameters.run.duration, 2, 0);
-    lab_finish(&l);
+    press(&ex, ":unkey x<Enter>");
+    assert_shows(&ex, "x does 'extend' again");
+    press(&ex, ":unkey x<Enter>x");
+    assert_shows(&ex, "'x' does nothing here");
+    check_close(ex.state.session.effective.parameters.run.duration, 1, 0);
+    press(&ex, ":unkey x<Enter>x");
+    check_close(ex.state.session.effective.parameters.run.duration, 2, 0);
+    explorer_finish(&ex);
 }
 
 static void test_wrong_keys_are_told(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
     static const struct {
         const char *line, *why;
         int at; // characters before the fault
@@ -55,44 +58,45 @@ static void test_wrong_keys_are_told(void **state)
         {"kex x play", "did you mean key?", 0},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        assert_false(lab_carry_out(&l, wrong[i].line));
-        if (strstr(l.message, wrong[i].why) == NULL || l.fault_at != wrong[i].at) {
-            fail_msg("'%s' at %d: %s", wrong[i].line, l.fault_at, l.message);
+        action_result result = explorer_execute(&ex.state, wrong[i].line);
+        assert_false(result_ok(&result));
+        if (strstr(result.text, wrong[i].why) == NULL || result.at != wrong[i].at) {
+            fail_msg("'%s' at %d: %s", wrong[i].line, result.at, result.text);
         }
     }
-    assert_int_equal(l.user_key_count, 0);
+    assert_int_equal(ex.state.keys.count, 0);
     // a full table
-    for (int i = 0; i < LAB_USER_KEYS; i++) {
+    for (int i = 0; i < USER_KEYS; i++) {
         char line[32];
         snprintf(line, sizeof line, "key %c%c play", i < 32 ? 0xc3 : 0xc4, 0xa0 + i % 32);
-        assert_true(lab_carry_out(&l, line));
+        assert_true(explorer_carry_out(&ex, line));
     }
-    assert_false(lab_carry_out(&l, "key x play"));
-    assert_true(lab_carry_out(&l, "unkey \u00e4"));
-    assert_true(lab_carry_out(&l, "key x play"));
-    lab_finish(&l);
+    assert_false(explorer_carry_out(&ex, "key x play"));
+    assert_true(explorer_carry_out(&ex, "unkey \u00e4"));
+    assert_true(explorer_carry_out(&ex, "key x play"));
+    explorer_finish(&ex);
 }
 
 static void test_the_help_shows_the_keys_that_are(void **state)
 {
     (void)state;
-    static lab_help_line lines[400];
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, ":key w step 5<Enter>:unkey x<Enter>?<End>");
-    assert_shows(&l, "Keys of your own");
-    assert_shows(&l, "step 5 (the lab's: focus)");
-    assert_shows(&l, "nothing (the lab's: extend)");
-    press(&l, "<Home>");
-    assert_shows(&l, "w Right l Left h PgDn PgUp");
+    static help_line lines[400];
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":key w step 5<Enter>:unkey x<Enter>?<End>");
+    assert_shows(&ex, "Keys of your own");
+    assert_shows(&ex, "step 5 (the lab's: focus)");
+    assert_shows(&ex, "nothing (the lab's: extend)");
+    press(&ex, "<Home>");
+    assert_shows(&ex, "w Right l Left h PgDn PgUp");
     // no line is wider than the page, and every command is there, at any width
     for (int width = 26; width < 200; width += 7) {
-        int count = lab_write_help(&l, width, lines, 400);
+        int count = help_write(&ex.state.keys, width, lines, 400);
         assert_true(count < 400);
-        for (int i = 0; lab_command_name(i) != NULL; i++) {
+        for (int i = 0; i < explorer_command_count; i++) {
             char call[32];
             bool found = false;
-            snprintf(call, sizeof call, ":%s", lab_command_name(i));
+            snprintf(call, sizeof call, ":%s", explorer_command_table[i].name);
             for (int k = 0; k < count && !found; k++) {
                 found = strstr(lines[k].text, call) != NULL;
             }
@@ -106,7 +110,7 @@ static void test_the_help_shows_the_keys_that_are(void **state)
             }
         }
     }
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
 // A folder of settings of its own, with a file of them if there is text.
@@ -139,34 +143,35 @@ static void test_settings_keep_looks_axes_and_keys(void **state)
 {
     (void)state;
     char folder[] = "/tmp/impactlab-settings-XXXXXX";
-    lab l;
+    explorer ex;
     make_settings(folder, NULL);
-    open_lab(&l, "corrected/first-impact");
-    press(&l, ":theme light<Enter>:glyphs blocks<Enter>:colours 16<Enter>:axis -0.5 2.25 1<Enter>");
-    press(&l, ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace 5<Enter>:unkey x<Enter>");
-    press(&l, ":key Space step 3<Enter>:key # mark<Enter>:remember<Enter>");
-    assert_shows(&l, "settings kept");
-    lab_finish(&l);
-    open_lab(&l, "corrected/first-impact");
-    lab_settings_load(&l);
-    assert_string_equal(l.message, "");
-    assert_int_equal(l.theme, COLOURS_LIGHT);
-    assert_int_equal(l.glyphs, GLYPHS_BLOCKS);
-    assert_int_equal(l.depth, DEPTH_16);
-    assert_int_equal(l.panes[0].axis, AXIS_FIXED);
-    check_close(l.panes[0].low, -0.5, 0);
-    check_close(l.panes[0].high, 2.25, 0);
-    assert_int_equal(l.panes[2].axis, AXIS_GROW);
-    assert_int_equal(l.panes[3].axis, AXIS_AUTO);
-    assert_int_equal(l.user_key_count, 5);
-    assert_string_equal(lab_bound_line(&l, '<'), "step -5");
-    assert_string_equal(lab_bound_line(&l, ' '), "step 3");
-    assert_string_equal(lab_bound_line(&l, '#'), "mark");
-    assert_string_equal(lab_bound_line(&l, 't' & 0x1f), "trace 5");
-    assert_null(lab_bound_line(&l, 'x'));
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex,
+          ":theme light<Enter>:glyphs blocks<Enter>:colours 16<Enter>:axis -0.5 2.25 1<Enter>");
+    press(&ex, ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace 5<Enter>:unkey x<Enter>");
+    press(&ex, ":key Space step 3<Enter>:key # mark<Enter>:remember<Enter>");
+    assert_shows(&ex, "settings kept");
+    explorer_finish(&ex);
+    open_explorer(&ex, "corrected/first-impact");
+    explorer_load_settings(&ex);
+    assert_string_equal(ex.state.message.text, "");
+    assert_int_equal(ex.state.looks.theme, COLOURS_LIGHT);
+    assert_int_equal(ex.state.looks.glyphs, GLYPHS_BLOCKS);
+    assert_int_equal(ex.state.looks.depth, DEPTH_16);
+    assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_FIXED);
+    check_close(ex.state.panes.pane[0].fixed.low, -0.5, 0);
+    check_close(ex.state.panes.pane[0].fixed.high, 2.25, 0);
+    assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_GROW);
+    assert_int_equal(ex.state.panes.pane[3].scaling, AXIS_AUTO);
+    assert_int_equal(ex.state.keys.count, 5);
+    assert_string_equal(key_line(&ex.state.keys, '<'), "step -5");
+    assert_string_equal(key_line(&ex.state.keys, ' '), "step 3");
+    assert_string_equal(key_line(&ex.state.keys, '#'), "mark");
+    assert_string_equal(key_line(&ex.state.keys, 't' & 0x1f), "trace 5");
+    assert_null(key_line(&ex.state.keys, 'x'));
     // nobody chose panes, so a controlled run shows its own
-    assert_false(l.panes_chosen);
-    lab_finish(&l);
+    assert_false(ex.state.panes.chosen);
+    explorer_finish(&ex);
     remove_settings(folder);
 }
 
@@ -174,7 +179,7 @@ static void test_faults_in_settings_are_told_with_their_place(void **state)
 {
     (void)state;
     char folder[] = "/tmp/impactlab-settings-XXXXXX", wanted[128];
-    lab l;
+    explorer ex;
     make_settings(folder, "# mine\n"
                           "key x step 5\n"
                           "key y stepp 5\n"
@@ -182,19 +187,19 @@ static void test_faults_in_settings_are_told_with_their_place(void **state)
                           "\n"
                           "axis 2 1 1\n"
                           "theme light\n");
-    open_lab(&l, "corrected/first-impact");
-    lab_settings_load(&l);
-    assert_false(l.quit);
-    assert_int_equal(l.theme, COLOURS_LIGHT);
-    assert_string_equal(lab_bound_line(&l, 'x'), "step 5");
-    assert_true(l.warning);
+    open_explorer(&ex, "corrected/first-impact");
+    explorer_load_settings(&ex);
+    assert_false(ex.state.quit);
+    assert_int_equal(ex.state.looks.theme, COLOURS_LIGHT);
+    assert_string_equal(key_line(&ex.state.keys, 'x'), "step 5");
+    assert_true(ex.state.message.warning);
     snprintf(wanted, sizeof wanted, "%s/impactlab/lab:3:7 is ignored: there is no command 'stepp'",
              folder);
-    assert_non_null(strstr(l.message, wanted));
-    assert_non_null(strstr(l.message, "(and 2 more)"));
-    assert_false(lab_settings_save(&l));
-    assert_non_null(strstr(l.message, "left alone"));
-    lab_finish(&l);
+    assert_non_null(strstr(ex.state.message.text, wanted));
+    assert_non_null(strstr(ex.state.message.text, "(and 2 more)"));
+    assert_false(explorer_carry_out(&ex, "remember"));
+    assert_non_null(strstr(ex.state.message.text, "left alone"));
+    explorer_finish(&ex);
     remove_settings(folder);
 }
 

@@ -1,9 +1,9 @@
-// The control law in the terminal lab: its panel, the lock on a mode, the log of its modes.
-#include "tests/lab_on_screen.h"
+// The control law in the explorer: its panel, the lock on a mode, the log of its modes.
+#include "tests/explorer_on_screen.h"
 
-static void assert_pictured(lab *l, int width, int height, glyph_set set, const char *wanted)
+static void assert_pictured(explorer *ex, int width, int height, glyph_set set, const char *wanted)
 {
-    char *text = picture(l, width, height, set);
+    char *text = picture(ex, width, height, set);
     if (strstr(text, wanted) == NULL) {
         fail_msg("'%s' is not on the screen of %d x %d:\n%s", wanted, width, height, text);
     }
@@ -17,100 +17,101 @@ static void test_the_panel_is_whole_on_every_screen(void **state)
     static const char *const laws[] = {
         "hybrid",     "recovering",  "force-pd",  "force-integral", "discontinuous", "optimal",
         "predictive", "speed-limit", "open-loop", "bang-bang",      "reverse-torque"};
-    lab l;
-    open_lab(&l, "compare/hybrid");
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
     for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
         char line[64], mode[MODE_NAME_SIZE], wanted[64];
         snprintf(line, sizeof line, "law %s", laws[i]);
-        assert_true(lab_carry_out(&l, line));
-        session_seek(&l.session, 0.9);
-        lab_mode_name(&l, session_sample(&l.session)->controller_mode, mode, sizeof mode);
+        assert_true(explorer_carry_out(&ex, line));
+        session_seek(&ex.state.session, 0.9);
+        law_mode_name(state_law_modes(&ex.state),
+                      session_sample(&ex.state.session)->controller_mode, mode, sizeof mode);
         for (int k = 0; k < 8; k++) {
             int width = sizes[k / 2][0], height = sizes[k / 2][1];
             glyph_set set = k % 2 ? GLYPHS_ASCII : GLYPHS_BRAILLE;
             snprintf(wanted, sizeof wanted, "%s %s, 200 Hz ", k % 2 ? "-" : "\u2500", laws[i]);
-            assert_pictured(&l, width, height, set, wanted);
+            assert_pictured(&ex, width, height, set, wanted);
             snprintf(wanted, sizeof wanted, "[%s]", mode);
-            assert_pictured(&l, width, height, set, wanted);
-            assert_pictured(&l, width, height, set, " command ");
-            assert_pictured(&l, width, height, set, " V ");
-            assert_pictured(&l, width, height, set,
+            assert_pictured(&ex, width, height, set, wanted);
+            assert_pictured(&ex, width, height, set, " command ");
+            assert_pictured(&ex, width, height, set, " V ");
+            assert_pictured(&ex, width, height, set,
                             strcmp(laws[i], "open-loop") ? "not locked (L locks)"
                                                          : "takes no lock on a mode");
-            assert_pictured(&l, width, height, set, height < 40 ? "of 1 N" : "force commanded");
+            assert_pictured(&ex, width, height, set, height < 40 ? "of 1 N" : "force commanded");
         }
     }
-    press(&l, ":law off<Enter>");
-    assert_hides(&l, "200 Hz");
-    lab_finish(&l);
+    press(&ex, ":law off<Enter>");
+    assert_hides(&ex, "200 Hz");
+    explorer_finish(&ex);
 }
 
 static void test_a_narrow_screen_shows_the_panel_beside_the_parameters(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "compare/hybrid");
-    free(picture(&l, 60, 24, GLYPHS_BRAILLE));
-    press(&l, ":seek 0.5<Enter><Tab>");
-    assert_pictured(&l, 60, 24, GLYPHS_BRAILLE, "approach [impact] force");
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    free(picture(&ex, 60, 24, GLYPHS_BRAILLE));
+    press(&ex, ":seek 0.5<Enter><Tab>");
+    assert_pictured(&ex, 60, 24, GLYPHS_BRAILLE, "approach [impact] force");
+    explorer_finish(&ex);
 }
 
 static void test_a_command_beyond_the_limit_is_marked(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "compare/bang-bang");
-    session_seek(&l.session, 0.02);
-    assert_shows(&l, "saturated");
-    session_seek(&l.session, 1.4);
-    assert_hides(&l, "saturated");
-    lab_finish(&l);
+    explorer ex;
+    open_explorer(&ex, "compare/bang-bang");
+    session_seek(&ex.state.session, 0.02);
+    assert_shows(&ex, "saturated");
+    session_seek(&ex.state.session, 1.4);
+    assert_hides(&ex, "saturated");
+    explorer_finish(&ex);
 }
 
 static void test_one_key_goes_through_the_modes(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "compare/hybrid");
-    press(&l, ":seek 0.9<Enter>");
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":seek 0.9<Enter>");
     static const char *const modes[] = {"approach", "impact", "force"};
     for (int i = 0; i < 3; i++) {
         char wanted[64];
-        press(&l, "L");
+        press(&ex, "L");
         // going on replaces the lock made at the same instant
-        assert_int_equal(l.session.input_count, 1);
+        assert_int_equal(ex.state.session.input_count, 1);
         snprintf(wanted, sizeof wanted, "locked: %s (F frees)", modes[i]);
-        assert_shows(&l, wanted);
+        assert_shows(&ex, wanted);
         snprintf(wanted, sizeof wanted, "[%s]", modes[i]);
-        assert_shows(&l, wanted);
+        assert_shows(&ex, wanted);
     }
-    press(&l, "L");
-    assert_int_equal(l.session.input_count, 0);
-    assert_shows(&l, "not locked");
-    press(&l, ":lock approach<Enter>:seek 1.1<Enter>F");
-    assert_int_equal(l.session.input_count, 2);
-    assert_shows(&l, "not locked");
-    press(&l, ":seek 1<Enter>");
-    assert_shows(&l, "locked: approach");
-    press(&l, "uu");
-    assert_shows(&l, "not locked");
-    press(&l, "U");
-    assert_shows(&l, "locked: approach");
-    lab_finish(&l);
+    press(&ex, "L");
+    assert_int_equal(ex.state.session.input_count, 0);
+    assert_shows(&ex, "not locked");
+    press(&ex, ":lock approach<Enter>:seek 1.1<Enter>F");
+    assert_int_equal(ex.state.session.input_count, 2);
+    assert_shows(&ex, "not locked");
+    press(&ex, ":seek 1<Enter>");
+    assert_shows(&ex, "locked: approach");
+    press(&ex, "uu");
+    assert_shows(&ex, "not locked");
+    press(&ex, "U");
+    assert_shows(&ex, "locked: approach");
+    explorer_finish(&ex);
 }
 
 static void test_a_lock_is_saved_and_run_again_byte_for_byte(void **state)
 {
     (void)state;
-    lab l;
+    explorer ex;
     char *text = NULL;
     size_t size = 0;
-    open_lab(&l, "compare/recovering");
-    press(&l, ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
-    assert_false(l.warning);
+    open_explorer(&ex, "compare/recovering");
+    press(&ex, ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
+    assert_false(ex.state.message.warning);
     FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, &l.session.effective);
+    scenario_write(stream, &ex.state.session.effective);
     fclose(stream);
     assert_non_null(strstr(text, "set: {control.lock: \"approach\"}"));
     scenario saved;
@@ -118,73 +119,68 @@ static void test_a_lock_is_saved_and_run_again_byte_for_byte(void **state)
     assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
                      STATUS_OK);
     run_scenario(&saved, true, &again);
-    const trace *t = &l.session.run.trace;
+    const trace *t = &ex.state.session.run.trace;
     assert_int_equal(again.trace.row_count, t->row_count);
     assert_memory_equal(again.trace.rows, t->rows, t->row_count * sizeof *t->rows);
     run_finish(&again);
     scenario_finish(&saved);
     free(text);
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
 static void test_laws_and_modes_are_completed_and_checked(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "compare/hybrid");
-    press(&l, ":lock app<Tab>");
-    assert_string_equal(l.prompt, "lock approach ");
-    press(&l, "<C-u>law rec<Tab><Enter>");
-    assert_shows(&l, "recovering, 200 Hz");
-    press(&l, ":seek 0.5<Enter>:lock press<Enter>");
-    assert_true(l.warning);
-    assert_shows(&l, "expected none, approach, impact, force or recover");
-    press(&l, ":lock recover<Enter>:law hybrid<Enter>");
-    assert_true(l.warning);
-    assert_shows(&l, "undo the lock first");
-    assert_shows(&l, "recovering, 200 Hz");
-    press(&l, "u:law inverse-dynamics<Enter>L");
-    assert_shows(&l, "this law cannot be held in a mode");
-    press(&l, "C");
-    assert_hides(&l, "200 Hz");
-    press(&l, "L");
-    assert_shows(&l, "no law is on");
-    press(&l, "C");
-    assert_shows(&l, "inverse-dynamics, 200 Hz");
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":lock app<Tab>");
+    assert_string_equal(ex.state.prompt.text, "lock approach ");
+    press(&ex, "<C-u>law rec<Tab><Enter>");
+    assert_shows(&ex, "recovering, 200 Hz");
+    press(&ex, ":seek 0.5<Enter>:lock press<Enter>");
+    assert_true(ex.state.message.warning);
+    assert_shows(&ex, "expected none, approach, impact, force or recover");
+    press(&ex, ":lock recover<Enter>:law hybrid<Enter>");
+    assert_true(ex.state.message.warning);
+    assert_shows(&ex, "undo the lock first");
+    assert_shows(&ex, "recovering, 200 Hz");
+    press(&ex, "u:law inverse-dynamics<Enter>L");
+    assert_shows(&ex, "this law cannot be held in a mode");
+    press(&ex, "C");
+    assert_hides(&ex, "200 Hz");
+    press(&ex, "L");
+    assert_shows(&ex, "no law is on");
+    press(&ex, "C");
+    assert_shows(&ex, "inverse-dynamics, 200 Hz");
     // the parameter itself can be nudged
-    press(&l, ":law hybrid<Enter>:seek 0.5<Enter>:set control.lock<Enter><lt>");
-    assert_shows(&l, "locked: force");
-    press(&l, ">");
-    assert_shows(&l, "not locked");
-    lab_finish(&l);
+    press(&ex, ":law hybrid<Enter>:seek 0.5<Enter>:set control.lock<Enter><lt>");
+    assert_shows(&ex, "locked: force");
+    press(&ex, ">");
+    assert_shows(&ex, "not locked");
+    explorer_finish(&ex);
 }
 
 static void test_the_log_names_modes(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "compare/hybrid");
-    press(&l, "nn");
-    check_close(l.session.now, 0.295, 0);
-    assert_shows(&l, "goes into its mode 'impact' at 0.295000 s");
-    assert_shows(&l, "0.29500 s  mode impact");
-    press(&l, "<End>");
-    assert_shows(&l, "mode force");
-    press(&l, "N");
-    press(&l, ":seek 0.7<Enter>:lock approach<Enter>");
-    assert_shows(&l, "change lock approach");
-    press(&l, "n");
-    assert_shows(&l, "0.70000 s  mode approach");
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, "nn");
+    check_close(ex.state.session.now, 0.295, 0);
+    assert_shows(&ex, "goes into its mode 'impact' at 0.295000 s");
+    assert_shows(&ex, "0.29500 s  mode impact");
+    press(&ex, "<End>");
+    assert_shows(&ex, "mode force");
+    press(&ex, "N");
+    press(&ex, ":seek 0.7<Enter>:lock approach<Enter>");
+    assert_shows(&ex, "change lock approach");
+    press(&ex, "n");
+    assert_shows(&ex, "0.70000 s  mode approach");
     // a click on a line goes there
-    for (int i = 0; i < l.spot_count; i++) {
-        if (l.spots[i].part == PART_LOG) {
-            lab_point(&l, (pointer_event){.kind = POINTER_PRESS,
-                                          .x = l.spots[i].x + 3,
-                                          .y = l.spots[i].y + 2 - l.spots[i].index});
-        }
-    }
-    check_close(l.session.now, 0.295, 0);
-    lab_finish(&l);
+    hit_area log = part_on_screen(&ex, PANEL_LOG, PART_LINES);
+    click_at(&ex, log.area.x + 3, log.area.y + 2 - log.index);
+    check_close(ex.state.session.now, 0.295, 0);
+    explorer_finish(&ex);
 }
 
 int main(void)

@@ -1,22 +1,22 @@
-// Sliders of the terminal lab's parameters: what they span, and the mouse on them.
-#include "tests/lab_on_screen.h"
+// Sliders of the explorer's parameters: what they span, and the mouse on them.
+#include "tests/explorer_on_screen.h"
 
 #include <math.h>
 
-static void point(lab *l, pointer_kind kind, int x, int y)
+static void point(explorer *ex, pointer_kind kind, int x, int y)
 {
-    lab_point(l, (pointer_event){.kind = kind, .x = x, .y = y});
-    free(picture(l, 120, 40, GLYPHS_BRAILLE));
+    explorer_point(ex, (pointer_event){.kind = kind, .x = x, .y = y});
+    free(picture(ex, 120, 40, GLYPHS_BRAILLE));
 }
 
 // The slider drawn last for a parameter, the wide one where it is selected.
-static lab_spot slider_of(lab *l, int parameter)
+static hit_area slider_of(explorer *ex, int parameter)
 {
-    free(picture(l, 120, 40, GLYPHS_BRAILLE));
-    lab_spot widest = {.part = PART_NONE};
-    for (int i = 0; i < l->spot_count; i++) {
-        const lab_spot *s = &l->spots[i];
-        if (s->part == PART_SLIDER && s->index == parameter && s->width > widest.width) {
+    free(picture(ex, 120, 40, GLYPHS_BRAILLE));
+    hit_area widest = {.panel = PANEL_NONE};
+    for (int i = 0; i < ex->layout.hit_count; i++) {
+        const hit_area *s = &ex->layout.hits[i];
+        if (s->part == PART_SLIDER && s->index == parameter && s->area.width > widest.area.width) {
             widest = *s;
         }
     }
@@ -24,9 +24,9 @@ static lab_spot slider_of(lab *l, int parameter)
     return widest;
 }
 
-static double value_of(const lab *l, int parameter)
+static double value_of(const explorer *ex, int parameter)
 {
-    parameters p = session_parameters_at(&l->session, l->session.now);
+    parameters p = session_parameters_at(&ex->state.session, ex->state.session.now);
     return parameter_get(&p, parameter);
 }
 
@@ -42,7 +42,7 @@ static void test_every_number_has_a_scale_that_suits_it(void **state)
         bool number = info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER;
         double value = parameter_get(&p, i);
         slider_scale scale;
-        assert_int_equal(lab_slider_scale(i, value, &scale), number);
+        assert_int_equal(slider_scale_of(i, value, &scale), number);
         if (!number) {
             continue;
         }
@@ -56,7 +56,7 @@ static void test_every_number_has_a_scale_that_suits_it(void **state)
                         info->type == PARAMETER_INTEGER ? 0.5 : 0.051);
         }
         // far away from the default it is still on the scale
-        assert_true(lab_slider_scale(i, info->maximum, &scale));
+        assert_true(slider_scale_of(i, info->maximum, &scale));
         check_close(slider_share(&scale, info->maximum), 1, 0);
     }
 }
@@ -65,9 +65,9 @@ static void test_ranges_over_decades_are_logarithmic(void **state)
 {
     (void)state;
     slider_scale k2, kp, damping;
-    assert_true(lab_slider_scale(PARAMETER_INDEX(arm.k2), 4.92, &k2));
-    assert_true(lab_slider_scale(PARAMETER_INDEX(control.kp), 10.15, &kp));
-    assert_true(lab_slider_scale(PARAMETER_INDEX(arm.damping_ratio), 0.1, &damping));
+    assert_true(slider_scale_of(PARAMETER_INDEX(arm.k2), 4.92, &k2));
+    assert_true(slider_scale_of(PARAMETER_INDEX(control.kp), 10.15, &kp));
+    assert_true(slider_scale_of(PARAMETER_INDEX(arm.damping_ratio), 0.1, &damping));
     assert_true(k2.logarithmic && k2.low == 0.01 && k2.high == 1000);
     assert_true(!kp.logarithmic && kp.low == -50 && kp.high == 50);
     assert_true(!damping.logarithmic && damping.low == 0 && damping.high == 1);
@@ -77,57 +77,57 @@ static void test_a_drag_takes_effect_when_the_mouse_lets_go(void **state)
 {
     (void)state;
     const int voltage = PARAMETER_INDEX(motor.voltage);
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, ":seek 0.2<Enter>");
-    lab_spot s = slider_of(&l, voltage);
-    unsigned computed = l.session.version;
-    point(&l, POINTER_PRESS, s.x + s.width / 2, s.y);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.2<Enter>");
+    hit_area s = slider_of(&ex, voltage);
+    unsigned computed = ex.state.session.version;
+    point(&ex, POINTER_PRESS, s.area.x + s.area.width / 2, s.area.y);
     for (int i = 0; i < 10; i++) {
-        point(&l, POINTER_DRAG, s.x + s.width - 1 - i / 5, s.y + i);
+        point(&ex, POINTER_DRAG, s.area.x + s.area.width - 1 - i / 5, s.area.y + i);
     }
-    assert_int_equal(l.session.version, computed);
-    check_close(value_of(&l, voltage), 1, 0);
-    point(&l, POINTER_DRAG, s.x + s.width + 50, s.y);
-    assert_shows(&l, "5 V");
-    point(&l, POINTER_RELEASE, s.x + s.width + 50, s.y);
-    assert_int_equal(l.session.version, computed + 1);
-    check_close(value_of(&l, voltage), 5, 0);
-    check_close(l.session.inputs[0].time, 0.2, 0);
+    assert_int_equal(ex.state.session.version, computed);
+    check_close(value_of(&ex, voltage), 1, 0);
+    point(&ex, POINTER_DRAG, s.area.x + s.area.width + 50, s.area.y);
+    assert_shows(&ex, "5 V");
+    point(&ex, POINTER_RELEASE, s.area.x + s.area.width + 50, s.area.y);
+    assert_int_equal(ex.state.session.version, computed + 1);
+    check_close(value_of(&ex, voltage), 5, 0);
+    check_close(ex.state.session.inputs[0].time, 0.2, 0);
     // a click where the knob is changes nothing
-    s = slider_of(&l, voltage);
-    point(&l, POINTER_PRESS, s.x + s.width - 1, s.y);
-    point(&l, POINTER_RELEASE, s.x + s.width - 1, s.y);
-    assert_int_equal(l.session.version, computed + 1);
-    press(&l, "u");
-    check_close(value_of(&l, voltage), 1, 0);
-    lab_finish(&l);
+    s = slider_of(&ex, voltage);
+    point(&ex, POINTER_PRESS, s.area.x + s.area.width - 1, s.area.y);
+    point(&ex, POINTER_RELEASE, s.area.x + s.area.width - 1, s.area.y);
+    assert_int_equal(ex.state.session.version, computed + 1);
+    press(&ex, "u");
+    check_close(value_of(&ex, voltage), 1, 0);
+    explorer_finish(&ex);
 }
 
 static void test_clicks_select_and_the_wheel_nudges(void **state)
 {
     (void)state;
     const int limit = PARAMETER_INDEX(motor.voltage_limit);
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    lab_spot s = slider_of(&l, limit);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    hit_area s = slider_of(&ex, limit);
     // the line of it, not its slider
-    point(&l, POINTER_PRESS, s.x - 10, s.y);
-    point(&l, POINTER_RELEASE, s.x - 10, s.y);
-    assert_int_equal(l.parameter, limit);
-    assert_int_equal(l.session.input_count, 0);
-    s = slider_of(&l, limit);
-    point(&l, POINTER_WHEEL_UP, s.x + 1, s.y);
-    check_close(value_of(&l, limit), 11, 0);
-    point(&l, POINTER_WHEEL_DOWN, s.x + 1, s.y);
-    check_close(value_of(&l, limit), 10, 0);
-    lab_finish(&l);
+    point(&ex, POINTER_PRESS, s.area.x - 10, s.area.y);
+    point(&ex, POINTER_RELEASE, s.area.x - 10, s.area.y);
+    assert_int_equal(ex.state.side.parameter, limit);
+    assert_int_equal(ex.state.session.input_count, 0);
+    s = slider_of(&ex, limit);
+    point(&ex, POINTER_WHEEL_UP, s.area.x + 1, s.area.y);
+    check_close(value_of(&ex, limit), 11, 0);
+    point(&ex, POINTER_WHEEL_DOWN, s.area.x + 1, s.area.y);
+    check_close(value_of(&ex, limit), 10, 0);
+    explorer_finish(&ex);
 }
 
 // The wide slider, ends and all.
-static void assert_slider(lab *l, int width, int height, glyph_set set, const char *track)
+static void assert_slider(explorer *ex, int width, int height, glyph_set set, const char *track)
 {
-    char *text = picture(l, width, height, set);
+    char *text = picture(ex, width, height, set);
     if (!strstr(text, " -5 ") || !strstr(text, track) || !strstr(text, " 5 ")) {
         fail_msg("no slider on the screen of %d x %d:\n%s", width, height, text);
     }
@@ -140,13 +140,13 @@ static void test_the_selected_number_has_a_slider_on_every_screen(void **state)
     static const int sizes[][2] = {{45, 16}, {60, 24}, {80, 24}, {120, 40}, {200, 60}};
     static const glyph_set sets[] = {GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII};
     static const char *const tracks[] = {"\u2500\u25cf\u2500", "\u2500\u25cf\u2500", "-o-"};
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    l.side_in_front = true;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    ex.state.side.in_front = true;
     for (int i = 0; i < 15; i++) {
-        assert_slider(&l, sizes[i / 3][0], sizes[i / 3][1], sets[i % 3], tracks[i % 3]);
+        assert_slider(&ex, sizes[i / 3][0], sizes[i / 3][1], sets[i % 3], tracks[i % 3]);
     }
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
 int main(void)

@@ -1,5 +1,5 @@
-// The terminal lab on small and narrow screens: nothing is cut in a word, what matters most stays.
-#include "tests/lab_on_screen.h"
+// The explorer on small and narrow screens: nothing is cut in a word, what matters most stays.
+#include "tests/explorer_on_screen.h"
 
 static char *lines_of(const char *text, int width, bool *split)
 {
@@ -32,9 +32,9 @@ static void test_text_is_wrapped_at_blanks(void **state)
     assert_string_equal(lines_of("ab", 1, &split), "a|b|");
 }
 
-static void check_small(lab *l, int width, int height, const char *wanted)
+static void check_small(explorer *ex, int width, int height, const char *wanted)
 {
-    char *text = picture(l, width, height, GLYPHS_BRAILLE);
+    char *text = picture(ex, width, height, GLYPHS_BRAILLE);
     if (strncmp(text, wanted, strlen(wanted)) != 0) {
         fail_msg("%d x %d shows\n%s", width, height, text);
     }
@@ -44,22 +44,22 @@ static void check_small(lab *l, int width, int height, const char *wanted)
 static void test_a_screen_that_is_too_small_says_so_in_what_fits(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    check_small(&l, 1, 1, "<\n");
-    check_small(&l, 4, 3, "<\n");
-    check_small(&l, 5, 1, "small\n");
-    check_small(&l, 5, 2, "5x2 <\n40x12\n");
-    check_small(&l, 12, 1, "12x1 < 40x12\n");
-    check_small(&l, 20, 5, "The lab needs 40 x\n12 characters, here\nare 20 x 5. q quits.\n");
-    check_small(&l, 200, 5, "The lab needs 40 x 12 characters, here are 200 x 5. q quits.\n");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    check_small(&ex, 1, 1, "<\n");
+    check_small(&ex, 4, 3, "<\n");
+    check_small(&ex, 5, 1, "small\n");
+    check_small(&ex, 5, 2, "5x2 <\n40x12\n");
+    check_small(&ex, 12, 1, "12x1 < 40x12\n");
+    check_small(&ex, 20, 5, "The lab needs 40 x\n12 characters, here\nare 20 x 5. q quits.\n");
+    check_small(&ex, 200, 5, "The lab needs 40 x 12 characters, here are 200 x 5. q quits.\n");
     // no word is ever cut at the edge
     static const char *const words[] = {"The",         "lab",    "needs", "40",    "x",      "12",
                                         "characters,", "here",   "are",   "q",     "quits.", "the",
                                         "(q",          "quits)", "<",     "small", "40x12"};
     for (int width = 1; width < 60; width++) {
         for (int height = 1; height < 12; height++) {
-            char *text = picture(&l, width, height, GLYPHS_ASCII), *rest = text;
+            char *text = picture(&ex, width, height, GLYPHS_ASCII), *rest = text;
             for (char *word; (word = strtok_r(rest, " \n", &rest)) != NULL;) {
                 bool known = strspn(word, "0123456789x.:") == strlen(word);
                 for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
@@ -72,12 +72,12 @@ static void test_a_screen_that_is_too_small_says_so_in_what_fits(void **state)
             free(text);
         }
     }
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
-static void assert_has(lab *l, int width, int height, const char *wanted)
+static void assert_has(explorer *ex, int width, int height, const char *wanted)
 {
-    char *text = picture(l, width, height, GLYPHS_BRAILLE);
+    char *text = picture(ex, width, height, GLYPHS_BRAILLE);
     if (strstr(text, wanted) == NULL) {
         fail_msg("'%s' is not on a screen of %d x %d:\n%s", wanted, width, height, text);
     }
@@ -87,65 +87,65 @@ static void assert_has(lab *l, int width, int height, const char *wanted)
 static void test_the_status_keeps_what_matters(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "compare/hybrid");
-    press(&l, ":seek 0.65<Enter>m");
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":seek 0.65<Enter>m");
     for (int width = 40; width < 200; width += 3) {
-        assert_has(&l, width, 24, "paused");
-        assert_has(&l, width, 24, "t 0.65000 s");
+        assert_has(&ex, width, 24, "paused");
+        assert_has(&ex, width, 24, "t 0.65000 s");
     }
-    assert_has(&l, 60, 24, "in contact, hub sticks");
-    assert_has(&l, 90, 24, "corrected, hybrid");
-    assert_has(&l, 120, 24, "row 728/1726");
+    assert_has(&ex, 60, 24, "in contact, hub sticks");
+    assert_has(&ex, 90, 24, "corrected, hybrid");
+    assert_has(&ex, 120, 24, "row 728/1726");
     // the way to the keys and the way out are always told
-    press(&l, "<Esc>");
+    press(&ex, "<Esc>");
     for (int width = 40; width < 200; width += 3) {
-        assert_has(&l, width, 24, "? help  q quit");
-        assert_has(&l, width, 24, "Space run/pause");
+        assert_has(&ex, width, 24, "? help  q quit");
+        assert_has(&ex, width, 24, "Space run/pause");
     }
-    lab_finish(&l);
+    explorer_finish(&ex);
 }
 
 static void test_eighty_columns_show_what_a_first_visit_needs(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    press(&l, ":seek 0.35<Enter>");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.35<Enter>");
     static const char *const wanted[] = {"force 1.2", "w1 0.2", "gap 0",      "motor.voltage",
                                          "0.0\u2524", "1 s",    "0.10\u2524", "N, 93 ms"};
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
-        assert_has(&l, 80, 24, wanted[i]);
+        assert_has(&ex, 80, 24, wanted[i]);
     }
-    press(&l, "b");
-    assert_has(&l, 80, 24, "forgets it)");
-    press(&l, "c");
-    assert_has(&l, 80, 24, "first_pulse_peak_N");
-    assert_has(&l, 40, 12, "this run    old run     change");
-    press(&l, "<Esc>:set motor.voltage 0.5");
-    assert_has(&l, 40, 12, ":set motor.voltage 0.5");
+    press(&ex, "b");
+    assert_has(&ex, 80, 24, "forgets it)");
+    press(&ex, "c");
+    assert_has(&ex, 80, 24, "first_pulse_peak_N");
+    assert_has(&ex, 40, 12, "this run    old run     change");
+    press(&ex, "<Esc>:set motor.voltage 0.5");
+    assert_has(&ex, 40, 12, ":set motor.voltage 0.5");
     // a long prompt shows its end
-    press(&l, "<C-u>set control.plugin /a/long/name/of/a/folder/and/then/a/file.so");
-    assert_has(&l, 40, 12, "then/a/file.so");
-    lab_finish(&l);
+    press(&ex, "<C-u>set control.plugin /a/long/name/of/a/folder/and/then/a/file.so");
+    assert_has(&ex, 40, 12, "then/a/file.so");
+    explorer_finish(&ex);
 }
 
 static void test_a_narrow_screen_reaches_the_side(void **state)
 {
     (void)state;
-    lab l;
-    open_lab(&l, "corrected/first-impact");
-    assert_has(&l, 60, 20, "\u25b81      N");
-    press(&l, "<Tab>");
-    assert_has(&l, 60, 20, "parameters (Tab: values)");
-    press(&l, "<Tab>");
-    assert_has(&l, 60, 20, "hub_angle");
-    press(&l, "<Tab>");
-    assert_has(&l, 60, 20, "\u25b81      N");
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    assert_has(&ex, 60, 20, "\u25b81      N");
+    press(&ex, "<Tab>");
+    assert_has(&ex, 60, 20, "parameters (Tab: values)");
+    press(&ex, "<Tab>");
+    assert_has(&ex, 60, 20, "hub_angle");
+    press(&ex, "<Tab>");
+    assert_has(&ex, 60, 20, "\u25b81      N");
     // too many panes for the rows: the one in focus is there
-    press(&l, ":panes 123456789<Enter>ww");
-    assert_has(&l, 60, 20, "\u25b83  rad/s");
-    lab_finish(&l);
+    press(&ex, ":panes 123456789<Enter>ww");
+    assert_has(&ex, 60, 20, "\u25b83  rad/s");
+    explorer_finish(&ex);
 }
 
 int main(void)

@@ -6,7 +6,10 @@
 #include <string.h>
 #include <time.h>
 
-#include "ui/explorer/lab.h"
+#include "ui/explorer/commands.h"
+#include "ui/explorer/keys.h"
+#include "ui/explorer/mouse.h"
+#include "ui/explorer/settings.h"
 #include "ui/terminal/terminal.h"
 
 #define FRAME         (1.0 / 60) // shortest time between two pictures [s]
@@ -25,20 +28,20 @@ static double seconds_now(void)
 // --- without a terminal -----------------------------------------------------------------------
 
 // Carries out a file of commands, one a line. Stops at the first that fails.
-static int run_script(lab *l, const char *path)
+static int run_script(explorer *ex, const char *path)
 {
-    char line[LAB_TEXT];
+    char line[LINE_TEXT];
     bool is_stdin = strcmp(path, "-") == 0;
     FILE *stream = is_stdin ? stdin : fopen(path, "r");
     if (stream == NULL) {
         return complain("%s cannot be read: %s", path, strerror(errno));
     }
     int code = EXIT_DONE;
-    for (int number = 1; code == EXIT_DONE && !l->quit && fgets(line, sizeof line, stream);
+    for (int number = 1; code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
          number++) {
         line[strcspn(line, "\r\n")] = '\0';
-        if (!lab_carry_out(l, line)) {
-            complain("%s:%d: %s", path, number, l->message);
+        if (!explorer_carry_out(ex, line)) {
+            complain("%s:%d: %s", path, number, ex->state.message.text);
             code = EXIT_FAILED;
         }
     }
@@ -48,20 +51,20 @@ static int run_script(lab *l, const char *path)
     return code;
 }
 
-static int print_screen(lab *l, int width, int height)
+static int print_screen(explorer *ex, int width, int height)
 {
     screen s = {0};
     if (!screen_resize(&s, width, height)) {
         complain("%s", status_text(STATUS_NO_MEMORY));
         return EXIT_FAILED;
     }
-    lab_draw(l, &s);
-    screen_dump(&s, l->glyphs, stdout);
+    explorer_draw(ex, &s);
+    screen_dump(&s, ex->state.looks.glyphs, stdout);
     screen_finish(&s);
     return EXIT_DONE;
 }
 
-static int run_off_screen(lab *l, const arguments *a)
+static int run_off_screen(explorer *ex, const arguments *a)
 {
     int width = 120, height = 40;
     fault f = {0};
@@ -70,86 +73,86 @@ static int run_off_screen(lab *l, const arguments *a)
         width = a->size.width;
         height = a->size.height;
     }
-    l->width = width;
-    l->height = height;
+    ex->state.size = (screen_size){width, height};
     if (code == EXIT_DONE && a->script != NULL) {
-        code = run_script(l, a->script);
+        code = run_script(ex, a->script);
     }
-    if (code == EXIT_DONE && a->keys != NULL && !lab_keys(l, a->keys, &f)) {
+    if (code == EXIT_DONE && a->keys != NULL && !explorer_keys(ex, a->keys, &f)) {
         code = complain_fault(&f);
     }
     if (code == EXIT_DONE && !a->quiet) {
-        code = print_screen(l, width, height);
+        code = print_screen(ex, width, height);
     }
     return code;
 }
 
 // --- on a terminal ----------------------------------------------------------------------------
 
-static void take_input(lab *l, terminal_input in)
+static void take_input(explorer *ex, terminal_input in)
 {
     if (in.kind == TERMINAL_KEY) {
-        lab_key(l, in.code);
+        explorer_key(ex, in.code);
     } else if (in.kind == TERMINAL_POINTER) {
-        lab_point(l, in.pointer);
+        explorer_point(ex, in.pointer);
     } else if (in.kind == TERMINAL_RESIZE) {
-        l->redraw = true;
+        ex->state.looks.redraw = true;
     }
 }
 
 // Fits the grid to the terminal and shows it.
-static void show(lab *l, screen *s)
+static void show(explorer *ex, screen *s)
 {
     int width, height;
     terminal_size(&width, &height);
     if ((width != s->width || height != s->height) && !screen_resize(s, width, height)) {
         return;
     }
-    terminal_mouse(l->mouse);
-    lab_draw(l, s);
-    terminal_show(s, l->glyphs, l->theme, l->depth, l->redraw);
-    l->redraw = false;
+    terminal_mouse(ex->state.looks.mouse);
+    explorer_draw(ex, s);
+    terminal_show(s, ex->state.looks.glyphs, ex->state.looks.theme, ex->state.looks.depth,
+                  ex->state.looks.redraw);
+    ex->state.looks.redraw = false;
 }
 
-static void run_on_terminal(lab *l)
+static void run_on_terminal(explorer *ex)
 {
     screen s = {0};
     bool dirty = true, leave = false;
     double drawn = 0, last = seconds_now();
-    while (!l->quit && !leave) {
+    while (!ex->state.quit && !leave) {
         double now = seconds_now();
         if (dirty && now - drawn >= FRAME) {
-            show(l, &s);
+            show(ex, &s);
             drawn = now;
             dirty = false;
         }
-        bool waits = dirty || l->playing || l->session.computing != NULL;
+        bool waits = dirty || explorer_is_busy(ex);
         // a picture that took longer than a frame leaves nothing to wait for
         double left = fmax(0, dirty ? FRAME - (seconds_now() - drawn) : FRAME);
         terminal_input in = terminal_wait(waits ? left : -1);
         now = seconds_now();
-        dirty |= lab_follow(l);
-        if (l->playing) {
-            lab_advance(l, now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
+        dirty |= explorer_follow(ex);
+        if (ex->state.playback.playing) {
+            explorer_advance(ex, now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
             dirty = true;
         }
         last = now;
         dirty |= in.kind != TERMINAL_NONE;
         leave = in.kind == TERMINAL_LEAVE;
-        take_input(l, in);
+        take_input(ex, in);
     }
     screen_finish(&s);
 }
 
-// What is left on the terminal when the lab is gone.
-static void say_goodbye(const lab *l)
+// What is left on the terminal when the explorer is gone.
+static void say_goodbye(const explorer *ex)
 {
-    const session *e = &l->session;
+    const session *e = &ex->state.session;
     printf("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
            e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
 }
 
-static int open_lab(lab *l, const arguments *a)
+static int open_explorer(explorer *ex, const arguments *a)
 {
     scenario s;
     fault f = {0};
@@ -158,53 +161,53 @@ static int open_lab(lab *l, const arguments *a)
         return code;
     }
     bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
-    if (lab_open_patiently(l, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
+    if (explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    char line[LAB_TEXT];
-    l->glyphs = terminal_has_utf8() ? GLYPHS_BRAILLE : GLYPHS_ASCII;
+    char line[LINE_TEXT];
+    ex->state.looks.glyphs = terminal_has_utf8() ? GLYPHS_BRAILLE : GLYPHS_ASCII;
     if (live) {
-        l->theme = terminal_is_light() ? COLOURS_LIGHT : COLOURS_DARK;
-        lab_settings_load(l);
-        l->glyphs = terminal_has_utf8() ? l->glyphs : GLYPHS_ASCII;
+        ex->state.looks.theme = terminal_is_light() ? COLOURS_LIGHT : COLOURS_DARK;
+        explorer_load_settings(ex);
+        ex->state.looks.glyphs = terminal_has_utf8() ? ex->state.looks.glyphs : GLYPHS_ASCII;
     }
     const char *const settings[3][2] = {
         {"glyphs", a->glyphs}, {"theme", a->theme}, {"colours", a->colours}};
     for (int i = 0; i < 3; i++) {
         snprintf(line, sizeof line, "%s %s", settings[i][0], settings[i][1] ? settings[i][1] : "");
-        if (settings[i][1] != NULL && !lab_carry_out(l, line)) {
-            code = complain("--%s: %s", settings[i][0], l->message);
+        if (settings[i][1] != NULL && !explorer_carry_out(ex, line)) {
+            code = complain("--%s: %s", settings[i][0], ex->state.message.text);
         }
     }
     if (code != EXIT_DONE) {
-        lab_finish(l);
+        explorer_finish(ex);
     }
     return code;
 }
 
 static int run(const arguments *a)
 {
-    lab l;
+    explorer ex;
     fault f = {0};
     bool off_screen = a->keys != NULL || a->script != NULL || a->size.width > 0;
     if (!off_screen && !terminal_usable(&f)) {
         return complain_fault(&f);
     }
-    int code = open_lab(&l, a);
+    int code = open_explorer(&ex, a);
     if (code != EXIT_DONE) {
         return code;
     }
     if (off_screen) {
-        code = run_off_screen(&l, a);
+        code = run_off_screen(&ex, a);
     } else if (terminal_open(&f) != STATUS_OK) {
         code = complain_fault(&f);
     } else {
-        l.playing = true;
-        run_on_terminal(&l);
+        ex.state.playback.playing = true;
+        run_on_terminal(&ex);
         terminal_close();
-        say_goodbye(&l);
+        say_goodbye(&ex);
     }
-    lab_finish(&l);
+    explorer_finish(&ex);
     return code;
 }
 

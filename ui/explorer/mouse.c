@@ -1,193 +1,104 @@
-// What the mouse does: each part of the screen takes clicks, drags and the wheel in its own way.
-#include <limits.h>
-#include <math.h>
+#include "ui/explorer/mouse.h"
 
-#include "ui/explorer/actions.h"
+#include <assert.h>
 
-enum { WHEEL_LINES = 3 };
+#include "ui/explorer/keys.h"
+#include "ui/terminal/key_codes.h"
 
-// The uppermost part at a cell; PART_NONE with no extent if there is none.
-static lab_spot part_at(const lab *l, int x, int y)
+// Gives a gesture to the panel of its hit area; false if nobody takes it.
+static bool give(explorer *ex, const panel_gesture *g)
 {
-    for (int i = l->spot_count; i-- > 0;) {
-        const lab_spot *s = &l->spots[i];
-        if (x >= s->x && x < s->x + s->width && y >= s->y && y < s->y + s->height) {
-            return *s;
-        }
+    action_result result = result_done();
+    if (g->hit.panel == PANEL_NONE || panel_of(g->hit.panel)->point == NULL) {
+        return false;
     }
-    return (lab_spot){.part = PART_NONE};
+    bool taken = panel_of(g->hit.panel)->point(&ex->state, g, &result);
+    result_show(&result, &ex->state.message);
+    return taken;
 }
 
-static double time_at(const lab *l, int x)
+// Whether a page is open and a part is not of it.
+static bool is_behind_page(const explorer_state *st, panel_id id)
 {
-    double from, to;
-    lab_window(l, &from, &to);
-    double share = (x - l->plot_x + 0.5) / (l->plot_width > 0 ? l->plot_width : 1);
-    return from + (to - from) * fmax(0, fmin(1, share));
+    return st->page.panel != PANEL_NONE && (id == PANEL_NONE || panel_place_of(id) != PLACE_PAGE);
 }
 
-// --- the parts --------------------------------------------------------------------------------
-
-static void scrub(lab *l, int x)
+static void press(explorer *ex, pointer_event e)
 {
-    l->playing = false;
-    session_seek(&l->session, time_at(l, x));
-}
+    explorer_state *st = &ex->state;
+    hit_area hit = layout_hit(&ex->layout, e.x, e.y);
+    ex->grip = (pointer_grip){.holding = true, .hit = hit, .x = e.x, .y = e.y};
 
-// The first click selects a line of the list, another one on it opens it.
-static void press_in_list(lab *l, const lab_spot *s, int y)
-{
-    int line = s->index + y - s->y;
-    for (int i = 0; i < l->name_count; i++) {
-        if (!lab_listed(l, i) || line-- != 0) {
-            continue;
-        }
-        if (i == l->scroll) {
-            l->filtering = false;
-            lab_key(l, KEY_CODE_ENTER);
-        }
-        l->scroll = i;
+    // beside a page: it closes, and what is dragged now belongs to nothing that is behind it
+    if (is_behind_page(st, hit.panel)) {
+        ex->grip.hit = (hit_area){.panel = st->page.panel};
+        st->page.panel = PANEL_NONE;
+        st->scenarios.filtering = false;
         return;
     }
+    e.kind = POINTER_PRESS;
+    give(ex, &(panel_gesture){.event = e, .hit = hit});
 }
 
-static void press_in_log(lab *l, const lab_spot *s, int y)
+static void drag(explorer *ex, pointer_event e)
 {
-    const lab_log *log = lab_run_log(l);
-    size_t index = (size_t)(s->index + y - s->y);
-    if (index < log->count && log->entries[index].time <= l->session.seen) {
-        l->playing = false;
-        session_seek(&l->session, log->entries[index].time);
-        l->log_scroll = 0;
+    // a terminal may leave the press out
+    if (!ex->grip.holding) {
+        press(ex, e);
     }
+    pointer_grip *grip = &ex->grip;
+    panel_gesture g = {.event = e, .hit = grip->hit, .across = e.x - grip->x, .up = grip->y - e.y};
+    grip->dragged |= g.across != 0 || g.up != 0;
+    g.dragged = grip->dragged;
+    grip->x = e.x;
+    grip->y = e.y;
+
+    // what began on nothing counts for the plot as soon as it is over the curves
+    bool over_curves = area_holds(ex->layout.plot, e.x, e.y);
+    if (grip->hit.panel == PANEL_NONE && ex->state.page.panel == PANEL_NONE && over_curves) {
+        g.hit = (hit_area){PANEL_CURVES, PART_BODY, 0, ex->layout.plot};
+    }
+    give(ex, &g);
 }
 
-static void press(lab *l, pointer_event p)
+static void release(explorer *ex, pointer_event e)
 {
-    lab_spot s = part_at(l, p.x, p.y);
-    l->grabbed = s;
-    l->grabbed_x = p.x;
-    l->grabbed_y = p.y;
-    l->dragged = false;
-    l->holding = true;
-    if (l->overlay != OVERLAY_NONE && s.part < PART_HELP) {
-        l->overlay = OVERLAY_NONE;
-        l->filtering = false;
-        l->grabbed.part = PART_HELP; // what is dragged now belongs to the page that closed
-    } else if (s.part == PART_LIST) {
-        press_in_list(l, &s, p.y);
-    } else if (s.part == PART_LOG) {
-        press_in_log(l, &s, p.y);
-    } else if (s.part == PART_SLIDER) {
-        lab_hold_slider(l, &s, p.x);
-    } else if (s.part == PART_PARAMETER) {
-        l->parameter = s.index;
-    } else if (s.part == PART_LABELS) {
-        l->focus = s.index;
-    } else if (s.part == PART_CURVES) {
-        scrub(l, p.x);
-    } else if (s.part == PART_NONE) {
-        lab_click(l, p.x, p.y);
+    // a quick click may come without its press
+    if (!ex->grip.holding) {
+        press(ex, e);
     }
+    give(ex, &(panel_gesture){.event = e, .hit = ex->grip.hit, .dragged = ex->grip.dragged});
+    ex->grip = (pointer_grip){0};
 }
 
-static void drag(lab *l, pointer_event p)
+static void turn_wheel(explorer *ex, pointer_event e)
 {
-    if (!l->holding) {
-        press(l, p);
-    }
-    const lab_spot *s = &l->grabbed;
-    int across = p.x - l->grabbed_x, up = l->grabbed_y - p.y;
-    double from, to;
-    l->dragged |= across != 0 || up != 0;
-    l->grabbed_x = p.x;
-    l->grabbed_y = p.y;
-    if (s->part == PART_CURVES) {
-        scrub(l, p.x);
-    } else if (s->part == PART_SLIDER) {
-        lab_hold_slider(l, s, p.x);
-    } else if (s->part == PART_TIME_AXIS && s->width > 0) {
-        lab_window(l, &from, &to);
-        lab_pan_by(l, -across * (to - from) / s->width);
-    } else if (s->part == PART_LABELS && s->height > 0 && up != 0) {
-        lab_shift_axis(l, s->index, -(double)up / s->height);
-    } else if (s->part == PART_NONE) {
-        lab_click(l, p.x, p.y);
-    }
-}
-
-static void turn_wheel(lab *l, pointer_event p)
-{
-    int direction = p.kind == POINTER_WHEEL_UP ? -1 : 1;
-    double from, to;
-    lab_spot s = part_at(l, p.x, p.y);
-    if (l->prompting || (l->overlay != OVERLAY_NONE && s.part < PART_HELP)) {
+    const explorer_state *st = &ex->state;
+    hit_area hit = layout_hit(&ex->layout, e.x, e.y);
+    if (st->prompt.open || is_behind_page(st, hit.panel)) {
         return;
     }
-    lab_window(l, &from, &to);
-    switch (s.part) {
-    case PART_CURVES:
-        if (p.shift) {
-            lab_pan_by(l, 0.1 * direction * (to - from));
-        } else {
-            lab_zoom_at(l, direction < 0 ? 0.8 : 1.25, time_at(l, p.x));
-        }
-        break;
-    case PART_TIME_AXIS:
-        if (p.control) {
-            lab_zoom_at(l, direction < 0 ? 0.8 : 1.25, time_at(l, p.x));
-        } else {
-            lab_pan_by(l, 0.1 * direction * (to - from));
-        }
-        break;
-    case PART_LABELS:
-        lab_scale_axis(l, s.index, direction < 0 ? 0.8 : 1.25,
-                       (p.y - s.y + 0.5) / (s.height > 0 ? s.height : 1));
-        break;
-    case PART_SLIDER:
-        lab_turn_slider(l, s.index, direction);
-        break;
-    case PART_LOG:
-        l->log_scroll += direction * WHEEL_LINES;
-        break;
-    case PART_VALUES:
-        l->value_scroll += direction * WHEEL_LINES;
-        break;
-    case PART_HELP:
-    case PART_LIST:
-    case PART_COMPARISON:
-        for (int i = 0; i < WHEEL_LINES; i++) {
-            lab_wheel(l, direction);
-        }
-        break;
-    default:
-        lab_wheel(l, direction);
+
+    // where no panel takes it, it presses the keys for up and down
+    if (!give(ex, &(panel_gesture){.event = e, .hit = hit})) {
+        explorer_key(ex, pointer_wheel(e) < 0 ? KEY_CODE_UP : KEY_CODE_DOWN);
     }
 }
 
-void lab_point(lab *l, pointer_event p)
+void explorer_point(explorer *ex, pointer_event e)
 {
-    switch (p.kind) {
+    assert(ex != NULL);
+    switch (e.kind) {
     case POINTER_PRESS:
-        press(l, p);
+        press(ex, e);
         break;
     case POINTER_DRAG:
-        drag(l, p);
+        drag(ex, e);
         break;
     case POINTER_RELEASE:
-        // a quick click may come without its press
-        if (!l->holding) {
-            press(l, p);
-        }
-        // a click on the time axis that was no drag
-        if (l->grabbed.part == PART_TIME_AXIS && !l->dragged) {
-            scrub(l, p.x);
-        }
-        l->grabbed.part = PART_NONE;
-        l->holding = false;
-        lab_drop_slider(l);
+        release(ex, e);
         break;
     default:
-        turn_wheel(l, p);
+        turn_wheel(ex, e);
     }
 }

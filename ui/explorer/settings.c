@@ -1,13 +1,13 @@
-// What the terminal lab remembers between visits: a file of its own commands in the user's
-// configuration folder.
-#include "ui/explorer/lab.h"
+#include "ui/explorer/settings.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "src/base/whole_file.h"
+#include "ui/explorer/commands.h"
 
 static const char *const remembered[] = {"theme", "glyphs", "colours", "mouse", "speed",
                                          "panes", "axis",   "key",     "unkey"};
@@ -45,108 +45,128 @@ static bool is_remembered(const char *line)
     return length == 0 || line[0] == '#';
 }
 
-// Carries a line of the file out; false with a fault that names its line and column.
-static bool take_line(lab *l, const char *path, int number, const char *line)
+// Where the file is; false if there is no folder for it.
+static bool settings_path(char *path, size_t size, bool make)
 {
-    char why[LAB_TEXT];
-    l->fault_at = (int)strspn(line, " \t");
-    if (!is_remembered(line + l->fault_at)) {
-        lab_say(l, true, "this is no setting");
-    } else if (strlen(line) >= LAB_TEXT) {
-        lab_say(l, true, "the line is too long");
-    } else if (lab_carry_out(l, line)) {
-        return true;
-    }
-    snprintf(why, sizeof why, "%.200s", l->message);
-    lab_say(l, true, "%s:%d:%d is ignored: %s", path, number, l->fault_at + 1, why);
-    return false;
-}
-
-void lab_settings_load(lab *l)
-{
-    char path[1024], first[sizeof l->message], *line = NULL;
-    size_t room = 0;
-    int faults = 0;
-    if (!settings_folder(path, sizeof path - 8, false)) {
-        return;
+    if (!settings_folder(path, size - 8, make)) {
+        return false;
     }
     strcat(path, "/lab");
+    return true;
+}
+
+// Carries a line of the file out; what is wrong is told with its line and column.
+static action_result execute_line(explorer_state *st, const char *path, int number,
+                                  const char *line)
+{
+    const int begin = (int)strspn(line, " \t");
+    action_result result;
+    if (!is_remembered(line + begin)) {
+        result = result_refused("this is no setting");
+        result.at = begin;
+    } else if (strlen(line) >= LINE_TEXT) {
+        result = result_refused("the line is too long");
+        result.at = begin;
+    } else {
+        result = explorer_execute(st, line);
+    }
+    if (result_ok(&result)) {
+        return result;
+    }
+    return result_refused("%s:%d:%d is ignored: %.200s", path, number, result.at + 1, result.text);
+}
+
+void explorer_load_settings(explorer *ex)
+{
+    assert(ex != NULL);
+    explorer_state *st = &ex->state;
+    char path[1024], *line = NULL;
+    action_result first = result_quiet();
+    size_t room = 0;
+    int faults = 0;
+    if (!settings_path(path, sizeof path, false)) {
+        return;
+    }
+
+    // every line that can be carried out is
     FILE *stream = fopen(path, "r");
     for (int number = 1; stream != NULL && getline(&line, &room, stream) >= 0; number++) {
         line[strcspn(line, "\r\n")] = '\0';
-        if (!take_line(l, path, number, line) && faults++ == 0) {
-            snprintf(first, sizeof first, "%s", l->message);
+        action_result result = execute_line(st, path, number, line);
+        if (!result_ok(&result) && faults++ == 0) {
+            first = result;
         }
     }
     free(line);
     if (stream != NULL) {
         fclose(stream);
     }
-    l->message[0] = '\0';
-    l->settings_broken = faults > 0;
-    if (faults == 1) {
-        lab_say(l, true, "%s", first);
-    } else if (faults > 1) {
-        lab_say(l, true, "%.900s (and %d more)", first, faults - 1);
+
+    // the first fault is told, and how many there are besides
+    st->settings_broken = faults > 0;
+    if (faults > 1) {
+        message_say(&st->message, true, "%.900s (and %d more)", first.text, faults - 1);
+    } else {
+        result_show(&first, &st->message);
     }
 }
 
-// The axes that are not as a fresh lab has them, and the user's keys.
-static void write_axes_and_keys(const lab *l, FILE *stream)
+// The axes that are not as they are at first, and the user's keys.
+static void write_axes_and_keys(const explorer_state *st, FILE *stream)
 {
-    for (int i = 0; i < LAB_PANES - 1; i++) {
-        const lab_pane *pane = &l->panes[i];
-        if (pane->axis == AXIS_GROW) {
+    for (int i = 0; i < PANES - 1; i++) {
+        const pane *p = &st->panes.pane[i];
+        if (p->scaling == AXIS_GROW) {
             fprintf(stream, "axis grow %d\n", i + 1);
-        } else if (pane->axis == AXIS_FIXED) {
-            fprintf(stream, "axis %.10g %.10g %d\n", pane->low, pane->high, i + 1);
+        } else if (p->scaling == AXIS_FIXED) {
+            fprintf(stream, "axis %.10g %.10g %d\n", p->fixed.low, p->fixed.high, i + 1);
         }
     }
-    for (int i = 0; i < l->user_key_count; i++) {
-        const lab_user_key *own = &l->user_keys[i];
-        char name[16];
-        lab_key_name(own->key, name, sizeof name);
+    for (int i = 0; i < st->keys.count; i++) {
+        const user_key *own = &st->keys.own[i];
+        char name[KEY_NAME];
+        key_name(own->key, name, sizeof name);
         fprintf(stream, own->line[0] ? "key %s %s\n" : "unkey %s\n", name, own->line);
     }
 }
 
-bool lab_settings_save(lab *l)
+static void write_settings(const explorer_state *st, FILE *stream)
 {
-    static const char *const themes[] = {"dark", "light", "mono"};
-    static const char *const glyphs[] = {"braille", "blocks", "ascii"};
-    static const char *const depths[] = {"auto", "true", "256", "16", "mono"};
+    const looks *l = &st->looks;
+    fprintf(stream, "# settings of the terminal lab, written by :remember\n");
+    fprintf(stream, "theme %s\nglyphs %s\ncolours %s\nmouse %s\nspeed %g\n",
+            colour_theme_words[l->theme], glyph_set_words[l->glyphs], colour_depth_words[l->depth],
+            mouse_words[l->mouse], st->playback.speed);
+
+    // panes that nobody chose are the ones that suit the scenario
+    fputs(st->panes.chosen ? "panes " : "", stream);
+    for (int i = 0; i < PANES - 1; i++) {
+        if (st->panes.chosen && st->panes.pane[i].shown) {
+            fprintf(stream, "%d", i + 1);
+        }
+    }
+    fputs(st->panes.chosen ? "\n" : "", stream);
+    write_axes_and_keys(st, stream);
+}
+
+action_result act_remember(explorer_state *st, const char *argument)
+{
+    (void)argument;
     char path[1024];
     whole_file file;
     fault f = {0};
-    if (!settings_folder(path, sizeof path - 8, true)) {
-        lab_say(l, true, "there is no folder for settings (XDG_CONFIG_HOME or HOME)");
-        return false;
+    if (!settings_path(path, sizeof path, true)) {
+        return result_refused("there is no folder for settings (XDG_CONFIG_HOME or HOME)");
     }
-    strcat(path, "/lab");
-    if (l->settings_broken) {
-        lab_say(l, true, "%s has faults and is left alone: mend or remove it", path);
-        return false;
+    if (st->settings_broken) {
+        return result_refused("%s has faults and is left alone: mend or remove it", path);
     }
-    if (whole_file_open(&file, path, &f) != STATUS_OK) {
-        lab_say(l, true, "%s", f.text);
-        return false;
+
+    // whole or not at all
+    status code = whole_file_open(&file, path, &f);
+    if (code == STATUS_OK) {
+        write_settings(st, file.stream);
+        code = whole_file_commit(&file, &f);
     }
-    fprintf(file.stream, "# settings of the terminal lab, written by :remember\n");
-    fprintf(file.stream, "theme %s\nglyphs %s\ncolours %s\nmouse %s\nspeed %g\n", themes[l->theme],
-            glyphs[l->glyphs], depths[l->depth], l->mouse ? "on" : "off", l->speed);
-    // panes that nobody chose are the ones that suit the scenario
-    fputs(l->panes_chosen ? "panes " : "", file.stream);
-    for (int i = 0; i < LAB_PANES - 1; i++) {
-        if (l->panes_chosen && l->panes[i].shown) {
-            fprintf(file.stream, "%d", i + 1);
-        }
-    }
-    fputs(l->panes_chosen ? "\n" : "", file.stream);
-    write_axes_and_keys(l, file.stream);
-    if (whole_file_commit(&file, &f) != STATUS_OK) {
-        lab_say(l, true, "%s", f.text);
-        return false;
-    }
-    lab_say(l, false, "settings kept in %s", path);
-    return true;
+    return code == STATUS_OK ? result_news("settings kept in %s", path) : result_of(code, &f);
 }

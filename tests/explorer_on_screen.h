@@ -1,0 +1,91 @@
+// An explorer without a terminal, for tests: opened, its keys pressed, its screen as text.
+#pragma once
+
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "ui/explorer/commands.h"
+#include "ui/explorer/keys.h"
+#include "ui/explorer/mouse.h"
+#include "ui/terminal/key_codes.h"
+
+static inline void fail_on_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static inline void open_explorer(explorer *ex, const char *name)
+{
+    scenario s;
+    fault f = {0};
+    assert_int_equal(scenario_open(&s, name, fail_on_fault, NULL), STATUS_OK);
+    if (explorer_init(ex, &s, HUGE_VAL, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+static inline void press(explorer *ex, const char *keys)
+{
+    fault f = {0};
+    if (!explorer_keys(ex, keys, &f)) {
+        fail_msg("%s", f.text);
+    }
+}
+
+// The screen as text, to be freed.
+static inline char *picture(explorer *ex, int width, int height, glyph_set set)
+{
+    screen s = {0};
+    char *text = NULL;
+    size_t size = 0;
+    assert_true(screen_resize(&s, width, height));
+    explorer_draw(ex, &s);
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    screen_dump(&s, set, stream);
+    fclose(stream);
+    screen_finish(&s);
+    return text;
+}
+
+static inline void assert_shows(explorer *ex, const char *wanted)
+{
+    char *text = picture(ex, 120, 40, GLYPHS_BRAILLE);
+    if (strstr(text, wanted) == NULL) {
+        fail_msg("'%s' is not on the screen:\n%s", wanted, text);
+    }
+    free(text);
+}
+
+static inline void assert_hides(explorer *ex, const char *unwanted)
+{
+    char *text = picture(ex, 120, 40, GLYPHS_BRAILLE);
+    if (strstr(text, unwanted) != NULL) {
+        fail_msg("'%s' is on the screen:\n%s", unwanted, text);
+    }
+    free(text);
+}
+
+// The uppermost part of this kind on a screen of 120 x 40.
+static inline hit_area part_on_screen(explorer *ex, panel_id id, hit_part part)
+{
+    free(picture(ex, 120, 40, GLYPHS_BRAILLE));
+    for (int i = ex->layout.hit_count; i-- > 0;) {
+        const hit_area *h = &ex->layout.hits[i];
+        if (h->panel == id && h->part == part) {
+            return *h;
+        }
+    }
+    fail_msg("part %d of panel %d is not on the screen", (int)part, (int)id);
+    return (hit_area){.panel = PANEL_NONE};
+}
+
+// A click at a cell.
+static inline void click_at(explorer *ex, int x, int y)
+{
+    explorer_point(ex, (pointer_event){.kind = POINTER_PRESS, .x = x, .y = y});
+    explorer_point(ex, (pointer_event){.kind = POINTER_RELEASE, .x = x, .y = y});
+}

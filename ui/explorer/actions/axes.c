@@ -1,0 +1,267 @@
+// Actions on the axes of the curves: which part of the run is visible, and which values.
+#include "ui/explorer/actions/actions.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// --- time -------------------------------------------------------------------------------------
+
+void act_zoom_at(explorer_state *st, double factor, double time)
+{
+    double from, to;
+    state_window(st, &from, &to);
+    state_show_part(st, time + (from - time) * factor, time + (to - time) * factor);
+}
+
+void act_pan_by(explorer_state *st, double seconds)
+{
+    double from, to;
+    state_window(st, &from, &to);
+    if (st->window.to > st->window.from) {
+        st->window.adrift = true;
+        state_show_part(st, from + seconds, to + seconds);
+    }
+}
+
+action_result act_zoom(explorer_state *st, const char *argument)
+{
+    double from, to;
+    char rest;
+    state_window(st, &from, &to);
+    if (strcmp(argument, "all") == 0) {
+        time_window_show_all(&st->window);
+    } else if (strcmp(argument, "in") == 0 || strcmp(argument, "out") == 0) {
+        double now = st->session.now;
+        bool visible = now >= from && now <= to;
+        act_zoom_at(st, argument[0] == 'i' ? 0.5 : 2, visible ? now : (from + to) / 2);
+    } else if (sscanf(argument, "%lf %lf %c", &from, &to, &rest) == 2 && from < to &&
+               isfinite(to - from)) {
+        st->window.adrift = true;
+        state_show_part(st, from, to);
+    } else {
+        return result_refused(
+            "zoom takes in, out, all or two instants in seconds, such as 0.2 0.4");
+    }
+    return result_done();
+}
+
+action_result act_pan(explorer_state *st, const char *argument)
+{
+    double from, to, seconds;
+    state_window(st, &from, &to);
+
+    // directions are a quarter of what is visible
+    if (strcmp(argument, "left") == 0 || strcmp(argument, "right") == 0) {
+        seconds = (argument[0] == 'l' ? -0.25 : 0.25) * (to - from);
+    } else {
+        action_result read = act_read_number(argument, &seconds);
+        if (!result_ok(&read)) {
+            return read;
+        }
+    }
+    if (st->window.to <= st->window.from) {
+        return result_refused("the whole run is visible, z zooms in");
+    }
+    act_pan_by(st, seconds);
+    state_window(st, &from, &to);
+    return result_news("%.4g to %.4g s, f follows the cursor again", from, to);
+}
+
+action_result act_follow(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    st->window.adrift = false;
+    return result_news("the curves follow the cursor");
+}
+
+// --- values -----------------------------------------------------------------------------------
+
+void act_scale_axis(explorer_state *st, int index, double factor, double share)
+{
+    value_range now;
+    if (state_pane_axis(st, index, &now)) {
+        double at = now.high + share * (now.low - now.high);
+        value_range scaled = {at + (now.low - at) * factor, at + (now.high - at) * factor};
+        pane_fix_axis(&st->panes.pane[index], scaled);
+    }
+}
+
+void act_shift_axis(explorer_state *st, int index, double share)
+{
+    value_range now;
+    if (state_pane_axis(st, index, &now)) {
+        double way = share * (now.high - now.low);
+        pane_fix_axis(&st->panes.pane[index], (value_range){now.low + way, now.high + way});
+    }
+}
+
+static void set_scaling(explorer_state *st, int index, axis_scaling scaling)
+{
+    pane *p = &st->panes.pane[index];
+    value_range now;
+    if (scaling == AXIS_FIXED && state_pane_axis(st, index, &now)) {
+        pane_fix_axis(p, now);
+    } else if (scaling == AXIS_GROW) {
+        pane_grow_axis(p);
+    } else if (scaling == AXIS_AUTO) {
+        p->scaling = scaling;
+    }
+}
+
+static action_result tell_axis(const explorer_state *st, int index)
+{
+    const pane *p = &st->panes.pane[index];
+    int number = (index + 1) % 10;
+    if (p->scaling == AXIS_FIXED) {
+        return result_news("pane %d: from %.4g to %.4g", number, p->fixed.low, p->fixed.high);
+    }
+    return result_news("pane %d: %s", number,
+                       p->scaling == AXIS_AUTO ? "the range of what is visible"
+                                               : "the range of all that was seen, it only grows");
+}
+
+// The words of an argument; returns how many there are.
+static int split(char *text, char *words[4])
+{
+    int count = 0;
+    for (char *word, *rest = text; (word = strtok_r(rest, " \t", &rest)) != NULL; count++) {
+        if (count < 4) {
+            words[count] = word;
+        }
+    }
+    return count;
+}
+
+// Fixes a pane's axis to two limits given as text.
+static action_result set_limits(explorer_state *st, int index, const char *from, const char *to)
+{
+    value_range limits;
+    action_result read = act_read_number(from, &limits.low);
+    if (result_ok(&read)) {
+        read = act_read_number(to, &limits.high);
+    }
+    if (!result_ok(&read)) {
+        return read;
+    }
+    if (!(limits.low < limits.high)) {
+        return result_refused("an axis goes from a lower to a higher value, not from %g to %g",
+                              limits.low, limits.high);
+    }
+    pane_fix_axis(&st->panes.pane[index], limits);
+    return result_done();
+}
+
+// Gives a pane's axis what the first `count` words say, one or two.
+static action_result apply(explorer_state *st, int index, char *const words[4], int count)
+{
+    const char *word = words[0];
+    if (count == 2) {
+        return set_limits(st, index, words[0], words[1]);
+    }
+
+    // a kind of scaling by name, or the next one
+    for (int i = 0; i < AXIS_SCALINGS; i++) {
+        if (strcmp(word, axis_scaling_words[i]) == 0) {
+            set_scaling(st, index, (axis_scaling)i);
+            return result_done();
+        }
+    }
+    if (strcmp(word, "next") == 0) {
+        int next = (int)(st->panes.pane[index].scaling + 1) % AXIS_SCALINGS;
+        set_scaling(st, index, (axis_scaling)next);
+        return result_done();
+    }
+
+    // the axis as it is now, changed
+    if (strcmp(word, "in") == 0 || strcmp(word, "out") == 0) {
+        act_scale_axis(st, index, word[0] == 'i' ? 0.5 : 2, 0.5);
+    } else if (strcmp(word, "up") == 0 || strcmp(word, "down") == 0) {
+        act_shift_axis(st, index, word[0] == 'u' ? 0.25 : -0.25);
+    } else {
+        return result_refused("axis takes auto, grow, fixed, in, out, up, down or two limits, "
+                              "then a pane (1 to 9, all)");
+    }
+    return result_done();
+}
+
+// Reads the pane of a word, -1 for all of them.
+static action_result read_pane(const explorer_state *st, const char *word, int *index)
+{
+    char *end;
+    long number = strtol(word, &end, 10);
+    *index = -1;
+    if (strcmp(word, "all") == 0) {
+        return result_done();
+    }
+    if (*end != '\0' || end == word || number < 0 || number > PANES) {
+        return result_refused("'%s' is no pane: 1 to 9, 0 for your own, or all", word);
+    }
+    *index = (int)(number + PANES - 1) % PANES;
+    if (st->panes.pane[*index].count == 0) {
+        return result_refused("pane %s is empty, :trace SIGNAL... fills it", word);
+    }
+    return result_done();
+}
+
+action_result act_axis(explorer_state *st, const char *argument)
+{
+    char text[LINE_TEXT], *words[4], *end;
+    snprintf(text, sizeof text, "%s", argument);
+    int count = split(text, words), index = panes_focused(&st->panes);
+    if (count == 0 || count > 3) {
+        char none[] = "";
+        return apply(st, 0, (char *[4]){none}, 1);
+    }
+
+    // limits are two words, everything else is one; a pane may follow
+    bool limits = (strtod(words[0], &end), end != words[0]);
+    int used = limits ? 2 : 1;
+    if (count < used) {
+        return result_refused("an axis has two limits, such as 0 2, and then a pane");
+    }
+    if (count > used + 1) {
+        return result_refused("what is '%s' for?", words[2]);
+    }
+    if (count == used && index < 0) {
+        return result_refused("no pane of curves is shown");
+    }
+    if (count > used) {
+        action_result read = read_pane(st, words[used], &index);
+        if (!result_ok(&read)) {
+            return read;
+        }
+    }
+
+    // that pane, or all of them
+    for (int i = 0; i < PANES; i++) {
+        if ((i == index || index < 0) && st->panes.pane[i].count > 0) {
+            action_result applied = apply(st, i, words, used);
+            if (!result_ok(&applied)) {
+                return applied;
+            }
+        }
+    }
+    return tell_axis(st, index < 0 ? 0 : index);
+}
+
+// --- panes ------------------------------------------------------------------------------------
+
+action_result act_focus(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    int focused = panes_focused(&st->panes);
+    if (focused < 0) {
+        return result_refused("no pane of curves is shown, 1 to 9 show them");
+    }
+    st->panes.focus = (focused + 1) % PANES;
+    st->panes.focus = panes_focused(&st->panes);
+    return result_done();
+}
+
+action_result act_alone(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    st->panes.alone = !st->panes.alone;
+    return result_done();
+}

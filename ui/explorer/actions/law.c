@@ -1,0 +1,147 @@
+// Actions on the control law: which one is on, and the mode it is held in.
+#include <string.h>
+
+#include "src/rig/controller.h"
+
+#include "ui/explorer/actions/actions.h"
+
+static bool is_release(const char *word)
+{
+    return strcmp(word, "off") == 0 || strcmp(word, "none") == 0;
+}
+
+// Whether the script and the inputs hold a mode that another law does not have.
+static bool lock_prevents(const session *s, const char *name)
+{
+    scenario wanted = s->effective;
+    if (parameter_set_text(&wanted.parameters, PARAMETER_INDEX(control.law), name, NULL) !=
+        STATUS_OK) {
+        return false;
+    }
+    const controller *law = controller_of(wanted.parameters.control.law);
+    return scenario_check_locks(&wanted, law, NULL) != STATUS_OK;
+}
+
+// Puts another law on; what helps is said where a lock on a mode stands in its way.
+static action_result change_law(explorer_state *st, const char *name)
+{
+    action_result changed = act_change(st, PARAMETER_INDEX(control.law), name);
+    if (result_ok(&changed) || !lock_prevents(&st->session, name)) {
+        return changed;
+    }
+    return result_refused("%.200s; undo the lock first", changed.text);
+}
+
+action_result act_law(explorer_state *st, const char *argument)
+{
+    char present[LINE_TEXT];
+    const parameters *p = &st->session.effective.parameters;
+    const int law = PARAMETER_INDEX(control.law);
+    parameter_format(p, law, present, sizeof present);
+    if (state_has_law(st)) {
+        snprintf(st->last_law, sizeof st->last_law, "%s", present);
+    }
+    if (argument[0] == '\0') {
+        const char *again = st->last_law[0] ? st->last_law : "hybrid";
+        return change_law(st, state_has_law(st) ? "none" : again);
+    }
+    return change_law(st, is_release(argument) ? "none" : argument);
+}
+
+// --- the lock ---------------------------------------------------------------------------------
+
+// Index of the mode the law is held in at the cursor, -1 if in none.
+static int locked_mode(explorer_state *st)
+{
+    const law_modes *m = state_law_modes(st);
+    parameters p = state_parameters(st);
+    for (int i = 0; i < m->count; i++) {
+        if (strcmp(m->names[i], p.control.lock) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+// The value of control.lock that an argument asks for: a mode, "none", or the next one of a round
+// through all modes and none.
+static const char *wanted_lock(explorer_state *st, const char *argument)
+{
+    const law_modes *m = state_law_modes(st);
+    int step = strcmp(argument, "next") == 0 ? 1 : strcmp(argument, "previous") == 0 ? -1 : 0;
+    if (step == 0) {
+        return is_release(argument) ? "none" : argument;
+    }
+    int round = m->count + 1, next = (locked_mode(st) + 1 + step + round) % round;
+    return next == 0 ? "none" : m->names[next - 1];
+}
+
+// Whether the last change is a lock at this very instant: going on through the modes replaces it.
+static bool locked_just_now(const session *s)
+{
+    if (s->input_count == 0) {
+        return false;
+    }
+    const session_input *last = &s->inputs[s->input_count - 1];
+    return last->kind == SESSION_INPUT_TIMED && last->time == s->now &&
+           last->parameter == PARAMETER_INDEX(control.lock);
+}
+
+static action_result tell_modes(explorer_state *st)
+{
+    const law_modes *m = state_law_modes(st);
+    char text[LINE_TEXT] = "";
+    for (int i = 0; i < m->count; i++) {
+        size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "%s%s", i > 0 ? ", " : "", m->names[i]);
+    }
+    return result_news("lock takes off, next or a mode of this law: %s", text);
+}
+
+static action_result lock(explorer_state *st, const char *wanted)
+{
+    session *s = &st->session;
+    fault f = {0};
+
+    // going on through the modes at one instant replaces the lock there
+    const bool replaces = locked_just_now(s);
+    status undone = replaces ? session_undo(s, &f) : STATUS_OK;
+    if (undone != STATUS_OK) {
+        return result_of(undone, &f);
+    }
+
+    // a lock that is refused leaves the one before in effect
+    action_result changed = result_done();
+    parameters p = state_parameters(st);
+    if (strcmp(p.control.lock, wanted) != 0) {
+        changed = act_change(st, PARAMETER_INDEX(control.lock), wanted);
+    }
+    if (!result_ok(&changed) && replaces) {
+        session_redo(s, &f);
+    }
+    if (!result_ok(&changed) || changed.warning) {
+        return changed;
+    }
+    if (strcmp(wanted, "none") == 0) {
+        return result_news("the law chooses its mode itself from %.4f s on", s->now);
+    }
+    return result_news("held in '%s' from %.4f s on", wanted, s->now);
+}
+
+action_result act_lock(explorer_state *st, const char *argument)
+{
+    if (!state_has_law(st)) {
+        return result_refused("no law is on that could be held in a mode (:law NAME)");
+    }
+    if (!state_law_modes(st)->lockable) {
+        return result_refused("this law cannot be held in a mode");
+    }
+    if (argument[0] == '\0') {
+        return tell_modes(st);
+    }
+
+    // a copy: the modes are read anew when the run changes
+    char wanted[LINE_TEXT];
+    snprintf(wanted, sizeof wanted, "%s", wanted_lock(st, argument));
+    return lock(st, wanted);
+}

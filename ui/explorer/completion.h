@@ -1,0 +1,8 @@
+// Completion of what is typed at the prompt.
+#pragma once
+
+#include "ui/explorer/actions/result.h"
+#include "ui/explorer/state/state.h"
+
+// Completes the prompt's last word as far as its candidates agree; lists them if they are several.
+action_result complete_prompt(explorer_state *st);

@@ -1,0 +1,68 @@
+#include "ui/explorer/explorer.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "ui/explorer/panels/compose.h"
+
+status explorer_init(explorer *ex, scenario *s, double patience, fault *f)
+{
+    assert(ex != NULL && s != NULL);
+    memset(ex, 0, sizeof *ex);
+    status code = state_init(&ex->state, s, patience, f);
+    if (code == STATUS_OK) {
+        action_result news = act_tell_failed_run(&ex->state);
+        result_show(&news, &ex->state.message);
+    }
+    return code;
+}
+
+void explorer_finish(explorer *ex)
+{
+    if (ex != NULL) {
+        state_finish(&ex->state);
+        memset(ex, 0, sizeof *ex);
+    }
+}
+
+bool explorer_follow(explorer *ex)
+{
+    assert(ex != NULL);
+    session *s = &ex->state.session;
+    if (!session_follow(s)) {
+        return false;
+    }
+    if (s->computing == NULL) {
+        action_result news = act_tell_failed_run(&ex->state);
+        result_show(&news, &ex->state.message);
+    }
+    return true;
+}
+
+void explorer_advance(explorer *ex, double seconds)
+{
+    assert(ex != NULL);
+    action_result news = act_advance(&ex->state, seconds);
+    result_show(&news, &ex->state.message);
+}
+
+bool explorer_is_busy(const explorer *ex)
+{
+    assert(ex != NULL);
+    return ex->state.playback.playing || ex->state.session.computing != NULL;
+}
+
+void explorer_draw(explorer *ex, screen *s)
+{
+    assert(ex != NULL && s != NULL);
+    explorer_state *st = &ex->state;
+    const screen_size size = {s->width, s->height};
+    st->size = size;
+
+    // the state first, so that drawing only reads it; what the picture decided comes back
+    if (compose_fits(size)) {
+        state_update(st);
+    }
+    compose_screen(st, &ex->layout, s);
+    layout_settle(&ex->layout, st);
+}

@@ -1,0 +1,252 @@
+#include "ui/explorer/panels/bars.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "ui/explorer/panels/layout.h"
+
+// Cells of a UTF-8 text.
+static int cells_of(const char *text)
+{
+    int count = 0;
+    while (*text != '\0') {
+        glyph_decode(&text);
+        count++;
+    }
+    return count;
+}
+
+void draw_title(const explorer_state *st, screen *s)
+{
+    const session *e = &st->session;
+    char changes[32] = "";
+    if (e->input_count > 0) {
+        snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
+                 e->input_count == 1 ? "" : "s");
+    }
+    // the name and the changes go before the title
+    const char *title = e->base.title ? e->base.title : "";
+    int room = s->width - 2 - (changes[0] ? cells_of(changes) + 2 : 0), x = 1;
+    if (12 + cells_of(e->base.name) <= room) {
+        x += screen_text(s, x, 0, room, INK_TITLE, "impactlab  ");
+    }
+    x += screen_text(s, x, 0, room - x + 1, INK_TITLE, e->base.name);
+    if (x + 2 + cells_of(title) <= room + 1) {
+        x += 2 + screen_text(s, x + 2, 0, room - x, INK_TEXT, title);
+    }
+    screen_text(s, x + 2, 0, s->width - x - 3, INK_EVENT, changes);
+}
+
+// --- status -----------------------------------------------------------------------------------
+
+typedef struct status_item {
+    char text[96];
+    int rank; // the lower ones stay where not all fit
+} status_item;
+
+// Fills the items from left to right; returns how many.
+static int write_status(const explorer_state *st, status_item items[8])
+{
+    const session *e = &st->session;
+    const sample *row = session_sample(e);
+    const parameters *p = &e->effective.parameters;
+    bool failed = e->run.summary.status != STATUS_OK, old = e->now < e->seen;
+    bool stopped = e->run.summary.status == STATUS_STOPPED;
+    const char *state = st->playback.playing                 ? (old ? "replaying" : "playing")
+                        : failed && e->now >= session_end(e) ? (stopped ? "stopped" : "diverged")
+                                                             : "paused";
+    char model[64], law[64] = "", speed[32] = "";
+    int n = 0;
+    parameter_format(p, PARAMETER_INDEX(arm.model), model, sizeof model);
+    if (p->control.law != LAW_NONE) {
+        char name[40];
+        parameter_format(p, PARAMETER_INDEX(control.law), name, sizeof name);
+        snprintf(law, sizeof law, ", %s", name);
+    }
+    if (st->playback.playing) {
+        snprintf(speed, sizeof speed, " (%.3g)", st->playback.measured);
+    }
+#define ITEM(importance, ...)                                                                      \
+    do {                                                                                           \
+        items[n].rank = importance;                                                                \
+        snprintf(items[n].text, sizeof items[n].text, __VA_ARGS__);                                \
+        n++;                                                                                       \
+    } while (0)
+    ITEM(0, "%s %-9s", st->playback.playing ? "\u25b6" : "\u2016", state);
+    if (e->computing != NULL) {
+        ITEM(2, "computing %.1f of %g s (Esc stops)", session_end(e), p->run.duration);
+    }
+    ITEM(1, "t %.5f s", e->now);
+    ITEM(5, "row %zu/%zu", e->row + 1, e->run.trace.row_count);
+    ITEM(3, "\u00d7%g%s", st->playback.speed, speed);
+    ITEM(4, "%.40s%.50s", model, law);
+    ITEM(2, "%s%s", row->contact != 0 ? "in contact" : "free flight",
+         row->sticking != 0 ? ", hub sticks" : "");
+    if (st->mark.set) {
+        ITEM(3, "from mark %.5g s", e->now - st->mark.time);
+    }
+#undef ITEM
+    return n;
+}
+
+void draw_status(const explorer_state *st, screen *s, int y)
+{
+    status_item items[8];
+    int count = write_status(st, items), x = 1;
+    bool shown[8] = {false};
+    // the most important ones first, as long as there is room
+    for (int rank = 0, used = 1; rank < 8; rank++) {
+        for (int i = 0; i < count; i++) {
+            int length = cells_of(items[i].text);
+            if (items[i].rank == rank && (rank < 2 || used + length <= s->width)) {
+                shown[i] = true;
+                used += length + 2;
+            }
+        }
+    }
+    for (int i = 0; i < s->width; i++) {
+        screen_put(s, i, y, ' ', INK_TEXT);
+    }
+    for (int i = 0; i < count; i++) {
+        if (shown[i]) {
+            x += 2 + screen_text(s, x, y, s->width - x, INK_TEXT, items[i].text);
+        }
+    }
+    bool failed = st->session.run.summary.status != STATUS_OK;
+    screen_tint(s, 0, y, s->width, 1, failed && !st->playback.playing ? INK_WARNING : INK_SELECTED);
+}
+
+// --- the bottom -------------------------------------------------------------------------------
+
+static void blank_row(screen *s, int y)
+{
+    for (int x = 0; x < s->width; x++) {
+        screen_put(s, x, y, ' ', INK_TEXT);
+    }
+}
+
+// The end of the prompt if it is wider than the screen, and what was said about it.
+static int draw_prompt(const explorer_state *st, screen *s)
+{
+    int y = s->height - 1, room = s->width - 2, over = cells_of(st->prompt.text) - (room - 1);
+    const char *text = st->prompt.text;
+    int rows = 1;
+    for (int i = 0; i < over; i++) {
+        glyph_decode(&text);
+    }
+    blank_row(s, y);
+    int x = screen_print(s, 0, y, room, INK_TITLE, ":%s", text);
+    screen_put(s, x, y, ' ', INK_SELECTED);
+    if (st->message.text[0] != '\0' && x + 4 + cells_of(st->message.text) <= s->width) {
+        screen_text(s, x + 3, y, s->width - x - 3, INK_DIM, st->message.text);
+    } else if (st->message.text[0] != '\0') {
+        // above the prompt
+        text_line lines[3];
+        int count = text_wrap(st->message.text, s->width - 2, lines, 3, NULL);
+        for (int i = 0; i < count; i++) {
+            blank_row(s, y - count + i);
+            screen_print(s, 1, y - count + i, s->width - 2, INK_DIM, "%.*s", lines[i].bytes,
+                         lines[i].start);
+        }
+        rows += count;
+    }
+    return rows;
+}
+
+// What the most wanted keys do, as many as there is room for; the last two always.
+static void draw_hints(const explorer_state *st, screen *s)
+{
+    static const struct {
+        const char *command, *does;
+        int rank;
+    } hints[] = {{"play", "run/pause", 0},  {"step", "step", 3},         {"event", "event", 4},
+                 {"speed", "speed", 7},     {"edit", "change value", 5}, {"branch", "branch", 6},
+                 {"compare", "compare", 8}, {"open", "open", 9},         {"save", "save", 10},
+                 {"help", "help", 1},       {"quit", "quit", 2}};
+    enum { HINTS = sizeof hints / sizeof hints[0] };
+    char texts[HINTS][64];
+    bool shown[HINTS] = {false};
+    int x = 1;
+    for (int i = 0; i < HINTS; i++) {
+        char keys[64];
+        key_names_of(&st->keys, hints[i].command, keys, sizeof keys);
+        // as long as the key is the explorer's own there is a shorter way to say it
+        const char *brief = strncmp(keys, "Right l Left", 12) == 0 ? "\u25c0 \u25b6"
+                            : strcmp(keys, "n N") == 0             ? "n/N"
+                            : strncmp(keys, "+ = -", 5) == 0       ? "+/-"
+                                                                   : NULL;
+        keys[strcspn(keys, " ")] = '\0';
+        snprintf(texts[i], sizeof texts[i], "%.20s %s", brief ? brief : keys, hints[i].does);
+        if (keys[0] == '\0') {
+            texts[i][0] = '\0';
+        }
+    }
+    for (int rank = 0, used = 1; rank < HINTS; rank++) {
+        for (int i = 0; i < HINTS; i++) {
+            int length = cells_of(texts[i]);
+            if (hints[i].rank == rank && length > 0 && used + length < s->width) {
+                shown[i] = true;
+                used += length + 2;
+            }
+        }
+    }
+    for (int i = 0; i < HINTS; i++) {
+        if (shown[i]) {
+            x += 2 + screen_text(s, x, s->height - 1, s->width - x, INK_DIM, texts[i]);
+        }
+    }
+}
+
+int draw_bottom(const explorer_state *st, screen *s)
+{
+    enum { MOST = 3 };
+    if (st->prompt.open) {
+        return draw_prompt(st, s);
+    }
+    if (st->message.text[0] == '\0') {
+        blank_row(s, s->height - 1);
+        draw_hints(st, s);
+        return 1;
+    }
+    // a long message covers some of the panels until the next key
+    text_line lines[MOST];
+    int count = text_wrap(st->message.text, s->width - 2, lines, MOST, NULL);
+    count = count < 1 ? 1 : count;
+    for (int i = 0; i < count; i++) {
+        blank_row(s, s->height - count + i);
+        screen_print(s, 1, s->height - count + i, s->width - 2,
+                     st->message.warning ? INK_WARNING : INK_TEXT, "%.*s", lines[i].bytes,
+                     lines[i].start);
+    }
+    return count;
+}
+
+// --- too small --------------------------------------------------------------------------------
+
+void draw_too_small(screen *s)
+{
+    // the longest one that fits without a broken word
+    char texts[6][96];
+    text_line lines[24];
+    int w = s->width, h = s->height;
+    snprintf(texts[0], sizeof texts[0],
+             "The lab needs %d x %d characters, here are %d x %d. q quits.", LEAST_WIDTH,
+             LEAST_HEIGHT, w, h);
+    snprintf(texts[1], sizeof texts[1], "%d x %d: the lab needs %d x %d (q quits)", w, h,
+             LEAST_WIDTH, LEAST_HEIGHT);
+    snprintf(texts[2], sizeof texts[2], "%dx%d < %dx%d", w, h, LEAST_WIDTH, LEAST_HEIGHT);
+    snprintf(texts[3], sizeof texts[3], "< %dx%d", LEAST_WIDTH, LEAST_HEIGHT);
+    snprintf(texts[4], sizeof texts[4], "small");
+    snprintf(texts[5], sizeof texts[5], "<");
+    for (int i = 0; i < 6; i++) {
+        bool split;
+        int count = text_wrap(texts[i], w, lines, h < 24 ? h : 24, &split);
+        if (split && i < 5) {
+            continue;
+        }
+        for (int k = 0; k < count; k++) {
+            screen_print(s, 0, k, w, INK_WARNING, "%.*s", lines[k].bytes, lines[k].start);
+        }
+        return;
+    }
+}

@@ -1,0 +1,144 @@
+// The panel of the control law: its modes and the lock on one, and what it read, wanted and sent at
+// its last sample.
+#include "ui/explorer/panels/panel.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NUMBERS_AT = 17 };      // column of the numbers [cells]
+enum { TALL = 10, BRIEF = 7 }; // rows of the panel [cells]
+
+// The modes in a line, the present one in brackets; where not all fit, those up to the present one.
+static void draw_modes(const explorer_state *st, screen *s, area a, double present)
+{
+    const law_modes *m = &st->modes;
+    int first = 0, width = -1, last = present >= 0 && present < m->count ? (int)present : 0;
+    for (int i = 0; i < m->count; i++) {
+        width += (int)strlen(m->names[i]) + 1 + 2 * (i == last);
+    }
+    for (; width > a.width && first < last; first++) {
+        width -= (int)strlen(m->names[first]) + 1;
+    }
+    for (int i = first, x = a.x; i < m->count; i++) {
+        bool now = i == present;
+        int length = (int)strlen(m->names[i]) + 2 * now;
+        if (x + length > a.x + a.width && !now) {
+            break;
+        }
+        screen_print(s, x, a.y, a.x + a.width - x, now ? INK_EVENT : INK_DIM, now ? "[%s]" : "%s",
+                     m->names[i]);
+        x += length + 1;
+    }
+}
+
+static void draw_lock(const explorer_state *st, screen *s, area a)
+{
+    char next[64], off[64];
+    parameters p = state_parameters(st);
+    key_names_of(&st->keys, "lock next", next, sizeof next);
+    key_names_of(&st->keys, "lock off", off, sizeof off);
+    next[strcspn(next, " ")] = off[strcspn(off, " ")] = '\0';
+    if (!st->modes.lockable) {
+        screen_text(s, a.x, a.y, a.width, INK_DIM, "takes no lock on a mode");
+    } else if (p.control.lock[0] == '\0' || strcmp(p.control.lock, "none") == 0) {
+        screen_print(s, a.x, a.y, a.width, INK_DIM,
+                     next[0] ? "not locked (%s locks)" : "not locked", next);
+    } else {
+        screen_print(s, a.x, a.y, a.width, INK_WARNING,
+                     off[0] ? "locked: %s (%s frees)" : "locked: %s", p.control.lock, off);
+    }
+}
+
+static void draw_quantity(screen *s, area a, const char *name, double value, const char *unit)
+{
+    char number[32];
+    draw_number(number, sizeof number, value);
+    screen_text(s, a.x, a.y, a.width, INK_TEXT, name);
+    screen_print(s, a.x + NUMBERS_AT, a.y, a.width - NUMBERS_AT, INK_TITLE, "%7s", number);
+    screen_text(s, a.x + NUMBERS_AT + 8, a.y, a.width - NUMBERS_AT - 8, INK_DIM,
+                isfinite(value) ? unit : "");
+}
+
+// The command, and whether the amplifier gets less than that.
+static void draw_command(screen *s, area a, const parameters *p, double command)
+{
+    draw_quantity(s, a, "command", command, "V");
+    if (fabs(command) >= p->motor.voltage_limit) {
+        screen_text(s, a.x + 8, a.y, 9, INK_WARNING, "saturated");
+        screen_print(s, a.x + NUMBERS_AT + 10, a.y, a.width - NUMBERS_AT - 10, INK_WARNING, ">%g",
+                     p->motor.voltage_limit);
+    }
+}
+
+// A number in a few cells, "-" for none.
+static void brief(char *text, size_t size, int decimals, double value)
+{
+    if (!isfinite(value)) {
+        snprintf(text, size, "-");
+    } else {
+        snprintf(text, size, fabs(value) < 10 ? "%.*f" : "%.*g", decimals, value);
+    }
+}
+
+// Two lines for what the tall panel has a table for.
+static void draw_brief(screen *s, area a, const sample *row, const parameters *p)
+{
+    char angle[24], velocity[24], read[24], calculated[24];
+    brief(angle, sizeof angle, 3, row->desired_angle);
+    brief(velocity, sizeof velocity, 2, row->desired_velocity);
+    brief(read, sizeof read, 2, row->force_reading);
+    brief(calculated, sizeof calculated, 2, row->calculated_force);
+    if (isfinite(row->desired_angle)) {
+        screen_print(s, a.x, a.y, a.width, INK_TEXT, "wants %s rad, %s rad/s", angle, velocity);
+    } else {
+        screen_text(s, a.x, a.y, a.width, INK_DIM, "wants no angle");
+    }
+    screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, "force %s, calc. %s of %g N", read, calculated,
+                 p->control.force);
+}
+
+// Tall enough for its table, or brief, or not at all; the predictors have the first call on rows.
+static int rows(const explorer_state *st, screen_size body)
+{
+    const panel *predictors = panel_of(PANEL_PREDICTORS);
+    int room = body.height;
+    if (panel_fits(predictors, body)) {
+        room -= predictors->rows(st, body);
+    }
+    return !state_has_law(st) ? 0 : room >= 30 ? TALL : room >= 13 ? BRIEF : 0;
+}
+
+static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    (void)lay;
+    const sample *row = session_sample(&st->session);
+    parameters p = state_parameters(st);
+    char title[128];
+    snprintf(title, sizeof title, "%s, %g Hz", control_law_table[p.control.law].word,
+             p.control.rate);
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+    area line = {a.x + 2, a.y + 1, a.width - 4, 1};
+    draw_modes(st, s, line, row->controller_mode);
+    line.y++;
+    draw_lock(st, s, line);
+    line.y++;
+    draw_command(s, line, &p, row->command);
+    line.y++;
+    if (a.height < TALL) {
+        draw_brief(s, line, row, &p);
+        return;
+    }
+    const struct {
+        const char *name, *unit;
+        double value;
+    } lines[] = {{"desired angle", "rad", row->desired_angle},
+                 {"desired velocity", "rad/s", row->desired_velocity},
+                 {"force reading", "N", row->force_reading},
+                 {"calculated force", "N", row->calculated_force},
+                 {"force commanded", "N", p.control.force}};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++, line.y++) {
+        draw_quantity(s, line, lines[i].name, lines[i].value, lines[i].unit);
+    }
+}
+
+const panel controller_panel = {.name = "controller", .rows = rows, .draw = draw};

@@ -1,0 +1,418 @@
+// The panes of curves over time.
+#include "ui/explorer/panels/panel.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/rig/controller.h"
+#include "ui/explorer/panels/plot_axes.h"
+
+// A pane's place, time window and range.
+typedef struct plot_frame {
+    canvas canvas;
+    double from, to; // [s]
+    value_range axis;
+    line_style style; // of the curve that is drawn
+    ink colour;
+} plot_frame;
+
+static double plot_x(const plot_frame *f, double time)
+{
+    return (time - f->from) / (f->to - f->from) * (2.0 * f->canvas.width - 1);
+}
+
+static double plot_y(const plot_frame *f, double value)
+{
+    return (f->axis.high - value) / (f->axis.high - f->axis.low) * (4.0 * f->canvas.height - 1);
+}
+
+static bool gap_in_line(line_style style, long across)
+{
+    return (style == LINE_DASHED && across % 8 >= 5) || (style == LINE_DOTTED && across % 4 >= 2) ||
+           (style == LINE_DASH_DOT && across % 8 == 4);
+}
+
+// Every row joined to the next one by a line.
+static void draw_rows(const plot_frame *f, const trace *t, int signal, double until)
+{
+    double x0 = (double)NAN, y0 = (double)NAN;
+    for (size_t r = trace_row_at(t, f->from); r < t->row_count; r++) {
+        double x = plot_x(f, t->rows[r].time), y = plot_y(f, signal_value(&t->rows[r], signal));
+        if (t->rows[r].time > until) {
+            break;
+        }
+        if (!gap_in_line(f->style, lround(x))) {
+            canvas_line(&f->canvas, x0, y0, x, y, f->colour);
+        }
+        x0 = x;
+        y0 = y;
+        if (t->rows[r].time > f->to) {
+            break;
+        }
+    }
+}
+
+// One column of dots.
+static void draw_column(const plot_frame *f, long column, double low, double high)
+{
+    bool drawn = high >= low && (high - low > 4 || !gap_in_line(f->style, column));
+    if (drawn) {
+        canvas_line(&f->canvas, (double)column, low, (double)column, high, f->colour);
+    }
+}
+
+// The smallest and the largest value of each column of dots, so that no spike is lost. Blocks that
+// lie within one column are taken from `pairs`.
+static void draw_columns(const plot_frame *f, const trace *t, int signal, double until,
+                         const double *pairs)
+{
+    double low = (double)INFINITY, high = (double)-INFINITY, last = (double)NAN;
+    long column = -1;
+    for (size_t r = trace_row_at(t, f->from); r < t->row_count && t->rows[r].time <= until;) {
+        size_t end = r + EXTREMES_BLOCK, take = 1;
+        long here = lround(plot_x(f, t->rows[r].time));
+        if (here != column) {
+            draw_column(f, column, low, high);
+            // from where the last one ended, so that curves hang together
+            column = here;
+            low = isfinite(last) ? last : (double)INFINITY;
+            high = isfinite(last) ? last : (double)-INFINITY;
+        }
+        bool whole = pairs != NULL && r % EXTREMES_BLOCK == 0 && end < t->row_count &&
+                     t->rows[end].time <= until && lround(plot_x(f, t->rows[end].time)) == column;
+        if (whole) {
+            const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
+            take = EXTREMES_BLOCK;
+            if (pair[1] >= pair[0]) {
+                low = fmin(low, plot_y(f, pair[1]));
+                high = fmax(high, plot_y(f, pair[0]));
+            }
+        }
+        last = plot_y(f, signal_value(&t->rows[r + take - 1], signal));
+        if (isfinite(last)) {
+            low = fmin(low, last);
+            high = fmax(high, last);
+        }
+        r += take;
+    }
+    draw_column(f, column, low, high);
+}
+
+// Draws one signal up to `until`: every row if they are few, else by columns.
+static void draw_signal(const plot_frame *f, const trace *t, int signal, double until,
+                        const double *pairs)
+{
+    double shown = (double)(trace_row_at(t, f->to) - trace_row_at(t, f->from));
+    until = fmin(until, f->to);
+    if (shown < 4.0 * f->canvas.width) {
+        draw_rows(f, t, signal, until);
+    } else {
+        draw_columns(f, t, signal, until, pairs);
+    }
+}
+
+static void draw_cursor(const plot_frame *f, screen *s, double time)
+{
+    int column = f->canvas.x + (int)(plot_x(f, time) / 2);
+    for (int y = f->canvas.y;
+         time >= f->from && time <= f->to && y < f->canvas.y + f->canvas.height; y++) {
+        if (s->cells[(long)y * s->width + column].glyph == ' ') {
+            screen_put(s, column, y, 0x2506, INK_CURSOR);
+        }
+    }
+}
+
+// How a pane's signals are drawn: as their table says, but no two alike.
+typedef struct pane_look {
+    ink colour[PANE_SIGNALS];
+    line_style style[PANE_SIGNALS];
+} pane_look;
+
+static pane_look look_of(const pane *p)
+{
+    enum { COLOURS = 8, STYLES = 4 };
+    static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT};
+    bool colour_taken[COLOURS] = {false}, style_taken[STYLES] = {false};
+    pane_look look;
+    for (int k = 0; k < p->count; k++) {
+        const signal_info *info = &signal_table[p->signals[k]];
+        int colour = info->colour, style = (int)info->style;
+        for (int i = 0; i < COLOURS && colour_taken[colour]; i++) {
+            colour = (info->colour + 1 + i) % COLOURS;
+        }
+        for (int i = 0; i < STYLES && style_taken[style]; i++) {
+            style = (int)plain_first[i];
+        }
+        colour_taken[colour] = style_taken[style] = true;
+        look.colour[k] = (ink)(INK_SERIES_0 + colour);
+        look.style[k] = (line_style)style;
+    }
+    return look;
+}
+
+// How a legend says what its curves are, most words first.
+typedef enum legend { LEGEND_NAMES, LEGEND_SYMBOLS, LEGEND_TIGHT, LEGEND_BARE } legend;
+
+// A curve's line in one character.
+static uint32_t line_glyph(line_style style)
+{
+    static const uint32_t glyphs[] = {0x2500, 0x254c, 0x2508, 0x2574};
+    return glyphs[style];
+}
+
+// What a legend says of a signal's value: a mode by its name where the law is one of ours, else a
+// number; short ones have up to three digits.
+static void format_value(const explorer_state *st, int signal, bool briefly, char *text,
+                         size_t size)
+{
+    const sample *row = session_sample(&st->session);
+    double value = signal_value(row, signal);
+    const controller *law = controller_of(st->session.effective.parameters.control.law);
+    bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
+    draw_number(text, size, value);
+    if (briefly && fabs(value) > 1e-12) {
+        for (int digits = 3, length = 9; digits > 1 && length > 6; digits--) {
+            length = snprintf(text, size, "%.*g", digits, value);
+        }
+    }
+    for (int i = 0; is_mode && law != NULL && law->modes != NULL && law->modes[i] != NULL; i++) {
+        if (value == i) {
+            snprintf(text, size, "%s", law->modes[i]);
+        }
+    }
+}
+
+// The unit of all signals of a pane, "" if they have several.
+static const char *unit_of(const pane *p)
+{
+    const char *unit = signal_table[p->signals[0]].unit;
+    for (int k = 1; k < p->count; k++) {
+        unit = strcmp(signal_table[p->signals[k]].unit, unit) == 0 ? unit : "";
+    }
+    return unit;
+}
+
+// Writes a legend and returns the cells it takes; values are padded so that it stands still.
+static int draw_legend(const explorer_state *st, screen *s, const pane *p, legend how, int x, int y,
+                       int room)
+{
+    int start = x, end = x + room;
+    const pane_look look = look_of(p);
+    for (int k = 0; k < p->count; k++) {
+        const signal_info *info = &signal_table[p->signals[k]];
+        char value[48], text[128];
+        format_value(st, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
+        if (unit_of(p)[0] == '\0' && info->unit[0] != '\0' && how < LEGEND_TIGHT) {
+            size_t used = strlen(value);
+            snprintf(value + used, sizeof value - used, " %s", info->unit);
+        }
+        int width = how == LEGEND_TIGHT ? 6 : how == LEGEND_BARE ? 0 : 8;
+        int length =
+            snprintf(text, sizeof text, "%s %-*s", how == LEGEND_NAMES ? info->name : info->ascii,
+                     width, how == LEGEND_BARE ? "" : value);
+        if (room > 0) {
+            screen_put(s, x, y, x < end ? line_glyph(look.style[k]) : ' ', look.colour[k]);
+            screen_text(s, x + 2, y, end - x - 2, look.colour[k], text);
+        }
+        x += 2 + length + 1;
+    }
+    return x - start - 1;
+}
+
+// The pane's number, its unit, its signals with their values as far as there is room, and what its
+// axis does.
+static void draw_pane_title(const explorer_state *st, screen *s, int index, area a)
+{
+    const pane *p = &st->panes.pane[index];
+    static const char *const axes[] = {"", "grows", "fixed"};
+    bool focused = index == panes_focused(&st->panes);
+    int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
+    screen_print(s, a.x, a.y, 2, focused ? INK_TITLE : INK_DIM, "%s%d", focused ? "\u25b8" : " ",
+                 (index + 1) % 10);
+    screen_print(s, a.x + 2, a.y, LABEL_WIDTH - 2, INK_DIM, "%*s", LABEL_WIDTH - 2, unit_of(p));
+    if (p->scaling != AXIS_AUTO && room > 30) {
+        room -= 6;
+        screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);
+    }
+    legend how = LEGEND_NAMES;
+    while (how < LEGEND_BARE && draw_legend(st, s, p, how, x, a.y, 0) > room) {
+        how++;
+    }
+    draw_legend(st, s, p, how, x, a.y, room);
+}
+
+// The curves of one run in a pane: 0 is the present one, as far as it was seen.
+static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int run)
+{
+    const trace *t = &state_run(st, run)->trace;
+    const pane_look look = look_of(p);
+    for (int k = 0; k < p->count; k++) {
+        const double *pairs =
+            extremes_pairs(&st->extremes[run], state_run_id(st), t, p->signals[k]);
+        f.style = look.style[k];
+        f.colour = run == 0 ? look.colour[k] : INK_OTHER;
+        draw_signal(&f, t, p->signals[k], run == 0 ? st->session.seen : f.to, pairs);
+    }
+}
+
+static void draw_pane(const explorer_state *st, layout *lay, screen *s, int index, area a)
+{
+    plot_frame f = {
+        .canvas = {s, a.x + LABEL_WIDTH + 1, a.y + 1, a.width - LABEL_WIDTH - 1, a.height - 1}};
+    draw_pane_title(st, s, index, a);
+    state_window(st, &f.from, &f.to);
+    if (!state_pane_axis(st, index, &f.axis)) {
+        screen_text(s, f.canvas.x, a.y + 1, f.canvas.width, INK_DIM, "this run has no such values");
+        return;
+    }
+
+    area labels = {a.x, a.y + 1, LABEL_WIDTH + 1, a.height - 1};
+    lay->axes[index] = f.axis;
+    draw_value_axis(s, labels, f.axis);
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LABELS, index, labels});
+
+    // the present run over those kept beside it, the cursors where nothing is drawn
+    for (int run = state_run_count(st); run-- > 0;) {
+        draw_run(st, f, &st->panes.pane[index], run);
+    }
+    if (st->mark.set) {
+        draw_cursor(&f, s, st->mark.time);
+    }
+    draw_cursor(&f, s, st->session.now);
+}
+
+static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    enum { LEAST_PANE = 3, AXIS = 2 };
+    int shown = 0;
+    for (int i = 0; i < PANES; i++) {
+        shown += st->panes.pane[i].shown;
+    }
+    int most = st->panes.alone ? 1 : (a.height - AXIS) / LEAST_PANE;
+    if (shown < 1 || most < 1 || a.width < LABEL_WIDTH + 10) {
+        screen_text(s, a.x, a.y, a.width, INK_DIM, "1 to 9 show curves");
+        return;
+    }
+
+    lay->plot = (area){a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1, a.height};
+    area plot = lay->plot;
+    plot.height -= AXIS;
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_BODY, 0, plot});
+
+    // where not all have room, those from the focused one on, so that each can be reached
+    int drawn = shown > most ? most : shown, top = a.y, left = drawn;
+    int first = drawn < shown ? panes_focused(&st->panes) : 0;
+    for (int i = 0; i < PANES && left > 0; i++) {
+        int index = (first + i) % PANES;
+        if (st->panes.pane[index].shown) {
+            int height = (a.y + a.height - AXIS - top + left - 1) / left;
+            draw_pane(st, lay, s, index, (area){a.x, top, a.width, height});
+            top += height;
+            left--;
+        }
+    }
+    const area below = {a.x, a.y + a.height - AXIS, a.width, AXIS};
+    const area axis = draw_time_axis(st, s, below);
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_TIME_AXIS, 0, axis});
+}
+
+// --- the mouse --------------------------------------------------------------------------------
+
+// The instant at a column of the plot, kept within what is visible [s].
+static double time_at(const explorer_state *st, area plot, int x)
+{
+    double from, to;
+    state_window(st, &from, &to);
+    double share = (x - plot.x + 0.5) / (plot.width > 0 ? plot.width : 1);
+    return from + (to - from) * fmax(0, fmin(1, share));
+}
+
+// A turn of the wheel over the plot or the time axis zooms there or pans.
+static void turn_wheel(explorer_state *st, const panel_gesture *g, bool pans)
+{
+    double from, to;
+    int direction = pointer_wheel(g->event);
+    state_window(st, &from, &to);
+    if (pans) {
+        act_pan_by(st, 0.1 * direction * (to - from));
+    } else {
+        act_zoom_at(st, direction < 0 ? 0.8 : 1.25, time_at(st, g->hit.area, g->event.x));
+    }
+}
+
+// The cursor goes where the mouse is.
+static bool point_at_plot(explorer_state *st, const panel_gesture *g)
+{
+    switch (g->event.kind) {
+    case POINTER_PRESS:
+    case POINTER_DRAG:
+        act_scrub(st, time_at(st, g->hit.area, g->event.x));
+        return true;
+    case POINTER_RELEASE:
+        return false;
+    default:
+        turn_wheel(st, g, g->event.shift);
+        return true;
+    }
+}
+
+// The axis is dragged; a click without a drag moves the cursor.
+static bool point_at_time_axis(explorer_state *st, const panel_gesture *g)
+{
+    const area a = g->hit.area;
+    double from, to;
+    switch (g->event.kind) {
+    case POINTER_PRESS:
+        return true;
+    case POINTER_DRAG:
+        state_window(st, &from, &to);
+        act_pan_by(st, a.width > 0 ? -g->across * (to - from) / a.width : 0);
+        return true;
+    case POINTER_RELEASE:
+        if (!g->dragged) {
+            act_scrub(st, time_at(st, a, g->event.x));
+        }
+        return true;
+    default:
+        turn_wheel(st, g, !g->event.control);
+        return true;
+    }
+}
+
+// A click puts the pane in focus, a drag moves its axis, the wheel zooms it.
+static bool point_at_labels(explorer_state *st, const panel_gesture *g)
+{
+    const hit_area *h = &g->hit;
+    const int rows = h->area.height > 0 ? h->area.height : 1;
+    switch (g->event.kind) {
+    case POINTER_PRESS:
+        st->panes.focus = h->index;
+        return true;
+    case POINTER_DRAG:
+        if (g->up != 0) {
+            act_shift_axis(st, h->index, -(double)g->up / rows);
+        }
+        return true;
+    case POINTER_RELEASE:
+        return false;
+    default:
+        act_scale_axis(st, h->index, pointer_wheel(g->event) < 0 ? 0.8 : 1.25,
+                       (g->event.y - h->area.y + 0.5) / rows);
+        return true;
+    }
+}
+
+static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+{
+    *result = result_done();
+    switch (g->hit.part) {
+    case PART_BODY:
+        return point_at_plot(st, g);
+    case PART_TIME_AXIS:
+        return point_at_time_axis(st, g);
+    default:
+        return point_at_labels(st, g);
+    }
+}
+
+const panel curves_panel = {.name = "curves", .draw = draw, .point = point};

@@ -1,0 +1,104 @@
+// The panel of events and of the controller's changes of mode.
+#include "ui/explorer/panels/panel.h"
+
+#include <string.h>
+
+static void draw_change(const explorer_state *st, screen *s, area a, const event *v)
+{
+    char value[128], text[256];
+    const action *c = &st->session.effective.actions[v->index];
+    const char *path = parameter_table[c->parameter].path;
+    action_format_value(c, value, sizeof value);
+    int length = snprintf(text, sizeof text, "%s = %s", path, value);
+    if (length > a.width) {
+        // the parameter's own name, without its group
+        snprintf(text, sizeof text, "%s %s", strchr(path, '.') + 1, value);
+    }
+    screen_text(s, a.x, a.y, a.width, INK_EVENT, text);
+}
+
+static void draw_entry(const explorer_state *st, screen *s, area a, const log_entry *entry)
+{
+    const trace *t = &st->session.run.trace;
+    char name[MODE_NAME_SIZE];
+    area detail = {a.x + 20, a.y, a.width - 20, 1};
+    if (entry->event < 0) {
+        law_mode_name(&st->modes, entry->mode, name, sizeof name);
+        screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  mode", entry->time);
+        screen_text(s, a.x + 18, a.y, a.width - 18, INK_EVENT, name);
+        return;
+    }
+    const event *v = &t->events[entry->event];
+    screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  %s", v->time, event_name(v->kind));
+    if (v->kind == EVENT_IMPACT || v->kind == EVENT_PUSH) {
+        screen_print(s, detail.x, a.y, detail.width, INK_EVENT, "%.3g N s", v->impulse);
+    } else if (v->kind == EVENT_CHANGE && v->index >= 0) {
+        draw_change(st, s, detail, v);
+    }
+}
+
+static int rows(const explorer_state *st, screen_size body)
+{
+    (void)st;
+    return body.height / 4;
+}
+
+static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    const session *e = &st->session;
+    const run_log *log = &st->log;
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "events (n, N)");
+
+    // what has been seen, and the last of it that is not after the cursor
+    size_t seen = 0;
+    int current = 0, height = a.height - 2;
+    while (seen < log->count && log->entries[seen].time <= e->seen) {
+        current = log->entries[seen].time <= e->now ? (int)seen : current;
+        seen++;
+    }
+
+    // that one in the middle, or the last ones; scrolling counts from there
+    int still = draw_first_line(current, (int)seen, height), last = (int)seen - height;
+    int first = still + st->scroll[PANEL_LOG];
+    first = first > last ? last : first;
+    first = first < 0 ? 0 : first;
+    lay->scroll[PANEL_LOG] = first - still;
+    const area lines = {a.x + 1, a.y + 1, a.width - 2, height};
+    layout_add_hit(lay, (hit_area){PANEL_LOG, PART_LINES, first, lines});
+    for (int i = first; i < (int)seen && i < first + height; i++) {
+        int y = lines.y + i - first;
+        draw_entry(st, s, (area){a.x + 2, y, a.width - 4, 1}, &log->entries[i]);
+        if (log->entries[i].time == e->now) {
+            screen_tint(s, lines.x, y, lines.width, 1, INK_SELECTED);
+        }
+    }
+}
+
+// A click goes to the instant of a line, the wheel scrolls.
+static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+{
+    const run_log *log = state_run_log(st);
+    size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
+    *result = result_done();
+    switch (g->event.kind) {
+    case POINTER_PRESS:
+        if (index < log->count && log->entries[index].time <= st->session.seen) {
+            act_scrub(st, log->entries[index].time);
+            st->scroll[PANEL_LOG] = 0;
+        }
+        return true;
+    case POINTER_WHEEL_UP:
+    case POINTER_WHEEL_DOWN:
+        st->scroll[PANEL_LOG] += WHEEL_LINES * pointer_wheel(g->event);
+        return true;
+    default:
+        return false;
+    }
+}
+
+const panel log_panel = {.name = "log",
+                         .least_width = SIDE_WIDTH,
+                         .least_body = 26,
+                         .rows = rows,
+                         .draw = draw,
+                         .point = point};

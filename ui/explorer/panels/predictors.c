@@ -1,0 +1,142 @@
+// The panel of predictors: what each says would come of a touch now, and what then came.
+#include "ui/explorer/panels/panel.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/predict/linearised.h"
+
+enum { MOST_PREDICTED = 32 }; // links: more would take seconds
+enum { ROWS = 6 };            // of the panel [cells]
+
+// The linearised arm's answer for the state in a row; false where it has none.
+static bool ask_linearised(const parameters *p, const trace *t, size_t r, prediction *out)
+{
+    size_t state = r * (size_t)t->angle_count;
+    if (p->arm.model == ARM_PRINTED || p->arm.links > MOST_PREDICTED) {
+        return false;
+    }
+    arm a;
+    arm_init(&a, p);
+    motion *work = motion_create(&a, &p->method);
+    if (work == NULL) {
+        return false;
+    }
+    status code = predict_linearised(&a, work, t->angles + state, t->velocities + state, out);
+    motion_destroy(work);
+    return code == STATUS_OK;
+}
+
+// The same, asked once for each row: with more links than two it takes milliseconds, too long for
+// every frame of a run that plays.
+static bool linearised_at(const explorer_state *st, linearised_answer *known, const parameters *p,
+                          size_t r, prediction *out)
+{
+    const unsigned long run = state_run_id(st);
+    if (known->run != run || known->row != r) {
+        if (st->playback.playing && p->arm.links > 2) {
+            return false;
+        }
+        known->run = run;
+        known->row = r;
+        known->known = ask_linearised(p, &st->session.run.trace, r, &known->answer);
+    }
+    *out = known->answer;
+    return known->known;
+}
+
+// The row whose touch is asked about: the present one in free flight, else the last free one.
+static size_t free_row(const session *s)
+{
+    const trace *t = &s->run.trace;
+    size_t r = s->row;
+    if (t->rows[r].contact != 0) {
+        for (size_t i = 0; i < t->event_count && t->events[i].time <= s->now; i++) {
+            bool touches = t->events[i].kind == EVENT_IMPACT || t->events[i].kind == EVENT_CONTACT;
+            r = touches ? trace_row_at(t, t->events[i].time) : r;
+        }
+        while (r > 0 && t->rows[r].contact != 0) {
+            r--;
+        }
+    }
+    return r;
+}
+
+// The largest force of the contact that begins after a row, as far as it has been seen.
+static prediction what_came(const session *s, size_t r)
+{
+    const trace *t = &s->run.trace;
+    prediction came = {.holds = true, .force = 0, .delay = 0};
+    double start = t->rows[r].time;
+    for (r++; r < t->row_count && t->rows[r].contact != 0 && t->rows[r].time <= s->seen; r++) {
+        if (t->rows[r].force > came.force) {
+            came.force = t->rows[r].force;
+            came.delay = t->rows[r].time - start;
+        }
+    }
+    return came;
+}
+
+static void predictor_line(screen *s, area a, int line, const char *label, const prediction *p,
+                           bool known)
+{
+    int y = a.y + 1 + line;
+    if (y >= a.y + a.height - 1) {
+        return;
+    }
+    screen_text(s, a.x + 2, y, a.width - 4, INK_TEXT, label);
+    if (!known) {
+        screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, "-");
+    } else if (!p->holds) {
+        screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, "would not hold");
+    } else if (isfinite(p->delay) && a.width < 36) {
+        screen_print(s, a.x + 18, y, a.width - 20, INK_FORCE, "%.2f N, %.0f ms", p->force,
+                     1e3 * p->delay);
+    } else if (isfinite(p->delay)) {
+        screen_print(s, a.x + 18, y, a.width - 20, INK_FORCE, "%.3f N in %.0f ms", p->force,
+                     1e3 * p->delay);
+    } else {
+        screen_print(s, a.x + 18, y, a.width - 20, INK_FORCE, "%.3f N", p->force);
+    }
+}
+
+static int rows(const explorer_state *st, screen_size body)
+{
+    (void)st;
+    (void)body;
+    return ROWS;
+}
+
+static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    const session *e = &st->session;
+    size_t r = free_row(e);
+    const sample *row = &e->run.trace.rows[r];
+    bool touches = session_sample(e)->contact != 0;
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
+                 touches ? "when it touched: peak" : "if it touched now: peak");
+    parameters p = session_parameters_at(e, row->time);
+    three_body_state state = {{row->hub_angle, row->first_angle, row->last_angle},
+                              {row->hub_velocity, row->first_velocity, row->last_velocity}};
+    prediction out = {0};
+    fault ignored;
+    bool known = predict_energy(&p, &state, &out, &ignored) == STATUS_OK;
+    predictor_line(s, a, 0, "energy", &out, known);
+    known = predict_impact_dynamics(&p, &state, &out, &ignored) == STATUS_OK;
+    predictor_line(s, a, 1, "impact dynamics", &out, known);
+    known = linearised_at(st, &lay->linearised, &p, r, &out);
+    predictor_line(s, a, 2, "linearised", &out, known);
+    if (touches) {
+        out = what_came(e, r);
+        predictor_line(s, a, 3, "what came", &out, true);
+    } else {
+        const summary *m = &e->run.summary;
+        out = (prediction){
+            .holds = true, .force = m->first_pulse_peak_N, .delay = m->first_pulse_time_to_peak_s};
+        bool seen = e->seen >= m->first_contact_s + m->first_pulse_time_to_peak_s;
+        predictor_line(s, a, 3, "first pulse", &out, seen);
+    }
+}
+
+const panel predictors_panel = {
+    .name = "predictors", .least_width = SIDE_WIDTH, .least_body = 18, .rows = rows, .draw = draw};

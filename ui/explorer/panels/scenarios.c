@@ -1,0 +1,129 @@
+// The page that lists the scenarios, with a filter.
+#include "ui/explorer/panels/page.h"
+#include "ui/terminal/key_codes.h"
+
+// The first line to show. It moves only as far as it must, so that a second click meets what the
+// first one selected.
+static int first_line(const scenario_menu *menu, int height)
+{
+    int count = 0, selected = 0, first = menu->first;
+    for (int i = 0; i < menu->count; i++) {
+        selected = i == menu->selected ? count : selected;
+        count += scenario_menu_shows(menu, i);
+    }
+    first = first < 0                    ? draw_first_line(selected, count, height)
+            : selected < first           ? selected
+            : selected >= first + height ? selected - height + 1
+                                         : first;
+    first = first > count - height ? count - height : first;
+    return first < 0 ? 0 : first;
+}
+
+// A scenario's name, and as many whole words of its title as there is room for.
+static void draw_scenario(const scenario_menu *menu, int index, screen *s, area a)
+{
+    int used = screen_text(s, a.x, a.y, a.width, INK_TEXT, menu->names[index]);
+    int column = used + 2 > 30 ? used + 2 : 30, room = a.width - column;
+    text_line title;
+    if (room > 0 && text_wrap(scenario_menu_title(menu, index), room, &title, 1, NULL) > 0) {
+        screen_print(s, a.x + column, a.y, room, INK_DIM, "%.*s", title.bytes, title.start);
+    }
+    if (index == menu->selected) {
+        screen_tint(s, a.x - 1, a.y, a.width + 2, 1, INK_SELECTED);
+    }
+}
+
+static void draw(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    (void)body;
+    const scenario_menu *menu = &st->scenarios;
+    area a = page_area(s, 96, menu->count + 4);
+    int height = a.height - 4, first = first_line(menu, height);
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
+                 "scenarios (Enter opens, / filters, Esc closes)");
+    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "/ filter: %s%s", menu->filter,
+                 menu->filtering ? "_" : "");
+
+    // the lines lie over the page, so a click meets them first
+    const area lines = {a.x + 1, a.y + 3, a.width - 2, height};
+    lay->first_scenario = first;
+    lay->page_lines = height > 1 ? height - 1 : 1;
+    layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_BODY, 0, a});
+    layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_LINES, first, lines});
+
+    // what the filter lets through, as far as there is room
+    for (int i = 0, line = 0; i < menu->count; i++) {
+        if (!scenario_menu_shows(menu, i)) {
+            continue;
+        }
+        int y = lines.y + line++ - first;
+        if (y >= lines.y && y < a.y + a.height - 1) {
+            draw_scenario(menu, i, s, (area){a.x + 2, y, a.width - 4, 1});
+        }
+    }
+}
+
+static action_result open_selected(explorer_state *st)
+{
+    const scenario_menu *menu = &st->scenarios;
+    st->page.panel = PANEL_NONE;
+    if (menu->selected < menu->count && scenario_menu_shows(menu, menu->selected)) {
+        return act_open_scenario(st, menu->names[menu->selected]);
+    }
+    return result_done();
+}
+
+// Keys go to the filter until it is closed.
+static void filter_key(scenario_menu *menu, int key)
+{
+    if (key == KEY_CODE_ENTER || key == '\n' || key == KEY_CODE_ESCAPE) {
+        menu->filtering = false;
+    } else {
+        text_type(menu->filter, key);
+    }
+    scenario_menu_keep_selection_shown(menu);
+}
+
+static action_result list_key(explorer_state *st, int key)
+{
+    scenario_menu *menu = &st->scenarios;
+    if (menu->filtering) {
+        filter_key(menu, key);
+    } else if (key == '/') {
+        menu->filtering = true;
+        menu->filter[0] = '\0';
+    } else if (key == KEY_CODE_UP || key == 'k') {
+        scenario_menu_move(menu, -1);
+    } else if (key == KEY_CODE_DOWN || key == 'j') {
+        scenario_menu_move(menu, 1);
+    } else if (key == KEY_CODE_PAGE_UP || key == KEY_CODE_PAGE_DOWN) {
+        for (int i = 0; i < 10; i++) {
+            scenario_menu_move(menu, key == KEY_CODE_PAGE_UP ? -1 : 1);
+        }
+    } else if (key == KEY_CODE_ENTER || key == '\n') {
+        return open_selected(st);
+    } else if (key == KEY_CODE_ESCAPE || key == 'q' || key == 'o') {
+        st->page.panel = PANEL_NONE;
+    }
+    return result_done();
+}
+
+// The first click selects a line, another one on it opens it.
+static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+{
+    scenario_menu *menu = &st->scenarios;
+    *result = result_done();
+    if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
+        return page_point(st, g, result);
+    }
+    int index = scenario_menu_in_line(menu, g->hit.index + g->event.y - g->hit.area.y);
+    if (index >= 0 && index == menu->selected) {
+        menu->filtering = false;
+        *result = open_selected(st);
+    } else if (index >= 0) {
+        menu->selected = index;
+    }
+    return true;
+}
+
+const panel scenarios_panel = {.name = "scenarios", .draw = draw, .point = point, .key = list_key};

@@ -1,0 +1,74 @@
+// The commands of the explorer: one list for `:`, scripts, keys, the help and completion.
+#pragma once
+
+// group that begins with this command, or ""; name; argument as the help shows it; what it does;
+// the function that carries it out
+#define COMMAND_LIST(X)                                                                            \
+    X("Time", "play", "", "run or pause", act_play)                                                \
+    X("", "step", "[N]", "one row of the run on, or N (back if negative)", act_step)               \
+    X("", "event", "[-1]", "to the next event, or the one before", act_step_event)                 \
+    X("", "touch", "[-1]", "just before the arm touches next, or did last", act_step_touch)        \
+    X("", "seek", "TIME|end", "to an instant [s]", act_seek)                                       \
+    X("", "speed", "up|down|X", "simulated seconds a second, 1 is real time", act_set_speed)       \
+    X("", "restart", "", "play from the start", act_restart)                                       \
+    X("Changing the run", "set", "PATH VALUE", "another value, from now on or from the start",     \
+      act_set)                                                                                     \
+    X("", "edit", "", "type a new value of the selected parameter", act_edit)                      \
+    X("", "nudge", "[-1]", "selected parameter a little up or down", act_nudge)                    \
+    X("", "select", "[-1]", "next or previous parameter", act_select_parameter)                    \
+    X("", "push", "[N s]", "an impulse at the tip, 0.01 N s", act_push)                            \
+    X("", "law", "[NAME|off]", "another control law; alone: off or on again", act_law)             \
+    X("", "lock", "MODE|next|off", "hold the law in a mode, or let it choose", act_lock)           \
+    X("", "model", "", "corrected or printed equations", act_exchange_model)                       \
+    X("", "extend", "[S]", "a longer run", act_extend)                                             \
+    X("Two runs, undo", "branch", "", "keep this run and make another beside it", act_branch)      \
+    X("", "forget", "", "drop the run kept for comparison", act_forget)                            \
+    X("", "stop", "", "compute no further; Space at its end goes on", act_stop)                    \
+    X("", "compare", "", "both runs in numbers", act_compare)                                      \
+    X("", "undo", "", "take the last change back", act_undo)                                       \
+    X("", "redo", "", "put it in again", act_redo)                                                 \
+    X("Looking", "mark", "", "second cursor: differences to it", act_set_mark)                     \
+    X("", "side", "", "parameters or values on the right", act_other_side)                         \
+    X("Curves and their axes", "zoom", "in|out|all|FROM TO", "time axis round the cursor",         \
+      act_zoom)                                                                                    \
+    X("", "pan", "left|right|SECONDS", "time axis along the run", act_pan)                         \
+    X("", "follow", "", "curves follow the cursor (panning ends it)", act_follow)                  \
+    X("", "focus", "", "next pane, for the keys of axes", act_focus)                               \
+    X("", "alone", "", "that pane as large as all, or all again", act_alone)                       \
+    X("", "axis", "auto|grow|LOW HIGH [PANE]", "range: what is visible, was seen, or yours",       \
+      act_axis)                                                                                    \
+    X("", "trace", "1-9|SIGNAL...", "show or hide a pane of curves", act_trace_pane)               \
+    X("Scenarios and files", "open", "[NAME|+1|-1]", "another scenario, from a list",              \
+      act_open_scenario_by)                                                                        \
+    X("", "find", "[TEXT]", "the list, filtered by what is typed", act_find_scenario)              \
+    X("", "save", "FILE", ".png .pdf .svg .csv .yaml .txt", act_save)                              \
+    X("", "scene", "FILE.png", "picture of the arm at this instant", act_save_scene)               \
+    X("The lab", "glyphs", "braille|blocks|ascii", "characters to draw with", act_set_glyphs)      \
+    X("", "theme", "dark|light|mono", "colours for that ground", act_set_theme)                    \
+    X("", "colours", "auto|true|256|16|mono", "how many the terminal has", act_set_colours)        \
+    X("", "mouse", "on|off", "off lets the terminal select text", act_set_mouse)                   \
+    X("", "panes", "134", "these panes of curves and no others", act_show_panes)                   \
+    X("", "key", "KEY COMMAND", "a key of your own, such as :key x step 5", act_bind_key)          \
+    X("", "unkey", "KEY", "take it back; one of the lab's does nothing then", act_unbind_key)      \
+    X("", "remember", "", "keep looks, speed, panes, axes and keys", act_remember)                 \
+    X("", "redraw", "", "draw the whole screen anew", act_redraw)                                  \
+    X("", "wait", "SECONDS", "in a script: let time pass", act_wait_for)                           \
+    X("", "help", "", "this page", act_show_help)                                                  \
+    X("", "quit", "", "leave the lab", act_quit)
+
+// What is said of a command.
+typedef struct explorer_command {
+    const char *group; // that begins with it, "" if it goes on with the one before
+    const char *name;
+    const char *argument; // as the help shows it, "" for none
+    const char *help;
+} explorer_command;
+
+extern const explorer_command explorer_command_table[];
+extern const int explorer_command_count;
+
+// The index of a name or of an unambiguous beginning of one, -1 if there is none.
+int explorer_command_find(const char *name);
+
+// The name that a misspelt one is nearest to, NULL if none is near.
+const char *explorer_command_suggest(const char *name);

@@ -1,0 +1,44 @@
+// The panels of the explorer: one list that gives each an identity, a place on the screen and the
+// description in the panel's own file. A new panel is one file and one line here (and one where
+// files are built).
+#pragma once
+
+#include <stdbool.h>
+
+// Where a panel stands.
+typedef enum panel_place {
+    PLACE_TOP,   // above the curves
+    PLACE_MAIN,  // below that
+    PLACE_SIDE,  // on the right; Tab chooses one of these
+    PLACE_STACK, // below the chosen one, as many as there is room for
+    PLACE_PAGE   // opens over the others
+} panel_place;
+
+// identity, place, description; side panels in the order of Tab, stacked ones from top to bottom
+#define PANEL_LIST(X)                                                                              \
+    X(PANEL_ARM, PLACE_TOP, arm_panel)                                                             \
+    X(PANEL_CURVES, PLACE_MAIN, curves_panel)                                                      \
+    X(PANEL_PARAMETERS, PLACE_SIDE, parameters_panel)                                              \
+    X(PANEL_VALUES, PLACE_SIDE, values_panel)                                                      \
+    X(PANEL_CONTROLLER, PLACE_STACK, controller_panel)                                             \
+    X(PANEL_PREDICTORS, PLACE_STACK, predictors_panel)                                             \
+    X(PANEL_LOG, PLACE_STACK, log_panel)                                                           \
+    X(PANEL_HELP, PLACE_PAGE, help_panel)                                                          \
+    X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                                \
+    X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)
+
+typedef enum panel_id {
+    PANEL_NONE,
+#define PANEL_ID(id, place, description) id,
+    PANEL_LIST(PANEL_ID)
+#undef PANEL_ID
+        PANEL_IDS // one more than the last
+} panel_id;
+
+// Where a panel stands; not for PANEL_NONE.
+panel_place panel_place_of(panel_id id);
+
+// The first panel on the side, and the next one after a panel of the side; PANEL_NONE after the
+// last.
+panel_id panel_first_on_side(void);
+panel_id panel_next_on_side(panel_id id);

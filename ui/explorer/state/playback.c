@@ -1,0 +1,33 @@
+#include "ui/explorer/state/playback.h"
+
+#include <assert.h>
+#include <stddef.h>
+
+#define NEW_SHARE 0.1 // of the last measurement in the mean
+
+void playback_measure(playback *p, double simulated, double seconds)
+{
+    assert(p != NULL && seconds > 0);
+    double factor = simulated / seconds;
+    p->measured = p->measured > 0 ? (1 - NEW_SHARE) * p->measured + NEW_SHARE * factor : factor;
+}
+
+double playback_next_speed(const playback *p, int direction)
+{
+    assert(p != NULL);
+    static const double speeds[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2,
+                                    0.5,   1,     2,     5,    10,   20,   50,  100};
+    const int count = sizeof speeds / sizeof speeds[0];
+    double wanted = p->speed;
+
+    // from the far end, so that the nearest one beyond the present speed stays
+    for (int i = 0; i < count; i++) {
+        double faster = speeds[count - 1 - i], slower = speeds[i];
+        if (direction > 0 && faster > p->speed * 1.001) {
+            wanted = faster;
+        } else if (direction < 0 && slower < p->speed * 0.999) {
+            wanted = slower;
+        }
+    }
+    return wanted;
+}

@@ -1,0 +1,77 @@
+#include "ui/explorer/state/run_log.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+static bool add_entry(run_log *log, log_entry entry)
+{
+    if (log->count == log->capacity) {
+        size_t more = log->capacity ? 2 * log->capacity : 64;
+        log_entry *grown = realloc(log->entries, more * sizeof *grown);
+        if (grown == NULL) {
+            return false;
+        }
+        log->entries = grown;
+        log->capacity = more;
+    }
+    log->entries[log->count++] = entry;
+    return true;
+}
+
+// The events up to a time.
+static void add_events(run_log *log, const trace *t, double until)
+{
+    for (; log->events < t->event_count && t->events[log->events].time <= until; log->events++) {
+        add_entry(log, (log_entry){t->events[log->events].time, (int)log->events, 0});
+    }
+}
+
+void run_log_update(run_log *log, unsigned long run, const trace *t, bool complete)
+{
+    assert(log != NULL && t != NULL && run != 0);
+    if (log->run != run) {
+        run_log_forget(log);
+        log->run = run;
+        log->mode = (double)NAN;
+    }
+
+    // a run that is being computed grows: go on where the last look ended
+    for (; log->rows < t->row_count; log->rows++) {
+        const sample *row = &t->rows[log->rows];
+
+        // what happened at an instant stands before the mode that came of it
+        add_events(log, t, row->time);
+        if (isfinite(log->mode) && isfinite(row->controller_mode) &&
+            row->controller_mode != log->mode) {
+            add_entry(log, (log_entry){row->time, -1, row->controller_mode});
+        }
+        log->mode = isfinite(row->controller_mode) ? row->controller_mode : log->mode;
+    }
+    if (complete) {
+        add_events(log, t, (double)INFINITY);
+    }
+}
+
+double run_log_next(const run_log *log, double time, int direction)
+{
+    assert(log != NULL);
+    double found = -1;
+    for (size_t i = 0; i < log->count; i++) {
+        double at = log->entries[i].time;
+        if (direction > 0 && at > time) {
+            return at;
+        }
+        if (direction < 0 && at < time) {
+            found = at;
+        }
+    }
+    return found;
+}
+
+void run_log_forget(run_log *log)
+{
+    assert(log != NULL);
+    free(log->entries);
+    *log = (run_log){0};
+}

@@ -1,0 +1,31 @@
+// The log of a run: its events together with the controller's changes of mode, in the order of
+// time.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "src/run/trace.h"
+
+typedef struct log_entry {
+    double time; // [s]
+    int event;   // index in the trace, -1 for a change of mode
+    double mode; // that it went into
+} log_entry;
+
+typedef struct run_log {
+    unsigned long run; // whose log it is; 0: nothing is known
+    log_entry *entries;
+    size_t count, capacity;
+    size_t rows, events; // of the run that were gone through
+    double mode;         // at the last of them, NaN if there was none yet
+} run_log;
+
+// Takes in what came to a run since the last call. `complete`: nothing more will come.
+void run_log_update(run_log *log, unsigned long run, const trace *t, bool complete);
+
+// The instant of the next entry after a time (direction 1) or the last one before it (-1) [s];
+// negative if there is none.
+double run_log_next(const run_log *log, double time, int direction);
+
+void run_log_forget(run_log *log);

@@ -1,0 +1,106 @@
+#include "ui/explorer/state/scenario_menu.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/scenario/scenario.h"
+
+void scenario_menu_read(scenario_menu *menu)
+{
+    assert(menu != NULL);
+    fault ignored;
+    if (scenario_list(&menu->names, &menu->count, &ignored) != STATUS_OK) {
+        menu->count = 0;
+    }
+}
+
+// A scenario with faults is listed all the same; opening it tells them.
+static void ignore_fault(void *context, const char *sentence)
+{
+    (void)context;
+    (void)sentence;
+}
+
+void scenario_menu_read_titles(scenario_menu *menu)
+{
+    assert(menu != NULL);
+    if (menu->titles != NULL || menu->count == 0) {
+        return;
+    }
+    menu->titles = calloc((size_t)menu->count, sizeof *menu->titles);
+    for (int i = 0; menu->titles != NULL && i < menu->count; i++) {
+        scenario s;
+        if (scenario_open(&s, menu->names[i], ignore_fault, NULL) == STATUS_OK) {
+            menu->titles[i] = s.title != NULL ? strdup(s.title) : NULL;
+            scenario_finish(&s);
+        }
+    }
+}
+
+void scenario_menu_finish(scenario_menu *menu)
+{
+    assert(menu != NULL);
+    for (int i = 0; i < menu->count; i++) {
+        free(menu->names[i]);
+        free(menu->titles != NULL ? menu->titles[i] : NULL);
+    }
+    free(menu->titles);
+    free(menu->names);
+    *menu = (scenario_menu){0};
+}
+
+int scenario_menu_find(const scenario_menu *menu, const char *name)
+{
+    assert(menu != NULL && name != NULL);
+    int at = -1;
+    for (int i = 0; i < menu->count; i++) {
+        at = strcmp(menu->names[i], name) == 0 ? i : at;
+    }
+    return at;
+}
+
+const char *scenario_menu_title(const scenario_menu *menu, int index)
+{
+    assert(menu != NULL && index >= 0 && index < menu->count);
+    return menu->titles != NULL && menu->titles[index] != NULL ? menu->titles[index] : "";
+}
+
+bool scenario_menu_shows(const scenario_menu *menu, int index)
+{
+    assert(menu != NULL && index >= 0 && index < menu->count);
+    return strcasestr(menu->names[index], menu->filter) != NULL ||
+           strcasestr(scenario_menu_title(menu, index), menu->filter) != NULL;
+}
+
+int scenario_menu_in_line(const scenario_menu *menu, int line)
+{
+    assert(menu != NULL);
+    for (int i = 0; i < menu->count; i++) {
+        if (scenario_menu_shows(menu, i) && line-- == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+void scenario_menu_move(scenario_menu *menu, int direction)
+{
+    assert(menu != NULL && (direction == 1 || direction == -1));
+    for (int i = menu->selected + direction; i >= 0 && i < menu->count; i += direction) {
+        if (scenario_menu_shows(menu, i)) {
+            menu->selected = i;
+            return;
+        }
+    }
+}
+
+void scenario_menu_keep_selection_shown(scenario_menu *menu)
+{
+    assert(menu != NULL);
+    if (menu->selected < menu->count && !scenario_menu_shows(menu, menu->selected)) {
+        menu->selected = -1;
+        scenario_menu_move(menu, 1);
+        menu->selected = menu->selected < 0 ? 0 : menu->selected;
+    }
+}

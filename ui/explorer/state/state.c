@@ -1,0 +1,241 @@
+#include "ui/explorer/state/state.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#define ROUNDING 1e-12 // a smaller range is rounding, and shown as a flat line
+
+static double duration_of(const explorer_state *st)
+{
+    return st->session.effective.parameters.run.duration;
+}
+
+// --- opening and closing ----------------------------------------------------------------------
+
+// How a session is looked at at first.
+static void look_afresh(explorer_state *st)
+{
+    st->opened++;
+    st->mark.set = false;
+    time_window_show_all(&st->window);
+    panes_define(&st->panes, state_has_law(st));
+}
+
+status state_init(explorer_state *st, scenario *s, double patience, fault *f)
+{
+    assert(st != NULL && s != NULL);
+    memset(st, 0, sizeof *st);
+    status code = session_open(&st->session, s, patience, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    st->playback.speed = 0.2;
+    st->looks.mouse = true;
+    st->side.panel = panel_first_on_side();
+    st->side.parameter = PARAMETER_INDEX(motor.voltage);
+    scenario_menu_read(&st->scenarios);
+    look_afresh(st);
+    return STATUS_OK;
+}
+
+void state_finish(explorer_state *st)
+{
+    if (st == NULL) {
+        return;
+    }
+    for (int i = 0; i < SHOWN_RUNS; i++) {
+        extremes_forget(&st->extremes[i]);
+    }
+    run_log_forget(&st->log);
+    scenario_menu_finish(&st->scenarios);
+    session_finish(&st->session);
+    memset(st, 0, sizeof *st);
+}
+
+void state_take_session(explorer_state *st, session *fresh)
+{
+    assert(st != NULL && fresh != NULL);
+    session_finish(&st->session);
+    st->session = *fresh;
+    look_afresh(st);
+}
+
+// --- the runs ---------------------------------------------------------------------------------
+
+unsigned long state_run_id(const explorer_state *st)
+{
+    assert(st != NULL);
+    return ((unsigned long)st->opened << 32) | st->session.version;
+}
+
+int state_run_count(const explorer_state *st)
+{
+    assert(st != NULL);
+    return st->session.has_other ? 2 : 1;
+}
+
+const run_result *state_run(const explorer_state *st, int index)
+{
+    assert(index >= 0 && index < state_run_count(st));
+    return index == 0 ? &st->session.run : &st->session.other;
+}
+
+parameters state_parameters(const explorer_state *st)
+{
+    assert(st != NULL);
+    return session_parameters_at(&st->session, st->session.now);
+}
+
+bool state_has_law(const explorer_state *st)
+{
+    assert(st != NULL);
+    return st->session.effective.parameters.control.law != LAW_NONE;
+}
+
+const law_modes *state_law_modes(explorer_state *st)
+{
+    assert(st != NULL);
+    law_modes_update(&st->modes, state_run_id(st), &st->session.effective.parameters);
+    return &st->modes;
+}
+
+const run_log *state_run_log(explorer_state *st)
+{
+    assert(st != NULL);
+    const session *s = &st->session;
+    run_log_update(&st->log, state_run_id(st), &s->run.trace, s->computing == NULL);
+    return &st->log;
+}
+
+bool state_parameter_applies(const explorer_state *st, int parameter)
+{
+    assert(st != NULL && parameter >= 0 && parameter < parameter_count);
+    const char *path = parameter_table[parameter].path;
+    if (strncmp(path, "printed.", 8) == 0) {
+        return st->session.effective.parameters.arm.model == ARM_PRINTED;
+    }
+    if (strncmp(path, "sensor.", 7) == 0 || strncmp(path, "control.", 8) == 0) {
+        return state_has_law(st) || strcmp(path, "control.law") == 0;
+    }
+    return true;
+}
+
+// --- the visible part -------------------------------------------------------------------------
+
+void state_window(const explorer_state *st, double *from, double *to)
+{
+    assert(st != NULL);
+    time_window_range(&st->window, duration_of(st), from, to);
+}
+
+void state_show_part(explorer_state *st, double from, double to)
+{
+    assert(st != NULL);
+    time_window_show(&st->window, duration_of(st), from, to);
+}
+
+// --- axes of values ---------------------------------------------------------------------------
+
+// What a signal does in the rows from `first` to `last`, whole blocks at once where they are known.
+static value_range range_of_rows(const trace *t, int signal, const double *pairs, size_t first,
+                                 size_t last)
+{
+    value_range found = value_range_empty;
+    for (size_t r = first; r <= last && r < t->row_count;) {
+        if (pairs != NULL && r % EXTREMES_BLOCK == 0 && r + EXTREMES_BLOCK <= last + 1) {
+            const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
+            value_range_widen(&found, (value_range){pair[0], pair[1]});
+            r += EXTREMES_BLOCK;
+        } else {
+            double value = signal_value(&t->rows[r++], signal);
+            if (isfinite(value)) {
+                value_range_widen(&found, (value_range){value, value});
+            }
+        }
+    }
+    return found;
+}
+
+// What a pane's signals do between two instants, in the first `runs` of the runs shown.
+static value_range range_between(const explorer_state *st, const pane *p, double from, double to,
+                                 int runs)
+{
+    const unsigned long id = state_run_id(st);
+    value_range found = value_range_empty;
+    for (int run = 0; run < runs; run++) {
+        const trace *t = &state_run(st, run)->trace;
+        // one row more at the end: the line goes on to it
+        const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
+        for (int k = 0; k < p->count; k++) {
+            const double *pairs = extremes_pairs(&st->extremes[run], id, t, p->signals[k]);
+            value_range_widen(&found, range_of_rows(t, p->signals[k], pairs, first, last));
+        }
+    }
+    return found;
+}
+
+bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
+{
+    assert(st != NULL && index >= 0 && index < PANES && axis != NULL);
+    const pane *p = &st->panes.pane[index];
+    double from, to;
+    state_window(st, &from, &to);
+    value_range found = range_between(st, p, from, to, state_run_count(st));
+    if (!(found.high >= found.low)) {
+        return false;
+    }
+
+    // what was found counts unless the axis grows or is fixed
+    if (p->scaling == AXIS_GROW && p->grown.high >= p->grown.low) {
+        found = p->grown;
+    } else if (p->scaling == AXIS_FIXED) {
+        found = p->fixed;
+    }
+    if (found.high - found.low < ROUNDING && p->scaling != AXIS_FIXED) {
+        found = (value_range){found.low - 0.5, found.high + 0.5};
+    }
+    *axis = found;
+    return true;
+}
+
+// --- up to date -------------------------------------------------------------------------------
+
+// The blocks of all signals that are shown.
+static void update_extremes(explorer_state *st)
+{
+    const unsigned long id = state_run_id(st);
+    for (int i = 0; i < PANES; i++) {
+        const pane *p = &st->panes.pane[i];
+        for (int k = 0; p->shown && k < p->count; k++) {
+            for (int run = 0; run < state_run_count(st); run++) {
+                extremes_update(&st->extremes[run], id, &state_run(st, run)->trace, p->signals[k]);
+            }
+        }
+    }
+}
+
+// Takes what has been seen into the axes that grow.
+static void grow_axes(explorer_state *st)
+{
+    for (int i = 0; i < PANES; i++) {
+        pane *p = &st->panes.pane[i];
+        if (p->scaling == AXIS_GROW && p->shown) {
+            value_range_widen(&p->grown, range_between(st, p, 0, st->session.seen, 1));
+        }
+    }
+}
+
+void state_update(explorer_state *st)
+{
+    assert(st != NULL);
+    if (state_has_law(st) != st->panes.controlled) {
+        panes_define(&st->panes, state_has_law(st));
+    }
+    update_extremes(st);
+    grow_axes(st);
+    time_window_follow(&st->window, duration_of(st), st->session.now);
+    state_law_modes(st);
+    state_run_log(st);
+}

@@ -1,0 +1,115 @@
+// The state of the explorer: the session it looks at, and how it is looked at. Actions change it;
+// panels draw it and do not change it. It knows no terminal and no place on the screen.
+#pragma once
+
+#include "src/session/session.h"
+#include "ui/explorer/state/extremes.h"
+#include "ui/explorer/state/key_bindings.h"
+#include "ui/explorer/state/law_modes.h"
+#include "ui/explorer/state/looks.h"
+#include "ui/explorer/state/message.h"
+#include "ui/explorer/state/panel_list.h"
+#include "ui/explorer/state/panes.h"
+#include "ui/explorer/state/playback.h"
+#include "ui/explorer/state/prompt.h"
+#include "ui/explorer/state/run_log.h"
+#include "ui/explorer/state/scenario_menu.h"
+#include "ui/explorer/state/slider.h"
+#include "ui/explorer/state/time_window.h"
+
+enum { SIDE_WIDTH = 72 }; // of a screen that has room for the side beside the curves [cells]
+enum { SHOWN_RUNS = 8 };  // the present run and those kept for comparison
+
+// Second cursor.
+typedef struct time_mark {
+    bool set;
+    double time; // [s]
+} time_mark;
+
+// What stands on the right.
+typedef struct side_view {
+    panel_id panel;
+    bool in_front; // a narrow screen shows it in the place of the curves
+    int parameter; // selected, index in parameter_table
+} side_view;
+
+// What has opened over the panels.
+typedef struct page_view {
+    panel_id panel; // PANEL_NONE if nothing has
+    int lines;      // of it that are shown at once, as it was drawn last
+} page_view;
+
+typedef struct screen_size {
+    int width, height; // [cells]
+} screen_size;
+
+typedef struct explorer_state {
+    // the runs
+    session session;
+    unsigned opened; // counts the scenarios that were opened
+
+    // the instants that are looked at
+    playback playback;
+    time_window window;
+    time_mark mark;
+
+    // what is shown of them
+    pane_set panes;
+    side_view side;
+    page_view page;
+    scenario_menu scenarios;
+    int scroll[PANEL_IDS]; // by panel: lines it is away from where it stands by itself
+    slider_grip slider;
+    looks looks;
+    screen_size size; // of the screen drawn last
+
+    // what is said and typed
+    message_line message;
+    prompt prompt;
+    key_bindings keys;
+    char last_law[LINE_TEXT]; // the one that was on when it was switched off, "" for none
+    bool settings_broken;     // the settings file has faults
+    bool quit;
+
+    // what is known of the runs, kept until they change
+    law_modes modes;
+    run_log log;
+    extremes extremes[SHOWN_RUNS];
+} explorer_state;
+
+// Opens the state on a scenario, taken over also on failure. Waits for runs not longer than
+// `patience` [s].
+status state_init(explorer_state *st, scenario *s, double patience, fault *f);
+void state_finish(explorer_state *st);
+
+// Looks at another session, taken over, as at a fresh one.
+void state_take_session(explorer_state *st, session *fresh);
+
+// Brings all that drawing reads up to date: panes, window, axes that grow, and what is known of the
+// runs.
+void state_update(explorer_state *st);
+
+// Identifies the present run among all of all sessions opened here; never 0.
+unsigned long state_run_id(const explorer_state *st);
+// The runs that are shown: 0 is the present one, the others are kept for comparison.
+int state_run_count(const explorer_state *st);
+const run_result *state_run(const explorer_state *st, int index);
+// The parameters at the cursor.
+parameters state_parameters(const explorer_state *st);
+
+// The visible part of the run [s].
+void state_window(const explorer_state *st, double *from, double *to);
+// Makes a part visible, kept within the run [s].
+void state_show_part(explorer_state *st, double from, double to);
+
+// The axis of a pane in the visible part of the run; false if no signal of it has a value there.
+bool state_pane_axis(const explorer_state *st, int index, value_range *axis);
+
+// Whether a control law is on, and its modes.
+bool state_has_law(const explorer_state *st);
+const law_modes *state_law_modes(explorer_state *st);
+// The log of the present run.
+const run_log *state_run_log(explorer_state *st);
+
+// Whether a parameter means anything for the run (printed.* only for the printed model...).
+bool state_parameter_applies(const explorer_state *st, int parameter);
