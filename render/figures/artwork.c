@@ -1,5 +1,6 @@
 #include "render/figures/artwork.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <glib.h>
 #include <string.h>
@@ -60,6 +61,7 @@ void artwork_finish(artwork *a)
 status artwork_write(const artwork *a, const figure_options *options, const char *folder,
                      const char *file, char *const *formats, fault *f)
 {
+    assert(a != NULL && options != NULL && folder != NULL && file != NULL && formats != NULL);
     picture p = artwork_picture(a, options);
     status code = make_folder(folder, f);
     for (int i = 0; formats[i] != NULL && code == STATUS_OK; i++) {
@@ -76,7 +78,6 @@ status artwork_write(const artwork *a, const figure_options *options, const char
 }
 
 // ---- plotted figures
-// -----------------------------------------------------------------------------
 
 typedef struct plotted {
     const figure *figure;

@@ -1,284 +1,16 @@
-#include "render/figures/diagrams.h"
-
+// The thesis's diagrams of the arm, drawn from the model's own geometry and numbers.
 #include <glib.h>
 #include <math.h>
 #include <string.h>
 
-#include "render/plot/figure_file.h"
+#include "render/figures/diagram.h"
+#include "render/figures/figures.h"
 #include "render/plot/opened_run.h"
-#include "render/page/sketch.h"
-#include "src/base/whole_file.h"
-#include "src/base/csv.h"
-#include "src/predict/predict.h"
-#include "src/rig/sensors.h"
 
 #define DEGREE     (G_PI / 180)
 #define HUB_RADIUS 0.11 // of the experiment's hub, section 2.3 [m]
 
-enum { VALUES = 16, CURVE_POINTS = 400 };
-
-// A number that a diagram shows or is drawn from.
-typedef struct diagram_value {
-    const char *name, *unit;
-    double value;
-} diagram_value;
-
-typedef struct diagram {
-    sketch_frame frame;
-    char *title, *caption, *parameters;
-    void (*draw)(sketch *s, const struct diagram *d);
-    parameters p;
-    diagram_value values[VALUES];
-    int value_count;
-    three_body_state before;   // 4.2: the instant before the impact
-    double after[3];           // angular velocities just after it [rad/s]
-    double impulse;            // [N s]
-    double *curve_x, *curve_y; // 2.1: force and output
-} diagram;
-
-static void add_value(diagram *d, const char *name, double value, const char *unit)
-{
-    d->values[d->value_count++] = (diagram_value){name, unit, value};
-}
-
-// ---- a diagram as an artwork
-// ----------------------------------------------------------------------
-
-static status paint_diagram(cairo_t *cr, const void *what, figure_report *report, fault *f)
-{
-    sketch s;
-    const diagram *d = what;
-    status code = sketch_begin(&s, cr, &d->frame, report, f);
-    if (code == STATUS_OK) {
-        d->draw(&s, d);
-        sketch_end(&s);
-    }
-    return code;
-}
-
-static void write_value(csv_writer *csv, const char *name, double value, const char *unit)
-{
-    csv_text(csv, name);
-    csv_number(csv, value);
-    csv_text(csv, unit);
-    csv_end_row(csv);
-}
-
-static status write_diagram(const void *what, const char *path, fault *f)
-{
-    whole_file file;
-    const diagram *d = what;
-    status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    csv_writer csv = csv_begin(file.stream);
-    csv_heading(&csv, "quantity", NULL);
-    csv_heading(&csv, "value", NULL);
-    csv_heading(&csv, "unit", NULL);
-    csv_end_row(&csv);
-    for (int i = 0; i < d->value_count; i++) {
-        write_value(&csv, d->values[i].name, d->values[i].value, d->values[i].unit);
-    }
-    for (int i = 0; d->curve_x != NULL && i < CURVE_POINTS; i++) {
-        write_value(&csv, "force", d->curve_x[i], "N");
-        write_value(&csv, "output", d->curve_y[i], "V");
-    }
-    return whole_file_commit(&file, f);
-}
-
-static void release_diagram(void *what)
-{
-    diagram *d = what;
-    g_free(d->title);
-    g_free(d->caption);
-    g_free(d->parameters);
-    g_free(d->curve_x);
-    g_free(d->curve_y);
-    g_free(d);
-}
-
-static diagram *new_diagram(const char *title, const char *caption, double body,
-                            const figure_options *o)
-{
-    diagram *d = g_new0(diagram, 1);
-    d->title = g_strdup(title);
-    d->caption = g_strdup(caption);
-    d->frame = (sketch_frame){d->title, d->caption, body, o->width_mm, o->theme};
-    parameters_defaults(&d->p, ARM_CORRECTED);
-    parameters_resolve(&d->p, NULL);
-    return d;
-}
-
-static artwork artwork_of_diagram(diagram *d)
-{
-    artwork a = {.title = d->title,
-                 .parameters = d->parameters,
-                 .what = d,
-                 .paint = paint_diagram,
-                 .write_csv = write_diagram,
-                 .release = release_diagram};
-    sketch_size(&d->frame, &a.width, &a.height);
-    return a;
-}
-
-// ---- 2.1: the force sensor
-// ------------------------------------------------------------------------
-
-// The circuit's resistors are the thesis's. Supply and sensor, which it does not print, are the
-// rig's.
-#define R_GAIN     10e3 // both of the gain stage [ohm]
-#define MOST_FORCE 12.0 // [N]
-
-static void draw_ground(const sketch *s, double x, double y)
-{
-    sketch_line(s, x, y, x, y + 5, 0.8, SKETCH_INK);
-    for (int i = 0; i < 3; i++) {
-        sketch_line(s, x - 6 + 2 * i, y + 5 + 2.4 * i, x + 6 - 2 * i, y + 5 + 2.4 * i, 0.8,
-                    SKETCH_INK);
-    }
-}
-
-static void wire(const sketch *s, double x0, double y0, double x1, double y1)
-{
-    sketch_line(s, x0, y0, x1, y1, 0.8, SKETCH_INK);
-}
-
-// An amplifier whose inputs are at (x, y - 10) and (x, y + 10) and whose output is at (x + 40, y).
-static void draw_amplifier(sketch *s, double x, double y)
-{
-    wire(s, x, y - 22, x, y + 22);
-    wire(s, x, y - 22, x + 40, y);
-    wire(s, x, y + 22, x + 40, y);
-    sketch_text(s, x + 7, y - 10, 0.5, 0.5, "+", SKETCH_LABEL);
-    sketch_text(s, x + 7, y + 10, 0.5, 0.5, "\u2212", SKETCH_LABEL);
-}
-
-static void draw_divider(sketch *s, const sensor_parameters *p, double x, double y)
-{
-    char text[96];
-    snprintf(text, sizeof text, "<i>V</i><sub>+</sub> = %g\u2009V", p->fsr_supply);
-    sketch_text(s, x, y, 0.5, 0, text, SKETCH_SMALL);
-    sketch_disc(s, x, y + 14, 1.8, SKETCH_INK, false);
-    wire(s, x, y + 16, x, y + 20);
-    sketch_resistor(s, x, y + 18, x, y + 62);
-    sketch_text(s, x + 9, y + 40, 0, 0.5, "FSR", SKETCH_SMALL);
-    sketch_arrow(s, x - 34, y + 40, x - 8, y + 40, 5);
-    sketch_text(s, x - 38, y + 40, 1, 0.5, "<i>f</i>", SKETCH_LABEL);
-    sketch_resistor(s, x, y + 62, x, y + 116);
-    snprintf(text, sizeof text, "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
-    sketch_text(s, x - 9, y + 92, 1, 0.5, text, SKETCH_SMALL);
-    draw_ground(s, x, y + 112);
-    sketch_disc(s, x, y + 62, 1.7, SKETCH_INK, true);
-}
-
-// From the divider's node at (x, y) through buffer and gain stage to the output.
-static void draw_stages(sketch *s, double x, double y)
-{
-    double first = x + 56, second = first + 92, node = second - 14;
-    wire(s, x, y, first, y);
-    draw_amplifier(s, first, y + 10);
-    wire(s, first + 40, y + 10, second, y + 10);
-    sketch_disc(s, first + 52, y + 10, 1.7, SKETCH_INK, true);
-    wire(s, first + 52, y + 10, first + 52, y + 44);
-    wire(s, first + 52, y + 44, first - 10, y + 44);
-    wire(s, first - 10, y + 44, first - 10, y + 20);
-    wire(s, first - 10, y + 20, first, y + 20);
-    sketch_text(s, first + 10, y - 20, 0.5, 1, "buffer", SKETCH_SMALL);
-    draw_amplifier(s, second, y + 20);
-    sketch_text(s, second + 14, y - 10, 0.5, 1,
-                "gain 1 + <i>R</i><sub>6</sub>/<i>R</i><sub>5</sub> = 2", SKETCH_SMALL);
-    wire(s, second, y + 30, node, y + 30);
-    wire(s, node, y + 30, node, y + 62);
-    sketch_disc(s, node, y + 62, 1.7, SKETCH_INK, true);
-    sketch_resistor(s, node, y + 62, second + 54, y + 62);
-    sketch_text(s, (node + second + 54) / 2, y + 69, 0.5, 0, "<i>R</i><sub>6</sub> = 10\u2009kΩ",
-                SKETCH_SMALL);
-    wire(s, second + 54, y + 62, second + 54, y + 20);
-    sketch_disc(s, second + 54, y + 20, 1.7, SKETCH_INK, true);
-    sketch_resistor(s, node, y + 62, node, y + 106);
-    sketch_text(s, node - 9, y + 86, 1, 0.5, "<i>R</i><sub>5</sub>\n10\u2009kΩ", SKETCH_SMALL);
-    draw_ground(s, node, y + 102);
-    wire(s, second + 40, y + 20, second + 86, y + 20);
-    sketch_disc(s, second + 88, y + 20, 1.8, SKETCH_INK, false);
-    sketch_text(s, second + 92, y + 12, 1, 1, "<i>V</i><sub>out</sub>", SKETCH_LABEL);
-}
-
-// A plot as a part of the page.
-static void paint_part(sketch *s, const figure *fig, double x, double y)
-{
-    figure_report *part = g_new0(figure_report, 1);
-    cairo_save(s->cr);
-    cairo_translate(s->cr, x, y);
-    figure_paint(s->cr, fig, part, NULL);
-    cairo_restore(s->cr);
-    for (int i = 0; i < part->text_count; i++) {
-        figure_rect r = part->texts[i].place;
-        char *text = text_escape(part->texts[i].text);
-        report_add_text(s->report, text,
-                        (figure_rect){s->scale * (x + r.x), s->scale * (y + r.y),
-                                      s->scale * r.width, s->scale * r.height});
-        g_free(text);
-    }
-    g_free(part);
-}
-
-static void draw_sensor(sketch *s, const diagram *d)
-{
-    draw_divider(s, &d->p.sensor, s->left + 74, s->top);
-    draw_stages(s, s->left + 74, s->top + 62);
-    const figure_series curve = {
-        .name = "output", .x = d->curve_x, .y = d->curve_y, .count = CURVE_POINTS, .colour = 5};
-    const figure_panel panel = {.y = {.name = "output",
-                                      .label = "Output <i>V</i><sub>out</sub>",
-                                      .unit = "V",
-                                      .with_zero = true},
-                                .series = &curve,
-                                .series_count = 1};
-    const figure plot = {
-        .x = {.name = "force", .label = "Force on the sensor <i>f</i>", .unit = "N"},
-        .panels = &panel,
-        .panel_count = 1,
-        .width = (s->right - s->left) * 25.4 / 72,
-        .height = 52,
-        .theme = s->theme};
-    paint_part(s, &plot, s->left, s->top + 186);
-}
-
-status diagram_sensor(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    (void)f;
-    diagram *d = new_diagram(title, NULL, 186 + 52 / 25.4 * 72, o);
-    const sensor_parameters *p = &d->p.sensor;
-    d->caption = g_strdup_printf(
-        "The sheet sensor (FSR) and the measuring resistor divide the supply; a buffer keeps the "
-        "divider unloaded, a second amplifier doubles its output. Resistors as in the thesis; "
-        "supply and sensor are not printed there and are the rig's: %g\u2009V, %g\u2009kΩ at "
-        "1\u2009N, resistance falling with the power %g of the force up to %g\u2009N.",
-        p->fsr_supply, p->fsr_resistance / 1e3, p->fsr_exponent, p->fsr_saturation);
-    d->frame.caption = d->caption;
-    d->draw = draw_sensor;
-    add_value(d, "measuring resistor", p->fsr_divider, "ohm");
-    add_value(d, "gain resistor R5", R_GAIN, "ohm");
-    add_value(d, "gain resistor R6", R_GAIN, "ohm");
-    add_value(d, "supply", p->fsr_supply, "V");
-    add_value(d, "sensor resistance at 1 N", p->fsr_resistance, "ohm");
-    add_value(d, "exponent of the sensor's power law", p->fsr_exponent, "");
-    add_value(d, "force beyond which it saturates", p->fsr_saturation, "N");
-    d->curve_x = g_new(double, CURVE_POINTS);
-    d->curve_y = g_new(double, CURVE_POINTS);
-    for (int i = 0; i < CURVE_POINTS; i++) {
-        // close together where the curve bends
-        double share = (double)i / (CURVE_POINTS - 1);
-        d->curve_x[i] = MOST_FORCE * share * share;
-        d->curve_y[i] = fsr_volts(p, d->curve_x[i]);
-    }
-    *out = artwork_of_diagram(d);
-    return STATUS_OK;
-}
-
 // ---- 2.2: hub and links
-// ----------------------------------------------------------------------------
 
 // Where the model's metres are on the page; y upwards in the model. `across` enlarges what lies
 // across the line to the right.
@@ -368,19 +100,19 @@ static void draw_links(sketch *s, const diagram *d)
 static void add_arm_values(diagram *d)
 {
     const arm_parameters *a = &d->p.arm;
-    add_value(d, "length of a link l", a->length / 2, "m");
-    add_value(d, "distance of its centre from the joint", a->length / 4, "m");
-    add_value(d, "mass of a link", a->mass / 2, "kg");
-    add_value(d, "inertia of a link about its centre", a->link_inertia, "kg m2");
-    add_value(d, "inertia of the hub", a->hub_inertia, "kg m2");
-    add_value(d, "spring of the hub joint k1", a->k1, "N m/rad");
-    add_value(d, "spring of the beam k2", a->k2, "N m/rad");
+    diagram_add_value(d, "length of a link l", a->length / 2, "m");
+    diagram_add_value(d, "distance of its centre from the joint", a->length / 4, "m");
+    diagram_add_value(d, "mass of a link", a->mass / 2, "kg");
+    diagram_add_value(d, "inertia of a link about its centre", a->link_inertia, "kg m2");
+    diagram_add_value(d, "inertia of the hub", a->hub_inertia, "kg m2");
+    diagram_add_value(d, "spring of the hub joint k1", a->k1, "N m/rad");
+    diagram_add_value(d, "spring of the beam k2", a->k2, "N m/rad");
 }
 
 status diagram_links(const char *title, const figure_options *o, artwork *out, fault *f)
 {
     (void)f;
-    diagram *d = new_diagram(title, NULL, 190, o);
+    diagram *d = diagram_create(title, NULL, 190, o);
     d->draw = draw_links;
     add_arm_values(d);
     d->caption = g_strdup_printf(
@@ -398,7 +130,6 @@ status diagram_links(const char *title, const figure_options *o, artwork *out, f
 }
 
 // ---- 2.3: free bodies
-// ------------------------------------------------------------------------------
 
 // A turning arrow about a point, with its label above.
 static void draw_torque(sketch *s, point at, double from, double to, const char *markup, double ax,
@@ -454,7 +185,7 @@ static void draw_free_bodies(sketch *s, const diagram *d)
 status diagram_free_bodies(const char *title, const figure_options *o, artwork *out, fault *f)
 {
     (void)f;
-    diagram *d = new_diagram(
+    diagram *d = diagram_create(
         title,
         "Each body on its own with what its neighbours do to it: torques <i>τ</i> of the springs "
         "<i>k</i><sub>1</sub>, <i>k</i><sub>2</sub> and forces <i>f</i><sub>1</sub>, "
@@ -470,7 +201,6 @@ status diagram_free_bodies(const char *title, const figure_options *o, artwork *
 }
 
 // ---- 4.1: springs in series
-// ------------------------------------------------------------------------
 
 static void draw_springs(sketch *s, const diagram *d)
 {
@@ -535,22 +265,22 @@ static status take_first_impact(diagram *d, const char *name, double *speed, fau
 
 status diagram_springs(const char *title, const figure_options *o, artwork *out, fault *f)
 {
-    diagram *d = new_diagram(title, NULL, 108, o);
+    diagram *d = diagram_create(title, NULL, 108, o);
     double speed = 0;
     parameters defaults = d->p;
     status code = take_first_impact(d, "corrected/first-impact", &speed, f);
     if (code != STATUS_OK) {
-        release_diagram(d);
+        diagram_release(d);
         return code;
     }
     d->p = defaults;
     d->draw = draw_springs;
     add_arm_values(d);
-    add_value(d, "stiffness in series", d->p.arm.k1 * d->p.arm.k2 / (d->p.arm.k1 + d->p.arm.k2),
-              "N m/rad");
-    add_value(d, "approach speed", speed, "m/s");
-    add_value(d, "impulse", d->impulse, "N s");
-    add_value(d, "mass at the contact point", d->impulse / speed, "kg");
+    diagram_add_value(d, "stiffness in series",
+                      d->p.arm.k1 * d->p.arm.k2 / (d->p.arm.k1 + d->p.arm.k2), "N m/rad");
+    diagram_add_value(d, "approach speed", speed, "m/s");
+    diagram_add_value(d, "impulse", d->impulse, "N s");
+    diagram_add_value(d, "mass at the contact point", d->impulse / speed, "kg");
     d->caption = g_strdup_printf(
         "What the wall feels: a mass on the arm's springs in series. The stiff hub joint hardly "
         "counts, the beam's spring takes almost all the energy. At 1\u2009V the contact point "
@@ -563,7 +293,6 @@ status diagram_springs(const char *title, const figure_options *o, artwork *out,
 }
 
 // ---- 4.2: the arm as it hits
-// -----------------------------------------------------------------------
 
 #define ACROSS       8.0  // enlargement across the line to the contact point
 #define SPEED_LENGTH 70.0 // page points to 1 m/s
@@ -611,25 +340,25 @@ static void draw_collision(sketch *s, const diagram *d)
 
 status diagram_collision(const char *title, const figure_options *o, artwork *out, fault *f)
 {
-    diagram *d = new_diagram(title, NULL, 150, o);
+    diagram *d = diagram_create(title, NULL, 150, o);
     double speed = 0, impulse = 0;
     status code = take_first_impact(d, "corrected/first-impact", &speed, f);
     if (code == STATUS_OK) {
         code = predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f);
     }
     if (code != STATUS_OK) {
-        release_diagram(d);
+        diagram_release(d);
         return code;
     }
     static const char *const bodies[] = {"hub", "first link", "last link"};
     d->draw = draw_collision;
     for (int i = 1; i < 3; i++) {
-        add_value(d, bodies[i], d->before.angle[i], "rad");
-        add_value(d, bodies[i], d->before.velocity[i], "rad/s before");
-        add_value(d, bodies[i], d->after[i], "rad/s after");
+        diagram_add_value(d, bodies[i], d->before.angle[i], "rad");
+        diagram_add_value(d, bodies[i], d->before.velocity[i], "rad/s before");
+        diagram_add_value(d, bodies[i], d->after[i], "rad/s after");
     }
-    add_value(d, "impulse", d->impulse, "N s");
-    add_value(d, "approach speed", speed, "m/s");
+    diagram_add_value(d, "impulse", d->impulse, "N s");
+    diagram_add_value(d, "approach speed", speed, "m/s");
     d->caption = g_strdup_printf(
         "The arm of corrected/first-impact at the instant of its first contact, seen along the "
         "line to the contact point and enlarged %g times across it. The impulse of the wall stops "

@@ -1,14 +1,11 @@
 #include "render/figures/figures.h"
 
+#include <assert.h>
 #include <glib.h>
 #include <string.h>
 
-#include "render/figures/diagrams.h"
-#include "render/figures/impact_figures.h"
 #include "render/plot/opened_run.h"
 #include "render/plot/overlay.h"
-#include "render/figures/stability_map.h"
-#include "render/figures/thesis_tables.h"
 
 // Panels that several figures have.
 #define FORCE                                                                                      \
@@ -58,160 +55,18 @@
     .id = number, .file = name, .scenario = "thesis/" name, .model = "corrected, on the rig",      \
     .alone = true
 
+#define TRACED(...)          {__VA_ARGS__},
+#define DRAWN(function, ...) {.open = function, __VA_ARGS__},
 const thesis_figure thesis_figures[] = {
-    {.id = "2.1",
-     .file = "fig-2-1",
-     .caption = "Force sensor: interface circuit and its curve",
-     .scenario = NULL,
-     .model = "the rig's sensor",
-     .open = diagram_sensor},
-    {.id = "2.2",
-     .file = "fig-2-2",
-     .caption = "The arm as a hub and two links",
-     .scenario = NULL,
-     .model = "corrected",
-     .open = diagram_links},
-    {.id = "2.3",
-     .file = "fig-2-3",
-     .caption = "Torques and forces on each body",
-     .scenario = NULL,
-     .model = "corrected",
-     .open = diagram_free_bodies},
-    {RIG("2.4", "fig-2-4"), .caption = "Optical encoder under a constant 1 V",
-     .panels = {ENCODER("hub_angle")}, .panel_count = 1},
-    {RIG("2.5", "fig-2-5"), .caption = "Tachometer under a constant 1 V",
-     .panels = {TACHOMETER("hub_velocity")}, .panel_count = 1},
-    {RIG("2.6", "fig-2-6"), .caption = "Force sensor under a constant 1 V",
-     .panels = {FORCE_READING}, .panel_count = 1},
-    {.id = "T2.1",
-     .file = "table-2-1",
-     .caption = "Constants of the motor",
-     .scenario = NULL,
-     .model = "both",
-     .open = table_motor},
-    {.id = "3.1",
-     .file = "fig-3-1",
-     .caption = "The arm in contact at two successive steps",
-     .scenario = "thesis/fig-3-1",
-     .model = "printed",
-     .open = figure_contact},
-    {RUN("3.2", "fig-3-2"), .caption = "Motion of the hub at 1 V, step 1 ms",
-     .panels = {VELOCITY("hub"), ANGLE("hub")}, .panel_count = 2},
-    {RUN("3.3", "fig-3-3"), .caption = "Motion of the last link at 1 V, step 1 ms",
-     .panels = {VELOCITY("last"), ANGLE("last")}, .panel_count = 2},
-    {RUN("3.4", "fig-3-4"), .caption = "Contact force at 1 V, step 1 ms", .panels = {FORCE},
-     .panel_count = 1},
-    {RUN("3.5", "fig-3-5"), .caption = "Acceleration of the last link at 1 V, step 1 ms",
-     .panels = {{.signals = {"last_acceleration"}, .weight = 1.6}}, .panel_count = 1},
-    {RUN("3.6", "fig-3-6"), .caption = "Motion of the hub at 1 V, step 10 ms",
-     .panels = {VELOCITY("hub"), ANGLE("hub")}, .panel_count = 2},
-    {RUN("3.7", "fig-3-7"), .caption = "Contact force at 1 V, step 10 ms", .panels = {FORCE},
-     .panel_count = 1},
-    {RUN("3.8", "fig-3-8"), .caption = "Motion of the last link at 1 V, step 10 ms",
-     .panels = {ACCELERATION("last"), VELOCITY("last"), ANGLE("last")}, .panel_count = 3},
-    {RUN("3.9", "fig-3-9"), .caption = "Motion of the hub at 5 V, step 1 ms",
-     .panels = {VELOCITY("hub"), ANGLE("hub")}, .panel_count = 2},
-    {RUN("3.10", "fig-3-10"), .caption = "Contact force at 5 V, step 1 ms", .panels = {FORCE},
-     .panel_count = 1},
-    {RUN("3.11", "fig-3-11"), .caption = "Motion of the last link at 5 V, step 1 ms",
-     .panels = {ACCELERATION("last"), VELOCITY("last"), ANGLE("last")}, .panel_count = 3},
-    {.id = "T3.1",
-     .file = "table-3-1",
-     .caption = "Stability of Newmark's method",
-     .scenario = NULL,
-     .model = "both",
-     .open = table_stability},
-    {.id = "T3.2",
-     .file = "table-3-2",
-     .caption = "The algorithm of the constrained motion",
-     .scenario = NULL,
-     .model = "printed",
-     .open = table_algorithm},
-    {.id = "beta-gamma",
-     .file = "beta-gamma",
-     .caption = "Force error over Newmark's parameters",
-     .scenario = "corrected/first-impact",
-     .model = "corrected",
-     .open = stability_map},
-    {.id = "4.1",
-     .file = "fig-4-1",
-     .caption = "Springs in series against the wall",
-     .scenario = "corrected/first-impact",
-     .model = "corrected",
-     .open = diagram_springs},
-    {.id = "4.2",
-     .file = "fig-4-2",
-     .caption = "The arm at the instant of the collision",
-     .scenario = "corrected/first-impact",
-     .model = "corrected",
-     .open = diagram_collision},
-    {.id = "4.3",
-     .file = "fig-4-3",
-     .caption = "Contact force of an impact: impulse, then pulse",
-     .scenario = "corrected/first-impact",
-     .model = "corrected",
-     .open = figure_force_profile},
-    {.id = "4.4",
-     .file = "fig-4-4",
-     .caption = "Angular velocity during the pulse, assumed and computed",
-     .scenario = "corrected/first-impact",
-     .model = "corrected",
-     .open = figure_linear_velocity},
-    {.id = "4.5",
-     .file = "fig-4-5",
-     .caption = "Angle during the pulse, assumed and computed",
-     .scenario = "corrected/first-impact",
-     .model = "corrected",
-     .open = figure_quadratic_angle},
-    {.id = "4.6",
-     .file = "fig-4-6",
-     .caption = "The arm at its largest deformation",
-     .scenario = "corrected/first-impact",
-     .model = "corrected",
-     .open = figure_peak_shape},
-    {.id = "T4.1",
-     .file = "table-4-1",
-     .caption = "Peak force and delay, 100 times the nominal stiffness",
-     .scenario = "thesis/table-4-1",
-     .model = "printed and corrected",
-     .open = table_hundredfold},
-    {.id = "T4.2",
-     .file = "table-4-2",
-     .caption = "Peak force and delay, 10 times the nominal stiffness",
-     .scenario = "thesis/table-4-2",
-     .model = "printed and corrected",
-     .open = table_tenfold},
-    {.id = "T4.3",
-     .file = "table-4-3",
-     .caption = "Peak force and delay, the nominal stiffness",
-     .scenario = "thesis/table-4-3",
-     .model = "printed and corrected",
-     .open = table_nominal},
-    {.id = "errors",
-     .file = "table-4-errors",
-     .caption = "How near Tables 4.1 to 4.3 come out",
-     .scenario = NULL,
-     .model = "printed and corrected",
-     .open = table_errors},
-    {RIG("5.1", "fig-5-1"), .caption = "Hybrid control at 1 N: encoder and desired angle",
-     .panels = {ENCODER("desired_angle")}, .panel_count = 1},
-    {RIG("5.2", "fig-5-2"), .caption = "Hybrid control at 1 N: tachometer and desired velocity",
-     .panels = {TACHOMETER("desired_velocity")}, .panel_count = 1},
-    {RIG("5.3", "fig-5-3"), .caption = "Hybrid control at 1 N: force sensor",
-     .panels = {FORCE_READING}, .panel_count = 1},
-    {RIG("5.4", "fig-5-4"), .caption = "Hybrid control at 1 N: calculated tip force",
-     .panels = {CALCULATED_FORCE}, .panel_count = 1},
-    {RIG("5.5", "fig-5-5"), .caption = "Hybrid control at 1 N: command to the motor",
-     .panels = {COMMAND}, .panel_count = 1},
-    {RIG("5.6", "fig-5-6"), .caption = "Hybrid control at 2 N: angle and velocity of the hub",
-     .panels = {ENCODER("desired_angle"), TACHOMETER("desired_velocity")}, .panel_count = 2},
-    {RIG("5.7", "fig-5-7"), .caption = "Hybrid control at 2 N: force and command",
-     .panels = {FORCE_READING, COMMAND}, .panel_count = 2},
+#include "render/figures/catalogue.inc"
 };
+#undef TRACED
+#undef DRAWN
 const int thesis_figure_count = (int)G_N_ELEMENTS(thesis_figures);
 
 const thesis_figure *thesis_figure_find(const char *id)
 {
+    assert(id != NULL);
     for (int i = 0; i < thesis_figure_count; i++) {
         if (g_ascii_strcasecmp(thesis_figures[i].id, id) == 0 ||
             strcmp(thesis_figures[i].file, id) == 0) {
@@ -222,7 +77,6 @@ const thesis_figure *thesis_figure_find(const char *id)
 }
 
 // ---- recorded signals
-// ----------------------------------------------------------------------------
 
 // A figure of recorded signals with the runs it borrows from.
 typedef struct signal_figure {
@@ -304,7 +158,6 @@ static status open_signals(const thesis_figure *which, const char *title, const 
 }
 
 // ---- any figure
-// ----------------------------------------------------------------------------------
 
 // "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone.
 static char *title_of(const thesis_figure *which)
@@ -320,6 +173,7 @@ static char *title_of(const thesis_figure *which)
 
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f)
 {
+    assert(which != NULL && o != NULL && out != NULL);
     if (which->open != NULL && o->overlay != NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "%s shows no recorded signals that %s could lie over", which->id,

@@ -20,6 +20,15 @@ typedef struct thesis_figure {
     int panel_count;
 } thesis_figure;
 
+// The functions that open drawn figures: each runs what it needs and fails as that does; the title
+// is copied.
+#define TRACED(...)
+#define DRAWN(function, ...)                                                                       \
+    status function(const char *title, const figure_options *o, artwork *out, fault *f);
+#include "render/figures/catalogue.inc"
+#undef TRACED
+#undef DRAWN
+
 extern const thesis_figure thesis_figures[];
 extern const int thesis_figure_count;
 

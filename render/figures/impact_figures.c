@@ -1,5 +1,8 @@
-#include "render/figures/impact_figures.h"
+// Figures of one impact: the arm's shape in contact, the force pulse, and what the thesis's
+// predictors assume of the motion.
+#include "render/figures/figures.h"
 
+#include <assert.h>
 #include <glib.h>
 #include <math.h>
 #include <string.h>
@@ -100,7 +103,6 @@ static void add_signal(impact_figure *fig, int panel, const char *name, const ch
 }
 
 // ---- shapes of the arm
-// ---------------------------------------------------------------------------
 
 // Hub, joint and tip in the direction of the contact point: along it [m] and across it [mm].
 static void add_shape(impact_figure *fig, double first, double last, figure_series s)
@@ -254,7 +256,6 @@ status figure_peak_shape(const char *title, const figure_options *o, artwork *ou
 }
 
 // ---- the force pulse
-// -----------------------------------------------------------------------------
 
 // The plot, and T as a measure over the pulse.
 static status paint_profile(cairo_t *cr, const void *what, figure_report *report, fault *f)
@@ -348,7 +349,6 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
 }
 
 // ---- assumptions of the predictors
-// ----------------------------------------------------------------
 
 // The row just after the impact's jump.
 static const sample *row_after(const trace *t)
@@ -392,6 +392,7 @@ static double departure(const impact_figure *fig, const char *name, double angle
     const trace *t = &fig->run.result.trace;
     double period = fig->peak_time - fig->contact, most = 0;
     int index = signal_find(name);
+    assert(index >= 0);
     for (size_t i = 0; i < t->row_count; i++) {
         double since = t->rows[i].time - fig->contact;
         if (t->rows[i].contact > 0.5 && since >= 0 && since <= period) {

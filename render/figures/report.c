@@ -1,5 +1,6 @@
 #include "render/figures/report.h"
 
+#include <assert.h>
 #include <glib.h>
 #include <math.h>
 #include <string.h>
@@ -27,7 +28,6 @@ static report_item *item_at(const report *r, guint index)
 }
 
 // ---- what it shows
-// --------------------------------------------------------------------------------
 
 static status add_figures(report *r, fault *f)
 {
@@ -122,7 +122,6 @@ static void clear_item(gpointer data)
 }
 
 // ---- the web page
-// ---------------------------------------------------------------------------------
 
 static const char *const page_head =
     "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -220,7 +219,6 @@ static status write_html(const report *r, const char *path, fault *f)
 }
 
 // ---- the PDF
-// --------------------------------------------------------------------------------------
 
 // A4 [pt].
 #define PAGE_WIDTH  595.0
@@ -361,7 +359,6 @@ static status write_pdf(const report *r, const char *path, fault *f)
 }
 
 // ---- the whole
-// ------------------------------------------------------------------------------------
 
 static status write_both(const report *r, const char *folder, fault *f)
 {
@@ -381,6 +378,7 @@ static status write_both(const report *r, const char *folder, fault *f)
 
 status report_write(const char *folder, fault *f)
 {
+    assert(folder != NULL);
     fault why = {0};
     report r = {.items = g_array_new(FALSE, TRUE, sizeof(report_item)),
                 .heading = g_strconcat("impactlab ", lab_version(), ": report", NULL)};

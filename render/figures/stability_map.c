@@ -1,4 +1,6 @@
-#include "render/figures/stability_map.h"
+// The map of section 3.1.3: how good the contact force is for every (beta, gamma) of Newmark's
+// method, at several steps.
+#include "render/figures/figures.h"
 
 #include <glib.h>
 #include <math.h>
@@ -61,7 +63,6 @@ static double gamma_at(int row)
 }
 
 // ---- the runs
-// ------------------------------------------------------------------------------------
 
 // Force at evenly spaced instants of the window, straight lines between rows.
 static void sample_force(const trace *t, double from, double *out)

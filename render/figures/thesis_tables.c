@@ -1,4 +1,5 @@
-#include "render/figures/thesis_tables.h"
+// The thesis's tables as pages.
+#include "render/figures/figures.h"
 
 #include <glib.h>
 #include <math.h>
@@ -8,7 +9,6 @@
 #include "src/study/thesis_tables.h"
 
 // ---- a table as an artwork
-// -----------------------------------------------------------------------
 
 static status paint_table(cairo_t *cr, const void *what, figure_report *report, fault *f)
 {
@@ -49,7 +49,6 @@ static artwork artwork_of_table(table_page *t)
 }
 
 // ---- 2.1: the motor
-// ------------------------------------------------------------------------------
 
 // A parameter of the lab with what the thesis prints for it.
 static void add_motor_row(table_page *t, const parameters *p, const char *symbol,
@@ -95,7 +94,6 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
 }
 
 // ---- 3.1: stability
-// ------------------------------------------------------------------------------
 
 // One pair (beta, gamma): where it stands in the table and what it means for this arm.
 static void add_pair(table_page *t, const char *name, double beta, double gamma, double fastest)
@@ -162,7 +160,6 @@ status table_stability(const char *title, const figure_options *o, artwork *out,
 }
 
 // ---- 3.2: the algorithm
-// --------------------------------------------------------------------------
 
 status table_algorithm(const char *title, const figure_options *o, artwork *out, fault *f)
 {
@@ -201,7 +198,6 @@ status table_algorithm(const char *title, const figure_options *o, artwork *out,
 }
 
 // ---- 4.1 to 4.3: predictions
-// ---------------------------------------------------------------------
 
 static const struct {
     const char *quantity, *label;
@@ -327,7 +323,6 @@ status table_nominal(const char *title, const figure_options *o, artwork *out, f
 }
 
 // ---- how near the computed tables come
-// -----------------------------------------------------------
 
 status table_errors(const char *title, const figure_options *o, artwork *out, fault *f)
 {

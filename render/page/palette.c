@@ -1,5 +1,6 @@
 #include "render/page/palette.h"
 
+#include <assert.h>
 #include <math.h>
 
 #define RGB(r, g, b)                                                                               \
@@ -52,6 +53,7 @@ static const palette themes[] = {
 
 const palette *palette_of(figure_theme theme)
 {
+    assert((unsigned)theme < sizeof themes / sizeof themes[0]);
     return &themes[theme];
 }
 

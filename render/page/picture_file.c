@@ -1,5 +1,6 @@
 #include "render/page/picture_file.h"
 
+#include <assert.h>
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <math.h>
@@ -218,6 +219,7 @@ status picture_write_pages(const picture *pages, int count, const char *path, fa
 
 status picture_write(const picture *p, const char *path, fault *f)
 {
+    assert(p != NULL && p->paint != NULL && path != NULL);
     typedef status (*writer)(FILE *, const picture *, fault *);
     static const writer writers[] = {
         [FORMAT_PNG] = write_png, [FORMAT_PDF] = write_pdf, [FORMAT_SVG] = write_svg};

@@ -1,5 +1,6 @@
 #include "render/page/sketch.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +12,6 @@
 #define MM           (72 / 25.4)
 
 // ---- the page
-// ------------------------------------------------------------------------------------
 
 static text_block title_block(const char *markup)
 {
@@ -75,6 +75,7 @@ static void draw_block(sketch *s, text_block t, double x, double y, double ax, d
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
                     fault *f)
 {
+    assert(s != NULL && cr != NULL && frame != NULL && frame->title != NULL);
     double above, below, width, height;
     status code = text_check_font(f);
     if (code != STATUS_OK) {
@@ -118,7 +119,6 @@ void sketch_end(sketch *s)
 }
 
 // ---- lines
-// ---------------------------------------------------------------------------------------
 
 colour sketch_colour(const sketch *s, int slot)
 {
@@ -242,7 +242,6 @@ void sketch_disc(const sketch *s, double x, double y, double radius, int slot, b
 }
 
 // ---- parts
-// ---------------------------------------------------------------------------------------
 
 void sketch_bar(const sketch *s, double x0, double y0, double x1, double y1, double thickness)
 {
@@ -327,7 +326,6 @@ void sketch_wall(const sketch *s, double x0, double y0, double x1, double y1)
 }
 
 // ---- text
-// ----------------------------------------------------------------------------------------
 
 void sketch_text(sketch *s, double x, double y, double ax, double ay, const char *markup,
                  double size)

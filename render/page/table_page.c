@@ -1,5 +1,6 @@
 #include "render/page/table_page.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -19,11 +20,13 @@ void table_begin(table_page *t, const char *title)
 
 void table_add_column(table_page *t, const char *label, double share, text_align align)
 {
+    assert(t != NULL && label != NULL && t->column_count < TABLE_COLUMNS);
     t->columns[t->column_count++] = (table_column){label, share, align};
 }
 
 void table_add_row(table_page *t, const char *const *cells)
 {
+    assert(t != NULL && cells != NULL && t->column_count > 0);
     char **row = g_new0(char *, (gsize)t->column_count + 1);
     for (int i = 0; i < t->column_count; i++) {
         row[i] = g_strdup(cells[i]);
@@ -60,7 +63,6 @@ bool table_row_is_group(const table_page *t, guint row)
 }
 
 // ---- the page
-// ------------------------------------------------------------------------------------
 
 static double column_width(const table_page *t, int column)
 {
@@ -175,7 +177,6 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
 }
 
 // ---- numbers and HTML
-// ----------------------------------------------------------------------------
 
 static void write_plain(csv_writer *csv, const char *markup)
 {

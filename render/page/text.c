@@ -1,5 +1,6 @@
 #include "render/page/text.h"
 
+#include <assert.h>
 #include <fontconfig/fontconfig.h>
 #include <string.h>
 
@@ -59,6 +60,7 @@ PangoContext *text_context_create(void)
 
 char *text_translate(const char *markup, double size)
 {
+    assert(markup != NULL && size > 0);
     GString *out = g_string_new(NULL);
     for (const char *c = markup; *c != '\0';) {
         bool lowered = strncmp(c, "<sub>", 5) == 0, raised = strncmp(c, "<sup>", 5) == 0;
@@ -107,6 +109,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 
 void text_measure(PangoContext *context, const text_block *t, double *width, double *height)
 {
+    assert(context != NULL && t != NULL && t->markup != NULL);
     PangoRectangle logical;
     PangoLayout *layout = text_layout_create(context, t);
     pango_layout_get_extents(layout, NULL, &logical);
@@ -117,6 +120,7 @@ void text_measure(PangoContext *context, const text_block *t, double *width, dou
 
 double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
 {
+    assert(cr != NULL && context != NULL && t != NULL && t->markup != NULL);
     PangoRectangle logical;
     // the context has to know whether cr is rotated
     pango_cairo_update_context(cr, context);
@@ -131,6 +135,7 @@ double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
 
 void text_unit(const char *unit, char *out, size_t size)
 {
+    assert(unit != NULL && out != NULL && size > 0);
     static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
     GString *shown = g_string_new(NULL);

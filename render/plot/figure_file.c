@@ -16,6 +16,7 @@ static status paint(cairo_t *cr, const void *what, fault *f)
 
 status figure_write(const figure *fig, const char *path, fault *f)
 {
+    assert(fig != NULL && path != NULL);
     picture p = {.dpi = fig->dpi,
                  .title = fig->title,
                  .software = fig->software,
@@ -97,6 +98,7 @@ static void write_marks(csv_writer *csv, const figure *fig)
 
 status figure_write_csv(const figure *fig, const char *path, fault *f)
 {
+    assert(fig != NULL && path != NULL);
     whole_file file;
     status code = whole_file_open(&file, path, f);
     if (code != STATUS_OK) {

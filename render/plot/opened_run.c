@@ -1,5 +1,6 @@
 #include "render/plot/opened_run.h"
 
+#include <assert.h>
 #include <glib.h>
 
 // Keeps the first of a scenario's faults.
@@ -19,6 +20,7 @@ void run_end(opened_run *r)
 
 status run_begin(opened_run *r, const char *name, const char *change, fault *f)
 {
+    assert(r != NULL && name != NULL);
     fault first = {STATUS_OK, ""};
     status code = scenario_open(&r->scenario, name, keep_first, &first);
     if (code != STATUS_OK) {
@@ -41,6 +43,7 @@ status run_begin(opened_run *r, const char *name, const char *change, fault *f)
 
 char *parameters_line(const scenario *s)
 {
+    assert(s != NULL);
     GString *out = g_string_new(NULL);
     g_string_printf(out, "scenario=%s", s->name);
     for (int i = 0; i < parameter_count; i++) {

@@ -1,6 +1,7 @@
 #include "render/plot/overlay.h"
 #include "src/base/numbers.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <glib.h>
 #include <math.h>
@@ -83,6 +84,7 @@ static status read_line(trace *t, const char *line, const int *signals, int colu
 
 status overlay_read(trace *t, const char *path, fault *f)
 {
+    assert(t != NULL && path != NULL);
     gchar *text;
     GError *error = NULL;
     trace_init(t, 0);

@@ -1,10 +1,12 @@
 #include "render/plot/placement.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 void placement_init(placement *g, figure_rect box)
 {
+    assert(g != NULL && box.width > 0 && box.height > 0);
     memset(g, 0, sizeof *g);
     g->box = box;
 }
@@ -71,6 +73,7 @@ static double corner_cost(const placement *g, const figure_rect *r, double margi
 double placement_find(const placement *g, double width, double height, double margin,
                       figure_rect *found)
 {
+    assert(g != NULL && found != NULL);
     placement sums = *g;
     sum_up(&sums);
     double cell_width = g->box.width / PLACEMENT_COLUMNS;

@@ -11,6 +11,7 @@
 
 void figure_size(const figure *fig, double *width, double *height)
 {
+    assert(fig != NULL && width != NULL && height != NULL);
     double points = 0;
     int columns = fig->columns > 0 ? fig->columns : 1;
     for (int i = 0; i < fig->panel_count; i += columns) {

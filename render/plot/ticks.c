@@ -1,5 +1,6 @@
 #include "render/plot/ticks.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -203,6 +204,7 @@ static void fill(ticks *t, const labelling *l, double first, int count)
 
 void ticks_extended(ticks *t, double low, double high, int wanted)
 {
+    assert(t != NULL);
     wish w = {low, high, wanted, false};
     memset(t, 0, sizeof *t);
     t->minor = 1;
@@ -214,6 +216,7 @@ void ticks_extended(ticks *t, double low, double high, int wanted)
 
 void ticks_between(ticks *t, double low, double high, int wanted)
 {
+    assert(t != NULL);
     wish w = {low, high, wanted, true};
     memset(t, 0, sizeof *t);
     t->minor = 1;
@@ -232,6 +235,7 @@ void ticks_between(ticks *t, double low, double high, int wanted)
 
 void tick_label(const ticks *t, int index, char text[TICK_TEXT])
 {
+    assert(t != NULL && index >= 0 && index < t->count);
     double value = t->value[index] / pow(10, t->exponent);
     char digits[TICK_TEXT - 4];
     snprintf(digits, sizeof digits, "%.*f", t->decimals, fabs(value));

@@ -1,5 +1,6 @@
 #include "render/plot/trace_plot.h"
 
+#include <assert.h>
 #include <glib.h>
 #include <math.h>
 #include <stdlib.h>
@@ -25,7 +26,6 @@ static char *keep(GPtrArray *texts, char *owned)
 }
 
 // ---- labels
-// ---------------------------------------------------------------------------------------
 
 // A quantity's symbol is set italic, its index upright, and so is a word.
 static char *symbol_markup(const signal_info *signal)
@@ -160,7 +160,6 @@ static char *caption_of(const trace_run *run, const char *shaded)
 }
 
 // ---- what happened
-// --------------------------------------------------------------------------------
 
 static void add_mark(trace_figure *t, double time, char *label)
 {
@@ -282,10 +281,10 @@ static int impact_impulses(const trace *rows, figure_impulse *out)
 }
 
 // ---- panels
-// ---------------------------------------------------------------------------------------
 
 static figure_series series_of(const trace_run *run, int index)
 {
+    assert(index >= 0 && index < signal_count);
     const trace *rows = &run->result->trace;
     const signal_info *signal = &signal_table[index];
     const char *base = (const char *)rows->rows;
@@ -405,6 +404,7 @@ static status check_panels(const trace_panel *panels, int count, int run_count, 
 status trace_figure_init(trace_figure *t, const char *title, const trace_panel *panels,
                          int panel_count, const trace_run *runs, int run_count, fault *f)
 {
+    assert(t != NULL && panels != NULL && runs != NULL);
     memset(t, 0, sizeof *t);
     status code = check_panels(panels, panel_count, run_count, f);
     if (code != STATUS_OK) {
@@ -469,6 +469,7 @@ status plot_run(const scenario *s, const run_result *result, const char *path, f
 status plot_run_beside(const scenario *s, const run_result *result, const run_result *old,
                        const char *path, fault *f)
 {
+    assert(s != NULL && result != NULL && path != NULL);
     static const trace_panel panels[] = {
         {.signals = {"force"}, .with_zero = true, .impulses = true, .inset = true, .weight = 1.2},
         {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},

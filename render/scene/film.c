@@ -5,6 +5,7 @@
 
 #include "render/scene/film_file.h"
 #include "render/page/text.h"
+#include "render/plot/opened_run.h"
 #include "render/plot/trace_plot.h"
 #include "src/base/version.h"
 
@@ -30,7 +31,7 @@ typedef struct film {
     double trace_scale;    // pixels per point of the traces
 } film;
 
-// --- the clock ------------------------------------------------------------------------------
+// ---- the clock
 
 film_clock film_clock_of(const run_result *result, double seconds, double slow)
 {
@@ -79,7 +80,7 @@ double film_clock_time(const film_clock *c, double film_time, double *speed)
     return c->end;
 }
 
-// --- the traces -----------------------------------------------------------------------------
+// ---- the traces
 
 // Paints all of the traces once; frames veil what has not happened yet.
 static status paint_traces(film *m, fault *f)
@@ -147,7 +148,7 @@ static void draw_traces(const film *m, cairo_t *cr, double time)
     cairo_fill(cr);
 }
 
-// --- frames ---------------------------------------------------------------------------------
+// ---- frames
 
 // Lets the scene's floor run out into the page of the traces.
 static void soften_seam(const film *m, cairo_t *cr)
@@ -234,7 +235,7 @@ static status add_frames(film *m, film_file *file, fault *f)
     return code;
 }
 
-// --- the film -------------------------------------------------------------------------------
+// ---- the film
 
 static status check_options(const film_options *o, fault *f)
 {
@@ -314,7 +315,7 @@ static void finish(film *m)
 
 static status record(film *m, const char *path, fault *f)
 {
-    char software[64], *values = scene_parameters_text(m->scenario);
+    char software[64], *values = parameters_line(m->scenario);
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     const png_note notes[] = {{"Title", m->scenario->title},
                               {"Software", software},
@@ -335,7 +336,7 @@ static status record(film *m, const char *path, fault *f)
             film_file_abandon(file);
         }
     }
-    free(values);
+    g_free(values);
     return code;
 }
 

@@ -52,7 +52,7 @@ static film_kind kind_of(const char *path)
     return folder || dot == NULL || dot[1] == '\0' || dot[1] == '/' ? FILM_FRAMES : FILM_UNKNOWN;
 }
 
-// --- checks ---------------------------------------------------------------------------------
+// ---- checks
 
 static bool has_ffmpeg(void)
 {
@@ -124,7 +124,7 @@ status film_file_check(const char *path, fault *f)
     return whole_file_check(path, f);
 }
 
-// --- ffmpeg ---------------------------------------------------------------------------------
+// ---- ffmpeg
 
 typedef struct argument_list {
     char *words[ARGUMENTS_MOST];
@@ -316,7 +316,7 @@ static status send_bytes(film_file *film, const unsigned char *bytes, size_t len
     return STATUS_OK;
 }
 
-// --- the film -------------------------------------------------------------------------------
+// ---- the film
 
 static status make_folder(const film_file *film, fault *f)
 {

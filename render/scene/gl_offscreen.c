@@ -142,7 +142,7 @@ static bool make_current(gl_offscreen *g)
            egl(g->display, g->surface, g->surface, g->context);
 }
 
-// --- OSMesa ---------------------------------------------------------------------------------
+// ---- OSMesa
 
 static status open_osmesa(gl_offscreen *g, fault *f)
 {
@@ -185,7 +185,7 @@ static void close_osmesa(gl_offscreen *g)
     free(g->small);
 }
 
-// --- EGL ------------------------------------------------------------------------------------
+// ---- EGL
 
 static status complain_egl(fault *f, const char *what)
 {
@@ -267,7 +267,7 @@ static void close_egl(gl_offscreen *g)
     }
 }
 
-// --- OpenGL ---------------------------------------------------------------------------------
+// ---- OpenGL
 
 static bool load_functions(gl_offscreen *g)
 {

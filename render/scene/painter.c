@@ -106,7 +106,7 @@ const char *scene_painter_name(const scene_painter *p)
     return p->name;
 }
 
-// --- light ----------------------------------------------------------------------------------
+// ---- light
 
 #define AMBIENT_SKY    0.50 // light from above, everywhere
 #define AMBIENT_GROUND 0.26 // light that the floor throws back
@@ -143,7 +143,7 @@ static void light_vertex(const mesh_vertex *v, const camera *c, vector light, fl
     rgba[3] = 1;
 }
 
-// --- triangles ------------------------------------------------------------------------------
+// ---- triangles
 
 static status make_room(scene_painter *p, const mesh *m, fault *f)
 {

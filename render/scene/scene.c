@@ -1,11 +1,13 @@
 #include "render/scene/scene.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/page/picture_file.h"
 #include "render/page/png_file.h"
+#include "render/plot/opened_run.h"
 #include "render/scene/floor.h"
 #include "render/scene/labels.h"
 #include "render/page/text.h"
@@ -13,7 +15,6 @@
 #include "src/base/version.h"
 
 enum {
-    CURVE_PIECES = 96, // of a beam with few links
     TRAIL_POINTS = 240,
     EXTENT_ROWS = 400, // of the trace, looked at for what must be seen
     EXTENT_POINTS = EXTENT_ROWS + 64,
@@ -71,123 +72,12 @@ struct scene {
     material trail_of[TRAIL_POINTS];
 };
 
-// --- the arm's geometry ---------------------------------------------------------------------
-
-// The last row at or before t, -1 if there is none.
-static ptrdiff_t row_before(const trace *t, double time)
-{
-    size_t low = 0, high = t->row_count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (t->rows[middle].time <= time) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return (ptrdiff_t)low - 1;
-}
-
-// The rows on both sides of t and the share of the second.
-static size_t bracket(const trace *t, double time, size_t *after, double *share)
-{
-    ptrdiff_t found = row_before(t, time);
-    size_t before = found < 0 ? 0 : (size_t)found;
-    *after = before + 1 < t->row_count && found >= 0 ? before + 1 : before;
-    double span = t->rows[*after].time - t->rows[before].time;
-    *share = span > 0 ? (time - t->rows[before].time) / span : 0;
-    return before;
-}
+// ---- solids
 
 static double between(double a, double b, double share)
 {
     return a + share * (b - a);
 }
-
-sample scene_joints(const trace *t, const parameters *p, double time, vector *joints)
-{
-    size_t after, links = (size_t)p->arm.links, first = (size_t)t->angle_count - links;
-    double share, l = p->arm.length / p->arm.links;
-    size_t before = bracket(t, time, &after, &share);
-    const double *a = t->angles + before * (size_t)t->angle_count + first;
-    const double *b = t->angles + after * (size_t)t->angle_count + first;
-    joints[0] = (vector){0};
-    for (size_t k = 0; k < links; k++) {
-        double angle = between(a[k], b[k], share);
-        joints[k + 1] = vector_sum(joints[k], l, (vector){cos(angle), sin(angle), 0});
-    }
-    sample row = t->rows[before];
-    const sample *next = &t->rows[after];
-    row.time = time;
-    row.hub_angle = between(row.hub_angle, next->hub_angle, share);
-    row.first_angle = between(row.first_angle, next->first_angle, share);
-    row.last_angle = between(row.last_angle, next->last_angle, share);
-    row.force = between(row.force, next->force, share);
-    return row;
-}
-
-static int pieces_of_span(int links)
-{
-    int spans = links > 1 ? links - 1 : 1, pieces = CURVE_PIECES / spans;
-    return pieces > 1 ? pieces : 1;
-}
-
-int scene_curve_length(int links)
-{
-    return (links > 1 ? links - 1 : 1) * pieces_of_span(links) + 1;
-}
-
-int scene_curve(const vector *joints, int links, vector *curve)
-{
-    int spans = links > 1 ? links - 1 : 1, pieces = pieces_of_span(links), count = 0;
-    for (int span = 0; span < spans; span++) {
-        // a parabola from a link's middle to the next one's, with the joint as its control point
-        vector bend =
-            links > 1 ? joints[span + 1] : vector_scaled(vector_add(joints[0], joints[1]), 0.5);
-        vector from = joints[span], to = joints[links];
-        if (span > 0) {
-            from = vector_scaled(vector_add(joints[span], bend), 0.5);
-        }
-        if (span + 1 < spans) {
-            to = vector_scaled(vector_add(bend, joints[span + 2]), 0.5);
-        }
-        for (int i = span > 0; i <= pieces; i++) {
-            double s = (double)i / pieces, r = 1 - s;
-            vector place = vector_sum(vector_scaled(from, r * r), 2 * r * s, bend);
-            curve[count++] = vector_sum(place, s * s, to);
-        }
-    }
-    return count;
-}
-
-void scene_instants(const run_result *result, double *times, int count)
-{
-    const trace *t = &result->trace;
-    const summary *m = &result->summary;
-    double end = t->rows[t->row_count - 1].time, path = 0, done = 0;
-    if (!isnan(m->first_contact_s)) {
-        double delay = isnan(m->first_pulse_time_to_peak_s) ? m->time_to_peak_s
-                                                            : m->first_pulse_time_to_peak_s;
-        end = fmin(end, m->first_contact_s + (isnan(delay) ? 0 : delay));
-    }
-    size_t last = (size_t)row_before(t, end);
-    for (size_t i = 1; i <= last; i++) {
-        path += fabs(t->rows[i].last_angle - t->rows[i - 1].last_angle);
-    }
-    times[0] = t->rows[0].time;
-    size_t row = 0;
-    for (int k = 1; k < count; k++) {
-        double wanted = path * k / (count - 1);
-        while (row < last && done + 1e-12 < wanted) {
-            row++;
-            done += fabs(t->rows[row].last_angle - t->rows[row - 1].last_angle);
-        }
-        times[k] = path > 0 ? t->rows[row].time : end * k / (count - 1);
-    }
-    times[count - 1] = end;
-}
-
-// --- solids ---------------------------------------------------------------------------------
 
 static material paler(material m, double share)
 {
@@ -316,7 +206,7 @@ static void build_trail(scene *sc, double from, double time)
     }
 }
 
-// --- view -----------------------------------------------------------------------------------
+// ---- view
 
 // Points round everything that is ever to be seen. Returns their number.
 static int extent(scene *sc, vector *points)
@@ -438,6 +328,7 @@ static status prepare(scene *sc, fault *f)
 status scene_create(scene **out, const scenario *s, const run_result *result,
                     const scene_options *options, fault *f)
 {
+    assert(out != NULL && s != NULL && result != NULL);
     scene *sc = calloc(1, sizeof *sc);
     *out = NULL;
     if (sc == NULL) {
@@ -480,7 +371,7 @@ const char *scene_renderer_name(const scene *sc)
     return scene_painter_name(sc->painter);
 }
 
-// --- the picture ----------------------------------------------------------------------------
+// ---- the picture
 
 // The flash of every impact shortly before `time`.
 static void draw_flashes(scene *sc, const labels *l, double time)
@@ -525,6 +416,7 @@ static void draw_labels(scene *sc, const double *times, const colour *inks, int 
 
 status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto, fault *f)
 {
+    assert(sc != NULL && times != NULL && count > 0 && onto != NULL);
     colour inks[SCENE_INSTANTS];
     mesh_clear(&sc->mesh);
     for (int i = 0; i < count; i++) {
@@ -546,21 +438,7 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
     return code;
 }
 
-// --- files ----------------------------------------------------------------------------------
-
-char *scene_parameters_text(const scenario *s)
-{
-    GString *out = g_string_new(NULL);
-    g_string_printf(out, "scenario=%s", s->name);
-    for (int i = 0; i < parameter_count; i++) {
-        char value[128];
-        parameter_format(&s->parameters, i, value, sizeof value);
-        g_string_append_printf(out, " %s=%s", parameter_table[i].path, value);
-    }
-    char *text = strdup(out->str);
-    g_string_free(out, TRUE);
-    return text;
-}
+// ---- files
 
 status scene_check_path(const char *path, fault *f)
 {
@@ -592,7 +470,7 @@ static status check_instants(const run_result *result, const double *times, int 
 static status write_surface(const scene *sc, cairo_surface_t *surface, const char *path, fault *f)
 {
     whole_file file;
-    char software[64], *values = scene_parameters_text(sc->scenario);
+    char software[64], *values = parameters_line(sc->scenario);
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     const png_note notes[] = {{"Title", sc->scenario->title},
                               {"Software", software},
@@ -607,13 +485,14 @@ static status write_surface(const scene *sc, cairo_surface_t *surface, const cha
             whole_file_abandon(&file);
         }
     }
-    free(values);
+    g_free(values);
     return code;
 }
 
 status scene_write(const scenario *s, const run_result *result, const scene_options *options,
                    const double *times, int count, const char *path, fault *f)
 {
+    assert(s != NULL && result != NULL && times != NULL && path != NULL);
     scene *sc;
     status code = scene_check_path(path, f);
     if (code == STATUS_OK) {

@@ -55,6 +55,3 @@ status scene_write(const scenario *s, const run_result *result, const scene_opti
 
 // Tells before long work whether scene_write could write to path.
 status scene_check_path(const char *path, fault *f);
-
-// Every parameter of a scenario in one line, for metadata; free it.
-char *scene_parameters_text(const scenario *s);

@@ -1,0 +1,92 @@
+#include "render/figures/diagram.h"
+
+#include <assert.h>
+#include <glib.h>
+
+#include "src/base/csv.h"
+#include "src/base/whole_file.h"
+
+void diagram_add_value(diagram *d, const char *name, double value, const char *unit)
+{
+    assert(d != NULL && name != NULL && d->value_count < DIAGRAM_VALUES);
+    d->values[d->value_count++] = (diagram_value){name, unit, value};
+}
+
+static status paint_diagram(cairo_t *cr, const void *what, figure_report *report, fault *f)
+{
+    sketch s;
+    const diagram *d = what;
+    status code = sketch_begin(&s, cr, &d->frame, report, f);
+    if (code == STATUS_OK) {
+        d->draw(&s, d);
+        sketch_end(&s);
+    }
+    return code;
+}
+
+static void write_value(csv_writer *csv, const char *name, double value, const char *unit)
+{
+    csv_text(csv, name);
+    csv_number(csv, value);
+    csv_text(csv, unit);
+    csv_end_row(csv);
+}
+
+static status write_diagram(const void *what, const char *path, fault *f)
+{
+    whole_file file;
+    const diagram *d = what;
+    status code = whole_file_open(&file, path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    csv_writer csv = csv_begin(file.stream);
+    csv_heading(&csv, "quantity", NULL);
+    csv_heading(&csv, "value", NULL);
+    csv_heading(&csv, "unit", NULL);
+    csv_end_row(&csv);
+    for (int i = 0; i < d->value_count; i++) {
+        write_value(&csv, d->values[i].name, d->values[i].value, d->values[i].unit);
+    }
+    for (int i = 0; d->curve_x != NULL && i < CURVE_POINTS; i++) {
+        write_value(&csv, "force", d->curve_x[i], "N");
+        write_value(&csv, "output", d->curve_y[i], "V");
+    }
+    return whole_file_commit(&file, f);
+}
+
+void diagram_release(void *what)
+{
+    diagram *d = what;
+    g_free(d->title);
+    g_free(d->caption);
+    g_free(d->parameters);
+    g_free(d->curve_x);
+    g_free(d->curve_y);
+    g_free(d);
+}
+
+diagram *diagram_create(const char *title, const char *caption, double body,
+                        const figure_options *o)
+{
+    assert(title != NULL && o != NULL);
+    diagram *d = g_new0(diagram, 1);
+    d->title = g_strdup(title);
+    d->caption = g_strdup(caption);
+    d->frame = (sketch_frame){d->title, d->caption, body, o->width_mm, o->theme};
+    parameters_defaults(&d->p, ARM_CORRECTED);
+    parameters_resolve(&d->p, NULL);
+    return d;
+}
+
+artwork artwork_of_diagram(diagram *d)
+{
+    artwork a = {.title = d->title,
+                 .parameters = d->parameters,
+                 .what = d,
+                 .paint = paint_diagram,
+                 .write_csv = write_diagram,
+                 .release = diagram_release};
+    sketch_size(&d->frame, &a.width, &a.height);
+    return a;
+}

@@ -1,0 +1,303 @@
+// A run that looks like one, and ways to look at what a figure draws of it.
+#pragma once
+
+#include "tests/check.h"
+
+#include <png.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "render/plot/figure_file.h"
+#include "render/page/text.h"
+#include "render/plot/trace_plot.h"
+
+enum { ROWS = 1001 };
+
+static char folder[64];
+
+static inline char *path_of(const char *name)
+{
+    static char paths[4][256];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+// ---- a run that looks like one
+
+static const double first_contact = 0.31, first_release = 0.38;
+
+static inline double force_at(double t)
+{
+    const double begins[] = {first_contact, 0.45, 0.52}, ends[] = {first_release, 0.49, 0.545};
+    const double peaks[] = {2.1, 0.9, 0.5};
+    for (int i = 0; i < 3; i++) {
+        if (t >= begins[i] && t <= ends[i]) {
+            return peaks[i] * sin(M_PI * (t - begins[i]) / (ends[i] - begins[i]));
+        }
+    }
+    return t > 0.56 ? 0.4 + 0.2 * exp(-(t - 0.56) / 0.08) * cos(60 * (t - 0.56)) : 0;
+}
+
+static inline double angle_at(double t, double phase)
+{
+    double settled = 0.1 + 0.02 * phase * exp(-3 * fabs(t - first_contact)) * cos(25 * t);
+    return t < first_contact ? 0.1 * pow(t / first_contact, 2) + 0.003 * phase * sin(40 * t)
+                             : settled;
+}
+
+typedef struct synthetic {
+    scenario scenario;
+    run_result result;
+    trace_figure figure;
+} synthetic;
+
+static inline void synthetic_init(synthetic *s, const trace_panel *panels, int count)
+{
+    static const double impulses[] = {0.044, 0.009, 0.0021};
+    static const double times[] = {0.31, 0.45, 0.52};
+    fault f = {0};
+    memset(s, 0, sizeof *s);
+    parameters_defaults(&s->scenario.parameters, ARM_PRINTED);
+    assert_int_equal(parameters_resolve(&s->scenario.parameters, &f), STATUS_OK);
+    s->scenario.name = (char *)"synthetic";
+    s->scenario.title = (char *)"Synthetic run & <more>";
+    trace_init(&s->result.trace, 3);
+    for (int i = 0; i < ROWS; i++) {
+        double t = 1e-3 * i, angles[3] = {0};
+        sample row = {.time = t,
+                      .hub_angle = angle_at(t, 1),
+                      .first_angle = angle_at(t, 0.8),
+                      .last_angle = angle_at(t, -1),
+                      .hub_velocity = 0.6 * cos(9 * t),
+                      .first_velocity = 0.7 * cos(9 * t + 0.2),
+                      .last_velocity = -0.9 * sin(21 * t) * exp(-t),
+                      .force = force_at(t),
+                      .contact = force_at(t) > 0,
+                      .voltage = 1};
+        assert_int_equal(trace_add_row(&s->result.trace, &row, angles, angles), STATUS_OK);
+    }
+    for (int i = 0; i < 3; i++) {
+        event e = {.time = times[i], .kind = EVENT_IMPACT, .impulse = impulses[i], .index = -1};
+        assert_int_equal(trace_add_event(&s->result.trace, e), STATUS_OK);
+    }
+    s->result.summary.first_contact_s = first_contact;
+    s->result.summary.first_pulse_s = first_release - first_contact;
+    s->result.summary.first_pulse_time_to_peak_s = 0.035;
+    s->result.summary.first_pulse_peak_N = 2.1;
+    const trace_run run = {&s->scenario, &s->result, NULL};
+    assert_int_equal(trace_figure_init(&s->figure, NULL, panels, count, &run, 1, &f), STATUS_OK);
+}
+
+static inline void synthetic_finish(synthetic *s)
+{
+    trace_figure_finish(&s->figure);
+    run_finish(&s->result);
+}
+
+static const trace_panel run_panels[] = {
+    {.signals = {"force"}, .with_zero = true, .impulses = true, .inset = true},
+    {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
+    {.label = "Angular velocity", .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
+    {.label = "Voltage", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
+};
+enum { RUN_PANELS = 4 };
+
+// ---- looking at what was drawn
+
+// Draws on an unbounded recording; reports, and gives what the ink covers.
+static inline figure_rect record(const figure *fig, figure_report *report)
+{
+    fault f = {0};
+    figure_rect ink;
+    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
+    cairo_t *cr = cairo_create(surface);
+    status code = figure_paint(cr, fig, report, &f);
+    if (code != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    assert_int_equal(cairo_status(cr), CAIRO_STATUS_SUCCESS);
+    cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
+    cairo_destroy(cr);
+    cairo_surface_destroy(surface);
+    return ink;
+}
+
+static inline bool has_text(const figure_report *r, const char *wanted)
+{
+    for (int i = 0; i < r->text_count; i++) {
+        if (strcmp(r->texts[i].text, wanted) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static inline void expect_text(const figure_report *r, const char *wanted)
+{
+    if (!has_text(r, wanted)) {
+        for (int i = 0; i < r->text_count; i++) {
+            print_message("'%s'\n", r->texts[i].text);
+        }
+        fail_msg("the text '%s' is not drawn", wanted);
+    }
+}
+
+static inline void expect_inside(const figure_rect *r, const figure_rect *outer, const char *what)
+{
+    const double slack = 0.01;
+    if (r->x < outer->x - slack || r->y < outer->y - slack ||
+        r->x + r->width > outer->x + outer->width + slack ||
+        r->y + r->height > outer->y + outer->height + slack) {
+        fail_msg("%s at %g, %g of %g x %g is not within %g, %g of %g x %g", what, r->x, r->y,
+                 r->width, r->height, outer->x, outer->y, outer->width, outer->height);
+    }
+}
+
+static inline bool overlap(const figure_rect *a, const figure_rect *b)
+{
+    // line boxes are taller than letters
+    double down = fmin(a->y + a->height, b->y + b->height) - fmax(a->y, b->y);
+    double across = fmin(a->x + a->width, b->x + b->width) - fmax(a->x, b->x);
+    return across > 0.5 && down > 0.3 * fmin(a->height, b->height);
+}
+
+static inline void expect_tidy(const figure *fig)
+{
+    static figure_report r;
+    figure_rect ink = record(fig, &r);
+    // the ink is known in whole points only
+    figure_rect page = {0, 0, ceil(r.page.width), ceil(r.page.height)};
+    expect_inside(&ink, &page, "the ink");
+    assert_int_equal(r.panel_count, fig->panel_count);
+    for (int i = 0; i < r.text_count; i++) {
+        expect_inside(&r.texts[i].place, &r.page, r.texts[i].text);
+        for (int k = 0; k < i; k++) {
+            if (overlap(&r.texts[i].place, &r.texts[k].place)) {
+                fail_msg("'%s' covers '%s'", r.texts[i].text, r.texts[k].text);
+            }
+        }
+    }
+    for (int i = 0; i < r.panel_count; i++) {
+        expect_inside(&r.panels[i], &r.page, "a panel");
+        check_close(r.panels[i].x, r.panels[0].x, 0);
+        check_close(r.panels[i].width, r.panels[0].width, 0);
+        if (i > 0) {
+            check_below(r.panels[i - 1].y + r.panels[i - 1].height, r.panels[i].y);
+        }
+        if (r.insets[i].width > 0) {
+            expect_inside(&r.insets[i], &r.panels[i], "an inset");
+        }
+    }
+}
+
+// The whole figure as pixels, `scale` to a point.
+static inline cairo_surface_t *paint_pixels(const figure *fig, double scale, figure_report *report)
+{
+    fault f = {0};
+    double width, height;
+    figure_size(fig, &width, &height);
+    cairo_surface_t *surface = cairo_image_surface_create(
+        CAIRO_FORMAT_RGB24, (int)ceil(width * scale), (int)ceil(height * scale));
+    cairo_surface_set_device_scale(surface, scale, scale);
+    cairo_t *cr = cairo_create(surface);
+    assert_int_equal(figure_paint(cr, fig, report, &f), STATUS_OK);
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    return surface;
+}
+
+typedef struct pixel {
+    int red, green, blue;
+} pixel;
+
+static inline pixel pixel_at(cairo_surface_t *surface, int x, int y)
+{
+    uint32_t value;
+    assert_true(x >= 0 && x < cairo_image_surface_get_width(surface));
+    assert_true(y >= 0 && y < cairo_image_surface_get_height(surface));
+    memcpy(&value,
+           cairo_image_surface_get_data(surface) +
+               (ptrdiff_t)y * cairo_image_surface_get_stride(surface) + 4 * (ptrdiff_t)x,
+           sizeof value);
+    return (pixel){value >> 16 & 255, value >> 8 & 255, value & 255};
+}
+
+static inline int saturation(pixel p)
+{
+    int most = p.red > p.green ? p.red : p.green, least = p.red < p.green ? p.red : p.green;
+    most = most > p.blue ? most : p.blue;
+    least = least < p.blue ? least : p.blue;
+    return most - least;
+}
+
+// Number of strongly coloured pixels (curves) in a rectangle given in points.
+static inline int coloured_pixels(cairo_surface_t *surface, double scale, figure_rect r)
+{
+    int count = 0;
+    for (int y = (int)ceil(r.y * scale); y < (int)floor((r.y + r.height) * scale); y++) {
+        for (int x = (int)ceil(r.x * scale); x < (int)floor((r.x + r.width) * scale); x++) {
+            count += saturation(pixel_at(surface, x, y)) > 60;
+        }
+    }
+    return count;
+}
+
+static inline char *read_file(const char *path, size_t *length)
+{
+    FILE *file = fopen(path, "rb");
+    *length = 0;
+    if (file == NULL) {
+        fail_msg("there is no file %s", path);
+        return NULL;
+    }
+    char *bytes = malloc(1 << 24);
+    assert_non_null(bytes);
+    *length = fread(bytes, 1, (1 << 24) - 1, file);
+    bytes[*length] = '\0';
+    fclose(file);
+    return bytes;
+}
+
+static inline void expect_same_bytes(const char *a, const char *b)
+{
+    size_t a_length, b_length;
+    char *a_bytes = read_file(a, &a_length), *b_bytes = read_file(b, &b_length);
+    assert_true(a_length > 500);
+    assert_int_equal(a_length, b_length);
+    assert_memory_equal(a_bytes, b_bytes, a_length);
+    free(a_bytes);
+    free(b_bytes);
+}
+
+static inline void write_figure(const figure *fig, const char *path)
+{
+    fault f = {0};
+    if (figure_write(fig, path, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+// ---- a folder for files
+
+static inline int make_folder(void **state)
+{
+    (void)state;
+    snprintf(folder, sizeof folder, "/tmp/impactlab-plot-XXXXXX");
+    return mkdtemp(folder) == NULL;
+}
+
+static inline int remove_folder(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
+    text_release();
+    return system(command) != 0;
+}

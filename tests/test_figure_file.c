@@ -1,0 +1,232 @@
+// Figures as files: bytes, fonts, identifiers, data, faults.
+#include "tests/plot_fixture.h"
+
+// fontconfig keeps its cache until the process ends
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig\n";
+}
+
+// ---- files
+
+static void same_bytes_also_for_later_figures(void **state)
+{
+    (void)state;
+    static const char *const formats[] = {"png", "pdf", "svg"};
+    synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    for (int n = 1; n <= 20; n++) {
+        for (int i = 0; i < 3; i++) {
+            char name[64];
+            snprintf(name, sizeof name, "same-%d.%s", n, formats[i]);
+            write_figure(&s.figure.figure, path_of(name));
+            if (n == 2 || n == 20) {
+                char first[64];
+                snprintf(first, sizeof first, "same-1.%s", formats[i]);
+                expect_same_bytes(path_of(first), path_of(name));
+            }
+        }
+    }
+    synthetic_finish(&s);
+}
+
+// All bytes of a PDF with its packed streams unpacked behind them.
+static GString *unpack_pdf(const char *path)
+{
+    size_t length;
+    char *bytes = read_file(path, &length);
+    GString *all = g_string_new_len(bytes, (gssize)length);
+    for (size_t at = 0; at + 7 < length; at++) {
+        if (memcmp(bytes + at, "stream\n", 7) != 0) {
+            continue;
+        }
+        static unsigned char out[1 << 20];
+        z_stream z = {.next_in = (Bytef *)bytes + at + 7,
+                      .avail_in = (uInt)(length - at - 7),
+                      .next_out = out,
+                      .avail_out = sizeof out};
+        if (inflateInit(&z) == Z_OK) {
+            inflate(&z, Z_FINISH);
+            g_string_append_len(all, (const char *)out, (gssize)z.total_out);
+            inflateEnd(&z);
+        }
+    }
+    free(bytes);
+    return all;
+}
+
+static bool contains(const GString *bytes, const char *wanted)
+{
+    return memmem(bytes->str, bytes->len, wanted, strlen(wanted)) != NULL;
+}
+
+static void pdf_embeds_fonts_and_has_no_type_3(void **state)
+{
+    (void)state;
+    synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    write_figure(&s.figure.figure, path_of("fonts.pdf"));
+    GString *pdf = unpack_pdf(path_of("fonts.pdf"));
+    assert_true(contains(pdf, "/FontFile2"));
+    assert_true(contains(pdf, "DejaVuSans"));
+    assert_false(contains(pdf, "/Type3"));
+    assert_true(contains(pdf, "Synthetic run & <more>"));
+    assert_true(contains(pdf, "arm.model=printed"));
+    // cairo 1.16 leaves out the D:
+    assert_true(contains(pdf, "(20000101") || contains(pdf, "(D:20000101"));
+    // curves are lines, not pictures
+    assert_false(contains(pdf, "/Subtype /Image"));
+    g_string_free(pdf, TRUE);
+    synthetic_finish(&s);
+}
+
+static void png_knows_its_resolution_and_origin(void **state)
+{
+    (void)state;
+    synthetic s;
+    synthetic_init(&s, run_panels, 2);
+    s.figure.figure.width = 127;
+    s.figure.figure.height = 101.6;
+    s.figure.figure.dpi = 300;
+    write_figure(&s.figure.figure, path_of("notes.png"));
+    FILE *file = fopen(path_of("notes.png"), "rb");
+    assert_non_null(file);
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, file);
+    png_read_info(png, info);
+    assert_int_equal(png_get_image_width(png, info), 1500);
+    assert_int_equal(png_get_image_height(png, info), 1200);
+    assert_int_equal(png_get_pixels_per_meter(png, info), 11811);
+    png_textp notes;
+    int count = 0, found = 0;
+    png_get_text(png, info, &notes, &count);
+    for (int i = 0; i < count; i++) {
+        found += strcmp(notes[i].key, "Title") == 0 &&
+                 strcmp(notes[i].text, "Synthetic run & <more>") == 0;
+        found +=
+            strcmp(notes[i].key, "Software") == 0 && strncmp(notes[i].text, "impactlab ", 10) == 0;
+        found += strcmp(notes[i].key, "Parameters") == 0 &&
+                 strstr(notes[i].text, "motor.voltage=1") != NULL;
+    }
+    assert_int_equal(found, 3);
+    png_destroy_read_struct(&png, &info, NULL);
+    fclose(file);
+    synthetic_finish(&s);
+}
+
+static void svg_ids_are_unique_and_all_references_resolve(void **state)
+{
+    (void)state;
+    synthetic s;
+    size_t length;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    write_figure(&s.figure.figure, path_of("ids.svg"));
+    char *svg = read_file(path_of("ids.svg"), &length);
+    assert_non_null(strstr(svg, "<metadata>"));
+    assert_non_null(strstr(svg, "<title>Synthetic run &amp; &lt;more&gt;</title>"));
+    GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    for (char *c = strstr(svg, " id=\""); c != NULL; c = strstr(c, " id=\"")) {
+        c += 5;
+        assert_true(g_hash_table_add(ids, g_strndup(c, strcspn(c, "\""))));
+    }
+    int references = 0;
+    static const char *const openings[] = {"href=\"#", "url(#"};
+    for (int kind = 0; kind < 2; kind++) {
+        for (char *c = strstr(svg, openings[kind]); c != NULL; c = strstr(c, openings[kind])) {
+            c += strlen(openings[kind]);
+            char *id = g_strndup(c, strcspn(c, "\")"));
+            assert_true(g_hash_table_contains(ids, id));
+            g_free(id);
+            references++;
+        }
+    }
+    assert_true(references > 100);
+    g_hash_table_destroy(ids);
+    free(svg);
+    synthetic_finish(&s);
+}
+
+static void csv_holds_what_is_drawn(void **state)
+{
+    (void)state;
+    double x[] = {0, 0.1, 0.2}, y[] = {1, (double)NAN, -2.5};
+    figure_series series = {.name = "force, \"raw\"", .x = x, .y = y, .count = 3};
+    figure_impulse impulse = {0.1, 0.04};
+    figure_panel panel = {.y = {.name = "force", .unit = "N"},
+                          .series = &series,
+                          .series_count = 1,
+                          .impulses = &impulse,
+                          .impulse_count = 1,
+                          .impulse_unit = "N s"};
+    figure_mark mark = {0.1, "<i>contact</i>"};
+    figure fig = {.panels = &panel, .panel_count = 1, .marks = &mark, .mark_count = 1};
+    fault f = {0};
+    size_t length;
+    assert_int_equal(figure_write_csv(&fig, path_of("data.csv"), &f), STATUS_OK);
+    char *csv = read_file(path_of("data.csv"), &length);
+    assert_string_equal(csv, "panel,series,x,y\n"
+                             "force[N],\"force, \"\"raw\"\"\",0,1\n"
+                             "force[N],\"force, \"\"raw\"\"\",0.1,\n"
+                             "force[N],\"force, \"\"raw\"\"\",0.2,-2.5\n"
+                             "force[N],impulse[N s],0.1,0.04\n"
+                             "mark,contact,0.1,\n");
+    free(csv);
+}
+
+static void faults_are_sentences(void **state)
+{
+    (void)state;
+    fault f = {0};
+    synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    figure *fig = &s.figure.figure;
+    assert_int_equal(figure_write(fig, path_of("x.gif"), &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, ".svg"));
+    assert_int_equal(figure_write(fig, path_of("png"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_write(fig, path_of("nowhere/x.png"), &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "nowhere/x.png"));
+    fig->dpi = 1e6;
+    assert_int_equal(figure_write(fig, path_of("x.png"), &f), STATUS_BAD_ARGUMENT);
+    fig->dpi = 0;
+    fig->width = 20;
+    assert_int_equal(figure_write(fig, path_of("x.png"), &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "larger page"));
+    fig->panel_count = 0;
+    assert_int_equal(figure_write(fig, path_of("x.pdf"), &f), STATUS_BAD_ARGUMENT);
+    // nothing was left behind
+    assert_int_not_equal(access(path_of("x.png"), F_OK), 0);
+    assert_int_not_equal(access(path_of("x.pdf"), F_OK), 0);
+    synthetic_finish(&s);
+}
+
+static void a_full_disk_is_noticed(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"full.png", "full.pdf", "full.svg"};
+    synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    for (int i = 0; i < 3; i++) {
+        fault f = {0};
+        assert_int_equal(symlink("/dev/full", path_of(names[i])), 0);
+        assert_int_equal(figure_write(&s.figure.figure, path_of(names[i]), &f),
+                         STATUS_CANNOT_WRITE);
+        assert_true(strlen(f.text) > 10);
+    }
+    synthetic_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_bytes_also_for_later_figures),
+        cmocka_unit_test(pdf_embeds_fonts_and_has_no_type_3),
+        cmocka_unit_test(png_knows_its_resolution_and_origin),
+        cmocka_unit_test(svg_ids_are_unique_and_all_references_resolve),
+        cmocka_unit_test(csv_holds_what_is_drawn),
+        cmocka_unit_test(faults_are_sentences),
+        cmocka_unit_test(a_full_disk_is_noticed),
+    };
+    return cmocka_run_group_tests_name("figure_file", tests, make_folder, remove_folder) != 0;
+}
