@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/plot/figure_file.h"
 #include "src/base/whole_file.h"
 #include "src/base/csv.h"
 

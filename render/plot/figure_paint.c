@@ -1,4 +1,4 @@
-#include "render/plot/plot.h"
+// Paints a figure: its layers from the lowest to the uppermost, once all are placed.
 
 #include <assert.h>
 #include <math.h>
