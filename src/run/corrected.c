@@ -21,7 +21,7 @@ static status explain(const corrected_run *c, status s, fault *f)
                          "at t = %.9g s: %s (residual %.3g J); the method was %s, a "
                          "shorter method.step may help",
                          m->state[SLOT_TIME], status_text(s),
-                         motion_energy_residual(&c->arm, m, m->state), m->stepper->name);
+                         motion_energy_residual(&c->arm, m, m->state), m->engine->name);
     }
     return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
 }
@@ -44,7 +44,7 @@ static status travel(corrected_run *c, double until, fault *f)
         if (s != STATUS_OK) {
             return fault_set(
                 f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
-                m->failure_time, m->state[SLOT_TIME], status_text(s), m->stepper->name);
+                m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
         }
 
         // what came of it
@@ -95,13 +95,13 @@ static status begin(corrected_run *c, fault *f)
     motion *m = c->motion;
     const parameters *p = &r->scenario->parameters;
     summary *s = &r->result->summary;
-    snprintf(s->method, sizeof s->method, "%s", m->stepper->name);
+    snprintf(s->method, sizeof s->method, "%s", m->engine->name);
     if (motion_unresolved(&c->arm, m)) {
         snprintf(s->message, sizeof s->message,
                  "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): the "
                  "method was %s, what happens within a few steps of an impact is rough; a shorter "
                  "method.step resolves it",
-                 p->method.step, c->arm.links, c->arm.highest_frequency, m->stepper->name);
+                 p->method.step, c->arm.links, c->arm.highest_frequency, m->engine->name);
     }
 
     status failed = recording_open_trace(r, c->arm.dof, f);

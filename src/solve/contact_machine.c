@@ -47,15 +47,6 @@
 #include "src/arm/impact.h"
 #include "src/solve/locate.h"
 
-// Steps over several time steps, which slow arms take, may go this far in (fastest rate) x (step):
-// they are few, and what they lose in a second is less than the short ones of fast arms do.
-#define LONG_RESOLUTION 0.45
-// Steps that are cut short and stay below this take the explicit method's brief form, and with them
-// all that is located within.
-#define BRIEF_RESOLUTION 0.2
-// The explicit method takes at most this many time steps at once.
-#define MOST_AT_ONCE    12
-
 #define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
 #define MOST_HALVINGS   8     // of a step that does not converge or makes energy
 #define LEAST_AFTER_CUT 1e-9  // share of a step; what is left of one before a cut is longer
@@ -263,24 +254,6 @@ static void accept(motion *m, double step)
     m->largest_penetration = fmax(m->largest_penetration, -m->state[SLOT_GAP]);
 }
 
-// How long the next step may be, and by which form of the explicit method.
-static double step_length(const arm *a, motion *m, double remaining, double step)
-{
-    m->brief = false;
-    if (motion_held_still(m)) {
-        return remaining;
-    }
-    double longest = step;
-    if (m->stepper == &explicit_stepper) {
-        double steps = floor(LONG_RESOLUTION / (step * fmax(a->fastest_rate, 1e-3)));
-        longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step
-                             : step / ceil(step * a->fastest_rate / EXPLICIT_RESOLUTION);
-    }
-    // a step that something cuts to half or less, such as the next sample of a controller
-    m->brief = remaining < 0.5 * longest && remaining * a->fastest_rate <= BRIEF_RESOLUTION;
-    return remaining < longest * (1 + 1e-9) ? remaining : longest;
-}
-
 static motion_event event_of(const motion *m, watch w)
 {
     switch (w) {
@@ -331,7 +304,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     *report = (motion_report){.event = MOTION_REACHED};
 
     // as far as accuracy allows, the cut, or the first event
-    double wanted = step_length(a, m, until - m->state[SLOT_TIME], step), h = wanted;
+    double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step), h = wanted;
     watch first = WATCH_GAP;
     bool any = false;
     status s = step_to_event(a, m, &h, &first, &any);

@@ -9,10 +9,20 @@
 // Dormand, Journal of Computational and Applied Mathematics 7 (1981), 67-75, their RK6(5)8M). Its
 // stability polynomial is that of the exponential up to z^7: at z = 0.2 it loses 6e-11 of the
 // amplitude and 1e-11 rad, for two thirds of the work.
+#include <math.h>
 #include <string.h>
 
 #include "src/arm/chain_kernel.h"
 #include "src/solve/motion.h"
+
+// Steps over several time steps, which slow arms take, may go this far in (fastest rate) x (step):
+// they are few, and what they lose in a second is less than the short ones of fast arms do.
+#define LONG_RESOLUTION 0.45
+// Steps that are cut short and stay below this take the method's brief form, and with them all that
+// is located within.
+#define BRIEF_RESOLUTION 0.2
+// At most this many time steps are taken at once.
+#define MOST_AT_ONCE 12
 
 enum { LONG_STAGES = 12, BRIEF_STAGES = 8 };
 
@@ -146,4 +156,18 @@ static status step(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
-const stepper explicit_stepper = {"Runge-Kutta 8", step, LONG_STAGES, 0};
+// How long the next step may be, and by which form of the method.
+static double begin(const arm *a, motion *m, double remaining, double step_length)
+{
+    double steps = floor(LONG_RESOLUTION / (step_length * fmax(a->fastest_rate, 1e-3)));
+    double longest = steps >= 2
+                         ? fmin(steps, MOST_AT_ONCE) * step_length
+                         : step_length / ceil(step_length * a->fastest_rate / EXPLICIT_RESOLUTION);
+
+    // a step that something cuts to half or less, such as the next sample of a controller
+    m->brief = remaining < 0.5 * longest && remaining * a->fastest_rate <= BRIEF_RESOLUTION;
+    return remaining < longest * (1 + 1e-9) ? remaining : longest;
+}
+
+const engine explicit_engine = {
+    .name = "Runge-Kutta 8", .begin = begin, .state_at = step, .scratch_vectors = LONG_STAGES};

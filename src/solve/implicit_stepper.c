@@ -451,5 +451,16 @@ static status step(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
-const stepper newmark_stepper = {"Newmark", step, 0, sizeof(implicit_sweep)};
-const stepper generalized_alpha_stepper = {"generalised-alpha", step, 0, sizeof(implicit_sweep)};
+// A time step, or what remains.
+static double begin(const arm *a, motion *m, double remaining, double step_length)
+{
+    (void)a, (void)m;
+    return remaining < step_length * (1 + 1e-9) ? remaining : step_length;
+}
+
+const engine newmark_engine = {
+    .name = "Newmark", .begin = begin, .state_at = step, .link_scratch = sizeof(implicit_sweep)};
+const engine generalized_alpha_engine = {.name = "generalised-alpha",
+                                         .begin = begin,
+                                         .state_at = step,
+                                         .link_scratch = sizeof(implicit_sweep)};

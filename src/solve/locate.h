@@ -5,14 +5,6 @@
 
 #define FORCE_TOLERANCE 1e-9 // tension that counts as a release [N]
 
-// Functions that are positive while the mode the motion is in may last.
-typedef enum watch {
-    WATCH_GAP,      // the gap, in free flight
-    WATCH_FORCE,    // the contact force
-    WATCH_HUB,      // the hub's velocity in the direction it slides
-    WATCH_STICTION, // what friction has left while the hub sticks
-} watch;
-
 // Looks for the first function that leaves its admissible side within (0, *h], m->trial being the
 // state after a step *h. If there is one, *any is true, *first says which, and *h and m->trial move
 // to the far side of that instant. What a step could not be taken for is returned.

@@ -8,26 +8,28 @@
 // The event method steps implicitly where the explicit one would need more substeps than this.
 #define MOST_SUBSTEPS   90
 
+#define CACHE_LINE      64 // [bytes]
+
 #define PROJECTION_GAP  1e-14 // drift that is projected away in contact [m]
 #define PROJECTION_RATE 1e-13 // [m/s]
 
-static void choose_stepper(const arm *a, motion *m, const method_parameters *method)
+static void choose_engine(const arm *a, motion *m, const method_parameters *method)
 {
     double rho = method->spectral_radius;
     bool too_stiff = a->fastest_rate * method->step > EXPLICIT_RESOLUTION * MOST_SUBSTEPS;
     if (method->name == METHOD_NEWMARK) {
-        m->stepper = &newmark_stepper;
+        m->engine = &newmark_engine;
         m->beta = method->beta;
         m->gamma = method->gamma;
     } else if (method->name == METHOD_GENERALIZED_ALPHA || too_stiff) {
-        m->stepper = &generalized_alpha_stepper;
+        m->engine = &generalized_alpha_engine;
         // Chung and Hulbert (1993), equations (17), (18), (25)
         m->alpha_m = (2 * rho - 1) / (rho + 1);
         m->alpha_f = rho / (rho + 1);
         m->gamma = 0.5 - m->alpha_m + m->alpha_f;
         m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
     } else {
-        m->stepper = &explicit_stepper;
+        m->engine = &explicit_engine;
     }
 }
 
@@ -42,20 +44,24 @@ motion *motion_create(const arm *a, const method_parameters *method)
     m->nominal_step = method->step;
     m->cut = HUGE_VAL;
     m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT;
-    choose_stepper(a, m, method);
+    choose_engine(a, m, method);
 
     size_t size = (size_t)m->size, n = (size_t)a->dof, links = (size_t)a->links;
-    size_t sweeps = links * m->stepper->link_scratch;
+    size_t sweeps = links * m->engine->link_scratch;
     m->state = calloc(size, sizeof(double));
     m->trial = calloc(size, sizeof(double));
     m->between = calloc(size, sizeof(double));
-    m->stages = calloc((size_t)(m->stepper->scratch_vectors + 1) * (size_t)smooth_length(m),
-                       sizeof(double));
+    m->stages =
+        calloc((size_t)(m->engine->scratch_vectors + 1) * (size_t)smooth_length(m), sizeof(double));
     m->scratch = calloc(4 * n, sizeof(double));
     m->links = calloc(links, sizeof(chain_link));
     m->sweeps = sweeps > 0 ? calloc(1, sweeps) : NULL;
+    size_t memory = m->engine->memory_size;
+    m->memory = memory > 0
+                    ? aligned_alloc(CACHE_LINE, (memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE)
+                    : NULL;
     if (!m->state || !m->trial || !m->between || !m->stages || !m->scratch || !m->links ||
-        (sweeps > 0 && !m->sweeps)) {
+        (sweeps > 0 && !m->sweeps) || (memory > 0 && !m->memory)) {
         motion_destroy(m);
         return NULL;
     }
@@ -72,6 +78,7 @@ void motion_destroy(motion *m)
         free(m->scratch);
         free(m->links);
         free(m->sweeps);
+        free(m->memory);
         free(m);
     }
 }
@@ -132,6 +139,11 @@ void motion_project(const arm *a, motion *m, double *state)
     motion_evaluate(a, m, state);
 }
 
+double motion_begin_stride(const arm *a, motion *m, double remaining, double step)
+{
+    return motion_held_still(m) ? remaining : m->engine->begin(a, m, remaining, step);
+}
+
 // Time passes over an arm that is held still.
 static void let_time_pass(motion *m, double h)
 {
@@ -151,7 +163,7 @@ status motion_try_step(const arm *a, motion *m, double h)
     memcpy(trial, m->state, SLOT_COUNT * sizeof(double));
     trial[SLOT_TIME] += h;
     trial[SLOT_JUMPED] = trial[SLOT_IMPULSE] = 0;
-    status s = m->stepper->step(a, m, h);
+    status s = m->engine->state_at(a, m, h);
     if (s != STATUS_OK) {
         return s;
     }

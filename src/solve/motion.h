@@ -1,13 +1,13 @@
-// The mutable side of a simulation: one contiguous state vector, its scratch, and a step of its
+// The mutable side of a simulation: one contiguous state vector, its scratch, and a stride of its
 // smooth motion.
 //
-// Between events a stepper (explicit or implicit) advances the motion in one contact state. Events
-// and what they change are the contact machine's (contact_machine.h), which stands on this and on
-// locate.h.
+// Between events an engine (engine.h) advances the motion in one contact state. Events and what
+// they change are the contact machine's (contact_machine.h), which stands on this and on locate.h.
 #pragma once
 
 #include "src/arm/chain.h"
 #include "src/base/status.h"
+#include "src/solve/engine.h"
 
 // Steps of a fraction of a time step keep (fastest rate) x (step) below this; the 8th-order method
 // then loses a few parts in 1e12 of the fastest mode's energy in one.
@@ -42,7 +42,7 @@ enum motion_quadrature {
     QUADRATURE_COUNT
 };
 
-typedef struct motion {
+struct motion {
     // A checkpoint is a copy of `state`, size doubles:
     // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n].
     double *state;
@@ -51,11 +51,11 @@ typedef struct motion {
     double start_energy; // kinetic and strain energy at the start [J]
 
     // how the smooth motion is advanced
-    const struct stepper *stepper;
+    const engine *engine;
     double nominal_step; // method.step [s]
     bool brief;          // explicit: the step takes the method of order 6
     double cut; // an instant at which a step ends without being made for it [s]; HUGE_VAL: none
-    double alpha_m, alpha_f, beta, gamma; // implicit steppers' coefficients [-]
+    double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
 
     // scratch, nothing of it outlives a step
     double *trial;   // state at the end of the step tried; after it, at the step's start
@@ -64,6 +64,7 @@ typedef struct motion {
     double *scratch; // vectors of length dof
     chain_link *links;
     void *sweeps; // the implicit solver's scratch, one element a link
+    void *memory; // the engine's own: the stride it is in
 
     // records since motion_watch
     long steps;                 // time steps taken: `step` long, or cut short by an event or a stop
@@ -71,20 +72,7 @@ typedef struct motion {
     double pulse_peak_time;     // [s]
     double largest_penetration; // [m]
     double failure_time;        // where a step could not be taken [s]
-} motion;
-
-// Advances `m->state` by h into `m->trial` in the contact state it is in: angles, velocities,
-// quadratures, algorithmic accelerations.
-typedef struct stepper {
-    const char *name;
-    status (*step)(const arm *a, motion *m, double h);
-    int scratch_vectors; // how many vectors of the state's smooth length it wants in stages
-    size_t link_scratch; // bytes a link it wants in sweeps
-} stepper;
-
-extern const stepper explicit_stepper; // Runge-Kutta of order 8, of order 6 in brief steps
-extern const stepper newmark_stepper;
-extern const stepper generalized_alpha_stepper; // the same step with other coefficients
+};
 
 // Views into a state vector.
 static inline double *state_angles(const motion *m, double *state)
@@ -138,7 +126,12 @@ static inline bool motion_held_still(const motion *m)
     return m->dof == 1 ? holds > 0 : holds >= m->dof;
 }
 
-// Advances m->state by h into m->trial, books the ledger, and checks the result for finiteness.
+// Begins a stride from m->state that is not to go beyond `remaining` [s]; `step` as engine.begin
+// has it. Returns its length [s]: all that remains for an arm that is held still.
+double motion_begin_stride(const arm *a, motion *m, double remaining, double step);
+
+// The state at h in the stride begun into m->trial, with the ledger booked and the result checked
+// for finiteness. Stepping engines need no stride: they step from m->state.
 status motion_try_step(const arm *a, motion *m, double h);
 
 // Puts an evaluated state in contact back onto the constraint, position and velocity, along
@@ -146,10 +139,16 @@ status motion_try_step(const arm *a, motion *m, double h);
 // that moved it.
 void motion_project(const arm *a, motion *m, double *state);
 
+// Whether the motion's steps are those of an implicit method.
+static inline bool motion_is_implicit(const motion *m)
+{
+    return m->engine == &newmark_engine || m->engine == &generalized_alpha_engine;
+}
+
 // Whether the motion's steps are too long for the arm's fastest modes, as with many links.
 static inline bool motion_unresolved(const arm *a, const motion *m)
 {
-    return m->stepper != &explicit_stepper && m->nominal_step * a->fastest_rate > 1;
+    return motion_is_implicit(m) && m->nominal_step * a->fastest_rate > 1;
 }
 
 // Energy that the ledger does not account for at a state of this motion [J].

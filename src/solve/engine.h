@@ -1,0 +1,80 @@
+// An engine: what advances the smooth motion of one contact state, and what it can tell of the
+// stride it is in. The contact machine stands above all engines and knows nothing else of them.
+//
+//     begin      prepares a stride from m->state, in its contact state, as long as is asked for or
+//                accuracy allows;
+//     state_at   gives the state anywhere within the stride: at its end, at an event, at a row;
+//     look, bend (dense engines) let locate.h find events and peaks without another stride.
+//
+// A dense engine has the whole stride in hand after `begin` (a series, a collocation polynomial, a
+// sum of modes), so state_at costs an evaluation. A stepping engine has not: there state_at is a
+// step of the method from the stride's start, and locate.h steps again for all it looks for.
+//
+// A stride depends on m->state and on what `begin` is given, on nothing else: a motion that goes on
+// from a copy of its state goes on with the same bits. m->cut, where a stride may be broken off, is
+// not to enter it.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "src/arm/arm.h"
+#include "src/base/status.h"
+
+typedef struct motion motion;
+
+// Functions that are positive while the mode the motion is in may last.
+typedef enum watch {
+    WATCH_GAP,      // the gap, in free flight [m]
+    WATCH_FORCE,    // the contact force [N]
+    WATCH_HUB,      // the hub's velocity in the direction it slides [rad/s]
+    WATCH_STICTION, // what friction has left while the hub sticks, kst - |friction| [N m]
+} watch;
+
+// A function at an instant.
+typedef struct glance {
+    double value; // in its unit
+    double slope; // its derivative by time
+} glance;
+
+typedef struct engine {
+    const char *name;
+
+    // Prepares a stride from m->state, an arm that is not held still. It is not to go beyond
+    // `remaining` [s]; `step` is the time step of the method's parameters [s], which an engine that
+    // controls its own accuracy passes over. Returns its length [s], or a value that is not
+    // positive if none can be made.
+    double (*begin)(const arm *a, motion *m, double remaining, double step);
+
+    // Angles, velocities, quadratures, accelerations, algorithmic accelerations, reactions and gap
+    // at h in (0, length] into m->trial, whose other slots are set already; in contact the state is
+    // back on the constraint. STATUS_NEWTON_FAILED or STATUS_UNSTABLE ask for a shorter stride.
+    status (*state_at)(const arm *a, motion *m, double h);
+
+    // Dense engines, else NULL. The watched function and its slope at h in [0, length]. Where it
+    // begins at its edge (a release, a bounce, a break-away) the engine may divide it by a power of
+    // h, so that it begins off the edge and has the same sign and roots else.
+    glance (*look)(const arm *a, const motion *m, watch w, double h);
+
+    // Dense engines: a bound on the magnitude of the second derivative by time of what `look` gives
+    // for h from `from` to `to`. With it, the function is nowhere in between below the lower of its
+    // ends less bend (to - from)^2 / 8. For stiction the bound is that of the friction torque.
+    double (*bend)(const arm *a, const motion *m, watch w, double from, double to);
+
+    // Dense engines: the contact force [N] and its slope [N/s], never divided by anything.
+    glance (*force_at)(const arm *a, const motion *m, double h);
+
+    int scratch_vectors; // vectors of the state's smooth length that it wants in m->stages
+    size_t link_scratch; // bytes a link that it wants in m->sweeps
+    size_t memory_size;  // bytes, aligned to a cache line, that it wants in m->memory
+} engine;
+
+extern const engine explicit_engine; // Runge-Kutta of order 8, of order 6 in brief steps; stepping
+extern const engine newmark_engine;  // implicit, stepping
+extern const engine generalized_alpha_engine; // the same step with other coefficients
+
+// Whether events and peaks are found in the stride itself.
+static inline bool engine_is_dense(const engine *e)
+{
+    return e->look != NULL;
+}
