@@ -14,42 +14,9 @@
 // input, one that goes beyond it is cut.
 #pragma once
 
-#include "src/run/run.h"
-
-struct background_run;
-
-enum { SESSION_INPUT_TEXT = 160 };
-
-typedef enum session_input_kind {
-    SESSION_INPUT_START, // another value from the start
-    SESSION_INPUT_TIMED, // another value from `time` on
-    SESSION_INPUT_PUSH   // an impulse at the tip
-} session_input_kind;
-
-typedef struct session_input {
-    session_input_kind kind;
-    double time;                   // [s]
-    int parameter;                 // index in parameter_table; -1 for a push
-    double value;                  // timed: the new value; push: impulse [N s]
-    char text[SESSION_INPUT_TEXT]; // the value as it was given
-} session_input;
-
-typedef struct session {
-    scenario base;         // as opened
-    session_input *inputs; // inputs[0 .. input_count) are in effect, the rest can be redone
-    int input_count, input_total, input_capacity;
-    scenario effective; // base with the inputs; owns its actions only
-    run_result run;     // of `effective`
-    run_result other;   // the run branched from
-    bool has_other;
-    double now;       // the cursor [s]
-    size_t row;       // the last row whose time is not after `now`
-    double seen;      // the latest instant the cursor has been at since the last change [s]
-    unsigned version; // counts the computed runs
-    struct background_run *computing; // the run, if it is not complete
-    double patience;                  // for how long a change waits for its run [s]
-    size_t surveyed;                  // rows whose force is in the summary of an incomplete run
-} session;
+#include "src/session/cursor.h"
+#include "src/session/inputs.h"
+#include "src/session/session_run.h"
 
 // Takes over the scenario (also on failure) and computes its run. A run that fails numerically is
 // kept as far as it went, session.run.summary says why. STATUS_BAD_ARGUMENT if the rows would not
@@ -58,49 +25,3 @@ typedef struct session {
 status session_init(session *s, scenario *base, fault *f);
 status session_open(session *s, scenario *base, double patience, fault *f);
 void session_finish(session *s);
-
-// Takes note of what has been computed since the last call. True if anything has.
-bool session_follow(session *s);
-// Ends a run that is being computed; its rows so far stay, its status is STATUS_STOPPED. False if
-// there was none, or it was just over.
-bool session_stop(session *s);
-// Computes what is missing of a run that was stopped.
-status session_go_on(session *s, fault *f);
-
-// The row at the cursor, never NULL.
-const sample *session_sample(const session *s);
-// The end of what has been computed [s].
-double session_end(const session *s);
-
-// Moves the cursor to an instant, kept within the run.
-void session_seek(session *s, double time);
-// Moves the cursor by rows, back if negative. False at an end.
-bool session_step(session *s, long rows);
-// Moves to the next event after the cursor (direction 1) or the one before it (-1): to the row just
-// after the event. False if there is none. session_event tells the event at the cursor, or NULL.
-bool session_step_event(session *s, int direction);
-const event *session_event(const session *s);
-
-// The parameters as script and inputs have set them at an instant.
-parameters session_parameters_at(const session *s, double time);
-
-// Gives a parameter another value: from the cursor's instant on if it may change during a run (and
-// the cursor is not at the start), else from the start. Records an input and computes the run anew;
-// what could be redone is forgotten. On failure nothing changes and f says why.
-status session_change(session *s, int parameter, const char *text, fault *f);
-// The same for an impulse at the tip [N s].
-status session_push(session *s, double impulse, fault *f);
-
-// Takes back the last input, or puts it in again. STATUS_BAD_ARGUMENT if there is none.
-status session_undo(session *s, fault *f);
-status session_redo(session *s, fault *f);
-
-// Keeps the present run for comparison; changes then make another one beside it.
-// STATUS_BAD_ARGUMENT while it is being computed.
-status session_branch(session *s, fault *f);
-// Forgets the run kept for comparison.
-void session_forget_other(session *s);
-
-// The last row of a trace whose time is not after `time`; 0 for an earlier time. The trace must
-// have a row.
-size_t trace_row_at(const trace *t, double time);

@@ -1,0 +1,265 @@
+#include "src/session/session_run.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/run/background_run.h"
+#include "src/run/resume.h"
+#include "src/session/cursor.h"
+
+#define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
+#define ROW_SPARE     1.5                   // rows of events beside those of the grid
+#define SHORT_WAIT    0.001                 // for the first row of a run that takes long [s]
+
+enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
+
+static int count_actions(const session *s)
+{
+    int count = s->base.action_count;
+    for (int i = 0; i < s->input_count; i++) {
+        count += s->inputs[i].kind != SESSION_INPUT_START;
+    }
+    return count;
+}
+
+// Inserts an action behind those that are not later.
+static void insert_action(scenario *to, action a)
+{
+    int at = to->action_count++;
+    for (; at > 0 && to->actions[at - 1].time > a.time; at--) {
+        to->actions[at] = to->actions[at - 1];
+    }
+    to->actions[at] = a;
+}
+
+// The scenario with the inputs in effect. Its actions are the only thing it owns.
+static status build_effective(const session *s, scenario *to, fault *f)
+{
+    *to = s->base;
+    to->expectation_count = 0;
+    to->action_count = 0;
+    to->actions = calloc((size_t)count_actions(s) + 1, sizeof *to->actions);
+    if (to->actions == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+    status code = STATUS_OK;
+    for (int i = 0; i < s->base.action_count; i++) {
+        insert_action(to, s->base.actions[i]);
+    }
+    for (int i = 0; i < s->input_count && code == STATUS_OK; i++) {
+        const session_input *in = &s->inputs[i];
+        if (in->kind == SESSION_INPUT_START) {
+            code = parameter_set_text(&to->parameters, in->parameter, in->text, f);
+        } else {
+            action a = {.time = in->time,
+                        .kind = in->kind == SESSION_INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
+                        .parameter = in->parameter,
+                        .value = in->value};
+            snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
+            insert_action(to, a);
+        }
+    }
+    return code == STATUS_OK ? parameters_resolve(&to->parameters, f) : code;
+}
+
+static double expected_rows(const parameters *p)
+{
+    return p->run.duration / p->method.step * ROW_SPARE;
+}
+
+static status check_memory(const parameters *p, fault *f)
+{
+    double rows = expected_rows(p);
+    double bytes =
+        rows * (double)(sizeof(sample) + 2 * sizeof(double) * (size_t)(p->arm.links + 1));
+    if (bytes > MEMORY_BUDGET) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at most "
+                         "%.0f: shorten run.duration or lengthen method.step",
+                         p->run.duration, p->method.step, bytes / (1024 * 1024),
+                         MEMORY_BUDGET / (1024 * 1024));
+    }
+    return STATUS_OK;
+}
+
+// The largest force so far, which the run's summary has at the end only.
+static void survey_force(session *s)
+{
+    const trace *t = &s->run.trace;
+    size_t end = s->surveyed + ROWS_SURVEYED;
+    for (; s->surveyed < t->row_count && s->surveyed < end; s->surveyed++) {
+        s->run.summary.peak_force_N = fmax(s->run.summary.peak_force_N, t->rows[s->surveyed].force);
+    }
+}
+
+// Takes over the run that was being computed, as far as it went. The cursor may be beyond its end.
+static void collect_run(session *s)
+{
+    s->run = background_run_finish(s->computing);
+    s->computing = NULL;
+}
+
+// Ends what is being computed; false if there is nothing, or it was just over.
+static bool end_computing(session *s)
+{
+    if (s->computing == NULL) {
+        return false;
+    }
+    background_run_stop(s->computing);
+    collect_run(s);
+    return s->run.summary.status == STATUS_STOPPED;
+}
+
+// Computes the run of a scenario, and resumes the present one where it can. A run that is not there
+// within the session's patience is left to its thread. On failure the present run stays.
+static status start_run(session *s, const scenario *effective, fault *f)
+{
+    run_result run;
+    size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
+    bool resume = run_resume(&s->run, &s->effective, effective, rows, &run);
+    background_run *c = background_run_start(effective, rows, resume, &run,
+                                             s->has_other ? &s->other : NULL, isinf(s->patience));
+    if (c == NULL) {
+        run_finish(&run);
+        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+    }
+
+    // wait as long as the session does, and then for the first row
+    bool over = background_run_wait(c, fmin(s->patience, 1e6));
+    while (!over && background_run_look(c, &run) == 0) {
+        over = background_run_wait(c, SHORT_WAIT);
+    }
+    if (over) {
+        run = background_run_finish(c);
+        c = NULL;
+    } else {
+        run.before_impact = NULL; // the background run's
+        summary_init(&run.summary);
+        run.history = (run_history){0};
+    }
+
+    // a run that diverges is worth looking at; one without a single row is not
+    if (run.trace.row_count == 0) {
+        status code = run.summary.status == STATUS_OK ? STATUS_NO_MEMORY : run.summary.status;
+        fault_set(f, code, "%s", run.summary.message);
+        run_finish(&run);
+        return code;
+    }
+
+    run_finish(&s->run);
+    s->run = run;
+    s->computing = c;
+    s->surveyed = 0;
+    return STATUS_OK;
+}
+
+status session_compute(session *s, fault *f)
+{
+    assert(s != NULL);
+    scenario effective;
+    status code = build_effective(s, &effective, f);
+    if (code == STATUS_OK) {
+        code = check_memory(&effective.parameters, f);
+    }
+    bool unfinished = end_computing(s);
+    if (code == STATUS_OK) {
+        code = start_run(s, &effective, f);
+    }
+
+    // without a new run the present one goes on, if there is one
+    if (code != STATUS_OK) {
+        free(effective.actions);
+        if (s->run.trace.row_count == 0) {
+            return code;
+        }
+        if (unfinished && start_run(s, &s->effective, NULL) == STATUS_OK) {
+            s->version++;
+        }
+        session_follow(s);
+        session_seek(s, s->now);
+        return code;
+    }
+
+    free(s->effective.actions);
+    s->effective = effective;
+    s->version++;
+    session_follow(s);
+    session_seek(s, s->now);
+    s->seen = s->now;
+    return STATUS_OK;
+}
+
+bool session_follow(session *s)
+{
+    if (s->computing == NULL) {
+        return false;
+    }
+    if (background_run_wait(s->computing, 0)) {
+        collect_run(s);
+        session_seek(s, s->now);
+        return true;
+    }
+    size_t before = s->run.trace.row_count;
+    bool more = background_run_look(s->computing, &s->run) > before;
+    survey_force(s);
+    s->row = trace_row_at(&s->run.trace, s->now);
+    return more;
+}
+
+bool session_stop(session *s)
+{
+    bool stopped = end_computing(s);
+    if (s->run.trace.row_count > 0) {
+        session_seek(s, s->now);
+    }
+    return stopped;
+}
+
+status session_go_on(session *s, fault *f)
+{
+    if (s->computing != NULL || s->run.summary.status != STATUS_STOPPED) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the run was not stopped");
+    }
+    double seen = s->seen;
+    status code = start_run(s, &s->effective, f);
+    s->version += code == STATUS_OK;
+    session_follow(s);
+    session_seek(s, s->now);
+    s->seen = fmax(seen, s->now);
+    return code;
+}
+
+parameters session_parameters_at(const session *s, double time)
+{
+    return scenario_parameters_at(&s->effective, time);
+}
+
+status session_branch(session *s, fault *f)
+{
+    run_result kept;
+    if (s->computing != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "the run is still being computed: wait for its end, or stop it with Esc");
+    }
+    size_t rows = (size_t)expected_rows(&s->effective.parameters) + 1;
+    status code = run_share(&s->run, rows, &kept);
+    if (code != STATUS_OK) {
+        return fault_set(f, code, "%s", status_text(code));
+    }
+    session_forget_other(s);
+    s->other = kept;
+    s->has_other = true;
+    s->version++;
+    return STATUS_OK;
+}
+
+void session_forget_other(session *s)
+{
+    if (s->has_other) {
+        run_finish(&s->other);
+        s->has_other = false;
+    }
+}

@@ -1,0 +1,25 @@
+// The run of a session: computed with the inputs in effect, at once or beside the session.
+#pragma once
+
+#include "src/session/session_state.h"
+
+// Computes the run with the inputs in effect and puts the cursor into it. On failure the present
+// run stays and f says why.
+status session_compute(session *s, fault *f);
+
+// Takes note of what has been computed since the last call. True if anything has.
+bool session_follow(session *s);
+// Ends a run that is being computed; its rows so far stay, its status is STATUS_STOPPED. False if
+// there was none, or it was just over.
+bool session_stop(session *s);
+// Computes what is missing of a run that was stopped.
+status session_go_on(session *s, fault *f);
+
+// The parameters as script and inputs have set them at an instant.
+parameters session_parameters_at(const session *s, double time);
+
+// Keeps the present run for comparison; changes then make another one beside it.
+// STATUS_BAD_ARGUMENT while it is being computed.
+status session_branch(session *s, fault *f);
+// Forgets the run kept for comparison.
+void session_forget_other(session *s);

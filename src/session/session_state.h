@@ -1,0 +1,39 @@
+// What a session is made of; its parts work on it, everybody else reads it.
+#pragma once
+
+#include "src/run/run.h"
+
+struct background_run;
+
+enum { SESSION_INPUT_TEXT = 160 };
+
+typedef enum session_input_kind {
+    SESSION_INPUT_START, // another value from the start
+    SESSION_INPUT_TIMED, // another value from `time` on
+    SESSION_INPUT_PUSH   // an impulse at the tip
+} session_input_kind;
+
+typedef struct session_input {
+    session_input_kind kind;
+    double time;                   // [s]
+    int parameter;                 // index in parameter_table; -1 for a push
+    double value;                  // timed: the new value; push: impulse [N s]
+    char text[SESSION_INPUT_TEXT]; // the value as it was given
+} session_input;
+
+typedef struct session {
+    scenario base;         // as opened
+    session_input *inputs; // inputs[0 .. input_count) are in effect, the rest can be redone
+    int input_count, input_total, input_capacity;
+    scenario effective; // base with the inputs; owns its actions only
+    run_result run;     // of `effective`
+    run_result other;   // the run branched from
+    bool has_other;
+    double now;       // the cursor [s]
+    size_t row;       // the last row whose time is not after `now`
+    double seen;      // the latest instant the cursor has been at since the last change [s]
+    unsigned version; // counts the computed runs
+    struct background_run *computing; // the run, if it is not complete
+    double patience;                  // for how long a change waits for its run [s]
+    size_t surveyed;                  // rows whose force is in the summary of an incomplete run
+} session;
