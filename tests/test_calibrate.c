@@ -88,10 +88,9 @@ static void the_commanded_force_chooses_the_entry(void **state)
     const double wanted[] = {0.25 * 0.5 / (2 * 2), 0.5 / (2 * 3), 2 * 0.5 / (2 * 4)};
     for (int i = 0; i < 3; i++) {
         for (int doubted = 0; doubted < 2; doubted++) {
-            run_result r =
-                rig_run(SETTINGS("control.law=hybrid", table, forces[i],
-                                 doubted ? "control.k2_factor=2" : "control.k2_factor=1"),
-                        true);
+            run_result r = rig_run(SETTINGS("control.law=hybrid", table, forces[i],
+                                            doubted ? "belief.k2_factor=2" : "belief.k2_factor=1"),
+                                   true);
             double angle = r.trace.rows[r.trace.row_count - 1].desired_angle;
             check_close(angle, wanted[i] / (doubted ? 2 : 1), 1e-12);
             run_finish(&r);
@@ -186,7 +185,7 @@ static void what_does_not_press_is_said(void **state)
     const struct {
         const char *setting, *sentence;
     } cases[] = {{"wall.kind=none", "nothing to press against"},
-                 {"control.wall_error=0.3", "does not press"},
+                 {"belief.wall_error=0.3", "does not press"},
                  {"motor.stiction=3", "does not press"}};
     for (size_t i = 0; i < 3; i++) {
         fault f;

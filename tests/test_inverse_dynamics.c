@@ -144,7 +144,7 @@ static travelled travel(const char *const *settings)
     controller_setup believed = {.link_mass = p.arm.mass / 2,
                                  .link_length = p.arm.length / 2,
                                  .link_inertia = p.arm.link_inertia,
-                                 .k2 = p.arm.k2 * p.control.k2_factor};
+                                 .k2 = p.arm.k2 * p.belief.k2_factor};
     double departs = departure(&believed), arrives = departs + TRAVEL_TIME;
     run_result r = rig_run(all, true);
     travelled result = {0};
@@ -189,7 +189,7 @@ static void tip_follows_its_plan_and_rests(void **state)
 static void rigid_body_torque_leaves_vibration(void **state)
 {
     (void)state;
-    travelled rigid = travel(SETTINGS("motor.stiction=0", "control.k2_factor=100"));
+    travelled rigid = travel(SETTINGS("motor.stiction=0", "belief.k2_factor=100"));
     travelled flexible = travel(SETTINGS("motor.stiction=0"));
     check_below(0.2, rigid.left_moving);
     check_below(100 * flexible.left_moving, rigid.left_moving);
@@ -200,7 +200,7 @@ static void rigid_body_torque_leaves_vibration(void **state)
 static void wrong_stiffness_costs(void **state)
 {
     (void)state;
-    const char *const factors[] = {"control.k2_factor=0.8", "control.k2_factor=1.2"};
+    const char *const factors[] = {"belief.k2_factor=0.8", "belief.k2_factor=1.2"};
     for (int i = 0; i < 2; i++) {
         travelled wrong = travel(SETTINGS("motor.stiction=0", factors[i]));
         check_below(0.02, wrong.left_moving);
@@ -265,8 +265,8 @@ static void force_follows_its_plan(void **state)
 static void press_ends_near_its_force(void **state)
 {
     (void)state;
-    const char *const errors[] = {"control.wall_error=0", "control.wall_error=0.02",
-                                  "control.wall_error=-0.02"};
+    const char *const errors[] = {"belief.wall_error=0", "belief.wall_error=0.02",
+                                  "belief.wall_error=-0.02"};
     const double peaks[] = {1.05, 1.3, 1.5};
     for (int i = 0; i < 3; i++) {
         for (int seed = 1; seed <= 5; seed++) {
@@ -283,7 +283,7 @@ static void early_touch_moves_the_plan_on(void **state)
 {
     (void)state;
     run_result r =
-        rig_run(SETTINGS("control.law=inverse-dynamics", "control.wall_error=0.02"), true);
+        rig_run(SETTINGS("control.law=inverse-dynamics", "belief.wall_error=0.02"), true);
     double touch = first_impact(&r)->time;
     check_below(touch, 0.5);
     for (size_t i = 0; i < r.trace.row_count; i++) {

@@ -169,8 +169,8 @@ static void optimal_law_beats_the_hybrid(void **state)
 static void optimal_law_stands_wrong_beliefs(void **state)
 {
     (void)state;
-    const char *const beliefs[] = {"control.k2_factor=0.8", "control.k2_factor=1.2",
-                                   "control.wall_error=0.02", "control.wall_error=-0.02"};
+    const char *const beliefs[] = {"belief.k2_factor=0.8", "belief.k2_factor=1.2",
+                                   "belief.wall_error=0.02", "belief.wall_error=-0.02"};
     const char *const forces[] = {"control.force=0.5", "control.force=1", "control.force=2",
                                   "control.force=3"};
     for (int i = 0; i < 4; i++) {

@@ -252,6 +252,8 @@ static void a_misspelt_path_suggests_the_nearest(void **state)
     assert_string_equal(parameter_suggest("wall.angel"), "wall.angle");
     assert_string_equal(parameter_suggest("stiction"), "motor.stiction");
     assert_string_equal(parameter_suggest("method.stepp"), "method.step");
+    assert_string_equal(parameter_suggest("control.k2_factor"), "belief.k2_factor");
+    assert_string_equal(parameter_suggest("control.wall_error"), "belief.wall_error");
     assert_null(parameter_suggest("something.quite.different"));
     char endless[5000];
     memset(endless, 'a', sizeof endless - 1);

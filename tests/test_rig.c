@@ -135,7 +135,7 @@ static void many_links_want_their_own_stiffness(void **state)
     double measured = last->force * 0.5 / (2 * last->first_angle);
     char factor[64];
     run_finish(&r);
-    snprintf(factor, sizeof factor, "control.k2_factor=%.6g", measured / 4.92);
+    snprintf(factor, sizeof factor, "belief.k2_factor=%.6g", measured / 4.92);
     summary nominal =
         rig_summary(SETTINGS("control.law=hybrid", "arm.links=12", "run.duration=2.5"));
     summary looked_up =

@@ -158,14 +158,9 @@ const parameter_info parameter_table[] = {
          "hybrid: length of the impact mode (t_f); inverse-dynamics: how long the force rises")},
     {PATH(control.contact_threshold), REAL("N", 0, 1000), DEFAULT(0.05),
      MEANING("force reading that a controller takes for contact")},
-    {PATH(control.k2_factor), REAL("", 0.01, 100), DEFAULT(1),
-     MEANING(
-         "k2 that the controller believes in, divided by the arm's (by that of control.k2_table)")},
     {PATH(control.k2_table), TEXT(NULL),
      MEANING("k2 by commanded force as calibrate measures it, written FORCE:K2 and separated by "
              "spaces")},
-    {PATH(control.wall_error), REAL("rad", -3, 3), DEFAULT(0),
-     MEANING("wall angle that the controller believes in, minus the wall's")},
     {PATH(control.force_gain), REAL("V/N", -1000, 1000), DEFAULT(1),
      MEANING("gain of the force error")},
     {PATH(control.integral_gain), REAL("V/(N s)", -1e4, 1e4), DEFAULT(5),
@@ -182,6 +177,30 @@ const parameter_info parameter_table[] = {
      MEANING("inverse-dynamics: how long the tip moves to the wall")},
     {PATH(control.arrival_speed), REAL("m/s", 0, 1000), DEFAULT(0),
      MEANING("inverse-dynamics: speed with which the tip is to meet the wall")},
+
+    {PATH(belief.links), INTEGER(1, 64), DEFAULT(2),
+     MEANING("number of links of the beam in the controller's model, where it can have several")},
+    {PATH(belief.mass_factor), REAL("", 0.01, 100), DEFAULT(1),
+     MEANING("beam's mass, with its moments of inertia, that the controller believes in, divided "
+             "by the true one")},
+    {PATH(belief.inertia_factor), REAL("", 0.01, 100), DEFAULT(1),
+     MEANING("hub's moment of inertia that the controller believes in, divided by the true one")},
+    {PATH(belief.friction_factor), REAL("", 0, 100), DEFAULT(1),
+     MEANING("Coulomb and viscous friction that the controller believes in, divided by the true "
+             "one")},
+    {PATH(belief.torque_factor), REAL("", 0.01, 100), DEFAULT(1),
+     MEANING("torque constant kT that the controller believes in, divided by the true one")},
+    {PATH(belief.k2_factor), REAL("", 0.01, 100), DEFAULT(1),
+     MEANING(
+         "k2 that the controller believes in, divided by the arm's (by that of control.k2_table)")},
+    {PATH(belief.hub_spring_factor), REAL("", 0.01, 100), DEFAULT(1),
+     MEANING("stiffness of the hub's spring that the controller believes in, divided by the true "
+             "one (arm.hub_joint = spring)")},
+    {PATH(belief.wall_error), REAL("rad", -3, 3), DEFAULT(0),
+     MEANING("wall angle that the controller believes in, minus the wall's")},
+    {PATH(belief.delay_error), REAL("s", -2, 2), DEFAULT(0),
+     MEANING("delay of its commands that the controller believes in, at least 0, minus the true "
+             "one")},
 
     {PATH(sensor.ideal), BOOLEAN, DEFAULT(false),
      MEANING("switches off every imperfection of sensors and converters")},
@@ -287,8 +306,31 @@ int parameter_index(const char *path)
     return index;
 }
 
+// Parameters that have another name now.
+static const struct {
+    const char *old, *now;
+} renamed[] = {
+    {"control.k2_factor", "belief.k2_factor"},
+    {"control.wall_error", "belief.wall_error"},
+};
+
+const char *parameter_renamed(const char *path)
+{
+    assert(path != NULL);
+    for (size_t i = 0; i < sizeof renamed / sizeof renamed[0]; i++) {
+        if (strcmp(renamed[i].old, path) == 0) {
+            return renamed[i].now;
+        }
+    }
+    return NULL;
+}
+
 const char *parameter_suggest(const char *path)
 {
+    const char *now = parameter_renamed(path);
+    if (now != NULL) {
+        return now;
+    }
     nearest_word nearest = nearest_begin(path);
     for (int i = 0; i < parameter_count; i++) {
         nearest_try(&nearest, parameter_table[i].path);

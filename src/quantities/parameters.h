@@ -95,9 +95,7 @@ typedef struct control_parameters {
     int coefficients;                   // 0 corrected, 1 printed (errata B2)
     double transition_time;             // t_f [s]
     double contact_threshold;           // force reading that means contact [N]
-    double k2_factor;                   // k2 that the controller believes in, over the arm's
     char k2_table[PARAMETER_TEXT_SIZE]; // "FORCE:K2 ...", takes the place of the arm's k2 there
-    double wall_error;                  // wall angle that it believes in, minus the wall's [rad]
     double force_gain;                  // of force errors [V/N]
     double integral_gain;               // of their integral [V/(N s)]
     double speed_limit;                 // hub velocity of a limited approach [rad/s]
@@ -107,6 +105,19 @@ typedef struct control_parameters {
     double travel_time;                 // of the tip to the wall under inverse-dynamics [s]
     double arrival_speed;               // of the tip at the wall under inverse-dynamics [m/s]
 } control_parameters;
+
+// What a controller is told of the arm on the rig, as factors of the truth and differences from it.
+typedef struct belief_parameters {
+    int links;                // number of links its model of the beam has
+    double mass_factor;       // of the beam's mass and its moments of inertia
+    double inertia_factor;    // of the hub's moment of inertia
+    double friction_factor;   // of Coulomb and viscous friction
+    double torque_factor;     // of kT
+    double k2_factor;         // of k2 (of that of control.k2_table)
+    double hub_spring_factor; // of k1, where the hub has a spring
+    double wall_error;        // wall angle believed minus the wall's [rad]
+    double delay_error;       // delay of commands believed minus the true one [s]
+} belief_parameters;
 
 // In the order of the choices of sensor.force.
 typedef enum force_sensor { FORCE_BY_FSR, FORCE_BY_PIEZO } force_sensor;
@@ -155,6 +166,7 @@ typedef struct parameters {
     initial_parameters initial;
     run_parameters run;
     control_parameters control;
+    belief_parameters belief;
     sensor_parameters sensor;
     unsigned char set[128]; // set[i] is 1 if parameter i was given, 0 if it is a default
 } parameters;
@@ -197,7 +209,11 @@ int parameter_at(size_t offset);
 // Index of a path that the program itself names: an unknown one fails an assertion.
 int parameter_index(const char *path);
 
-// The path nearest to a misspelt one (for "did you mean"), or NULL if none is near.
+// The path that a parameter has which was once called by this one, or NULL.
+const char *parameter_renamed(const char *path);
+
+// The path that replaced this one, or the nearest to a misspelt one (for "did you mean"); NULL if
+// there is none.
 const char *parameter_suggest(const char *path);
 
 // All defaults of the given model (arm_model_kind), nothing marked as set.

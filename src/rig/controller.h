@@ -23,7 +23,9 @@ typedef struct controller_parameter {
     const char *description; // one sentence without a full stop
 } controller_parameter;
 
-// What a controller is told about the rig it runs on: nominal values, not necessarily true ones.
+// What a controller is told about the rig it runs on: nominal values, not necessarily true ones
+// (belief.* in a scenario). The arm is given as two links, whatever `links` is: a model of N links
+// has 1/N of the mass and the length 2 link_mass and 2 link_length each, and k2 N/2 in each joint.
 typedef struct controller_setup {
     double period;            // between samples [s]
     double delay;             // from a sample to the effect of its command [s]
@@ -37,6 +39,9 @@ typedef struct controller_setup {
     double link_inertia;      // I2 = I3 about the centre of mass [kg m2]
     double k2;                // stiffness of the beam's joint, as believed [N m/rad]
     double wall_angle;        // theta_imp, as believed [rad]
+    int links;                // of the beam in a model that can have several
+    double hub_spring;        // k1 between hub and beam, HUGE_VAL if they are one body [N m/rad]
+    double damping_ratio;     // of the beam's first clamped-free mode
     const double *parameters; // values in the order of controller.parameters
 } controller_setup;
 

@@ -20,27 +20,41 @@ const controller *controller_of(int law)
 
 // --- starting -------------------------------------------------------------------------------
 
-static controller_setup nominal_setup(const rig *r, const parameters *p)
+// What the controller is told: the arm and the rig as they are, changed by what it believes.
+static controller_setup believed_setup(const rig *r, const parameters *p)
 {
-    // controllers work on the two-link beam, whatever the arm is
+    const belief_parameters *b = &p->belief;
+
+    // the beam in two links, whatever the arm is
     double m = p->arm.mass / 2, l = p->arm.length / 2, k2 = p->arm.k2;
+    double link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
     k2_table measured;
     if (k2_table_read(&measured, p->control.k2_table, NULL) == STATUS_OK && measured.count > 0) {
         k2 = k2_table_at(&measured, p->control.force);
     }
+
+    // the motor with another kT and other friction
+    motor_parameters motor = p->motor;
+    motor.torque_constant *= b->torque_factor;
+    motor.viscous_friction *= b->friction_factor;
+    motor.stiction *= b->friction_factor;
+
     return (controller_setup){
         .period = r->period,
-        .delay = r->delay,
+        .delay = fmax(0, r->delay + b->delay_error),
         .voltage_limit = r->voltage_limit,
-        .torque_per_volt = motor_torque_per_volt(&p->motor),
-        .hub_damping = motor_damping(&p->motor),
-        .stiction = p->motor.stiction,
-        .hub_inertia = p->arm.hub_inertia,
-        .link_mass = m,
+        .torque_per_volt = motor_torque_per_volt(&motor),
+        .hub_damping = motor_damping(&motor),
+        .stiction = motor.stiction,
+        .hub_inertia = p->arm.hub_inertia * b->inertia_factor,
+        .link_mass = m * b->mass_factor,
         .link_length = l,
-        .link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12,
-        .k2 = k2 * p->control.k2_factor,
-        .wall_angle = p->wall.angle + p->control.wall_error,
+        .link_inertia = link_inertia * b->mass_factor,
+        .k2 = k2 * b->k2_factor,
+        .wall_angle = p->wall.angle + b->wall_error,
+        .links = b->links,
+        .hub_spring = p->arm.hub_joint == HUB_SPRING ? p->arm.k1 * b->hub_spring_factor : HUGE_VAL,
+        .damping_ratio = p->arm.damping_ratio,
         .parameters = r->values,
     };
 }
@@ -61,7 +75,7 @@ static status start_controller(rig *r, const parameters *p, fault *f)
         return s;
     }
 
-    controller_setup setup = nominal_setup(r, p);
+    controller_setup setup = believed_setup(r, p);
     const char *refusal = r->law->start != NULL ? r->law->start(r->memory, &setup) : NULL;
     if (refusal != NULL) {
         return fault_set(f, STATUS_BAD_SCENARIO, "the controller '%s' cannot run: %.600s",

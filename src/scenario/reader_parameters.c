@@ -23,6 +23,15 @@ bool reader_is_group(const char *word)
 
 static void report_unknown_parameter(reader *r, const tree_node *key, const char *group)
 {
+    // one that has another name now
+    char whole[128];
+    snprintf(whole, sizeof whole, "%.40s.%.80s", group, key->text);
+    const char *now = parameter_renamed(whole);
+    if (now != NULL) {
+        report_node(r, key, "unknown key '%.60s' in %s, did you mean %s?", key->text, group, now);
+        return;
+    }
+
     nearest_word near = nearest_begin(key->text);
     char known[640] = "";
     for (int i = 0; i < parameter_count; i++) {

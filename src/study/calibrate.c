@@ -70,7 +70,7 @@ static double stiffness(const parameters *p, double force, double angle)
 static void measure(const parameters *p, const trace *t, double command, calibration_point *point)
 {
     average force[2] = {{0}}, angle[2] = {{0}}, whole_force = {0}, whole_angle = {0};
-    const double wall = p->wall.angle + p->control.wall_error, end = p->run.duration,
+    const double wall = p->wall.angle + p->belief.wall_error, end = p->run.duration,
                  window = WINDOW_SHARE * end;
     for (size_t i = 0; i + 1 < t->row_count; i++) {
         const sample *row = &t->rows[i];
