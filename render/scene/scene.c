@@ -11,6 +11,7 @@
 #include "render/scene/floor.h"
 #include "render/scene/labels.h"
 #include "render/page/text.h"
+#include "src/base/instant.h"
 #include "src/base/whole_file.h"
 #include "src/base/version.h"
 
@@ -458,7 +459,7 @@ static status check_instants(const run_result *result, const double *times, int 
     }
     for (int i = 0; i < count; i++) {
         double end = t->row_count > 0 ? t->rows[t->row_count - 1].time : 0;
-        if (!(times[i] >= 0 && times[i] <= end + 1e-12)) {
+        if (!(times[i] >= 0 && !instant_after(times[i], end))) {
             return fault_set(f, STATUS_BAD_ARGUMENT,
                              "a scene at %g s, expected an instant of the run, 0 to %g s", times[i],
                              end);

@@ -8,6 +8,7 @@
 #include "src/quantities/k2_table.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/laws/laws.h"
+#include "src/base/instant.h"
 
 const controller *controller_of(int law)
 {
@@ -208,13 +209,12 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
 
 status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f)
 {
-    const double late = 1e-9 * r->period; // instants of another grid may miss ours by rounding
     const int mode = r->output.mode;
     *changed = false;
-    const bool samples = r->sample_time <= time + late;
+    const bool samples = !instant_after(r->sample_time, time);
 
     // with jitter the next sample may come before a late command: it goes out then
-    if (r->effect_time <= time + late || (samples && r->effect_time < HUGE_VAL)) {
+    if (!instant_after(r->effect_time, time) || (samples && r->effect_time < HUGE_VAL)) {
         apply(r, changed);
     }
 
@@ -223,7 +223,7 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
         s = take_sample(r, time, now, f);
     }
     // without a delay the new command takes effect at once
-    if (s == STATUS_OK && r->effect_time <= time + late) {
+    if (s == STATUS_OK && !instant_after(r->effect_time, time)) {
         apply(r, changed);
     }
     *changed = *changed || r->output.mode != mode;

@@ -1,5 +1,7 @@
 #include "src/run/checkpoint.h"
 
+#include "src/base/instant.h"
+
 #include <assert.h>
 #include <string.h>
 
@@ -51,7 +53,7 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
     run_history *h = &r->result->history;
     const trace *t = &r->result->trace;
     double now = m->state[SLOT_TIME];
-    if (!keeps_history(r) || now - last_event < ONE_INSTANT) {
+    if (!keeps_history(r) || !instant_after(now, last_event)) {
         return true;
     }
 

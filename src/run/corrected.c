@@ -6,6 +6,7 @@
 #include "src/run/checkpoint.h"
 #include "src/run/corrected_events.h"
 #include "src/run/rig_recording.h"
+#include "src/base/instant.h"
 
 #define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
 #define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
@@ -85,7 +86,7 @@ static double next_cut(const recording *r, double window, double now)
     const scenario *s = r->scenario;
     double cut =
         r->state.next_action < s->action_count ? s->actions[r->state.next_action].time : HUGE_VAL;
-    return window > now + ONE_INSTANT ? fmin(window, cut) : cut;
+    return instant_after(window, now) ? fmin(window, cut) : cut;
 }
 
 // Puts the arm where it starts, and records the row of that instant.
@@ -123,7 +124,7 @@ static status advance_to_end(corrected_run *c, fault *f)
     const double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
     status failed = STATUS_OK;
     while (failed == STATUS_OK && m->state[SLOT_TIME] < duration) {
-        if (fabs(m->state[SLOT_TIME] - window) <= ONE_INSTANT) {
+        if (same_instant(m->state[SLOT_TIME], window)) {
             r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         }
         failed = corrected_run_script(c, f);

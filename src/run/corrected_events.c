@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/run/rig_recording.h"
+#include "src/base/instant.h"
 
 void corrected_bind_arm(corrected_run *c)
 {
@@ -185,9 +186,10 @@ status corrected_run_script(corrected_run *c, fault *f)
 {
     const scenario *s = c->recording->scenario;
     int *next = &c->recording->state.next_action;
-    const double due = c->motion->state[SLOT_TIME] + ONE_INSTANT;
+    const double now = c->motion->state[SLOT_TIME];
     status failed = STATUS_OK;
-    while (failed == STATUS_OK && *next < s->action_count && s->actions[*next].time <= due) {
+    while (failed == STATUS_OK && *next < s->action_count &&
+           !instant_after(s->actions[*next].time, now)) {
         failed = run_action(c, *next, f);
         *next += failed == STATUS_OK;
     }
@@ -219,7 +221,7 @@ status corrected_run_rig(corrected_run *c, fault *f)
 {
     rig *on = c->recording->rig;
     double now = c->motion->state[SLOT_TIME];
-    if (on == NULL || rig_next_time(on) > now + ONE_INSTANT) {
+    if (on == NULL || instant_after(rig_next_time(on), now)) {
         return STATUS_OK;
     }
     bool changed;

@@ -6,9 +6,8 @@
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 
-#define STEADY_WINDOW  0.1   // steady force: mean over the last of the run [s]
-#define SEPARATION_GAP 1e-6  // a smaller gap is no separation [m]
-#define ONE_INSTANT    1e-12 // samples, actions and windows that differ by rounding coincide [s]
+#define STEADY_WINDOW  0.1  // steady force: mean over the last of the run [s]
+#define SEPARATION_GAP 1e-6 // a smaller gap is no separation [m]
 
 // What a run remembers from step to step besides rows, forces and summary.
 typedef struct recording_state {

@@ -1,3 +1,4 @@
+#include "src/base/instant.h"
 #include "src/session/cursor.h"
 
 #include <assert.h>
@@ -36,7 +37,7 @@ void session_seek(session *s, double time)
     s->row = trace_row_at(&s->run.trace, s->now);
     // an instant beside a row's by rounding is the row's: a change there cuts no step anew
     double near = s->run.trace.rows[s->row + (s->row + 1 < s->run.trace.row_count)].time;
-    if (near - s->now < 1e-12 * fmax(1, s->now) && near > s->now) {
+    if (near > s->now && same_instant(near, s->now)) {
         session_seek(s, near);
     }
     s->seen = s->now > s->seen ? s->now : s->seen;

@@ -46,6 +46,7 @@
 
 #include "src/arm/impact.h"
 #include "src/solve/locate.h"
+#include "src/base/instant.h"
 
 #define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
 #define MOST_HALVINGS   8     // of a step that does not converge or makes energy
@@ -323,7 +324,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
     // an instant that was meant is met to the last bit
     double stop = fmin(until, m->cut);
-    if (stop - m->state[SLOT_TIME] <= 1e-12 * fmax(1, stop)) {
+    if (!instant_after(stop, m->state[SLOT_TIME])) {
         m->state[SLOT_TIME] = stop;
     }
     return STATUS_OK;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "src/solve/contact_machine.h"
+#include "src/base/instant.h"
 
 #define RESOLVING 20.0 // fastest rate times step, at most: the event method then steps explicitly
 
@@ -96,7 +97,7 @@ static void watch_stride(watching *w, motion *m)
                          integral / length);
     }
     // strides end at MOMENTUM_WINDOW
-    if (to <= w->touched + MOMENTUM_WINDOW * (1 + 1e-9)) {
+    if (!instant_after(to, w->touched + MOMENTUM_WINDOW)) {
         w->view->momentum += integral;
     }
 }

@@ -6,6 +6,7 @@
 #include "src/run/run.h"
 #include "src/predict/predict.h"
 #include "src/solve/printed_algorithm.h"
+#include "src/base/instant.h"
 
 // The simulation's row of the printed model is the largest force within this time of first contact,
 // the first pulse and, with the nominal spring, the bounces that belong to it [s].
@@ -83,7 +84,7 @@ static bool watch_row(void *context, const printed_row *row)
         return true;
     }
     double since = row->time - w->first_contact;
-    if (since > PRINTED_WINDOW * (1 + 1e-9)) {
+    if (instant_after(since, PRINTED_WINDOW)) {
         return false;
     }
     if (row->force > 0 && !(row->force <= c->peak)) {
