@@ -62,10 +62,7 @@ static void missing_numbers_are_empty(void **state)
     csv_number(&m.csv, 0.1);
     csv_number(&m.csv, (double)INFINITY);
     csv_end_row(&m.csv);
-    m.csv.missing = "nan";
-    csv_number(&m.csv, (double)NAN);
-    csv_end_row(&m.csv);
-    check_written(&m, ",0.1,inf\nnan\n");
+    check_written(&m, ",0.1,inf\n");
 }
 
 int main(void)

@@ -32,7 +32,7 @@ typedef struct arm {
 } arm;
 
 // Derives the constants from resolved parameters (corrected model); the command is motor.voltage.
-// Cost grows linearly with N.
+// Cost grows linearly with N. In arm_setup.c, which sweeps the chain for its fastest mode.
 void arm_init(arm *a, const parameters *p);
 
 // Puts another command [V] in force, at the cost of a multiplication; all else stays. The arm of a

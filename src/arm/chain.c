@@ -1,6 +1,8 @@
-#include "src/arm/chain_kernel.h"
+#include "src/arm/chain.h"
 
 #include <stddef.h>
+
+#include "src/arm/chain_kernel.h"
 
 void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
                          contact_state mode, double *alpha, chain_reaction *reaction)

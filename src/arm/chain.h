@@ -20,33 +20,7 @@
 // are the corrected forms of (2.15)-(2.17); see docs/physics.md.
 #pragma once
 
-#include "src/arm/arm.h"
-
-// Scratch of one link during the sweeps.
-typedef struct chain_link {
-    double c, s;   // r_k = (c, s), t_k = (-s, c)
-    double inv_d;  // 1 / (I + m l^2/4 + l^2 t'P t) [1/(kg m2)]
-    double ux, uy; // u [kg m]
-    double free;   // acceleration with a resting base, no contact [rad/s2]
-    double unit;   // the same from a unit contact force [rad/s2 per N]
-} chain_link;
-
-typedef enum hub_friction { HUB_STICK = 0, HUB_FORWARD = 1, HUB_BACKWARD = -1 } hub_friction;
-
-// What holds at an instant: the wall touched or not, the hub stuck or sliding which way.
-typedef struct contact_state {
-    bool contact;
-    hub_friction friction;
-} contact_state;
-
-typedef struct chain_reaction {
-    double force;             // f, zero without contact [N]
-    double friction;          // Coulomb friction torque on the hub [N m]
-    double gap, gap_velocity; // of the contact point, infinite and zero without a wall [m], [m/s]
-    double gap_acceleration;  // second derivative of the gap, zero in contact [m/s2]
-    double viscous_power;     // lost to back EMF and viscous friction [W]
-    double damping_power;     // lost in the springs' structural damping [W]
-} chain_reaction;
+#include "src/arm/chain_link.h"
 
 // Accelerations alpha[dof] at angles q[dof] and velocities w[dof] under the given mode, and the
 // reactions. work: links elements of scratch. In contact, f follows from d2g/dt2 = 0, the

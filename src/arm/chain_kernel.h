@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "src/arm/chain.h"
+#include "src/arm/chain_link.h"
 #include "src/base/sincos.h"
 
 #define KERNEL static inline __attribute__((always_inline))

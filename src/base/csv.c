@@ -68,8 +68,6 @@ void csv_number(csv_writer *w, double value)
     if (!isnan(value)) {
         number_format(text, value);
         fputs(text, w->stream);
-    } else if (w->missing != NULL) {
-        fputs(w->missing, w->stream);
     }
 }
 

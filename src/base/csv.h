@@ -10,8 +10,7 @@
 
 typedef struct csv_writer {
     FILE *stream;
-    bool in_row;         // a comma comes before the next field
-    const char *missing; // for a number that is NaN; NULL: nothing
+    bool in_row; // a comma comes before the next field
 } csv_writer;
 
 // A writer at the beginning of a table.

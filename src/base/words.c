@@ -1,6 +1,7 @@
 #include "src/base/words.h"
 
 #include <assert.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -70,5 +71,23 @@ void nearest_try(nearest_word *n, const char *candidate)
     if (distance < n->distance) {
         n->distance = distance;
         n->best = candidate;
+    }
+}
+
+void make_printable(char *text)
+{
+    for (unsigned char *c = (unsigned char *)text; *c != '\0';) {
+        int length = *c < 0x80 ? 1 : *c >= 0xf0 ? 4 : *c >= 0xe0 ? 3 : *c >= 0xc2 ? 2 : 0;
+        int have = length > 0;
+        while (have > 0 && have < length && (c[have] & 0xc0) == 0x80) {
+            have++;
+        }
+        bool control = *c < 0x20 || *c == 0x7f || (*c == 0xc2 && c[1] < 0xa0);
+        if (have < length || length == 0 || control) {
+            *c = '?';
+            c++;
+        } else {
+            c += length;
+        }
     }
 }

@@ -1,4 +1,4 @@
-// The nearest known word to a misspelt one.
+// Words: the one nearest to a misspelt one, and texts that a terminal may show.
 #pragma once
 
 // Number of insertions, deletions, replacements and swaps of neighbours that turn a into b, at most
@@ -18,3 +18,6 @@ nearest_word nearest_begin(const char *word);
 // Looks at one candidate; the first of several equally near ones is kept. The part after the last
 // '/' or '.' counts for the whole ("fig-3-4" finds "thesis/fig-3-4").
 void nearest_try(nearest_word *n, const char *candidate);
+
+// Replaces what could disturb a terminal, control characters and broken UTF-8, by '?', in place.
+void make_printable(char *text);

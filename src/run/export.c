@@ -122,7 +122,6 @@ void export_csv(FILE *stream, const trace *t, int links)
     int columns[SIGNALS_AT_MOST], count = csv_signals(t, columns);
     size_t angles = links > 2 ? (size_t)t->angle_count : 0;
     csv_writer csv = csv_begin(stream);
-    csv.missing = "nan"; // rows have a number in every field
 
     for (int i = 0; i < count; i++) {
         csv_heading(&csv, signal_table[columns[i]].name, signal_table[columns[i]].unit);

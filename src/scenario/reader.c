@@ -1,29 +1,12 @@
 // Faults of a scenario file with their places, and what its nodes hold.
 #include "src/scenario/reader.h"
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-void reader_make_printable(char *text)
-{
-    for (unsigned char *c = (unsigned char *)text; *c != '\0';) {
-        int length = *c < 0x80 ? 1 : *c >= 0xf0 ? 4 : *c >= 0xe0 ? 3 : *c >= 0xc2 ? 2 : 0;
-        int have = length > 0;
-        while (have > 0 && have < length && (c[have] & 0xc0) == 0x80) {
-            have++;
-        }
-        bool control = *c < 0x20 || *c == 0x7f || (*c == 0xc2 && c[1] < 0xa0);
-        if (have < length || length == 0 || control) {
-            *c = '?';
-            c++;
-        } else {
-            c += length;
-        }
-    }
-}
 
 void reader_report_at(reader *r, int line, int column, const char *format, ...)
 {
@@ -44,7 +27,7 @@ void reader_report_at(reader *r, int line, int column, const char *format, ...)
         r->no_memory = true;
         return;
     }
-    reader_make_printable(found.sentence);
+    make_printable(found.sentence);
     r->found[r->faults++] = found;
 }
 

@@ -40,9 +40,6 @@ void reader_report_at(reader *r, int line, int column, const char *format, ...)
 // Passes all faults on as somebody who goes through the file meets them, and forgets them.
 void reader_report_all(reader *r, fault_handler report, void *context);
 
-// Replaces what could disturb a terminal: control characters and broken UTF-8.
-void reader_make_printable(char *text);
-
 // Whether a node is a single value; nothing at all; the word for nothing (null, ~).
 bool node_is_scalar(const tree_node *node);
 bool node_is_empty(const tree_node *node);

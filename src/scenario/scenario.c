@@ -1,188 +1,11 @@
-#include "src/scenario/reader.h"
+#include "src/scenario/scenario.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/rig.h"
 #include "src/base/words.h"
-
-enum { LONGEST_TITLE = 200 }; // bytes
-
-// Copies prose; only the description may have several lines. NULL after a fault.
-static char *parse_prose(reader *r, const tree_node *node, const char *what, bool many_lines)
-{
-    if (!node_is_scalar(node) || node->text[0] == '\0') {
-        report_node(r, node, "%s is %s, expected text", what, node_kind_name(node));
-        return NULL;
-    }
-
-    // trailing blanks are no part of it, control characters not allowed
-    size_t length = strlen(node->text);
-    while (length > 0 && strchr(" \t\r\n", node->text[length - 1]) != NULL) {
-        length--;
-    }
-    for (size_t i = 0; i < length; i++) {
-        unsigned char c = (unsigned char)node->text[i];
-        bool control =
-            c < 0x20 || c == 0x7f || (c == 0xc2 && (unsigned char)node->text[i + 1] < 0xa0);
-        if (control && !(many_lines && (c == '\n' || c == '\t'))) {
-            report_node(r, node, "%s holds %s, expected %s", what,
-                        c == '\n' ? "several lines" : "a control character",
-                        many_lines ? "text" : "one line of text");
-            return NULL;
-        }
-    }
-
-    if (!many_lines && length > LONGEST_TITLE) {
-        report_node(r, node, "%s has %zu bytes, expected at most %d", what, length, LONGEST_TITLE);
-        return NULL;
-    }
-    char *copy = strndup(node->text, length);
-    reader_have_memory(r, copy);
-    return copy;
-}
-
-static void report_unknown_top(reader *r, const tree_node *key)
-{
-    static const char *const others[] = {"title", "description", "script", "expect"};
-    nearest_word near = nearest_begin(key->text);
-
-    // a parameter's whole path, which belongs under its group
-    int index = parameter_find(key->text);
-    if (index >= 0) {
-        const char *dot = strchr(key->text, '.');
-        report_node(r, key, "unknown key '%s', expected '%s:' under '%.*s:'", key->text, dot + 1,
-                    (int)(dot - key->text), key->text);
-        return;
-    }
-
-    // all groups, in case none is near
-    char groups[256] = "";
-    for (int i = 0; i < parameter_count; i++) {
-        const char *path = parameter_table[i].path;
-        char group[64];
-        snprintf(group, sizeof group, "%.*s", (int)strcspn(path, "."), path);
-        if (i == 0 || !parameter_in_group(parameter_table[i - 1].path, group)) {
-            size_t used = strlen(groups);
-            snprintf(groups + used, sizeof groups - used, ", %s", group);
-        }
-        // the group's name is compared where it lasts: as the beginning of its path
-        if (edit_distance(key->text, group, near.distance) < near.distance) {
-            near.distance = edit_distance(key->text, group, near.distance);
-            near.best = path;
-        }
-    }
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        nearest_try(&near, others[i]);
-    }
-    if (near.best != NULL) {
-        report_node(r, key, "unknown key '%.60s', did you mean '%.*s'?", key->text,
-                    (int)strcspn(near.best, "."), near.best);
-        return;
-    }
-    report_node(r, key, "unknown key '%.60s', expected title, description%s, script or expect",
-                key->text, groups);
-}
-
-// Reports a lock from the start on a mode that the law does not have.
-static void check_lock(reader *r)
-{
-    fault f;
-    const place *at = &r->given[PARAMETER_INDEX(control.lock)];
-    const controller *law = controller_of(r->s->parameters.control.law);
-    scenario unscripted = {.parameters = r->s->parameters};
-    if (at->line > 0 && scenario_check_locks(&unscripted, law, &f) != STATUS_OK) {
-        reader_report_at(r, at->line, at->column, "%s", f.text);
-    }
-}
-
-// Reads everything; script and expect come after the parameters that they depend on.
-static void parse_root(reader *r, const tree_node *root)
-{
-    const tree_node *script = NULL, *expect = NULL;
-    if (!reader_expect_map(r, root, "the file", "title: ...")) {
-        return;
-    }
-    for (const tree_node *child = root->first; child != NULL; child = child->next) {
-        const char *key = reader_key(r, root, child);
-        if (key == NULL) {
-            continue;
-        }
-        if (strcmp(key, "title") == 0) {
-            r->s->title = parse_prose(r, child, "title", false);
-        } else if (strcmp(key, "description") == 0) {
-            r->s->description = parse_prose(r, child, "description", true);
-        } else if (strcmp(key, "script") == 0) {
-            script = child;
-        } else if (strcmp(key, "expect") == 0) {
-            expect = child;
-        } else if (reader_is_group(key)) {
-            reader_group(r, child, key);
-        } else {
-            report_unknown_top(r, child->key);
-        }
-    }
-
-    // what depends on all parameters
-    r->duration_known = r->given[PARAMETER_INDEX(run.duration)].line > 0 || r->faults == 0;
-    reader_resolve(r);
-    check_lock(r);
-    if (script != NULL) {
-        reader_script(r, script);
-    }
-    if (expect != NULL) {
-        reader_expectations(r, expect);
-    }
-}
-
-// Fills in name, file and what the file left out.
-static void complete(reader *r, const char *name)
-{
-    scenario *s = r->s;
-    s->name = strdup(name != NULL ? name : r->path);
-    s->file = strdup(r->path);
-    if (s->title == NULL) {
-        s->title = strdup(name != NULL ? name : r->path);
-    }
-    if (s->description == NULL) {
-        s->description = strdup("");
-    }
-    reader_have_memory(r, s->name);
-    reader_have_memory(r, s->file);
-    reader_have_memory(r, s->title);
-    reader_have_memory(r, s->description);
-}
-
-status scenario_parse(scenario *s, const char *text, size_t length, const char *path,
-                      const char *name, fault_handler report, void *context)
-{
-    assert(s != NULL && text != NULL && path != NULL);
-    fault f;
-    reader r = {.path = path, .s = s};
-    *s = (scenario){0};
-    parameters_defaults(&s->parameters, ARM_CORRECTED);
-
-    tree_node *root = tree_parse(text, length, &f);
-    if (root == NULL) {
-        r.no_memory = f.code == STATUS_NO_MEMORY;
-        reader_report_at(&r, f.line, f.column, "%s", f.text);
-    } else {
-        parse_root(&r, root);
-        tree_free(root);
-    }
-
-    // faults are reported together, and whoever has some gets no scenario
-    if (r.faults == 0 && !r.no_memory) {
-        complete(&r, name);
-    }
-    reader_report_all(&r, report, context);
-    if (r.no_memory || r.faults > 0) {
-        scenario_finish(s);
-        return r.no_memory ? STATUS_NO_MEMORY : STATUS_BAD_SCENARIO;
-    }
-    return STATUS_OK;
-}
+#include "src/rig/rig.h"
 
 void scenario_finish(scenario *s)
 {
@@ -247,7 +70,7 @@ status scenario_override(scenario *s, const char *assignment, fault *f)
     if (result != STATUS_OK) {
         fault_set_at(f, result, inner.path, "--set %.200s: %.700s", assignment, inner.text);
         if (f != NULL) {
-            reader_make_printable(f->text);
+            make_printable(f->text);
         }
         return result;
     }
