@@ -1,5 +1,6 @@
 #!/bin/bash
-# The house as the includes show it: every arrow points down, and no module stands in a circle.
+# The house as the includes show it: every arrow points down, no module stands in a circle, and
+# every place that the manual names is there.
 #
 #   test_architecture.sh SOURCE_ROOT
 #
@@ -61,5 +62,17 @@ awk -v rooms="$rooms" '
         for (name in module) if (state[name] == "") visit(name, name)
         exit wrong
     }' <<<"$includes"
+
+# places that the manual names exist ("NAME" and "*" stand for something)
+lost=0
+while IFS=: read -r page place; do
+    case $place in *NAME* | *FOLDER* | *'*'*) continue ;; esac
+    if [ ! -e "$place" ] && ! compgen -G "$place.[ch]" >/dev/null; then
+        echo "$page names $place, which is not there"
+        lost=1
+    fi
+done < <(grep -oHE '`(src|render|ui|tests|scenarios|docs)/[A-Za-z0-9_./*-]*[A-Za-z0-9_*]`?' \
+    CONTRIBUTING.md README.md docs/*.md | tr -d '`' | sort -u)
+[ "$lost" = 0 ]
 
 echo "$arrows includes, all of them downward, no circle"
