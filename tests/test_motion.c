@@ -251,6 +251,68 @@ static void a_run_that_makes_energy_from_nothing_is_stopped(void **state)
     run_finish(&r);
 }
 
+// Steps that lose a share of the energy do not go by as if nothing were wrong.
+static void a_ledger_that_does_not_close_makes_a_run_inaccurate(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *step, *bound;
+        bool inaccurate;
+    } cases[] = {{"method.step=1e-3", "method.gamma=0.5", false},
+                 {"method.step=1e-3", "method.residual_bound=1e-9", true},
+                 {"method.step=2e-2", "method.gamma=0.6", true}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        scenario s = {.parameters = fixture_parameters(
+                          SETTINGS("method.name=newmark", cases[i].step, cases[i].bound))};
+        run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        assert_int_equal(r.summary.inaccurate, cases[i].inaccurate);
+        assert_int_equal(r.summary.message[0] != '\0', cases[i].inaccurate);
+        assert_string_equal(summary_status(&r.summary), cases[i].inaccurate ? "inaccurate" : "ok");
+        run_finish(&r);
+    }
+
+    // the event method's own bound is narrow, and kept
+    run_result r = run(SETTINGS("run.duration=1"));
+    check_below(r.summary.energy_residual_J, 1e-6 * r.summary.motor_work_J);
+    assert_string_equal(summary_status(&r.summary), "ok");
+    run_finish(&r);
+}
+
+// A fast arm's strides follow its rotation: where they may end does not matter.
+static void fast_rotation_is_resolved_whatever_the_step(void **state)
+{
+    (void)state;
+    double contact[2], peak[2];
+    for (int i = 0; i < 2; i++) {
+        run_result r =
+            run(SETTINGS("arm.links=3", "motor.viscous_friction=0", "motor.amplifier_gain=1000",
+                         i == 0 ? "method.step=1e-3" : "method.step=1e-4", "run.duration=0.12"));
+        contact[i] = r.summary.first_contact_s;
+        peak[i] = r.summary.first_pulse_peak_N;
+        run_finish(&r);
+    }
+    check_close(contact[0], contact[1], 1e-10);
+    check_close(peak[0], peak[1], 1e-7 * peak[1]);
+}
+
+// Pressed on an elastic wall the arm does not bounce for ever: the chatter rule, and says so.
+static void elastic_chattering_is_bounded_and_said(void **state)
+{
+    (void)state;
+    run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.001", "wall.kind=plane",
+                                "wall.restitution=1", "motor.voltage=10", "run.duration=0.25"));
+    check_ledger(&r);
+    check_below(r.summary.impacts, 2000);
+    size_t chatters = 0;
+    for (size_t i = 0; i < r.trace.event_count; i++) {
+        chatters += r.trace.events[i].kind == EVENT_CHATTER;
+    }
+    assert_true(chatters > 0);
+    assert_non_null(strstr(r.summary.message, "chatter"));
+    run_finish(&r);
+}
+
 static void structural_damping_does_not_upset_the_explicit_method(void **state)
 {
     (void)state;
@@ -272,6 +334,9 @@ int main(void)
         cmocka_unit_test(without_a_trace_the_summary_is_the_same),
         cmocka_unit_test(script_acts_at_its_time_and_is_booked),
         cmocka_unit_test(a_run_that_makes_energy_from_nothing_is_stopped),
+        cmocka_unit_test(a_ledger_that_does_not_close_makes_a_run_inaccurate),
+        cmocka_unit_test(fast_rotation_is_resolved_whatever_the_step),
+        cmocka_unit_test(elastic_chattering_is_bounded_and_said),
         cmocka_unit_test(structural_damping_does_not_upset_the_explicit_method),
         cmocka_unit_test(a_step_that_cannot_be_taken_stops_with_time_and_reason),
     };

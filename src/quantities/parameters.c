@@ -32,6 +32,11 @@
 #define K1_PRINTED_TABLES 90.0
 #define K1_THESIS         169468.0882
 
+// What the ledger of the event method may lack of the energy put in, and that of the methods whose
+// steps are the object of study.
+#define EVENT_RESIDUAL_BOUND 1e-6
+#define STUDY_RESIDUAL_BOUND 1e-2
+
 // kT is printed as 0.249092 kg m/A; one kilogram-force is 9.80665 N.
 #define TORQUE_CONSTANT (0.249092 * 9.80665)
 
@@ -93,6 +98,9 @@ const parameter_info parameter_table[] = {
      MEANING("what generalised-alpha leaves of the highest modes in one step (rho at infinity)")},
     {PATH(method.rest_speed), REAL("m/s", 0, 1), DEFAULT(1e-4),
      MEANING("rest rule: an impact slower than this is plastic whatever e is")},
+    {PATH(method.residual_bound), REAL("", 0, 1), DEFAULT(EVENT_RESIDUAL_BOUND),
+     MEANING("share of the energy put in that the ledger may lack before a run counts as "
+             "inaccurate (event 1e-6, newmark and generalized-alpha 1e-2)")},
 
     {PATH(printed.spring_counted_twice), BOOLEAN, DEFAULT(true),
      MEANING("printed model: (2.16) carries the spring k2 that belongs in (2.17) alone")},
@@ -596,6 +604,9 @@ static void resolve_defaults(parameters *p)
         if (!p->set[i] && i != PARAMETER_INDEX(arm.model)) {
             store(p, info, default_value(info, p->arm.model));
         }
+    }
+    if (!IS_SET(p, method.residual_bound) && p->method.name != METHOD_EVENT) {
+        p->method.residual_bound = STUDY_RESIDUAL_BOUND;
     }
 }
 

@@ -54,6 +54,7 @@ typedef struct method_parameters {
     double gamma;           // Newmark's gamma [-]
     double spectral_radius; // generalised-alpha's rho at infinite frequency [-]
     double rest_speed;      // approach speed below which an impact is plastic (rest rule) [m/s]
+    double residual_bound;  // share of the energy put in that the ledger may lack [-]
 } method_parameters;
 
 typedef struct printed_parameters {

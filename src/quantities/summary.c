@@ -97,6 +97,11 @@ double summary_value(const summary *s, int index)
     return value;
 }
 
+const char *summary_status(const summary *s)
+{
+    return s->status != STATUS_OK ? "failed" : s->inaccurate ? "inaccurate" : "ok";
+}
+
 void summary_init(summary *s)
 {
     const double none = (double)NAN;

@@ -10,6 +10,7 @@
 // The results of a run. A quantity that did not occur is NaN (null in JSON).
 typedef struct summary {
     status status;
+    bool inaccurate;    // it came to its end, but the energy ledger lacks more than may be
     char message[1024]; // what stopped the run, or a remark; "" if there is none
     char method[32];    // the method in fact used, "Runge-Kutta 8"
     // numbers only from here on, see summary_value
@@ -67,6 +68,9 @@ const char *summary_suggest(const char *key);
 
 // The number with that index.
 double summary_value(const summary *s, int index);
+
+// "ok", "inaccurate" or "failed", as JSON and databases have it.
+const char *summary_status(const summary *s);
 
 // The summary of a run of which nothing is known yet: STATUS_OK, no texts, every number NaN.
 void summary_init(summary *s);

@@ -2,6 +2,8 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdarg.h>
+#include <string.h>
 
 #include "src/run/checkpoint.h"
 #include "src/run/corrected_events.h"
@@ -9,6 +11,7 @@
 #include "src/base/instant.h"
 
 #define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
+#define LEDGER_ROUNDING 1e-13 // what the ledger may lack whatever was put in [J]
 #define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
 
 enum { MOST_EVENTS_AT_ONCE = 100 }; // events without time passing before the run is given up
@@ -43,9 +46,9 @@ static status travel(corrected_run *c, double until, fault *f)
         // one step, or less to an event
         status s = motion_step(&c->arm, m, until, r->now.method.step, &report);
         if (s != STATUS_OK) {
-            return fault_set(
-                f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
-                m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
+            return fault_set(f, s,
+                             "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
+                             m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
         }
 
         // what came of it
@@ -145,6 +148,45 @@ static status advance_to_end(corrected_run *c, fault *f)
     return failed;
 }
 
+// Adds a sentence to the remarks.
+static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char *format, ...)
+{
+    size_t length = strlen(s->message);
+    if (length > 0 && length + 2 < sizeof s->message) {
+        length += (size_t)snprintf(s->message + length, sizeof s->message - length, "; ");
+    }
+    va_list values;
+    va_start(values, format);
+    vsnprintf(s->message + length, sizeof s->message - length, format, values);
+    va_end(values);
+}
+
+// Whether the numbers may be relied on, and what the motion was spared.
+static void judge(const corrected_run *c)
+{
+    const recording *r = c->recording;
+    const motion *m = c->motion;
+    summary *s = &r->result->summary;
+    double bound = r->scenario->parameters.method.residual_bound;
+    double energy = m->start_energy + r->state.energy_put_in;
+    if (r->state.chatters > 0) {
+        remark(s,
+               "the wall's restitution would have made the arm bounce without end: %ld times more "
+               "than %d flights in a row were shorter than a hundredth of its shortest period, and "
+               "the impact after them took all the approach speed (chatter)",
+               r->state.chatters, MOTION_MOST_SHORT_FLIGHTS);
+    }
+
+    s->inaccurate = s->energy_residual_J > bound * energy + LEDGER_ROUNDING;
+    if (s->inaccurate) {
+        remark(s,
+               "the energy ledger lacks up to %.3g J of the %.3g J put in, more than "
+               "method.residual_bound = %g allows: the method was %s, a shorter method.step may "
+               "help",
+               s->energy_residual_J, energy, bound, m->engine->name);
+    }
+}
+
 // Sums up what is known of a run, also of one that failed.
 static void sum_up(corrected_run *c, status failed)
 {
@@ -171,6 +213,7 @@ static void sum_up(corrected_run *c, status failed)
         double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         recording_finish_summary(r, integral - r->state.integral_at_window);
         recording_finish_rig_summary(r, state_angles(m, m->state)[0]);
+        judge(c);
     }
 }
 

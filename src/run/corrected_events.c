@@ -81,6 +81,11 @@ static status record_applied_event(corrected_run *c, const motion_report *report
         }
     }
 
+    if (report->chatter && failed == STATUS_OK) {
+        failed = record_event(r, now, EVENT_CHATTER, report);
+        r->state.chatters++;
+    }
+
     bool apart = m->state[SLOT_CONTACT] == 0 && (closes || report->event == MOTION_RELEASE);
     if (apart && r->state.pulse_open) {
         corrected_close_first_pulse(c);
@@ -156,6 +161,7 @@ static status run_action(corrected_run *c, int index, fault *f)
     const action *todo = &r->scenario->actions[index];
     motion_report report = {.event = MOTION_REACHED};
     event e = {.time = m->state[SLOT_TIME], .kind = EVENT_CHANGE, .index = index};
+    const double work = m->state[SLOT_EXTERNAL_WORK];
     status failed = corrected_record_row(c, m->state, 0);
     if (failed != STATUS_OK) {
         return failed;
@@ -169,6 +175,7 @@ static status run_action(corrected_run *c, int index, fault *f)
         motion_push(&c->arm, m, todo->value, &report);
         add_impulse_to_sensors(c, &report);
     }
+    r->state.energy_put_in += fabs(m->state[SLOT_EXTERNAL_WORK] - work);
     if (failed == STATUS_OK) {
         failed = trace_add_event(&r->result->trace, e);
     }

@@ -169,6 +169,8 @@ status corrected_record_step(corrected_run *c, bool at_event)
     if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
         r->state.separated = step_separated(c);
     }
+    r->state.energy_put_in += fabs(m->state[SLOT_MOTOR_WORK] - m->trial[SLOT_MOTOR_WORK]);
+
     // an arm held still has the energy it had
     status s = motion_held_still(m) ? STATUS_OK : corrected_audit(c);
 

@@ -90,7 +90,7 @@ json_t *export_run(const scenario *s, const run_result *result)
     }
     json_object_set_new(object, "scenario", json_text(s->name));
     json_object_set_new(object, "version", json_string(lab_version()));
-    json_object_set_new(object, "status", json_string(m->status == STATUS_OK ? "ok" : "failed"));
+    json_object_set_new(object, "status", json_string(summary_status(m)));
     json_object_set_new(object, "message", json_text(m->message));
     json_object_set_new(object, "method_used", json_text(m->method));
     json_object_set_new(object, "parameters", parameters_object(&s->parameters));

@@ -15,6 +15,8 @@ typedef struct recording_state {
     long grid_row;             // number of the next row of the grid
     bool separated;            // gap above SEPARATION_GAP in the present flight
     bool pulse_open;           // the first pulse has not ended
+    double energy_put_in;      // sum of what motor and actions did or took over each step [J]
+    long chatters;             // sequences of bounces that ended plastically
     double integral_at_window; // of the force, where the steady force's window begins [N s]
 } recording_state;
 

@@ -5,8 +5,8 @@
 
 const char *event_name(event_kind kind)
 {
-    static const char *const names[] = {"impact",   "contact", "release", "stick",
-                                        "reversal", "slip",    "change",  "push"};
+    static const char *const names[] = {"impact", "contact", "release", "stick",  "reversal",
+                                        "slip",   "change",  "push",    "chatter"};
     return names[kind];
 }
 

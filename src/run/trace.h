@@ -14,6 +14,7 @@ typedef enum event_kind {
     EVENT_SLIP,     // the hub breaks away
     EVENT_CHANGE,   // a scripted change of a parameter
     EVENT_PUSH,     // a scripted push
+    EVENT_CHATTER,  // too many short flights in a row: the impact took all the approach speed
 } event_kind;
 
 typedef struct event {

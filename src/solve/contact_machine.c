@@ -49,6 +49,7 @@
 #include "src/base/instant.h"
 
 #define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
+#define SHORT_FLIGHT    0.01  // of the arm's shortest period, a flight that says nothing by itself
 #define MOST_HALVINGS   8     // of a step that does not converge or makes energy
 #define LEAST_AFTER_CUT 1e-9  // share of a step; what is left of one before a cut is longer
 
@@ -143,8 +144,22 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
 
 // --- the transitions -----------------------------------------------------------------------------
 
-// The jump of an impact, and what holds after it. Slower than the rest speed it is plastic: a
-// sequence of ever smaller bounces ends in contact.
+// Counts flights that are too short for the arm to change in them. Whether the chatter rule says
+// that they are over: where more than MOTION_MOST_SHORT_FLIGHTS come in a row, the arm presses on
+// the wall.
+static bool chatters(const arm *a, motion *m)
+{
+    double *state = m->state;
+    double flight = state[SLOT_TIME] - state[SLOT_LAST_IMPACT];
+    bool is_short =
+        state[SLOT_LAST_IMPACT] >= 0 && flight * a->highest_frequency < SHORT_FLIGHT * 2 * M_PI;
+    state[SLOT_SHORT_FLIGHTS] = is_short ? state[SLOT_SHORT_FLIGHTS] + 1 : 0;
+    state[SLOT_LAST_IMPACT] = state[SLOT_TIME];
+    return state[SLOT_SHORT_FLIGHTS] > MOTION_MOST_SHORT_FLIGHTS;
+}
+
+// The jump of an impact, and what holds after it. Slower than the rest speed, or after too many
+// short flights, it is plastic: a sequence of ever smaller bounces ends in contact.
 static void impact(const arm *a, motion *m, motion_report *report)
 {
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
@@ -152,6 +167,11 @@ static void impact(const arm *a, motion *m, motion_report *report)
 
     // what the wall gives
     double e = wall_restitution(&a->wall, chain_penetration_rate(a, q, w));
+    if (chatters(a, m)) {
+        m->state[SLOT_SHORT_FLIGHTS] = 0;
+        report->chatter = e > 0;
+        e = 0;
+    }
     impact_result result = impact_velocity_increments(a, m->links, q, w, e, increment);
     report->speed = result.speed;
     report->impulse = result.impulse;
@@ -366,6 +386,7 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
         state_velocities(m, m->state)[i] = velocity;
     }
 
+    m->state[SLOT_LAST_IMPACT] = -1;
     m->start_energy =
         chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
         chain_strain_energy(a, state_angles(m, m->state));

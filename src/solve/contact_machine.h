@@ -12,6 +12,10 @@
 
 #include "src/solve/motion.h"
 
+// Chatter rule: more flights than this in a row, each shorter than a hundredth of the arm's
+// shortest period, and the impact after them is plastic whatever the restitution.
+enum { MOTION_MOST_SHORT_FLIGHTS = 50 };
+
 // Kinds of event the machine meets.
 typedef enum motion_event {
     MOTION_REACHED, // the wanted time
@@ -27,6 +31,7 @@ typedef struct motion_report {
     double impulse; // of an impact [N s]
     double speed;   // approach speed of an impact [m/s]
     double loss;    // energy lost in an impact [J]
+    bool chatter;   // an elastic impact was made plastic: too many short flights in a row
     bool holds;     // after an event: the arm is in contact
 } motion_report;
 

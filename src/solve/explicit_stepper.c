@@ -156,16 +156,33 @@ static status step(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
+// Upper estimate of how fast the state can change [1/s]: by the arm's own rate, and by its
+// rotation, which stretches the chain. A chain that hangs in the field of its own rotation at rate
+// w vibrates in the plane at w sqrt(n (2 n - 1) - 1), n = 1..N, its springs apart; squares of
+// frequencies add. Velocities are taken as they are and as accelerations make them within a stride.
+static double rate_of_change(const arm *a, const motion *m)
+{
+    const double *w = state_velocities(m, m->state), *al = state_accelerations(m, m->state);
+    const double n = a->links, stretched = n * (2 * n - 1), own = fmax(a->fastest_rate, 1e-3);
+    double fastest = 0;
+    for (int i = 0; i < a->dof; i++) {
+        fastest = fmax(fastest, fabs(w[i]));
+    }
+    double hub = fabs(al[0]) * LONG_RESOLUTION / own;
+    fastest = fmax(fastest, fmin(fabs(w[0]) + hub, sqrt(fabs(al[0]))));
+    return sqrt(own * own + stretched * fastest * fastest);
+}
+
 // How long the next step may be, and by which form of the method.
 static double begin(const arm *a, motion *m, double remaining, double step_length)
 {
-    double steps = floor(LONG_RESOLUTION / (step_length * fmax(a->fastest_rate, 1e-3)));
-    double longest = steps >= 2
-                         ? fmin(steps, MOST_AT_ONCE) * step_length
-                         : step_length / ceil(step_length * a->fastest_rate / EXPLICIT_RESOLUTION);
+    const double rate = rate_of_change(a, m);
+    double steps = floor(LONG_RESOLUTION / (step_length * rate));
+    double longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step_length
+                                : step_length / ceil(step_length * rate / EXPLICIT_RESOLUTION);
 
     // a step that something cuts to half or less, such as the next sample of a controller
-    m->brief = remaining < 0.5 * longest && remaining * a->fastest_rate <= BRIEF_RESOLUTION;
+    m->brief = remaining < 0.5 * longest && remaining * rate <= BRIEF_RESOLUTION;
     return remaining < longest * (1 + 1e-9) ? remaining : longest;
 }
 

@@ -31,6 +31,8 @@ enum motion_slot {
     SLOT_DAMPING_POWER,    // at this state [W]
     SLOT_JUMPED,           // 1 just after an event, before the first step
     SLOT_IMPULSE,          // of an unresolved impact, which the next step is to deliver [N s]
+    SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
+    SLOT_SHORT_FLIGHTS,    // in a row up to that impact
     SLOT_COUNT
 };
 

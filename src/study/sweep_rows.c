@@ -56,8 +56,7 @@ static void bind_row(sweep_store *store, size_t run, const summary *result)
             sqlite3_bind_double(row, column++, sweep_value(s, run, i));
         }
     }
-    sqlite3_bind_text(row, column++, result->status == STATUS_OK ? "ok" : "failed", -1,
-                      SQLITE_STATIC);
+    sqlite3_bind_text(row, column++, summary_status(result), -1, SQLITE_STATIC);
     sqlite3_bind_text(row, column++, result->message, -1, SQLITE_TRANSIENT);
     for (int i = 0; i < summary_count; i++) {
         bind_number(row, column++, summary_value(result, i));
@@ -92,7 +91,7 @@ status sweep_store_quantity(sweep_store *store, const char *key, double *values,
     char *sql = sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key);
     status code = sql ? database_prepare(store, &rows, sql, f) : database_no_memory(f);
     while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
-        bool ok = strcmp((const char *)sqlite3_column_text(rows, 1), "ok") == 0;
+        bool ok = strcmp((const char *)sqlite3_column_text(rows, 1), "failed") != 0;
         failures += !ok;
         if (ok && sqlite3_column_type(rows, 2) != SQLITE_NULL) {
             values[sqlite3_column_int64(rows, 0) - 1] = sqlite3_column_double(rows, 2);

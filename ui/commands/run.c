@@ -163,6 +163,9 @@ static int run_and_report(const arguments *a, scenario *s)
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
         exit_status = worse(exit_status, EXIT_FAILED);
+    } else if (result.summary.inaccurate) {
+        complain("%s is inaccurate: %s", s->name, result.summary.message);
+        exit_status = worse(exit_status, EXIT_FAILED);
     } else if (result.summary.message[0] != '\0') {
         fprintf(stderr, "impactlab: note: %s\n", result.summary.message);
     }

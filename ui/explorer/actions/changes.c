@@ -21,7 +21,7 @@ action_result act_change(explorer_state *st, int parameter, const char *text)
 
     // the run may stop with the new value, which must be known
     const session_input *in = &s->inputs[s->input_count - 1];
-    if (s->run.summary.status != STATUS_OK) {
+    if (s->run.summary.status != STATUS_OK || s->run.summary.inaccurate) {
         return act_tell_failed_run(st);
     }
     if (in->kind == SESSION_INPUT_TIMED) {

@@ -30,7 +30,7 @@ action_result act_open_scenario(explorer_state *st, const char *name)
     // from here on nothing fails: the new session takes the old one's place
     state_take_session(st, &fresh);
     st->playback.playing = true;
-    if (st->session.run.summary.status != STATUS_OK) {
+    if (st->session.run.summary.status != STATUS_OK || st->session.run.summary.inaccurate) {
         return act_tell_failed_run(st);
     }
     return result_news("%s", st->session.base.title ? st->session.base.title : "");
@@ -78,7 +78,9 @@ action_result act_tell_failed_run(const explorer_state *st)
 {
     assert(st != NULL);
     const summary *m = &st->session.run.summary;
-    return m->status != STATUS_OK ? result_warning("the run stops: %s", m->message) : result_done();
+    return m->status != STATUS_OK ? result_warning("the run stops: %s", m->message)
+           : m->inaccurate        ? result_warning("the run is inaccurate: %s", m->message)
+                                  : result_done();
 }
 
 action_result act_need_whole_run(const explorer_state *st)

@@ -48,7 +48,7 @@ action_result act_advance(explorer_state *st, double seconds)
         return result_done();
     }
     play->playing = false;
-    if (s->run.summary.status != STATUS_OK) {
+    if (s->run.summary.status != STATUS_OK || s->run.summary.inaccurate) {
         return act_tell_failed_run(st);
     }
     return result_news("end of the run: Space plays it again, x makes it longer, "

@@ -39,13 +39,15 @@ void draw_title(const explorer_state *st, screen *s)
 
 // --- status -----------------------------------------------------------------------------------
 
+enum { STATUS_ITEMS = 9 };
+
 typedef struct status_item {
     char text[96];
     int rank; // the lower ones stay where not all fit
 } status_item;
 
 // Fills the items from left to right; returns how many.
-static int write_status(const explorer_state *st, status_item items[8])
+static int write_status(const explorer_state *st, status_item items[STATUS_ITEMS])
 {
     const session *e = &st->session;
     const sample *row = session_sample(e);
@@ -76,6 +78,9 @@ static int write_status(const explorer_state *st, status_item items[8])
     if (e->computing != NULL) {
         ITEM(2, "computing %.1f of %g s (Esc stops)", session_end(e), p->run.duration);
     }
+    if (e->run.summary.inaccurate) {
+        ITEM(1, "inaccurate");
+    }
     ITEM(1, "t %.5f s", e->now);
     ITEM(5, "row %zu/%zu", e->row + 1, e->run.trace.row_count);
     ITEM(3, "\u00d7%g%s", st->playback.speed, speed);
@@ -91,9 +96,9 @@ static int write_status(const explorer_state *st, status_item items[8])
 
 void draw_status(const explorer_state *st, screen *s, int y)
 {
-    status_item items[8];
+    status_item items[STATUS_ITEMS];
     int count = write_status(st, items), x = 1;
-    bool shown[8] = {false};
+    bool shown[STATUS_ITEMS] = {false};
     // the most important ones first, as long as there is room
     for (int rank = 0, used = 1; rank < 8; rank++) {
         for (int i = 0; i < count; i++) {
@@ -112,7 +117,8 @@ void draw_status(const explorer_state *st, screen *s, int y)
             x += 2 + screen_text(s, x, y, s->width - x, INK_TEXT, items[i].text);
         }
     }
-    bool failed = st->session.run.summary.status != STATUS_OK;
+    const summary *m = &st->session.run.summary;
+    bool failed = m->status != STATUS_OK || m->inaccurate;
     screen_tint(s, 0, y, s->width, 1, failed && !st->playback.playing ? INK_WARNING : INK_SELECTED);
 }
 
