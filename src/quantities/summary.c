@@ -39,6 +39,9 @@ const summary_info summary_table[] = {
            "force that the controller is to hold"),
     NUMBER(force_over_command_N, "force_over_command", "force over command", "N",
            "largest force minus the commanded one"),
+    NUMBER(smoothed_over_command_N, "smoothed_over_command", "smoothed over command", "N",
+           "largest mean of the force over 5 ms, impulses included, from 20 ms after first contact "
+           "on, minus the commanded force"),
     NUMBER(steady_error_N, "steady_error", "steady error", "N",
            "steady force minus the commanded one"),
     NUMBER(largest_command_V, "largest_command", "largest command", "V",

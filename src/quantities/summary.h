@@ -30,13 +30,14 @@ typedef struct summary {
     double motor_work_J;
     double energy_residual_J; // largest absolute value over the run
     // on the rig only, else NaN
-    double force_command_N;      // control.force
-    double force_over_command_N; // peak_force_N - force_command_N
-    double steady_error_N;       // steady_force_N - force_command_N
-    double largest_command_V;    // in magnitude, as the D/A put it out
-    double electrical_energy_J;  // that the amplifier fed into the motor
-    double steps;                // time steps taken
-    double wall_time_s;          // computing time
+    double force_command_N;         // control.force
+    double force_over_command_N;    // peak_force_N - force_command_N
+    double smoothed_over_command_N; // largest mean over 5 ms from 20 ms after contact on, likewise
+    double steady_error_N;          // steady_force_N - force_command_N
+    double largest_command_V;       // in magnitude, as the D/A put it out
+    double electrical_energy_J;     // that the amplifier fed into the motor
+    double steps;                   // time steps taken
+    double wall_time_s;             // computing time
 } summary;
 
 typedef struct summary_info {

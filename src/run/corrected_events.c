@@ -18,10 +18,12 @@ void corrected_bind_arm(corrected_run *c)
 
 // --- events of the motion ---------------------------------------------------------------------
 
-static status record_event(recording *r, double time, event_kind kind, const motion_report *report)
+static status record_event(recording *r, const motion *m, event_kind kind,
+                           const motion_report *report)
 {
-    event e = {.time = time, .kind = kind, .index = -1};
+    event e = {.time = m->state[SLOT_TIME], .kind = kind, .index = -1};
     if (kind == EVENT_IMPACT) {
+        e.delivered_by_step = m->state[SLOT_IMPULSE] != 0;
         e.impulse = report->impulse;
         e.speed = report->speed;
         e.loss = report->loss;
@@ -63,7 +65,7 @@ static status record_applied_event(corrected_run *c, const motion_report *report
     summary *s = &r->result->summary;
     double now = m->state[SLOT_TIME];
     bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
-    status failed = record_event(r, now, kind_of(m, report), report);
+    status failed = record_event(r, m, kind_of(m, report), report);
     s->impacts += report->event == MOTION_IMPACT;
 
     // the gap closes: a flight ends, at the first time the pulse begins
@@ -77,7 +79,7 @@ static status record_applied_event(corrected_run *c, const motion_report *report
             motion_watch(m);
         }
         if (report->holds && failed == STATUS_OK && report->event == MOTION_IMPACT) {
-            failed = record_event(r, now, EVENT_CONTACT, report);
+            failed = record_event(r, m, EVENT_CONTACT, report);
         }
     }
 

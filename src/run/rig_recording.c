@@ -4,6 +4,11 @@
 #include <math.h>
 
 #include "src/arm/motor.h"
+#include "src/run/largest_mean.h"
+
+// The smoothed force: means over SMOOTHING_WINDOW [s], from SMOOTHED_AFTER first contact on [s].
+#define SMOOTHING_WINDOW 5e-3
+#define SMOOTHED_AFTER   0.02
 
 status recording_start_rig(recording *r, fault *f)
 {
@@ -55,5 +60,10 @@ void recording_finish_rig_summary(recording *r, double hub_angle)
     s->largest_command_V = r->rig->largest_command;
     s->force_command_N = p->control.force;
     s->force_over_command_N = s->peak_force_N - p->control.force;
+    if (!isnan(s->first_contact_s)) {
+        s->smoothed_over_command_N =
+            force_largest_mean(r->result, s->first_contact_s + SMOOTHED_AFTER, SMOOTHING_WINDOW) -
+            p->control.force;
+    }
     s->steady_error_N = s->steady_force_N - p->control.force;
 }

@@ -20,10 +20,11 @@ typedef enum event_kind {
 typedef struct event {
     double time; // [s]
     event_kind kind;
-    double impulse; // impact: of the wall [N s]; push: as scripted; else 0
-    double speed;   // impact: approach speed [m/s]; else 0
-    double loss;    // impact: energy lost [J]; else 0
-    int index;      // change, push: which action of the scenario; else -1
+    double impulse;         // impact: of the wall [N s]; push: as scripted; else 0
+    double speed;           // impact: approach speed [m/s]; else 0
+    double loss;            // impact: energy lost [J]; else 0
+    int index;              // change, push: which action of the scenario; else -1
+    bool delivered_by_step; // impact: the impulse is in the force of the step behind it
 } event;
 
 // "impact", "contact", ...

@@ -1,0 +1,147 @@
+#include "src/run/largest_mean.h"
+
+#include <assert.h>
+#include <math.h>
+
+// One end of the window, on its way through the run.
+typedef struct window_end {
+    double time;     // [s]
+    size_t step;     // that it lies in
+    double before;   // integral of the force up to that step [N s]
+    size_t event;    // next one whose impulse it has not passed
+    double impulses; // of those that it has passed [N s]
+} window_end;
+
+// The force within a step as a parabola of its share s of the step: first + slope s + curve s^2.
+typedef struct step_parabola {
+    double first, slope, curve; // [N]
+} step_parabola;
+
+static step_parabola parabola_of(const force_step *step)
+{
+    double curve = 3 * (step->first + step->last) - 6 * step->mean;
+    return (step_parabola){step->first, step->last - step->first - curve, curve};
+}
+
+// Integral of the force from the step's start to an instant within it [N s].
+static double integral_within(const force_step *step, double time)
+{
+    double length = step->end - step->start;
+    double s = length > 0 ? fmin(fmax((time - step->start) / length, 0), 1) : 0;
+    step_parabola p = parabola_of(step);
+    return length * s * (p.first + s * (p.slope / 2 + s * p.curve / 3));
+}
+
+static bool is_impulse(const event *e)
+{
+    return e->kind == EVENT_IMPACT && e->impulse > 0 && !e->delivered_by_step;
+}
+
+// Moves an end of the window on. Impulses at the instant itself are passed or not.
+static void advance(const run_result *r, window_end *w, double time, bool past_impulses)
+{
+    const force_step *steps = force_steps(&r->history.forces);
+    const trace *t = &r->trace;
+    while (w->step + 1 < r->history.forces.count && steps[w->step].end <= time) {
+        w->before += steps[w->step].mean * (steps[w->step].end - steps[w->step].start);
+        w->step++;
+    }
+    while (w->event < t->event_count && (t->events[w->event].time < time ||
+                                         (past_impulses && t->events[w->event].time == time))) {
+        w->impulses += is_impulse(&t->events[w->event]) ? t->events[w->event].impulse : 0;
+        w->event++;
+    }
+    w->time = time;
+}
+
+// Integral of force and impulses up to an end of the window, the end being moved to `time` within
+// its step [N s].
+static double integral_to(const run_result *r, const window_end *w, double time)
+{
+    return w->before + integral_within(&force_steps(&r->history.forces)[w->step], time) +
+           w->impulses;
+}
+
+// The next instant of the window's front at which its front or back meets a step's end or an
+// impulse [s].
+static double next_change(const run_result *r, const window_end *front, const window_end *back,
+                          double window)
+{
+    const force_step *steps = force_steps(&r->history.forces);
+    double next = steps[front->step].end;
+    double after = steps[back->step].end + window;
+    next = after > front->time && after < next ? after : next;
+    for (int end = 0; end < 2; end++) {
+        const window_end *w = end == 0 ? front : back;
+        for (size_t i = w->event; i < r->trace.event_count; i++) {
+            double at = r->trace.events[i].time + (end == 0 ? 0 : window);
+            if (at > front->time) {
+                next = fmin(next, at);
+                break;
+            }
+        }
+    }
+    return next;
+}
+
+// The largest integral over the window with its front strictly between `from` and `to`, where the
+// forces at front and back are equal; -HUGE_VAL if they are nowhere.
+static double largest_between(const run_result *r, const window_end *front, const window_end *back,
+                              double window, double to)
+{
+    // both parabolas as ones of the time since `from`: difference a + b u + c u^2
+    const force_step *steps = force_steps(&r->history.forces);
+    double from = front->time, sums[3] = {0}, largest = -HUGE_VAL;
+    for (int end = 0; end < 2; end++) {
+        const force_step *step = &steps[end == 0 ? front->step : back->step];
+        double length = step->end - step->start, sign = end == 0 ? 1 : -1;
+        if (!(length > 0)) {
+            continue;
+        }
+        double s = (from - (end == 0 ? 0 : window) - step->start) / length;
+        step_parabola p = parabola_of(step);
+        sums[0] += sign * (p.first + s * (p.slope + s * p.curve));
+        sums[1] += sign * (p.slope + 2 * s * p.curve) / length;
+        sums[2] += sign * p.curve / (length * length);
+    }
+
+    double square = sums[1] * sums[1] - 4 * sums[2] * sums[0];
+    for (int sign = -1; sign <= 1 && square >= 0; sign += 2) {
+        double denominator = -sums[1] + sign * sqrt(square); // 2 a / (...) stands c = 0 as well
+        double u = denominator != 0 ? 2 * sums[0] / denominator : -1;
+        if (u > 0 && from + u < to) {
+            largest = fmax(largest, integral_to(r, front, from + u) -
+                                        integral_to(r, back, from + u - window));
+        }
+    }
+    return largest;
+}
+
+double force_largest_mean(const run_result *result, double from, double window)
+{
+    assert(result != NULL && isfinite(from) && window > 0);
+    const force_history *h = &result->history.forces;
+    double end = h->count > 0 ? force_steps(h)[h->count - 1].end : -HUGE_VAL;
+    if (!(from + window <= end)) {
+        return (double)NAN;
+    }
+
+    window_end front = {0}, back = {0};
+    double largest = -HUGE_VAL;
+    for (double time = from + window;;) {
+        // at the instant itself, impulses on both edges counting
+        advance(result, &front, time, true);
+        advance(result, &back, time - window, false);
+        largest = fmax(largest, integral_to(result, &front, time) -
+                                    integral_to(result, &back, time - window));
+        if (time >= end) {
+            return largest / window;
+        }
+
+        // behind it, up to the next one
+        advance(result, &back, time - window, true);
+        double next = fmin(next_change(result, &front, &back, window), end);
+        largest = fmax(largest, largest_between(result, &front, &back, window, next));
+        time = next > time ? next : end;
+    }
+}

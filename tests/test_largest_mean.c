@@ -1,0 +1,133 @@
+// The largest mean of the force over a sliding window, against analytic results and plain sums.
+#include "src/run/largest_mean.h"
+
+#include <string.h>
+
+#include "tests/rig_fixture.h"
+
+static run_result empty_run(void)
+{
+    run_result r;
+    memset(&r, 0, sizeof r);
+    force_history_init(&r.history.forces);
+    trace_init(&r.trace, 1);
+    return r;
+}
+
+static void finish(run_result *r)
+{
+    trace_finish(&r->trace);
+    force_history_finish(&r->history.forces);
+}
+
+// A parabola first + slope s + curve s^2 of the share of a step.
+static void add_step(run_result *r, double start, double end, double first, double slope,
+                     double curve)
+{
+    force_step step = {start, end, first, first + slope + curve, first + slope / 2 + curve / 3};
+    assert_int_equal(force_history_add(&r->history.forces, step), STATUS_OK);
+}
+
+static void add_impulse(run_result *r, double time, double impulse, bool delivered)
+{
+    event e = {.time = time,
+               .kind = EVENT_IMPACT,
+               .impulse = impulse,
+               .index = -1,
+               .delivered_by_step = delivered};
+    assert_int_equal(trace_add_event(&r->trace, e), STATUS_OK);
+}
+
+static void a_hump_is_met_in_its_middle(void **state)
+{
+    (void)state;
+    // 4 s (1 - s) over 1 s: the mean over 0.2 s round the top is 1 - w^2/3
+    run_result r = empty_run();
+    add_step(&r, 0, 1, 0, 4, -4);
+    check_close(force_largest_mean(&r, 0, 0.2), 1 - 0.2 * 0.2 / 3, 1e-15);
+
+    // from the top on the first window is the largest: 1 - 4 w^2/3
+    check_close(force_largest_mean(&r, 0.5, 0.2), 1 - 4 * 0.2 * 0.2 / 3, 1e-15);
+    finish(&r);
+}
+
+static void an_impulse_counts_over_the_window(void **state)
+{
+    (void)state;
+    run_result r = empty_run();
+    add_step(&r, 0, 0.5, 1, 0, 0);
+    add_step(&r, 0.5, 1, 1, 0, 0);
+    add_impulse(&r, 0.3, 0.02, false);
+    add_impulse(&r, 0.304, 0.01, false);
+    add_impulse(&r, 0.7, 1, true); // in the force of its step already
+    check_close(force_largest_mean(&r, 0, 0.005), 1 + 0.03 / 0.005, 1e-12);
+    check_close(force_largest_mean(&r, 0, 0.003), 1 + 0.02 / 0.003, 1e-12);
+    check_close(force_largest_mean(&r, 0.302, 0.003), 1 + 0.01 / 0.003, 1e-12);
+    check_close(force_largest_mean(&r, 0.305, 0.003), 1, 1e-12);
+
+    // a window as long as the whole run, and one that is longer
+    check_close(force_largest_mean(&r, 0, 1), 1.03, 1e-12);
+    assert_true(isnan(force_largest_mean(&r, 0, 1.001)));
+    finish(&r);
+}
+
+// The force of a run at an instant, from its history [N].
+static double force_at(const run_result *r, double time)
+{
+    const force_step *steps = force_steps(&r->history.forces);
+    size_t i = 0;
+    while (i + 1 < r->history.forces.count && steps[i].end <= time) {
+        i++;
+    }
+    double curve = 3 * (steps[i].first + steps[i].last) - 6 * steps[i].mean;
+    double s = (time - steps[i].start) / (steps[i].end - steps[i].start);
+    return steps[i].first + s * (steps[i].last - steps[i].first - curve + s * curve);
+}
+
+// No window at a fine grid has a larger mean than the one found, and one has nearly that.
+static void it_is_the_largest_of_many(void **state)
+{
+    (void)state;
+    enum { FINE = 4000 };
+    run_result r = empty_run();
+    double time = 0, last = 0;
+    for (int i = 0; i < 60; i++) {
+        double length = 0.004 + 0.003 * (i * 7 % 5), slope = sin(1.7 * i), curve = cos(2.3 * i);
+        add_step(&r, time, time + length, last, slope, curve);
+        last += slope + curve;
+        time += length;
+    }
+    const double window = 0.031, from = 0.05;
+    double found = force_largest_mean(&r, from, window), seen = -HUGE_VAL;
+    for (int i = 0; i < FINE; i++) {
+        double start = from + (time - window - from) * i / FINE, sum = 0;
+        for (int k = 0; k < 400; k++) {
+            sum += force_at(&r, start + window * (k + 0.5) / 400) / 400;
+        }
+        seen = fmax(seen, sum);
+    }
+    check_close(found, seen, 2e-3);
+    check_below(seen, found + 1e-4);
+    finish(&r);
+}
+
+static void a_run_on_the_rig_has_it_and_the_bare_arm_has_not(void **state)
+{
+    (void)state;
+    summary rig = rig_summary(SETTINGS("control.law=hybrid"));
+    check_below(rig.smoothed_over_command_N, rig.force_over_command_N + 1e-9);
+    check_below(0.5, rig.smoothed_over_command_N);
+    summary bare = rig_summary(NULL);
+    assert_true(isnan(bare.smoothed_over_command_N));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_hump_is_met_in_its_middle),
+        cmocka_unit_test(an_impulse_counts_over_the_window),
+        cmocka_unit_test(it_is_the_largest_of_many),
+        cmocka_unit_test(a_run_on_the_rig_has_it_and_the_bare_arm_has_not),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
