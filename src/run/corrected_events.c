@@ -84,7 +84,7 @@ static status record_applied_event(corrected_run *c, const motion_report *report
     }
 
     if (report->chatter && failed == STATUS_OK) {
-        failed = record_event(r, now, EVENT_CHATTER, report);
+        failed = record_event(r, m, EVENT_CHATTER, report);
         r->state.chatters++;
     }
 
