@@ -32,6 +32,8 @@ static reference_case cases[] = {
     {"spring hub, plane, N = 3, 5 V", 3, true, true, 5, 0, 1, TOLERANCE, SPRING_LOOK},
     {"spring hub, point, N = 2, 1 V", 2, true, false, 1, 0, 1, TOLERANCE, SPRING_LOOK},
     {"spring hub, point, N = 2, 5 V", 2, true, false, 5, 0, 1, TOLERANCE, SPRING_LOOK},
+    {"beam root, plane, N = 3, 1 V", 3, false, true, 1, 0, 1, TOLERANCE, RIGID_LOOK, true},
+    {"beam root, plane, N = 5, 1 V", 5, false, true, 1, 0, 1, TOLERANCE, RIGID_LOOK, true},
 };
 enum { CASES = sizeof cases / sizeof cases[0] };
 
@@ -87,7 +89,10 @@ static summary library_of(const reference_case *c, const char *method, double st
     s.name = s.file = s.title = s.description = name;
     parameters_defaults(&s.parameters, ARM_CORRECTED);
     set_number(&s.parameters, "arm.links", c->links);
-    set_text(&s.parameters, "arm.hub_joint", c->spring_hub ? "spring" : "rigid");
+    set_text(&s.parameters, "arm.hub_joint",
+             c->beam_root    ? "beam"
+             : c->spring_hub ? "spring"
+                             : "rigid");
     set_text(&s.parameters, "wall.kind", c->plane_wall ? "plane" : "point");
     set_number(&s.parameters, "wall.restitution", c->restitution);
     set_number(&s.parameters, "motor.voltage", c->voltage);

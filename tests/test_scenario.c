@@ -234,6 +234,8 @@ static void impossible_combinations_point_at_the_key(void **state)
     check_fault("arm:\n  model: printed\n  links: 5\n", 3, 10, "the printed model has two links");
     check_fault("arm: {model: printed}\nwall: {kind: plane}\n", 2, 14, "not plane");
     check_fault("arm:\n  links: 3\n  link_inertia: 1e-5\n", 3, 17, "two links only");
+    check_fault("arm:\n  EI: 2.46\n  k2: 4.92\n", 2, 7, "both given");
+    check_fault("arm: {hub_joint: beam, k1: 90}\n", 1, 28, "arm.hub_joint = spring");
     // all of them, not the first one only
     check_faults(
         "arm: {model: printed, links: 5, hub_joint: rigid}\n"

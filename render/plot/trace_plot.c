@@ -133,11 +133,13 @@ static void add_drive(GString *out, const parameters *p)
 // Model, links, drive and method in one line.
 static char *caption_of(const trace_run *run, const char *shaded)
 {
+    static const char *const hub_texts[] = {
+        [HUB_RIGID] = "rigid", [HUB_SPRING] = "spring", [HUB_BEAM] = "beam's"};
     const parameters *p = &run->scenario->parameters;
     GString *out = g_string_new(p->arm.model == ARM_PRINTED ? "Printed model" : "Corrected model");
     char *step = duration_text(p->method.step);
     g_string_append_printf(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
-                           p->arm.hub_joint == HUB_RIGID ? "rigid" : "spring");
+                           hub_texts[p->arm.hub_joint]);
     add_drive(out, p);
     if (p->arm.model == ARM_PRINTED || p->method.name == METHOD_NEWMARK) {
         g_string_append_printf(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta,

@@ -14,7 +14,8 @@ void arm_set_voltage(arm *a, double volts)
 
 // First frequency of the straight chain clamped at the hub, from inverse iteration on
 // M x = (1/w^2) K x: bending moments of the inertia forces, summed twice, give the next shape.
-// Uniform rods: force on node and moment per unit acceleration of link k, see chain.h.
+// Uniform rods: force on node and moment per unit acceleration of link k, see chain.h. The clamp
+// holds the first link, or the root of a beam that bends there too.
 static double first_clamped_frequency(const arm *a)
 {
     // the angles of a quadratic deflection are a fair first shape; Rayleigh's quotient after one
@@ -24,7 +25,7 @@ static double first_clamped_frequency(const arm *a)
     enum { LONGEST = 1024, SWEEPS = 6 };
     double shape[LONGEST], next[LONGEST];
     for (int k = 0; k < a->links; k++) {
-        shape[k] = k;
+        shape[k] = a->root_bends ? k + 0.5 : k;
     }
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         // deflections of the links' ends
@@ -35,17 +36,17 @@ static double first_clamped_frequency(const arm *a)
             tip_y[k] = y;
         }
         // M x as the moment on each joint, from the tip inwards
-        for (int k = a->links - 1; k >= 1; k--) {
+        for (int k = a->links - 1; k >= (a->root_bends ? 0 : 1); k--) {
             double base = tip_y[k] - l * shape[k];
             double own_force = m * (base + l * shape[k] / 2);
             double moment =
                 moment_beyond + force * l + own_force * l / 2 + a->link_inertia * shape[k];
             moment_beyond = moment;
             force += own_force;
-            next[k] = moment / a->joint_stiffness; // bend of joint k
+            next[k] = moment / (k > 0 ? a->joint_stiffness : a->hub_stiffness); // bend of joint k
         }
         double sum = 0, numerator = 0, denominator = 0;
-        next[0] = 0;
+        next[0] = a->root_bends ? next[0] : 0;
         for (int k = 0; k < a->links; k++) {
             sum += next[k];
             next[k] = sum;
@@ -122,7 +123,8 @@ void arm_init(arm *a, const parameters *p)
 {
     memset(a, 0, sizeof *a);
     a->links = p->arm.links;
-    a->hub_spring = p->arm.hub_joint == HUB_SPRING;
+    a->hub_spring = p->arm.hub_joint != HUB_RIGID;
+    a->root_bends = p->arm.hub_joint == HUB_BEAM;
     a->first = a->hub_spring ? 1 : 0;
     a->dof = a->links + a->first;
     a->link_length = p->arm.length / a->links;
@@ -133,7 +135,7 @@ void arm_init(arm *a, const parameters *p)
     a->joint_stiffness = p->arm.k2 * a->links / 2;
     motor_init(&a->motor, &p->motor);
     wall_init(&a->wall, p);
-    if (p->arm.damping_ratio > 0 && a->links > 1) {
+    if (p->arm.damping_ratio > 0 && (a->links > 1 || a->root_bends)) {
         // torque c dot(bend) in each spring, c = 2 zeta k / w1, damps the first mode by zeta
         double per_stiffness = 2 * p->arm.damping_ratio / first_clamped_frequency(a);
         a->joint_damping = per_stiffness * a->joint_stiffness;

@@ -45,8 +45,9 @@ const parameter_info parameter_table[] = {
      MEANING("equations of motion: derived anew, or as the thesis prints them")},
     {PATH(arm.links), INTEGER(1, 1024), DEFAULT(2),
      MEANING("number of rigid links the beam is cut into (N)")},
-    {PATH(arm.hub_joint), CHOICE(1, "rigid|spring"), DEFAULTS(HUB_RIGID, HUB_SPRING),
-     MEANING("joint between hub and first link: one body, or the spring k1")},
+    {PATH(arm.hub_joint), CHOICE(2, "rigid|spring|beam"), DEFAULTS(HUB_RIGID, HUB_SPRING),
+     MEANING("joint between hub and first link: one body, the spring k1, or the beam's own root, a "
+             "spring k2 N")},
     {PATH(arm.length), REAL("m", 0.01, 100), DEFAULT(1.0),
      MEANING("length of the beam, all links together")},
     {PATH(arm.mass), REAL("kg", 1e-4, 1e4), DEFAULT(0.40108),
@@ -56,10 +57,12 @@ const parameter_info parameter_table[] = {
     {PATH(arm.link_inertia), REAL("kg m2", 0, 1e4), DEFAULTS(DERIVED, 1.67e-5),
      MEANING("moment of inertia of a link about its centre of mass (I2 = I3, N = 2 only)")},
     {PATH(arm.k1), REAL("N m/rad", 1e-6, 1e9), DEFAULTS(K1_THESIS, K1_PRINTED_TABLES), TIMED,
-     MEANING("stiffness of the hub joint (arm.hub_joint = spring)")},
+     MEANING("stiffness of the hub joint (arm.hub_joint = spring; with beam it is k2 N)")},
     {PATH(arm.k2), REAL("N m/rad", 1e-6, 1e9), DEFAULT(4.92), TIMED,
      MEANING(
          "stiffness of the middle joint of the two-link beam; each joint of N links has k2 N/2")},
+    {PATH(arm.EI), REAL("N m2", 1e-9, 1e12), DEFAULT(DERIVED), TIMED,
+     MEANING("bending stiffness of the beam, in place of arm.k2 = 2 EI/length")},
     {PATH(arm.damping_ratio), REAL("", 0, 1), DEFAULT(0),
      MEANING("structural damping ratio of the first clamped-free mode")},
 
@@ -610,6 +613,41 @@ static void resolve_defaults(parameters *p)
     }
 }
 
+// Half a cell of beam, length/(2 N), lies between the hub and the middle of the first link.
+static double root_stiffness(const arm_parameters *a)
+{
+    return a->k2 * a->links;
+}
+
+void parameters_follow(parameters *p, int index)
+{
+    assert(p != NULL);
+    arm_parameters *a = &p->arm;
+    if (index == PARAMETER_INDEX(arm.k2)) {
+        a->EI = a->k2 * a->length / 2;
+    } else if (index == PARAMETER_INDEX(arm.EI)) {
+        a->k2 = 2 * a->EI / a->length;
+    }
+    a->k1 = a->hub_joint == HUB_BEAM ? root_stiffness(a) : a->k1;
+}
+
+// The beam's stiffness is given once, and with it that of its root.
+static status resolve_stiffness(parameters *p, fault *f)
+{
+    if (IS_SET(p, arm.EI) && IS_SET(p, arm.k2)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.EI),
+                            "arm.EI and arm.k2 = 2 EI/length are both given, expected one of them");
+    }
+    if (p->arm.hub_joint == HUB_BEAM && IS_SET(p, arm.k1)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.k1),
+                            "arm.k1 is for arm.hub_joint = spring, but with beam the root has the "
+                            "spring k2 N = %g N m/rad",
+                            root_stiffness(&p->arm));
+    }
+    parameters_follow(p, IS_SET(p, arm.EI) ? PARAMETER_INDEX(arm.EI) : PARAMETER_INDEX(arm.k2));
+    return STATUS_OK;
+}
+
 static status resolve_arm(parameters *p, fault *f)
 {
     if (IS_SET(p, arm.link_inertia) && p->arm.links != 2) {
@@ -621,6 +659,9 @@ static status resolve_arm(parameters *p, fault *f)
     if (isnan(p->arm.link_inertia)) {
         double m = p->arm.mass / p->arm.links, l = p->arm.length / p->arm.links;
         p->arm.link_inertia = m * l * l / 12; // uniform rod (errata B3)
+    }
+    if (resolve_stiffness(p, f) != STATUS_OK) {
+        return STATUS_BAD_SCENARIO;
     }
     if (p->wall.kind != WALL_NONE && p->initial.angle > p->wall.angle) {
         return fault_set_at(
@@ -697,7 +738,8 @@ static status check_printed(const parameters *p, fault *f)
     }
     if (p->arm.hub_joint != HUB_SPRING) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.hub_joint),
-                            "the printed model has a hub spring, but arm.hub_joint = rigid");
+                            "the printed model has a hub spring, but arm.hub_joint = %s",
+                            p->arm.hub_joint == HUB_BEAM ? "beam" : "rigid");
     }
     if (p->method.name != METHOD_NEWMARK) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.name),

@@ -12,7 +12,7 @@
 #include "src/quantities/control_laws.h"
 
 typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
-typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING } hub_joint_kind;
+typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING, HUB_BEAM } hub_joint_kind;
 typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
 typedef enum listing_reevaluation { REEVALUATE_RHS, REEVALUATE_LISTING } listing_reevaluation;
@@ -25,8 +25,9 @@ typedef struct arm_parameters {
     double mass;          // beam mass, N links together [kg]
     double hub_inertia;   // I1 [kg m2]
     double link_inertia;  // I2 = I3 about the centre of mass, N = 2 only [kg m2]
-    double k1;            // hub joint spring [N m/rad]
+    double k1;            // hub joint spring; of a beam k2 N [N m/rad]
     double k2;            // joint spring of the two-link beam [N m/rad]; N links: k2 N/2 each
+    double EI;            // bending stiffness of the beam, k2 length/2 [N m2]
     double damping_ratio; // structural damping ratio of the first clamped-free mode [-]
 } arm_parameters;
 
@@ -236,6 +237,11 @@ double parameter_get(const parameters *p, int index);
 void parameter_format(const parameters *p, int index, char *text, size_t size);
 
 // Fills what depends on other parameters: defaults that follow arm.model for everything not set,
-// and arm.link_inertia of a uniform link. Checks combinations (arm.link_inertia with N != 2,
-// the printed model with N != 2 ...). Call after the last parameter was set.
+// arm.link_inertia of a uniform link, arm.EI or arm.k2 from the one that was given, and arm.k1 of a
+// beam's root. Checks combinations (arm.link_inertia with N != 2, arm.EI beside arm.k2, the printed
+// model with N != 2 ...). Call after the last parameter was set.
 status parameters_resolve(parameters *p, fault *f);
+
+// Lets what depends on parameter `index` follow it in resolved parameters, as a change during a run
+// asks for it: arm.k2, arm.EI and the root of a beam.
+void parameters_follow(parameters *p, int index);

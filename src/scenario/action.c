@@ -15,7 +15,11 @@ status action_apply(const action *a, parameters *p, fault *f)
     if (parameter_table[a->parameter].type == PARAMETER_TEXT) {
         return parameter_set_text(p, a->parameter, a->text, f);
     }
-    return parameter_set_number(p, a->parameter, a->value, f);
+    status code = parameter_set_number(p, a->parameter, a->value, f);
+    if (code == STATUS_OK) {
+        parameters_follow(p, a->parameter);
+    }
+    return code;
 }
 
 void action_format_value(const action *a, char *text, size_t size)

@@ -66,7 +66,7 @@ static void arm_build(body_chain *arm, const reference_case *c)
     const double gain = 6.02, kt = 0.249092 * 9.80665, resistance = 33.6, kb = 2.443;
     memset(arm, 0, sizeof *arm);
     arm->links = c->links;
-    arm->first_link = c->spring_hub ? 1 : 0;
+    arm->first_link = c->spring_hub || c->beam_root ? 1 : 0;
     arm->bodies = c->links + arm->first_link;
     arm->plane = c->plane_wall;
     arm->length = beam_length / c->links;
@@ -87,7 +87,8 @@ static void arm_build(body_chain *arm, const reference_case *c)
         }
     }
     for (int i = 0; i + 1 < arm->bodies; i++) {
-        arm->stiffness[i] = i < arm->first_link ? k1 : 0.5 * k2 * c->links;
+        double root = c->beam_root ? k2 * c->links : k1;
+        arm->stiffness[i] = i < arm->first_link ? root : 0.5 * k2 * c->links;
     }
     arm->motor_torque = gain * kt / resistance * c->voltage;
     arm->motor_drag = kt * kb / resistance + 5.4192e-3;

@@ -17,6 +17,7 @@ typedef struct reference_case {
     double duration;     // [s]
     double tolerance;    // absolute and relative, of the integrator
     double longest_step; // between two looks at the event functions [s]
+    bool beam_root;      // the hub on the beam's root, a spring k2 N
 } reference_case;
 
 // What comes out. What did not occur is NaN.
