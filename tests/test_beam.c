@@ -144,12 +144,12 @@ static void stiffness_may_be_given_as_the_beams(void **state)
     // what depends on a stiffness follows it
     assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.EI), 4, NULL), STATUS_OK);
     parameters_follow(&p, PARAMETER_INDEX(arm.EI));
-    check_relative(p.arm.k2, 4, 1e-15);
-    check_relative(p.arm.k1, 20, 1e-15);
+    check_relative(p.arm.k2, 4.0, 1e-15);
+    check_relative(p.arm.k1, 20.0, 1e-15);
     assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.k2), 6, NULL), STATUS_OK);
     parameters_follow(&p, PARAMETER_INDEX(arm.k2));
-    check_relative(p.arm.EI, 6, 1e-15);
-    check_relative(p.arm.k1, 30, 1e-15);
+    check_relative(p.arm.EI, 6.0, 1e-15);
+    check_relative(p.arm.k1, 30.0, 1e-15);
 }
 
 int main(void)
