@@ -43,7 +43,7 @@ static void the_colour_scale_grows_lighter_all_the_way(void **state)
     (void)state;
     double before = -1;
     for (int i = 0; i <= 100; i++) {
-        colour c = palette_shade(i / 100.0);
+        colour c = palette_shade(THEME_COLOUR, i / 100.0);
         double light =
             0.2126 * pow(c.red, 2.2) + 0.7152 * pow(c.green, 2.2) + 0.0722 * pow(c.blue, 2.2);
         check_below(before, light);

@@ -166,7 +166,7 @@ static void csv_holds_what_is_drawn(void **state)
     size_t length;
     assert_int_equal(figure_write_csv(&fig, path_of("data.csv"), &f), STATUS_OK);
     char *csv = read_file(path_of("data.csv"), &length);
-    assert_string_equal(csv, "panel,series,x,y\n"
+    assert_string_equal(csv, "panel,series,x,value\n"
                              "force[N],\"force, \"\"raw\"\"\",0,1\n"
                              "force[N],\"force, \"\"raw\"\"\",0.1,\n"
                              "force[N],\"force, \"\"raw\"\"\",0.2,-2.5\n"

@@ -173,6 +173,37 @@ static void figures_say_what_they_show(void **state)
     expect_texts("T4.3", (const char *[]){"2.04", "7.43", "4.92\u2009N·m/rad", NULL});
 }
 
+// One legend speaks for both panels of 4.4 and 4.5: both have its colours, and none beside it that
+// reads like one of them.
+static void the_predictors_figures_have_the_legends_colours(void **state)
+{
+    (void)state;
+    static const char *const ids[] = {"4.4", "4.5"};
+    for (int k = 0; k < 2; k++) {
+        fault f = {0};
+        artwork drawn = open_figure(ids[k], (figure_options){0});
+        int width = (int)drawn.width, height = (int)drawn.height, blue = 0;
+        cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+        cairo_t *cr = cairo_create(surface);
+        assert_int_equal(drawn.paint(cr, drawn.what, NULL, &f), STATUS_OK);
+        cairo_destroy(cr);
+        cairo_surface_flush(surface);
+        const unsigned char *bytes = cairo_image_surface_get_data(surface);
+        for (int i = 0; i < width * height; i++) {
+            const unsigned char *p = bytes + (i / width) * cairo_image_surface_get_stride(surface) +
+                                     4 * (ptrdiff_t)(i % width);
+            bool green = p[1] > p[0] + 30 && p[1] > p[2] + 30;
+            // between the vermillion of the assumption and orange lies the weight of green
+            bool orange = p[2] > 200 && p[0] < 30 && p[1] > 140;
+            assert_false(green || orange);
+            blue += p[0] > p[2] + 60;
+        }
+        assert_true(blue > 200);
+        cairo_surface_destroy(surface);
+        artwork_finish(&drawn);
+    }
+}
+
 // The number in the column `column` of the line that begins with `start`; fails if there is none.
 static double number_in_csv(const char *csv, const char *start, int column)
 {
@@ -468,6 +499,7 @@ int main(void)
         cmocka_unit_test(every_figure_is_tidy),
         cmocka_unit_test(figures_fit_a_column_of_85_mm),
         cmocka_unit_test(figures_say_what_they_show),
+        cmocka_unit_test(the_predictors_figures_have_the_legends_colours),
         cmocka_unit_test(recorded_signals_stand_beside_their_picture),
         cmocka_unit_test(reference_data_lie_over_signals),
         cmocka_unit_test(the_map_tells_good_pairs_from_bad),

@@ -99,7 +99,7 @@ static void all_texts_of_a_run_are_drawn(void **state)
                                          "\u03b83  last link",
                                          "wall",
                                          "contact",
-                                         "peak 2.1\u2009N",
+                                         "peak 2.10\u2009N",
                                          "release",
                                          "Impulse\n(N\u00b7s)",
                                          "0.044",

@@ -542,6 +542,30 @@ static void test_encoder_fails(void **state)
     forget(&r);
 }
 
+// A GIF has the size and the frames that were asked for: nothing scales or drops them.
+static void test_gif_as_asked(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+    char *old = with_encoder("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
+                             "echo \"$@\" >\"${last#file:}\"\n");
+    if (film_write(&r.scenario, &r.result, &options, in_folder("asked.gif"), &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    restore_encoder(old);
+    char words[4096] = "";
+    FILE *stream = fopen(in_folder("asked.gif"), "r");
+    assert_non_null(stream);
+    assert_non_null(fgets(words, sizeof words, stream));
+    fclose(stream);
+    assert_non_null(strstr(words, "-s 320x240 -r 10 "));
+    assert_null(strstr(words, "scale="));
+    assert_null(strstr(words, "fps="));
+    forget(&r);
+}
+
 static volatile sig_atomic_t stopped;
 
 static void stop_soon(void *context, int done, int total)
@@ -615,7 +639,7 @@ int main(void)
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_clock),
         cmocka_unit_test(test_frames),        cmocka_unit_test(test_film),
         cmocka_unit_test(test_encoder_fails), cmocka_unit_test(test_interrupted),
-        cmocka_unit_test(test_film_refused),
+        cmocka_unit_test(test_gif_as_asked),  cmocka_unit_test(test_film_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down) != 0;
 }

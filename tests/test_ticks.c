@@ -47,6 +47,22 @@ static void round_ranges(void **state)
     expect_ticks(&t, 5, (double[]){-100, -50, 0, 50, 100});
 }
 
+// 0.04, 0.06 and never 0.045, 0.055: a reader looks for whole multiples of the step
+static void ticks_are_multiples_of_their_step(void **state)
+{
+    (void)state;
+    for (double low = 0.031; low < 0.06; low += 0.0013) {
+        for (int wanted = 2; wanted < 9; wanted++) {
+            ticks t;
+            ticks_between(&t, low, low + 0.0431, wanted);
+            for (int i = 0; i < t.count && t.step > 0; i++) {
+                double share = t.value[i] / t.step;
+                check_close(share, round(share), 1e-9);
+            }
+        }
+    }
+}
+
 // every tick is the double nearest to its decimal number, so that printing shows no noise
 static void values_are_decimal(void **state)
 {
@@ -192,6 +208,7 @@ int main(void)
         cmocka_unit_test(published_example),
         cmocka_unit_test(round_ranges),
         cmocka_unit_test(values_are_decimal),
+        cmocka_unit_test(ticks_are_multiples_of_their_step),
         cmocka_unit_test(between_stays_inside_and_misses_none),
         cmocka_unit_test(about_as_many_as_wanted),
         cmocka_unit_test(labels_are_short_and_have_a_true_minus),

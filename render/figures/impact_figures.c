@@ -423,6 +423,8 @@ static status assumed_motion(const char *title, bool of_angle, const figure_opti
     for (int i = 0; i < PANELS; i++) {
         const char *name = signals[of_angle][i];
         add_signal(fig, i, name, i == 0 ? "computed" : NULL);
+        // one legend speaks for both panels, so both have its colours
+        fig->series[i][0].colour = 0;
         add_assumption(fig, i, angles[i], velocities[i], of_angle,
                        i > 0      ? NULL
                        : of_angle ? "quadratic approximation (4.19)"

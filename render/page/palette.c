@@ -66,8 +66,19 @@ colour palette_series(figure_theme theme, int slot, int place)
     return theme == THEME_DARK ? on_black[slot] : on_white[slot];
 }
 
-colour palette_shade(double share)
+colour palette_grey(int index)
 {
+    assert(index >= 0 && index < (int)(sizeof greys / sizeof greys[0]));
+    return greys[index];
+}
+
+colour palette_shade(figure_theme theme, double share)
+{
+    if (theme == THEME_MONO) {
+        // even steps of lightness, short of the page's white and of the lines' black
+        double grey = 0.15 + 0.82 * fmin(fmax(share, 0), 1);
+        return (colour){grey, grey, grey};
+    }
     static const colour points[] = {
         RGB(0x44, 0x01, 0x54), RGB(0x47, 0x2d, 0x7b), RGB(0x3b, 0x52, 0x8b),
         RGB(0x2c, 0x72, 0x8e), RGB(0x21, 0x91, 0x8c), RGB(0x28, 0xae, 0x80),

@@ -20,10 +20,14 @@ const palette *palette_of(figure_theme theme);
 // The colour of a slot, 0-7; in a mono figure by the series' place in its panel.
 colour palette_series(figure_theme theme, int slot, int place);
 
-// The colour at share 0 ... 1 of the colour scale: viridis of van der Walt and Smith (2015, public
-// domain), straight lines between nine of its colours. Perceptually even, from dark blue to yellow,
-// and its lightness grows all the way, so that it survives a grey printer.
-colour palette_shade(double share);
+// Black and the greys of a mono figure, 0 to 2 from dark to light.
+colour palette_grey(int index);
+
+// The colour at share 0 ... 1 of the colour scale. Mono: greys from dark to nearly white. Else
+// viridis of van der Walt and Smith (2015, public domain), straight lines between nine of its
+// colours. Perceptually even, from dark blue to yellow, and its lightness grows all the way, so
+// that it survives a grey printer.
+colour palette_shade(figure_theme theme, double share);
 
 void set_colour(cairo_t *cr, colour c);
 

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <fontconfig/fontconfig.h>
+#include <math.h>
 #include <string.h>
 
 #include "render/page/page.h"
@@ -58,11 +59,43 @@ PangoContext *text_context_create(void)
     return context;
 }
 
+// Whether the word at `text` is a unit and ends there.
+static bool is_unit(const char *text)
+{
+    static const char *const units[] = {"N",  "N·s", "N·m", "V", "A",   "s",  "ms",    "µs",
+                                        "Hz", "kHz", "mm",  "m", "kg",  "J",  "mJ",    "rad",
+                                        "dB", "%",   "Ω",   "W", "N s", "kΩ", "rad/s", "m/s"};
+    for (size_t i = 0; i < G_N_ELEMENTS(units); i++) {
+        size_t length = strlen(units[i]);
+        bool ends = strncmp(text, units[i], length) == 0 && !g_ascii_isalnum(text[length]) &&
+                    text[length] != '/' && (unsigned char)text[length] < 0x80;
+        if (ends) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether the space at `space` joins what must stay in one line: a number and its unit, both sides
+// of an equals sign, a name and the number after it.
+static bool space_joins(const char *start, const char *space)
+{
+    bool equals = space[1] == '=' && space[2] == ' ';
+    bool after_equals = space - start >= 2 && space[-1] == '=' && space[-2] == ' ';
+    bool number = space > start && g_ascii_isdigit(space[-1]) && is_unit(space + 1);
+    bool version = space > start && g_ascii_isalpha(space[-1]) && g_ascii_isdigit(space[1]) &&
+                   strchr(space + 1, '.') != NULL &&
+                   strspn(space + 1, "0123456789") == strcspn(space + 1, ".");
+    return equals || after_equals || number || version;
+}
+
 char *text_translate(const char *markup, double size)
 {
     assert(markup != NULL && size > 0);
     GString *out = g_string_new(NULL);
+    bool in_tag = false;
     for (const char *c = markup; *c != '\0';) {
+        in_tag = *c == '<' || (in_tag && *c != '>');
         bool lowered = strncmp(c, "<sub>", 5) == 0, raised = strncmp(c, "<sup>", 5) == 0;
         if (lowered || raised) {
             // in 1/1024 of a point, which every version of Pango understands
@@ -72,6 +105,13 @@ char *text_translate(const char *markup, double size)
         } else if (strncmp(c, "</sub>", 6) == 0 || strncmp(c, "</sup>", 6) == 0) {
             g_string_append(out, "</span>");
             c += 6;
+        } else if (strncmp(c, "\u2009", 3) == 0) {
+            // a thin space stands between a number and its unit: its twin that does not break
+            g_string_append(out, "\u202f");
+            c += 3;
+        } else if (*c == ' ' && !in_tag && space_joins(markup, c)) {
+            g_string_append(out, "\u00a0");
+            c++;
         } else {
             g_string_append_c(out, *c++);
         }
@@ -153,6 +193,33 @@ void text_unit(const char *unit, char *out, size_t size)
     }
     g_strlcpy(out, shown->str, size);
     g_string_free(shown, TRUE);
+}
+
+char *text_quantity(double value, int digits, const char *unit)
+{
+    char number[48], shown[64];
+    g_snprintf(number, sizeof number, "%#.*g", digits, fabs(value));
+    size_t length = strlen(number);
+    if (length > 0 && number[length - 1] == '.') {
+        number[length - 1] = '\0';
+    }
+    text_unit(unit, shown, sizeof shown);
+    return g_strdup_printf("%s%s\u2009%s", value < 0 ? "\u2212" : "", number, shown);
+}
+
+char *text_label(const char *description)
+{
+    assert(description != NULL);
+    char *valid = g_utf8_make_valid(description, -1);
+    char *label = g_strndup(valid, strcspn(valid, ",:;("));
+    g_strchomp(label);
+    gunichar first = g_utf8_get_char(label);
+    char letter[8] = "";
+    letter[g_unichar_to_utf8(g_unichar_toupper(first), letter)] = '\0';
+    char *whole = g_strconcat(letter, label[0] != '\0' ? g_utf8_next_char(label) : "", NULL);
+    g_free(label);
+    g_free(valid);
+    return whole;
 }
 
 char *text_plain(const char *markup)

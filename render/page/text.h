@@ -42,12 +42,21 @@ void text_measure(PangoContext *context, const text_block *t, double *width, dou
 // width.
 double text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
 
-// Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size. Free the result
-// with g_free.
+// Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size, and the spaces
+// at which a line must not end by ones that do not break: between a number and its unit, round an
+// equals sign, before a version. Free the result with g_free.
 char *text_translate(const char *markup, double size);
 
 // A unit as the SI brochure sets it: "rad/s2" gives "rad/s²", "kg m2" gives "kg·m²".
 void text_unit(const char *unit, char *out, size_t size);
+
+// A number of `digits` significant digits, zeros at its end too, and its unit: "5.40\u2009N". Free
+// the result with g_free.
+char *text_quantity(double value, int digits, const char *unit);
+
+// The beginning of a description as a label: up to its first comma, colon or bracket, with a
+// capital letter. Plain text; free the result with g_free.
+char *text_label(const char *description);
 
 // The markup's bare text, valid UTF-8. Free the result with g_free.
 char *text_plain(const char *markup);

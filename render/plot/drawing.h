@@ -54,6 +54,7 @@ typedef struct panel_layout {
     figure_rect inset;  // with its labels; width 0: none
     plane inset_plane;
     axis inset_x, inset_y;
+    bool busy[PANEL_SERIES];          // lines that go up and down too often for dashes
     double end_label_y[PANEL_SERIES]; // top of the labels at the curves' ends; NaN: none
 } panel_layout;
 
@@ -127,9 +128,11 @@ void draw_x_titles(drawing *d);
 
 void draw_series(const drawing *d, const panel_layout *l, const plane *p);
 // A short line and a marker that stand for a series.
-void draw_swatch(drawing *d, const figure_panel *panel, int index, double x, double y);
+void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double y);
+// Whether a series' line turns up and down so often that no pattern of dashes would show.
+bool series_is_busy(const plane *p, const figure_series *s);
 // Sets colour and pattern of a series; returns the line's width.
-double set_series(const drawing *d, const figure_panel *panel, int index);
+double set_series(const drawing *d, const panel_layout *l, int index);
 
 // --- maps: map.c
 

@@ -96,6 +96,25 @@ static void write_marks(csv_writer *csv, const figure *fig)
     }
 }
 
+// Whether all panels show one quantity, so that their column can bear its name and unit.
+static bool panels_are_alike(const figure *fig)
+{
+    bool alike = fig->panels[0].impulse_count == 0;
+    for (int i = 1; i < fig->panel_count; i++) {
+        const figure_axis *a = &fig->panels[i].y, *first = &fig->panels[0].y;
+        alike = alike && fig->panels[i].impulse_count == 0 && a->name != NULL &&
+                first->name != NULL && strcmp(a->name, first->name) == 0 &&
+                g_strcmp0(a->unit, first->unit) == 0;
+    }
+    return alike;
+}
+
+static void write_axis_heading(csv_writer *csv, const figure_axis *a, const char *otherwise)
+{
+    bool nameless = a->name == NULL && a->label == NULL;
+    write_name(csv, nameless ? otherwise : a->name, a->label, a->unit);
+}
+
 status figure_write_csv(const figure *fig, const char *path, fault *f)
 {
     assert(fig != NULL && path != NULL);
@@ -105,9 +124,13 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
         return code;
     }
     csv_writer csv = csv_begin(file.stream);
-    const char *const headings[] = {"panel", "series", "x", "y"};
-    for (int i = 0; i < 4; i++) {
-        csv_heading(&csv, headings[i], NULL);
+    csv_heading(&csv, "panel", NULL);
+    csv_heading(&csv, "series", NULL);
+    write_axis_heading(&csv, &fig->x, "x");
+    if (panels_are_alike(fig)) {
+        write_axis_heading(&csv, &fig->panels[0].y, "y");
+    } else {
+        csv_heading(&csv, "value", NULL);
     }
     csv_end_row(&csv);
     for (int p = 0; p < fig->panel_count; p++) {

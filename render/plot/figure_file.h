@@ -8,7 +8,9 @@
 // file's metadata.
 status figure_write(const figure *fig, const char *path, fault *f);
 
-// Writes what the figure shows as CSV in long form, panel,series,x,y: every point of every curve (y
+// Writes what the figure shows as CSV in long form: the panel with its unit, the series, and two
+// columns headed by the axes' names and units ("time[s]", "force[N]"; "value" where the panels show
+// different quantities, whose units stand beside the panels' names). Every point of every curve (y
 // empty where the curve has a gap), impulses as the series impulse[unit], then marks and shaded
 // intervals with an empty y.
 status figure_write_csv(const figure *fig, const char *path, fault *f);

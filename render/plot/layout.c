@@ -265,6 +265,9 @@ static bool fill_panels(drawing *d, placement *grid)
     for (int i = 0; i < d->fig->panel_count; i++) {
         panel_layout *l = &d->panels[i];
         collect_ink(d, l, grid);
+        for (int s = 0; s < l->panel->series_count; s++) {
+            l->busy[s] = series_is_busy(&l->plane, &l->panel->series[s]);
+        }
         place_inset(d, l, grid);
         bool column = l->legend_column;
         if (!place_legend(d, l, grid)) {

@@ -171,7 +171,7 @@ void draw_legend(drawing *d, const panel_layout *l)
         }
         text_block t = figure_text_of(d, label, d->style.tick);
         text_measure(d->context, &t, &width, &height);
-        draw_swatch(d, l->panel, i, x, y + 0.55 * height);
+        draw_swatch(d, l, i, x, y + 0.55 * height);
         draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
         if (l->legend_inside || l->legend_column) {
             y += height;
@@ -192,7 +192,7 @@ void draw_end_labels(drawing *d, const panel_layout *l)
         text_block t = figure_text_of(d, l->panel->series[i].label, d->style.tick);
         text_measure(d->context, &t, &width, &height);
         double end = box->x + box->width, middle = l->end_label_y[i] + 0.55 * height;
-        set_series(d, l->panel, i);
+        set_series(d, l, i);
         cairo_set_line_width(d->cr, SECONDARY_WIDTH);
         cairo_set_dash(d->cr, NULL, 0, 0);
         draw_line(d->cr, end + 2, fmax(box->y, fmin(box->y + box->height, plane_y(&l->plane, y))),
@@ -223,7 +223,7 @@ static double common_legend(drawing *d, bool draw)
         }
         line = fmax(line, height);
         if (draw) {
-            draw_swatch(d, panel, i, x, y + 0.55 * height);
+            draw_swatch(d, &d->panels[0], i, x, y + 0.55 * height);
             draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
         }
         x += width + 2 * SWATCH_SPACE;

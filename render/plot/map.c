@@ -71,7 +71,7 @@ static double shade_share(const panel_layout *l, double value)
 
 void set_shade(const drawing *d, const panel_layout *l, double value)
 {
-    set_colour(d->cr, palette_shade(shade_share(l, value)));
+    set_colour(d->cr, palette_shade(d->style.theme, shade_share(l, value)));
 }
 
 // Grey with hatching: a cell without a value.
@@ -118,7 +118,7 @@ static void draw_cells(const drawing *d, const panel_layout *l)
             figure_rect r = {left, top, right - left + OVERLAP, bottom - top};
             double value = map->z[i * map->rows + j];
             if (isfinite(value)) {
-                fill_box(d->cr, &r, palette_shade(shade_share(l, value)));
+                fill_box(d->cr, &r, palette_shade(d->style.theme, shade_share(l, value)));
             } else {
                 fill_missing(d, &r);
             }
@@ -199,7 +199,7 @@ static void fill_bar(const drawing *d, const panel_layout *l, const figure_rect 
     for (int i = 0; i < STRIPES; i++) {
         double share = (i + 0.5) / STRIPES, height = bar->height * (1 - (double)i / STRIPES);
         fill_box(d->cr, &(figure_rect){bar->x, bar->y, bar->width, height},
-                 palette_shade(l->panel->colours->reversed ? 1 - share : share));
+                 palette_shade(d->style.theme, l->panel->colours->reversed ? 1 - share : share));
     }
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
 }

@@ -21,6 +21,7 @@ typedef enum marker_kind {
     MARKER_CIRCLE,
     MARKER_SQUARE,
     MARKER_TRIANGLE,
+    MARKER_DIAMOND,
     MARKER_CROSS
 } marker_kind;
 

@@ -6,6 +6,11 @@
 #define MARKER_RADIUS 1.6
 #define RIM           0.8 // of the page's colour, at either side of what needs one
 
+// A line that turns up and down more often than this is busy: no pattern of dashes would show [pt].
+#define LEAST_TURN    0.5  // height of a turn that counts
+#define MOST_TURNS    12   // of a line that is never busy
+#define BUSY_DISTANCE 16.0 // from turn to turn, some three dashes
+
 enum { STYLES = 4 };
 
 // The style of the series `index` among a panel's: its own, or the next that no earlier one has.
@@ -28,15 +33,73 @@ static line_style free_style(const figure_series *series, int index)
     return series[index].secondary ? LINE_DASHED : style;
 }
 
-double set_series(const drawing *d, const figure_panel *panel, int index)
+// Whether an earlier series of the panel is busy, too.
+static bool busy_before(const panel_layout *l, int index)
 {
-    const figure_series *s = &panel->series[index];
+    bool found = false;
+    for (int i = 0; i < index; i++) {
+        found = found || l->busy[i];
+    }
+    return found;
+}
+
+double set_series(const drawing *d, const panel_layout *l, int index)
+{
+    const figure_series *s = &l->panel->series[index];
     double width = s->secondary ? SECONDARY_WIDTH : CURVE_WIDTH;
+    if (l->busy[index]) {
+        // no pattern shows in it; without colours a lighter and wider line does
+        bool wide = d->style.theme == THEME_MONO && !s->secondary;
+        bool second = busy_before(l, index);
+        width *= wide && !second ? 1.7 : 1;
+        set_colour(d->cr, wide ? palette_grey(second ? 0 : 2)
+                               : palette_series(d->style.theme, s->colour, index));
+        set_line_style(d->cr, LINE_SOLID, width);
+        return width;
+    }
     // a line over a map keeps the pattern it asks for
-    line_style style = s->rim ? s->style : free_style(panel->series, index);
+    line_style style = s->rim ? s->style : free_style(l->panel->series, index);
     set_colour(d->cr, palette_series(d->style.theme, s->colour, index));
     set_line_style(d->cr, style, width);
     return width;
+}
+
+// ---- busy lines
+
+// What the pen does along a line.
+typedef struct pen_path {
+    double x, y, length; // [pt]
+    double corner_y;     // where it last turned
+    int turns;           // up or down
+    bool up;
+} pen_path;
+
+static void follow_pen(void *context, stroke_kind kind, double x, double y)
+{
+    pen_path *p = context;
+    if (kind == STROKE_LINE) {
+        p->length += hypot(x - p->x, y - p->y);
+        bool up = y < p->corner_y;
+        if (fabs(y - p->corner_y) > LEAST_TURN) {
+            p->turns += up != p->up;
+            p->up = up;
+            p->corner_y = y;
+        }
+    } else {
+        p->corner_y = y;
+    }
+    p->x = x;
+    p->y = y;
+}
+
+bool series_is_busy(const plane *p, const figure_series *s)
+{
+    pen_path path = {0};
+    if (s->no_line) {
+        return false;
+    }
+    curve_trace(p, s, follow_pen, &path);
+    return path.turns > MOST_TURNS && path.length < BUSY_DISTANCE * path.turns;
 }
 
 // ---- markers
@@ -57,6 +120,12 @@ static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double
         cairo_move_to(cr, x, y - 1.2 * r);
         cairo_line_to(cr, x + 1.1 * r, y + 0.8 * r);
         cairo_line_to(cr, x - 1.1 * r, y + 0.8 * r);
+        break;
+    case MARKER_DIAMOND:
+        cairo_move_to(cr, x, y - 1.25 * r);
+        cairo_line_to(cr, x + 1.25 * r, y);
+        cairo_line_to(cr, x, y + 1.25 * r);
+        cairo_line_to(cr, x - 1.25 * r, y);
         break;
     case MARKER_CROSS:
         cairo_move_to(cr, x - r, y - r);
@@ -136,18 +205,21 @@ static void stroke(void *context, stroke_kind kind, double x, double y)
 void draw_series(const drawing *d, const panel_layout *l, const plane *p)
 {
     cairo_save(d->cr);
-    clip_to(d->cr, &p->box, 1);
+    // a line along the upper or lower end keeps its width, none begins left of the axis
+    const figure_rect page = {p->box.x, p->box.y - 1, p->box.width, p->box.height + 2};
     for (int i = 0; i < l->panel->series_count; i++) {
         const figure_series *s = &l->panel->series[i];
-        double width = set_series(d, l->panel, i);
+        double width = set_series(d, l, i);
         stroke_context context = {.cr = d->cr, .radius = 0.75 * width};
+        cairo_save(d->cr);
+        clip_to(d->cr, &page, 0);
 
         // a wider line below makes the rim
         if (s->rim && !s->no_line) {
             set_plain_line(d->cr, palette_of(THEME_COLOUR)->page, width + 2 * RIM);
             curve_trace(p, s, stroke, &context);
             cairo_stroke(d->cr);
-            set_series(d, l->panel, i);
+            set_series(d, l, i);
             set_colour(d->cr, palette_of(THEME_COLOUR)->text);
         }
 
@@ -155,15 +227,17 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
             curve_trace(p, s, stroke, &context);
             cairo_stroke(d->cr);
         }
+        cairo_restore(d->cr);
+        set_series(d, l, i);
         draw_markers(d, l, p, s);
     }
     cairo_restore(d->cr);
 }
 
-void draw_swatch(drawing *d, const figure_panel *panel, int index, double x, double y)
+void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double y)
 {
-    const figure_series *s = &panel->series[index];
-    set_series(d, panel, index);
+    const figure_series *s = &l->panel->series[index];
+    set_series(d, l, index);
     cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_BUTT);
     if (!s->no_line) {
         draw_line(d->cr, x, y, x + SWATCH, y);

@@ -11,10 +11,9 @@
 #include "src/base/version.h"
 #include "src/quantities/summary.h"
 
-#define PAGE_WIDTH  150.0 // [mm]
-#define PAGE_HEIGHT 100.0
-#define DOTS_ROOM   0.03 // of an axis, free at both ends
-#define LINE_ROOM   0.05 // of the quantity's range, free above and below it
+#define PANEL_WEIGHT 2.4  // of its height
+#define DOTS_ROOM    0.03 // of an axis, free at both ends
+#define LINE_ROOM    0.05 // of the quantity's range, free above and below it
 
 enum { LABELLED_VALUES = 9, MOST_MARKERS = 80 };
 
@@ -31,7 +30,7 @@ typedef struct varied {
 typedef struct sweep_figure {
     figure figure;
     figure_panel panel;
-    figure_series series;
+    figure_series series[PANEL_SERIES];
     figure_map map;
     figure_colours colours;
     varied varied[2];
@@ -114,6 +113,14 @@ static char *point_label(const varied *v, size_t i)
     return text_escape(word);
 }
 
+// A description's beginning as an axis' label, markup.
+static char *label_of(sweep_figure *s, const char *description)
+{
+    char *plain = text_label(description), *label = own(s, text_escape(plain));
+    g_free(plain);
+    return label;
+}
+
 // The axis of a varied parameter.
 static figure_axis describe_axis(sweep_figure *s, varied *v, const sweep_axis *axis)
 {
@@ -121,7 +128,7 @@ static figure_axis describe_axis(sweep_figure *s, varied *v, const sweep_axis *a
     *v = (varied){.axis = axis,
                   .words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
     figure_axis out = {.name = info->path,
-                       .label = own(s, text_escape(info->path)),
+                       .label = label_of(s, info->description),
                        .unit = info->unit,
                        .scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR,
                        .room = DOTS_ROOM};
@@ -170,11 +177,15 @@ static double *drawn_places(sweep_figure *s, const sweep *from, int axis)
 static figure_axis quantity_axis(sweep_figure *s, const char *key)
 {
     const summary_info *info = &summary_table[summary_index(key)];
-    return (figure_axis){
-        .name = key, .label = own(s, text_escape(info->label)), .unit = info->unit};
+    return (figure_axis){.name = key, .label = label_of(s, info->label), .unit = info->unit};
 }
 
 // ---- layers
+
+static double marker_radius(size_t points)
+{
+    return points > 500 ? 1.1 : points > 12 ? 1.9 : 2.4;
+}
 
 // One parameter: a curve; dots alone where nothing lies between the points.
 static void describe_line(sweep_figure *s, const sweep_picture *p)
@@ -188,20 +199,60 @@ static void describe_line(sweep_figure *s, const sweep_picture *p)
         y[i] = p->values[grid ? v->order[i] : i];
     }
     bool joined = grid && !v->words;
-    s->series =
+    s->series[0] =
         (figure_series){.name = p->key,
                         .x = grid ? v->place : drawn_places(s, from, 0),
                         .y = y,
                         .count = count,
                         .no_line = !joined,
                         .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE,
-                        .radius = count > 500  ? 1.1
-                                  : count > 12 ? 1.9
-                                               : 2.4};
+                        .radius = marker_radius(count)};
     s->panel.y = quantity_axis(s, p->key);
     s->panel.y.room = LINE_ROOM;
-    s->panel.series = &s->series;
+    s->panel.series = s->series;
     s->panel.series_count = 1;
+}
+
+// A parameter of words and one of numbers: a curve for each word, over the numbers.
+static void describe_words(sweep_figure *s, const sweep_picture *p, int words, int numbers)
+{
+    static const int colours[] = {0, 5, 2, 4, 1, 3, 6, 7};
+    static const marker_kind markers[] = {MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE,
+                                          MARKER_DIAMOND};
+    const varied *word = &s->varied[words], *number = &s->varied[numbers];
+    size_t inner = s->varied[1].count;
+    for (size_t k = 0; k < word->count; k++) {
+        double *y = own(s, g_new(double, number->count));
+        for (size_t i = 0; i < number->count; i++) {
+            size_t w = word->order[k], n = number->order[i];
+            y[i] = p->values[words == 0 ? w * inner + n : n * inner + w];
+        }
+        s->series[k] = (figure_series){.name = own(s, point_label(word, k)),
+                                       .label = own(s, point_label(word, k)),
+                                       .x = number->place,
+                                       .y = y,
+                                       .count = number->count,
+                                       .colour = colours[k % G_N_ELEMENTS(colours)],
+                                       .marker = number->count > MOST_MARKERS
+                                                     ? MARKER_NONE
+                                                     : markers[k % G_N_ELEMENTS(markers)],
+                                       .radius = marker_radius(number->count)};
+    }
+    s->panel.y = quantity_axis(s, p->key);
+    s->panel.y.room = LINE_ROOM;
+    s->panel.series = s->series;
+    s->panel.series_count = (int)word->count;
+}
+
+// The axis of words that gives a curve each, -1 if the picture is a map.
+static int axis_of_curves(const sweep_figure *s, const sweep *from)
+{
+    for (int i = 0; i < 2 && from->sampling == SWEEP_GRID && from->axis_count == 2; i++) {
+        if (s->varied[i].words && !s->varied[1 - i].words && s->varied[i].count <= PANEL_SERIES) {
+            return i;
+        }
+    }
+    return -1;
 }
 
 // Two parameters: a map of every combination, or dots where they were drawn.
@@ -212,17 +263,17 @@ static void describe_map(sweep_figure *s, const sweep_picture *p)
     s->colours = (figure_colours){.axis = quantity_axis(s, p->key), .bar = true};
     s->panel.colours = &s->colours;
     if (from->sampling != SWEEP_GRID) {
-        s->series = (figure_series){.name = p->key,
-                                    .x = drawn_places(s, from, 0),
-                                    .y = drawn_places(s, from, 1),
-                                    .shade = p->values,
-                                    .count = from->run_count,
-                                    .no_line = true,
-                                    .marker = MARKER_CIRCLE,
-                                    .radius = from->run_count > 1000  ? 1.5
-                                              : from->run_count > 200 ? 2.2
-                                                                      : 3.2};
-        s->panel.series = &s->series;
+        s->series[0] = (figure_series){.name = p->key,
+                                       .x = drawn_places(s, from, 0),
+                                       .y = drawn_places(s, from, 1),
+                                       .shade = p->values,
+                                       .count = from->run_count,
+                                       .no_line = true,
+                                       .marker = MARKER_CIRCLE,
+                                       .radius = from->run_count > 1000  ? 1.5
+                                                 : from->run_count > 200 ? 2.2
+                                                                         : 3.2};
+        s->panel.series = s->series;
         s->panel.series_count = 1;
         return;
     }
@@ -244,16 +295,24 @@ static void describe_map(sweep_figure *s, const sweep_picture *p)
 
 // ---- the picture
 
-// How many runs have no value, in a few words; NULL if none.
-static char *missing_caption(const sweep_picture *p, size_t missing)
+// What was varied, and how many runs have no value.
+static char *caption_of(const sweep_picture *p, size_t missing)
 {
     const sweep *s = p->sweep;
-    const char *how = s->axis_count == 1          ? ""
-                      : s->sampling == SWEEP_GRID ? " (hatched)"
-                                                  : " (empty)";
-    return missing == 0 ? NULL
-                        : g_strdup_printf("%zu %s without a value%s", missing,
-                                          missing == 1 ? "run" : "runs", how);
+    GString *out = g_string_new("Varied: ");
+    for (int i = 0; i < s->axis_count; i++) {
+        g_string_append_printf(out, "%s%s", i > 0 ? ", " : "",
+                               parameter_table[s->axes[i].parameter].path);
+    }
+    if (missing > 0) {
+        g_string_append_printf(out, "; %zu %s without a value%s", missing,
+                               missing == 1 ? "run" : "runs",
+                               s->axis_count == 1          ? ""
+                               : s->sampling == SWEEP_GRID ? " (hatched, or a gap)"
+                                                           : " (empty)");
+    }
+    g_string_append_printf(out, ". impactlab %s.", lab_version());
+    return g_string_free(out, FALSE);
 }
 
 static char *title_of(const sweep_picture *p, const char *quantity)
@@ -284,11 +343,18 @@ static void describe(sweep_figure *s, const sweep_picture *p)
     }
 
     // axes and layers
-    s->figure.x = describe_axis(s, &s->varied[0], &from->axes[0]);
+    figure_axis axes[2] = {describe_axis(s, &s->varied[0], &from->axes[0])};
+    if (from->axis_count > 1) {
+        axes[1] = describe_axis(s, &s->varied[1], &from->axes[1]);
+    }
+    int words = axis_of_curves(s, from);
+    s->figure.x = axes[words == 0];
     if (from->axis_count == 1) {
         describe_line(s, p);
+    } else if (words >= 0) {
+        describe_words(s, p, words, 1 - words);
     } else {
-        s->panel.y = describe_axis(s, &s->varied[1], &from->axes[1]);
+        s->panel.y = axes[1];
         describe_map(s, p);
     }
     if (missing == from->run_count) {
@@ -299,11 +365,10 @@ static void describe(sweep_figure *s, const sweep_picture *p)
     figure *fig = &s->figure;
     fig->panels = &s->panel;
     fig->panel_count = 1;
-    fig->title =
-        own(s, title_of(p, from->axis_count == 1 ? s->panel.y.label : s->colours.axis.label));
-    fig->caption = own(s, missing_caption(p, missing));
-    fig->width = PAGE_WIDTH;
-    fig->height = PAGE_HEIGHT;
+    const summary_info *quantity = &summary_table[summary_index(p->key)];
+    fig->title = own(s, title_of(p, quantity->label));
+    fig->caption = own(s, caption_of(p, missing));
+    s->panel.weight = PANEL_WEIGHT;
     fig->theme = p->theme;
     fig->software = own(s, g_strconcat("impactlab ", lab_version(), NULL));
     fig->parameters = own(s, command_of(from));

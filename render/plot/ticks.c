@@ -88,7 +88,8 @@ static void try_starts(labelling l, const wish *w, labelling *best)
     double unit = step_unit(&l), step = unit * l.j;
     double from = (floor(w->high / step) - (l.count - 1)) * l.j, to = ceil(w->low / step) * l.j;
     double slack = w->inside ? 1e-9 * (w->high - w->low) : (double)INFINITY;
-    for (l.start = from; l.start <= to; l.start++) {
+    // whole multiples of the step alone: 0.04, 0.05 and never 0.045, 0.055
+    for (l.start = from; l.start <= to; l.start += l.j) {
         double first = l.start * unit, last = first + step * (l.count - 1);
         l.score = combined(simplicity(&l), coverage(w->low, w->high, first, last),
                            density(l.count, w->count, w->low, w->high, first, last));

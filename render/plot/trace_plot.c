@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/plot/curve.h"
 #include "render/plot/figure_file.h"
 #include "render/plot/opened_run.h"
 #include "render/plot/overlay.h"
@@ -18,22 +19,27 @@
 
 enum { ACTIONS_MARKED = 16, MARKS = 3 + ACTIONS_MARKED };
 
-// A text that lives as long as the figure.
-static char *keep(GPtrArray *texts, char *owned)
+// A block, mostly a text, that lives as long as the figure.
+static void *keep(GPtrArray *owned, void *block)
 {
-    g_ptr_array_add(texts, owned);
-    return owned;
+    g_ptr_array_add(owned, block);
+    return block;
 }
 
 // ---- labels
 
-// A quantity's symbol is set italic, its index upright, and so is a word.
-static char *symbol_markup(const signal_info *signal)
+// A quantity's symbol is set italic, its index upright, and so is a word. The index of the last
+// link is that of the body: 3 of two links, 21 of twenty.
+static char *symbol_markup(const scenario *s, const signal_info *signal)
 {
     const char *symbol = signal->symbol, *index = strstr(symbol, "<sub>");
     size_t letters = index ? (size_t)(index - symbol) : strlen(symbol);
     if (index == NULL && g_utf8_strlen(symbol, -1) > 2) {
         return g_strdup(symbol);
+    }
+    if (signal->body == BODY_LAST_LINK) {
+        return g_strdup_printf("<i>%.*s</i><sub>%d</sub>", (int)letters, symbol,
+                               s->parameters.arm.links + 1);
     }
     return g_strdup_printf("<i>%.*s</i>%s", (int)letters, symbol, symbol + letters);
 }
@@ -61,9 +67,9 @@ static char *series_label(const scenario *s, int index, bool joined)
 {
     const signal_info *signal = &signal_table[index];
     int twin = joined && hub_is_first_link(s) ? first_link_twin(index) : -1;
-    char *symbol = symbol_markup(signal), *label;
+    char *symbol = symbol_markup(s, signal), *label;
     if (twin >= 0) {
-        char *other = symbol_markup(&signal_table[twin]);
+        char *other = symbol_markup(s, &signal_table[twin]);
         label = g_strdup_printf("%s = %s  hub and first link", symbol, other);
         g_free(other);
     } else {
@@ -77,9 +83,9 @@ static char *series_label(const scenario *s, int index, bool joined)
 }
 
 // "Contact force f"; the body goes, since the symbol names it.
-static char *own_label(const signal_info *signal)
+static char *own_label(const scenario *s, const signal_info *signal)
 {
-    char *symbol = symbol_markup(signal);
+    char *symbol = symbol_markup(s, signal);
     char *label = g_strdup_printf("%s %s", signal->quantity, symbol);
     g_free(symbol);
     return label;
@@ -212,6 +218,13 @@ static bool mark_modes(trace_figure *t, const trace_run *run, GPtrArray *texts)
     return marked;
 }
 
+static char *peak_label(double force)
+{
+    char *quantity = text_quantity(force, 3, "N"), *label = g_strconcat("peak ", quantity, NULL);
+    g_free(quantity);
+    return label;
+}
+
 static void mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts)
 {
     const summary *m = &run->result->summary;
@@ -224,7 +237,7 @@ static void mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts)
     }
     if (isfinite(m->first_pulse_time_to_peak_s)) {
         add_mark(t, m->first_contact_s + m->first_pulse_time_to_peak_s,
-                 keep(texts, g_strdup_printf("peak %.3g\u2009N", m->first_pulse_peak_N)));
+                 keep(texts, peak_label(m->first_pulse_peak_N)));
     }
     if (isfinite(m->first_pulse_s)) {
         add_mark(t, m->first_contact_s + m->first_pulse_s, "release");
@@ -302,6 +315,53 @@ static figure_series series_of(const trace_run *run, int index)
     return s;
 }
 
+// A point that lies between two rows.
+typedef struct located_point {
+    double x, y;
+} located_point;
+
+// Where the force is largest in the first pulse and in the whole run, in the order of time. Returns
+// their number.
+static int located_peaks(const summary *m, located_point peaks[2])
+{
+    int count = 0;
+    const located_point first = {m->first_contact_s + m->first_pulse_time_to_peak_s,
+                                 m->first_pulse_peak_N};
+    const located_point whole = {m->first_contact_s + m->time_to_peak_s, m->peak_force_N};
+    if (isfinite(first.x) && isfinite(first.y)) {
+        peaks[count++] = first;
+    }
+    if (isfinite(whole.x) && isfinite(whole.y) && (count == 0 || whole.x > first.x)) {
+        peaks[count++] = whole;
+    }
+    return count;
+}
+
+// The force with its peaks among the rows, so that no mark stands above the curve.
+static void add_peaks(figure_series *s, const summary *m, GPtrArray *owned)
+{
+    located_point peaks[2];
+    int count = located_peaks(m, peaks), next = 0;
+    double *x = keep(owned, g_new(double, s->count + 2));
+    double *y = keep(owned, g_new(double, s->count + 2));
+    size_t out = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        while (next < count && i > 0 && peaks[next].x < series_x(s, i)) {
+            if (peaks[next].x > series_x(s, i - 1)) {
+                x[out] = peaks[next].x;
+                y[out++] = peaks[next].y;
+            }
+            next++;
+        }
+        x[out] = series_x(s, i);
+        y[out++] = series_y(s, i);
+    }
+    s->x = x;
+    s->y = y;
+    s->count = out;
+    s->stride = 0;
+}
+
 // The series of one run; signals of the first link are left out where they equal the hub's.
 static void add_series(trace_figure *t, int panel_index, const trace_panel *from,
                        const trace_run *runs, int run, int run_count, GPtrArray *texts)
@@ -318,6 +378,9 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         }
         figure_series *out = &t->series[panel_index][panel->series_count++];
         *out = series_of(&runs[run], index);
+        if (index == SIGNAL_INDEX(force) && !points && out->count > 0 && !on_the_rig(s)) {
+            add_peaks(out, &runs[run].result->summary, texts);
+        }
         for (int k = 0; k + 1 < panel->series_count && run == 0; k++) {
             // two readings of one quantity: the second in grey
             out->colour = t->series[panel_index][k].colour == out->colour ? 7 : out->colour;
@@ -361,7 +424,7 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
     const wall_parameters *wall = &runs[0].scenario->parameters.wall;
     panel->y.name = first->name;
     panel->y.unit = first->unit;
-    panel->y.label = from->label ? from->label : keep(texts, own_label(first));
+    panel->y.label = from->label ? from->label : keep(texts, own_label(runs[0].scenario, first));
     panel->weight = from->weight;
     panel->y.with_zero = from->with_zero;
     panel->series = t->series[index];
@@ -428,7 +491,7 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a figure of %zu rows",
                          rows->row_count);
     }
-    GPtrArray *texts = g_ptr_array_new();
+    GPtrArray *texts = t->owned = g_ptr_array_new_with_free_func(g_free);
     figure *fig = &t->figure;
     fig->title = title ? title : runs[0].scenario->title;
     char *shading = mode != NULL ? g_strdup_printf("%s mode", mode)
@@ -449,14 +512,14 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     fig->intervals = t->intervals;
     fig->software = keep(texts, g_strconcat("impactlab ", lab_version(), NULL));
     fig->parameters = keep(texts, parameters_line(runs[0].scenario));
-    g_ptr_array_add(texts, NULL);
-    t->texts = (char **)g_ptr_array_free(texts, FALSE);
     return STATUS_OK;
 }
 
 void trace_figure_finish(trace_figure *t)
 {
-    g_strfreev(t->texts);
+    if (t->owned != NULL) {
+        g_ptr_array_free(t->owned, TRUE);
+    }
     free(t->marks);
     free(t->intervals);
     free(t->impulses);

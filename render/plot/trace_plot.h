@@ -1,6 +1,8 @@
 // Figures of recorded runs.
 #pragma once
 
+#include <glib.h>
+
 #include "render/plot/plot.h"
 #include "src/run/run.h"
 
@@ -33,7 +35,7 @@ typedef struct trace_figure {
     figure_panel panels[FIGURE_PANELS];
     figure_series series[FIGURE_PANELS][TRACE_SIGNALS * TRACE_RUNS];
     figure_level wall;
-    char **texts; // NULL at the end
+    GPtrArray *owned; // blocks
     figure_mark *marks;
     figure_interval *intervals;
     figure_impulse *impulses;

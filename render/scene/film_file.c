@@ -190,7 +190,7 @@ static void add_codec(argument_list *list, film_kind kind)
             "realtime -cpu-used 7 -row-mt 1 -threads 2 -pix_fmt yuv420p -colorspace bt709 "
             "-color_primaries bt709 -color_trc bt709 -f webm",
         // the first frame only gives the palette: no later one has to wait for the film's end
-        [FILM_GIF] = "-filter_complex fps=25,scale=iw*5/8:-1:flags=area,split[a][b];"
+        [FILM_GIF] = "-filter_complex split[a][b];"
                      "[a]trim=end_frame=1,palettegen[p];[b]trim=start_frame=1,"
                      "setpts=PTS-STARTPTS[c];[c][p]paletteuse=dither=none:diff_mode=rectangle "
                      "-loop 0 -f gif",

@@ -210,21 +210,22 @@ static int plot_scaling(const arguments *a)
          .secondary = true},
     };
     const figure_panel panel = {.y = {.name = "step",
-                                      .label = "time for a step of 1 ms",
+                                      .label = "Time for a step of 1\u2009ms",
                                       .unit = "µs",
                                       .scale = SCALE_LOGARITHMIC},
                                 .series = series,
-                                .series_count = 3};
+                                .series_count = 3,
+                                .weight = 2.4};
     snprintf(software, sizeof software, "impactlab %s", lab_version());
-    const figure fig = {
-        .title = "Cost of an implicit step over the number of links",
-        .x = {.name = "links", .label = "links", .scale = SCALE_LOGARITHMIC, .room = 0.04},
-        .panels = &panel,
-        .panel_count = 1,
-        .width = 120,
-        .height = 90,
-        .software = software,
-        .parameters = "impactlab bench --plot"};
+    const figure fig = {.title = "Cost of an implicit step over the number of links",
+                        .x = {.name = "links",
+                              .label = "Number of links <i>N</i>",
+                              .scale = SCALE_LOGARITHMIC,
+                              .room = 0.04},
+                        .panels = &panel,
+                        .panel_count = 1,
+                        .software = software,
+                        .parameters = "impactlab bench --plot"};
     return figure_write_with_csv(&fig, a->plot, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 

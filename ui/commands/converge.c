@@ -114,14 +114,14 @@ static size_t difference(const trace *coarse, const trace *fine, double *x, doub
 
 static status draw(const three_runs *r, double *work[4], const char *path, fault *f)
 {
-    static const int colours[PANEL_STEPS] = {1, 0, 6};
+    static const int colours[PANEL_STEPS] = {5, 0, 6};
     static const char *const names[PANEL_STEPS] = {"h", "h/2", "h/4"};
     const trace *finest = &r->result[PANEL_STEPS - 1].trace;
     char label[PANEL_STEPS][48], software[64], title[256];
     figure_series force[PANEL_STEPS], less[PANEL_STEPS - 1];
     for (int i = 0; i < PANEL_STEPS; i++) {
         const trace *t = &r->result[i].trace;
-        snprintf(label[i], sizeof label[i], "<i>h</i> = %g ms",
+        snprintf(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms",
                  1e3 * r->scenario[i].parameters.method.step);
         force[i] = (figure_series){.name = names[i],
                                    .label = label[i],
@@ -141,17 +141,17 @@ static status draw(const three_runs *r, double *work[4], const char *path, fault
         }
     }
     const figure_panel panels[] = {
-        {.y = {.name = "force", .label = "contact force <i>f</i>", .unit = "N", .with_zero = true},
+        {.y = {.name = "force", .label = "Contact force <i>f</i>", .unit = "N", .with_zero = true},
          .series = force,
          .series_count = PANEL_STEPS},
-        {.y = {.name = "difference", .label = "less the finest", .unit = "N", .with_zero = true},
+        {.y = {.name = "difference", .label = "Less the finest", .unit = "N", .with_zero = true},
          .series = less,
          .series_count = PANEL_STEPS - 1},
     };
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     snprintf(title, sizeof title, "%s: the same run at three steps", r->scenario[0].name);
     const figure fig = {.title = title,
-                        .x = {.name = "time", .label = "time", .unit = "s"},
+                        .x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"},
                         .panels = panels,
                         .panel_count = 2,
                         .software = software};

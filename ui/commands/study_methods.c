@@ -81,13 +81,12 @@ static void print_methods(const scenario *s, const method_study *study)
 
 static status plot_methods(const scenario *s, const method_study *study, const char *path, fault *f)
 {
-    static const char *const labels[STUDY_METHODS] = {"Newmark", "generalised-alpha",
-                                                      "event method"};
+    static const char *const labels[STUDY_METHODS] = {"Newmark", "generalised α", "event method"};
     static const marker_kind markers[STUDY_METHODS] = {MARKER_SQUARE, MARKER_TRIANGLE,
                                                        MARKER_CIRCLE};
     static const int colours[STUDY_METHODS] = {1, 2, 0};
     static const char *const names[STUDY_QUANTITIES] = {
-        "error of first contact", "error of first pulse\u2019s peak", "error of steady force"};
+        "Error of first contact", "Error of first pulse\u2019s peak", "Error of steady force"};
     static const char *const plain[STUDY_QUANTITIES] = {"first_contact", "first_pulse_peak",
                                                         "steady_force"};
     static const char *const units[STUDY_QUANTITIES] = {"s", "N", "N"};
@@ -113,14 +112,15 @@ static status plot_methods(const scenario *s, const method_study *study, const c
                                    .series_count = STUDY_METHODS};
     }
     snprintf(title, sizeof title, "%s: error against cost", s->name);
-    figure fig = {.title = title,
-                  .caption =
-                      "Steps 10 ms, 5 ms, 2 ms ... 1 µs from left to right (the event "
-                      "method strides over several where it can). Left and low is better. "
-                      "What lies below 10<sup>−13</sup> is rounding; the gap is the reference.",
-                  .x = {.name = "computing time", .label = "computing time", .unit = "s"},
-                  .panels = panels,
-                  .panel_count = STUDY_QUANTITIES};
+    figure fig = {
+        .title = title,
+        .caption =
+            "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to right (the event "
+            "method strides over several where it can). Left and low is better. "
+            "What lies below 10<sup>−13</sup> is rounding; the gap is the reference.",
+        .x = {.name = "computing time", .label = "Computing time", .unit = "s"},
+        .panels = panels,
+        .panel_count = STUDY_QUANTITIES};
     return write_study_figure(&fig, s, "methods", path, f);
 }
 

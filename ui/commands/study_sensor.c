@@ -76,7 +76,7 @@ static status plot_sensor(const scenario *s, const sensor_study *study, const ch
          .colour = 5,
          .marker = MARKER_SQUARE},
         {.name = "sensor 0.5 ms",
-         .label = "sensor of 0.5 ms",
+         .label = "sensor of 0.5\u2009ms",
          CURVE(study->sensed[0]),
          .colour = 3,
          .marker = MARKER_CIRCLE},
@@ -105,11 +105,11 @@ static status plot_sensor(const scenario *s, const sensor_study *study, const ch
     };
 #undef CURVE
     const figure_panel panels[] = {
-        {.y = {.name = "peak", .label = "largest force", .unit = "N", .scale = SCALE_LOGARITHMIC},
+        {.y = {.name = "peak", .label = "Largest force", .unit = "N", .scale = SCALE_LOGARITHMIC},
          .series = force,
          .series_count = 7},
         {.y = {.name = "momentum",
-               .label = "first impulse, and momentum of 2 ms",
+               .label = "First impulse, momentum of 2\u2009ms",
                .unit = "N s",
                .scale = SCALE_LOGARITHMIC},
          .series = momentum,
@@ -121,7 +121,7 @@ static status plot_sensor(const scenario *s, const sensor_study *study, const ch
                   .caption =
                       "Squares: force and first impulse of the rigid point contact. Circles: "
                       "largest reading of a sensor, and all momentum of the first 2 ms.",
-                  .x = {.name = "links", .label = "links"},
+                  .x = {.name = "links", .label = "Number of links <i>N</i>"},
                   .panels = panels,
                   .panel_count = 2};
     return write_study_figure(&fig, s, "sensor", path, f);

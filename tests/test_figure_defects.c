@@ -1,0 +1,221 @@
+// What once was wrong in figures and can be told by a program.
+#include "tests/plot_fixture.h"
+
+#include "render/plot/curve.h"
+
+// fontconfig keeps its cache until the process ends
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig\n";
+}
+
+static void the_last_of_twenty_links_is_body_21(void **state)
+{
+    (void)state;
+    static figure_report r;
+    synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    fault f = {0};
+    const trace_run run = {&s.scenario, &s.result, NULL};
+    trace_figure_finish(&s.figure);
+    s.scenario.parameters.arm.links = 20;
+    assert_int_equal(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f),
+                     STATUS_OK);
+    record(&s.figure.figure, &r);
+    expect_text(&r, "\u03b821  last link");
+    assert_false(has_text(&r, "\u03b83  last link"));
+    synthetic_finish(&s);
+}
+
+// The peak lies between two rows: the mark's force must be among the drawn.
+static void the_peak_is_on_the_curve(void **state)
+{
+    (void)state;
+    fault f = {0};
+    synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    const trace_run run = {&s.scenario, &s.result, NULL};
+    trace_figure_finish(&s.figure);
+    s.result.summary.first_pulse_peak_N = 2.125;
+    s.result.summary.first_pulse_time_to_peak_s = 0.0354;
+    assert_int_equal(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f),
+                     STATUS_OK);
+    const figure_series *force = &s.figure.panels[0].series[0];
+    bool found = false;
+    double before = -1;
+    for (size_t i = 0; i < force->count; i++) {
+        found = found || (series_y(force, i) == 2.125 && fabs(series_x(force, i) - 0.3454) < 1e-12);
+        assert_true(series_x(force, i) >= before);
+        before = series_x(force, i);
+    }
+    assert_true(found);
+    assert_int_equal(force->count, s.result.trace.row_count + 1);
+    synthetic_finish(&s);
+}
+
+static void quantities_have_the_same_digits(void **state)
+{
+    (void)state;
+    static const struct {
+        double value;
+        const char *shown;
+    } cases[] = {{5.4, "5.40\u2009N"},
+                 {1.752, "1.75\u2009N"},
+                 {12, "12.0\u2009N"},
+                 {123, "123\u2009N"},
+                 {-0.5, "\u22120.500\u2009N"}};
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        char *shown = text_quantity(cases[i].value, 3, "N");
+        assert_string_equal(shown, cases[i].shown);
+        g_free(shown);
+    }
+}
+
+// However narrow the page, no line begins with what belongs to the end of the one before.
+static void numbers_keep_their_units(void **state)
+{
+    (void)state;
+    const char *caption = "At 1 V and 10 ms, <i>β</i> = 0.4, <i>h</i> = 10\u2009ms, a peak of "
+                          "5.40\u2009N after 12.5 ms. impactlab 0.1.0.";
+    static const char *const torn[] = {"V", "ms", "= ", "=\u00a0", "0.4", "N", "0.1.0", "10 ms,"};
+    PangoContext *context = text_context_create();
+    for (double width = 60; width < 300; width += 7) {
+        PangoLayout *layout = text_layout_create(
+            context, &(text_block){.markup = caption, .size = 8, .width = width});
+        const char *text = pango_layout_get_text(layout);
+        for (int i = 1; i < pango_layout_get_line_count(layout); i++) {
+            const char *line =
+                text + pango_layout_line_get_start_index(pango_layout_get_line_readonly(layout, i));
+            for (size_t k = 0; k + 1 < G_N_ELEMENTS(torn); k++) {
+                if (strncmp(line, torn[k], strlen(torn[k])) == 0) {
+                    fail_msg("at %g points a line begins with '%.12s'", width, line);
+                }
+            }
+        }
+        g_object_unref(layout);
+    }
+    g_object_unref(context);
+}
+
+// A curve that is cut by the axis begins at it: no colour left of it.
+static void curves_begin_at_the_axis(void **state)
+{
+    (void)state;
+    static figure_report r;
+    double x[] = {0, 1, 2, 3}, y[] = {1, 1.2, 1.1, 1.4};
+    figure_series series = {.x = x, .y = y, .count = 4};
+    figure_panel panel = {.series = &series, .series_count = 1};
+    figure fig = {.panels = &panel, .panel_count = 1, .x = {.low = 0.5, .high = 2.5}, .width = 100};
+    const double scale = 4;
+    cairo_surface_t *surface = paint_pixels(&fig, scale, &r);
+    const figure_rect *box = &r.panels[0];
+    figure_rect left = {box->x - 6, box->y, 5.7, box->height};
+    figure_rect right = {box->x + box->width + 0.3, box->y, 4, box->height};
+    assert_int_equal(coloured_pixels(surface, scale, left), 0);
+    assert_int_equal(coloured_pixels(surface, scale, right), 0);
+    assert_true(coloured_pixels(surface, scale, *box) > 100);
+    cairo_surface_destroy(surface);
+}
+
+enum { STAIRS = 1200 };
+
+// Pixels of a grey between black and the page's own greys in the legend's swatch.
+static void a_busy_line_has_no_dashes(void **state)
+{
+    (void)state;
+    static figure_report r;
+    static double x[STAIRS], stairs[STAIRS], smooth[STAIRS];
+    for (int i = 0; i < STAIRS; i++) {
+        x[i] = i;
+        smooth[i] = 10;
+        stairs[i] = 10 + (i / 4 % 2 ? 1 : -1);
+    }
+    figure_series series[] = {
+        {.label = "stairs", .x = x, .y = stairs, .count = STAIRS, .style = LINE_DASHED},
+        {.label = "smooth", .x = x, .y = smooth, .count = STAIRS}};
+    figure_panel panel = {.series = series, .series_count = 2, .y = {.low = 0, .high = 30}};
+    figure fig = {.panels = &panel, .panel_count = 1, .theme = THEME_MONO};
+    const double scale = 6;
+    cairo_surface_t *surface = paint_pixels(&fig, scale, &r);
+
+    // the first entry's swatch: an unbroken line, lighter than the second one's
+    const figure_rect *legend = &r.legends[0];
+    assert_true(legend->width > 0);
+    int lightness[2];
+    for (int entry = 0; entry < 2; entry++) {
+        double y = legend->y + legend->height / 2 * (entry + 0.55);
+        int lightest = 0;
+        for (double along = 2; along < 16; along += 0.25) {
+            int darkest = 255;
+            for (double off = -2; off <= 2; off += 0.25) {
+                pixel p =
+                    pixel_at(surface, (int)((legend->x + along) * scale), (int)((y + off) * scale));
+                darkest = p.red < darkest ? p.red : darkest;
+            }
+            lightest = darkest > lightest ? darkest : lightest;
+        }
+        lightness[entry] = lightest;
+    }
+    assert_true(lightness[0] < 200);
+    assert_true(lightness[1] < 40);
+    assert_true(lightness[0] > lightness[1] + 60);
+    cairo_surface_destroy(surface);
+}
+
+static void a_map_without_colours_is_grey(void **state)
+{
+    (void)state;
+    static figure_report r;
+    double x[] = {0, 1, 2}, y[] = {0, 1}, z[] = {1, 2, 3, 4, 5, 6};
+    figure_map map = {.x = x, .y = y, .columns = 3, .rows = 2, .z = z, .contours = true};
+    figure_colours colours = {.axis = {.label = "z"}, .bar = true};
+    figure_panel panel = {.map = &map, .colours = &colours};
+    figure fig = {.panels = &panel, .panel_count = 1, .theme = THEME_MONO};
+    cairo_surface_t *surface = paint_pixels(&fig, 1.5, &r);
+    for (int j = 0; j < cairo_image_surface_get_height(surface); j++) {
+        for (int i = 0; i < cairo_image_surface_get_width(surface); i++) {
+            assert_int_equal(saturation(pixel_at(surface, i, j)), 0);
+        }
+    }
+    cairo_surface_destroy(surface);
+}
+
+// The numbers beside a figure are headed by the axes' names and units.
+static void numbers_have_names_and_units(void **state)
+{
+    (void)state;
+    fault f = {0};
+    size_t length;
+    double x[] = {0, 1};
+    figure_series series = {.name = "run", .x = x, .y = x, .count = 2};
+    figure_panel panels[2] = {
+        {.y = {.name = "force", .unit = "N"}, .series = &series, .series_count = 1},
+        {.y = {.name = "angle", .unit = "rad"}, .series = &series, .series_count = 1}};
+    figure fig = {.x = {.name = "time", .unit = "s"}, .panels = panels, .panel_count = 1};
+    assert_int_equal(figure_write_csv(&fig, path_of("one.csv"), &f), STATUS_OK);
+    char *csv = read_file(path_of("one.csv"), &length);
+    assert_ptr_equal(strstr(csv, "panel,series,time[s],force[N]\n"), csv);
+    free(csv);
+    fig.panel_count = 2;
+    assert_int_equal(figure_write_csv(&fig, path_of("two.csv"), &f), STATUS_OK);
+    csv = read_file(path_of("two.csv"), &length);
+    assert_ptr_equal(strstr(csv, "panel,series,time[s],value\n"), csv);
+    assert_non_null(strstr(csv, "\nangle[rad],run,1,1\n"));
+    free(csv);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_last_of_twenty_links_is_body_21),
+        cmocka_unit_test(the_peak_is_on_the_curve),
+        cmocka_unit_test(quantities_have_the_same_digits),
+        cmocka_unit_test(numbers_keep_their_units),
+        cmocka_unit_test(curves_begin_at_the_axis),
+        cmocka_unit_test(a_busy_line_has_no_dashes),
+        cmocka_unit_test(a_map_without_colours_is_grey),
+        cmocka_unit_test(numbers_have_names_and_units),
+    };
+    return cmocka_run_group_tests_name("figure defects", tests, make_folder, remove_folder) != 0;
+}
