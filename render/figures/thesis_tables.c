@@ -164,7 +164,8 @@ status table_stability(const char *title, const figure_options *o, artwork *out,
 status table_algorithm(const char *title, const figure_options *o, artwork *out, fault *f)
 {
     static const char *const rows[][3] = {
-        {"1", "Start from given angles and velocities; accelerations are zero.", "printed_run"},
+        {"1", "Start from given angles and velocities; accelerations are zero.",
+         "printed_motion_start"},
         {"2",
          "Not in contact, the wall not reached: Newmark's rule and Newton's method for the "
          "three bodies.",
@@ -178,9 +179,10 @@ status table_algorithm(const char *title, const figure_options *o, artwork *out,
          "more out of the linear system with (3.13), the constraint's second derivative.",
          "printed_reevaluate"},
         {"5", "In contact and the force still pushes: the next step is step 3 and 4 again.",
-         "printed_run"},
-        {"6", "The force would pull: contact is over, the next step is step 2.", "printed_run"},
-        {"7", "Next time step.", "printed_run"},
+         "printed_motion_step"},
+        {"6", "The force would pull: contact is over, the next step is step 2.",
+         "printed_motion_step"},
+        {"7", "Next time step.", "printed_motion_step"},
     };
     (void)f;
     table_page *t = new_table(title, o);

@@ -128,13 +128,15 @@ static status try_step(printed_motion *m, step_result *r)
 {
     for (;;) {
         choose_system(m, r);
-        status result = solve_step(m, r);
+        status result = solve_step(m, r); // with Newmark's rule
         if (result == STATUS_OK) {
             result = reevaluate(m, r);
         }
         if (result != STATUS_OK) {
             return result;
         }
+
+        // the strategy of Table 3.2: contact is found by its violation
         bool touched = !m->in_contact && m->contact_steps == 0 && wall_stands(&m->arm.wall) &&
                        printed_penetration(&m->arm, r->angle) >= 0;
         if (!touched) {
@@ -226,6 +228,7 @@ status printed_motion_step(printed_motion *m, fault *f)
     const double start = m->row.time, end = (double)(m->steps + 1) * m->method.step;
     step_result r;
 
+    // the equations' own failures
     status result = try_step(m, &r);
     if (result != STATUS_OK) {
         return fault_set(f, result, "the equations of the step from t = %.9g s %s contact %s",
@@ -233,31 +236,15 @@ status printed_motion_step(printed_motion *m, fault *f)
                          result == STATUS_SINGULAR ? "are singular"
                                                    : "have a residual that is not finite");
     }
+
+    // an overflow, told before it becomes the next step's start
     const char *name = not_finite(&r, m->force);
     if (name != NULL) {
         return fault_set(f, STATUS_NOT_FINITE,
                          "%s is not finite after the step from t = %.9g s to t = %.9g s", name,
                          start, end);
     }
+
     accept_step(m, &r, end);
     return STATUS_OK;
-}
-
-status printed_run(const parameters *given, printed_observer observe, printed_script script,
-                   void *context, fault *f)
-{
-    parameters p = *given;
-    printed_motion m;
-    status result = STATUS_OK;
-    printed_motion_start(&m, &p);
-    bool go_on = observe(context, &m.row);
-    while (go_on && result == STATUS_OK && !printed_motion_ended(&m)) {
-        if (script != NULL) {
-            script(context, m.row.time, &p);
-            printed_motion_rebind(&m, &p);
-        }
-        result = printed_motion_step(&m, f);
-        go_on = result == STATUS_OK && observe(context, &m.row);
-    }
-    return result;
 }

@@ -61,14 +61,3 @@ bool printed_motion_ended(const printed_motion *m);
 // contact. STATUS_NOT_FINITE or STATUS_SINGULAR if a state becomes infinite or the Jacobian
 // singular: f says when and which, m->row stays, and no further step can be made.
 status printed_motion_step(printed_motion *m, fault *f);
-
-// Called after each step with the row; a return value of false stops the run.
-typedef bool (*printed_observer)(void *context, const printed_row *row);
-
-// Called before the step that starts at `time` [s]; may change p's timed parameters (scripted
-// playback). May be NULL.
-typedef void (*printed_script)(void *context, double time, parameters *p);
-
-// The whole run at once. On failure the rows until then were observed.
-status printed_run(const parameters *p, printed_observer observe, printed_script script,
-                   void *context, fault *f);

@@ -1,5 +1,6 @@
 #include "src/study/thesis_tables.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -62,44 +63,42 @@ typedef struct cell {
     double delay;              // of the peak after contact [s]
 } cell;
 
-// Watches the printed simulation: the state of the step before contact is found, and the peak.
-typedef struct watch {
-    cell cell;
-    printed_row previous;
-    double first_contact; // [s]
-} watch;
-
-static bool watch_row(void *context, const printed_row *row)
-{
-    watch *w = context;
-    cell *c = &w->cell;
-    if (row->contact && !c->touched) {
-        c->touched = true;
-        w->first_contact = row->time;
-        memcpy(c->at_touch.angle, w->previous.angle, sizeof c->at_touch.angle);
-        memcpy(c->at_touch.velocity, w->previous.velocity, sizeof c->at_touch.velocity);
-    }
-    w->previous = *row;
-    if (!c->touched) {
-        return true;
-    }
-    double since = row->time - w->first_contact;
-    if (instant_after(since, PRINTED_WINDOW)) {
-        return false;
-    }
-    if (row->force > 0 && !(row->force <= c->peak)) {
-        c->peak = row->force;
-        c->delay = since;
-    }
-    return true;
-}
-
+// Runs the printed model until its first pulse is over: the state of the step before contact, and
+// the largest force after it.
 static status simulate_printed(const parameters *p, cell *c, fault *f)
 {
-    watch w = {.cell = *c};
-    status result = printed_run(p, watch_row, NULL, &w, f);
-    *c = w.cell;
-    return result;
+    printed_motion m;
+    double first_contact = 0; // [s]
+    printed_motion_start(&m, p);
+    while (!printed_motion_ended(&m)) {
+        const printed_row previous = m.row;
+        status result = printed_motion_step(&m, f);
+        if (result != STATUS_OK) {
+            return result;
+        }
+
+        // contact begins
+        if (m.row.contact && !c->touched) {
+            c->touched = true;
+            first_contact = m.row.time;
+            memcpy(c->at_touch.angle, previous.angle, sizeof c->at_touch.angle);
+            memcpy(c->at_touch.velocity, previous.velocity, sizeof c->at_touch.velocity);
+        }
+        if (!c->touched) {
+            continue;
+        }
+
+        // the first pulse
+        double since = m.row.time - first_contact;
+        if (instant_after(since, PRINTED_WINDOW)) {
+            break;
+        }
+        if (m.row.force > 0 && !(m.row.force <= c->peak)) {
+            c->peak = m.row.force;
+            c->delay = since;
+        }
+    }
+    return STATUS_OK;
 }
 
 // The last row before the jump of the first impact; NULL if there was no impact.
@@ -152,6 +151,8 @@ static status compute_cell(const parameters *p, double value[QUANTITIES], fault 
     for (int i = 0; i < QUANTITIES; i++) {
         value[i] = (double)NAN;
     }
+
+    // the simulation, and where it met the wall
     status result =
         p->arm.model == ARM_PRINTED ? simulate_printed(p, &c, f) : simulate_corrected(p, &c, f);
     if (result != STATUS_OK || !c.touched) {
@@ -159,6 +160,8 @@ static status compute_cell(const parameters *p, double value[QUANTITIES], fault 
     }
     value[FORCE_SIMULATION] = c.peak;
     value[DELAY_SIMULATION] = c.delay;
+
+    // the predictors at the same state
     result = predict_energy(p, &c.at_touch, &energy, f);
     if (result == STATUS_OK) {
         result = predict_impact_dynamics(p, &c.at_touch, &dynamics, f);
@@ -166,6 +169,7 @@ static status compute_cell(const parameters *p, double value[QUANTITIES], fault 
     if (result != STATUS_OK) {
         return result;
     }
+
     value[FORCE_ENERGY] = energy.holds ? energy.force : (double)NAN;
     value[FORCE_DYNAMICS] = dynamics.holds ? dynamics.force : (double)NAN;
     value[DELAY_DYNAMICS] = dynamics.holds ? dynamics.delay : (double)NAN;
@@ -183,17 +187,20 @@ static status compute_table(const parameters *defaults, const thesis_table *sour
                               .quantity = quantity_names[i]};
         memcpy(rows[i].printed, source->printed[i], sizeof rows[i].printed);
     }
+
+    // a cell for each voltage
     for (int v = 0; v < TABLE_VOLTAGES; v++) {
         parameters p = *defaults;
         double value[QUANTITIES];
         p.arm.k2 *= source->k2_factor;
         p.motor.voltage = voltages[v];
         p.run.duration = DURATION;
+
         fault why = {.text = ""};
         status result = compute_cell(&p, value, &why);
         if (result != STATUS_OK) {
-            return fault_set(f, result, "Table %s, %s model, %g V: %.900s", source->name, model,
-                             voltages[v], why.text);
+            return fault_set_at(f, result, why.path, "Table %s, %s model, %g V: %.900s",
+                                source->name, model, voltages[v], why.text);
         }
         for (int i = 0; i < QUANTITIES; i++) {
             rows[i].computed[v] = value[i];
@@ -208,8 +215,10 @@ status tables_compute(thesis_tables *t, fault *f)
         arm_model_kind kind;
         const char *name;
     } models[MODELS] = {{ARM_PRINTED, "printed"}, {ARM_CORRECTED, "corrected"}};
+    assert(t != NULL);
     memset(t, 0, sizeof *t);
     memcpy(t->voltage, voltages, sizeof t->voltage);
+
     for (int k = 0; k < STIFFNESSES; k++) {
         for (int m = 0; m < MODELS; m++) {
             parameters p;
@@ -229,6 +238,7 @@ status tables_compute(thesis_tables *t, fault *f)
 
 double tables_mean_error(const thesis_tables *t, const char *model, const char *quantity)
 {
+    assert(t != NULL && model != NULL && quantity != NULL);
     double sum = 0;
     int count = 0;
     for (int r = 0; r < t->row_count; r++) {
