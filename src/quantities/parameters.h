@@ -214,12 +214,19 @@ int parameter_index(const char *path);
 // The path that a parameter has which was once called by this one, or NULL.
 const char *parameter_renamed(const char *path);
 
+// Index of a path as people write it; -1, with a sentence in f that names the nearest, if there is no
+// such parameter.
+int parameter_look_up(const char *path, fault *f);
+
 // The path that replaced this one, or the nearest to a misspelt one (for "did you mean"); NULL if
 // there is none.
 const char *parameter_suggest(const char *path);
 
 // All defaults of the given model (arm_model_kind), nothing marked as set.
 void parameters_defaults(parameters *p, arm_model_kind model);
+
+// The default of one parameter under p->arm.model, not marked as set.
+void parameter_set_default(parameters *p, int index);
 
 // Parses text as a value of parameter `index` and stores it, marked as set. A trailing unit equal
 // to the parameter's own is accepted ("0.1 rad"). On a wrong type, a value that is not finite or

@@ -1,7 +1,6 @@
 #include "src/quantities/signals.h"
 
 #include <assert.h>
-#include <assert.h>
 #include <string.h>
 
 #define AT(field) offsetof(sample, field)
@@ -129,7 +128,6 @@ int signal_index(const char *name)
 
 double signal_value(const sample *row, int index)
 {
-    assert(index >= 0 && index < signal_count);
     assert(row != NULL && index >= 0 && index < signal_count);
     double value;
     memcpy(&value, (const char *)row + signal_table[index].offset, sizeof value);

@@ -1,0 +1,262 @@
+// Values of parameters: stored in and read from struct parameters, parsed and formatted.
+#include <assert.h>
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#include "src/base/numbers.h"
+#include "src/quantities/parameters.h"
+
+// The row of an index that a look-up gave.
+static const parameter_info *row_of(int index)
+{
+    assert(index >= 0 && index < parameter_count);
+    return &parameter_table[index];
+}
+
+// Puts a number where the parameter lies; a text gets its default.
+static void store(parameters *p, const parameter_info *info, double value)
+{
+    char *at = (char *)p + info->offset;
+    switch (info->type) {
+    case PARAMETER_REAL:
+        memcpy(at, &value, sizeof value);
+        break;
+    case PARAMETER_BOOLEAN: {
+        bool truth = value != 0;
+        memcpy(at, &truth, sizeof truth);
+        break;
+    }
+    case PARAMETER_INTEGER:
+    case PARAMETER_CHOICE: {
+        int whole = (int)value;
+        memcpy(at, &whole, sizeof whole);
+        break;
+    }
+    case PARAMETER_TEXT:
+        memset(at, 0, PARAMETER_TEXT_SIZE);
+        snprintf(at, PARAMETER_TEXT_SIZE, "%s", info->choices ? info->choices : "");
+        break;
+    }
+}
+
+double parameter_get(const parameters *p, int index)
+{
+    assert(p != NULL);
+    const parameter_info *info = row_of(index);
+    const char *at = (const char *)p + info->offset;
+    double real;
+    bool truth;
+    int whole;
+    switch (info->type) {
+    case PARAMETER_REAL:
+        memcpy(&real, at, sizeof real);
+        return real;
+    case PARAMETER_BOOLEAN:
+        memcpy(&truth, at, sizeof truth);
+        return truth;
+    case PARAMETER_INTEGER:
+    case PARAMETER_CHOICE:
+        memcpy(&whole, at, sizeof whole);
+        return whole;
+    case PARAMETER_TEXT:
+        return 0;
+    }
+    return (double)NAN;
+}
+
+void parameter_set_default(parameters *p, int index)
+{
+    assert(p != NULL);
+    const parameter_info *info = row_of(index);
+    store(p, info, p->arm.model == ARM_PRINTED ? info->default_printed : info->default_corrected);
+    p->set[index] = 0;
+}
+
+void parameters_defaults(parameters *p, arm_model_kind model)
+{
+    assert(p != NULL);
+    memset(p, 0, sizeof *p);
+    p->arm.model = (int)model;
+    for (int i = 0; i < parameter_count; i++) {
+        parameter_set_default(p, i);
+    }
+}
+
+status parameter_set_number(parameters *p, int index, double value, fault *f)
+{
+    assert(p != NULL);
+    const parameter_info *info = row_of(index);
+    const char *unit = info->unit, *space = unit[0] ? " " : "";
+
+    // type and range, each with a sentence of its own
+    if (info->type == PARAMETER_TEXT) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s is a text and takes no number",
+                            info->path);
+    }
+    if (!isfinite(value)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s is not a finite number, expected %g to %g%s%s", info->path,
+                            info->minimum, info->maximum, space, unit);
+    }
+    if (info->type != PARAMETER_REAL && value != floor(value)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s = %g is not a whole number",
+                            info->path, value);
+    }
+    if (value < info->minimum || value > info->maximum) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = %g is out of range, expected %g to %g%s%s", info->path, value,
+                            info->minimum, info->maximum, space, unit);
+    }
+
+    store(p, info, value);
+    p->set[index] = 1;
+    return STATUS_OK;
+}
+
+// Position of text in "a|b|c", or -1.
+static int choice_index(const char *choices, const char *text, size_t length)
+{
+    int index = 0;
+    for (const char *c = choices; c != NULL; index++) {
+        const char *bar = strchr(c, '|');
+        size_t n = bar ? (size_t)(bar - c) : strlen(c);
+        if (n == length && strncmp(c, text, n) == 0) {
+            return index;
+        }
+        c = bar ? bar + 1 : NULL;
+    }
+    return -1;
+}
+
+// Reads "0.1" or "0.1 rad" into value; text holds no surrounding space.
+static status parse_quantity(const parameter_info *info, const char *text, double *value, fault *f)
+{
+    const char *unit, *digits = text + strspn(text, "+-.");
+    if (!decimal_read(text, value, &unit)) {
+        // strtod's own words for what is not finite, with or without YAML's dot
+        bool infinite = strncasecmp(digits, "inf", 3) == 0 || strncasecmp(digits, "nan", 3) == 0;
+        const char *type = info->type == PARAMETER_INTEGER ? "a whole number" : "a number";
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = '%.60s' is not %s, expected %g to %g%s%s", info->path, text,
+                            infinite ? "finite" : type, info->minimum, info->maximum,
+                            info->unit[0] ? " " : "", info->unit);
+    }
+
+    // a unit is no conversion: only the parameter's own may stand there
+    if (*unit != '\0' && strcmp(unit, info->unit) != 0) {
+        if (info->unit[0] == '\0') {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s = '%.60s' carries a unit, expected a pure number", info->path,
+                                text);
+        }
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = '%.60s' is in '%.20s', expected %s", info->path, text, unit,
+                            info->unit);
+    }
+    return STATUS_OK;
+}
+
+// A text of one line is stored as it is.
+static status store_text(parameters *p, int index, const char *text, size_t length, fault *f)
+{
+    const parameter_info *info = row_of(index);
+    for (size_t i = 0; i < length; i++) {
+        if (iscntrl((unsigned char)text[i])) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s holds a control character, expected one line of text",
+                                info->path);
+        }
+    }
+
+    // zeroes behind the text make equal parameters equal byte by byte
+    char *at = (char *)p + info->offset;
+    memset(at, 0, PARAMETER_TEXT_SIZE);
+    memcpy(at, text, length);
+    p->set[index] = 1;
+    return STATUS_OK;
+}
+
+// Reads a word without surrounding space as the number of a parameter that is no text.
+static status parse_word(const parameter_info *info, const char *word, double *value, fault *f)
+{
+    size_t length = strlen(word);
+    if (info->type == PARAMETER_CHOICE) {
+        int choice = choice_index(info->choices, word, length);
+        *value = choice;
+        return choice >= 0 ? STATUS_OK
+                           : fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                          "%s = '%.60s' is not known, expected one of %s",
+                                          info->path, word, info->choices);
+    }
+
+    // of each pair of words the first is false
+    if (info->type == PARAMETER_BOOLEAN) {
+        int choice = choice_index("false|true|no|yes|off|on|0|1", word, length);
+        *value = choice % 2;
+        return choice >= 0
+                   ? STATUS_OK
+                   : fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                  "%s = '%.60s' is neither true nor false", info->path, word);
+    }
+    return parse_quantity(info, word, value, f);
+}
+
+status parameter_set_text(parameters *p, int index, const char *text, fault *f)
+{
+    assert(p != NULL && text != NULL);
+    const parameter_info *info = row_of(index);
+
+    // what counts is what stands between the blanks
+    text += strspn(text, " \t\n\v\f\r");
+    size_t length = strlen(text);
+    while (length > 0 && isspace((unsigned char)text[length - 1])) {
+        length--;
+    }
+    if (info->type == PARAMETER_TEXT && length < PARAMETER_TEXT_SIZE) {
+        return store_text(p, index, text, length, f);
+    }
+
+    char word[PARAMETER_TEXT_SIZE];
+    if (length == 0 || length >= sizeof word) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s has %s", info->path,
+                            length ? "a value of more than 127 characters" : "no value");
+    }
+    memcpy(word, text, length);
+    word[length] = '\0';
+
+    double value = 0;
+    status code = parse_word(info, word, &value, f);
+    return code == STATUS_OK ? parameter_set_number(p, index, value, f) : code;
+}
+
+void parameter_format(const parameters *p, int index, char *text, size_t size)
+{
+    assert(p != NULL && text != NULL && size > 0);
+    const parameter_info *info = row_of(index);
+    const double value = parameter_get(p, index);
+    const char *choice = info->choices;
+    char number[NUMBER_TEXT];
+    switch (info->type) {
+    case PARAMETER_TEXT:
+        snprintf(text, size, "%s", (const char *)p + info->offset);
+        break;
+    case PARAMETER_BOOLEAN:
+        snprintf(text, size, "%s", value != 0 ? "true" : "false");
+        break;
+    case PARAMETER_CHOICE:
+        for (int i = 0; i < (int)value; i++) {
+            choice = strchr(choice, '|') + 1;
+        }
+        snprintf(text, size, "%.*s", (int)strcspn(choice, "|"), choice);
+        break;
+    case PARAMETER_INTEGER:
+        snprintf(text, size, "%d", (int)value);
+        break;
+    case PARAMETER_REAL:
+        number_format_short(number, value);
+        snprintf(text, size, "%s", number);
+        break;
+    }
+}

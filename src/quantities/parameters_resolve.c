@@ -1,0 +1,206 @@
+// What follows from other parameters, and which of them contradict one another.
+#include <assert.h>
+#include <math.h>
+
+#include "src/quantities/k2_table.h"
+#include "src/quantities/parameters.h"
+
+// What the ledger may lack under the methods whose steps are the object of study.
+#define STUDY_RESIDUAL_BOUND 1e-2
+
+// Whether the parameter of a field was given.
+#define IS_SET(p, field) ((p)->set[PARAMETER_INDEX(field)] != 0)
+
+// The path of the first of some parameters, ended by -1, that was given: of those that contradict
+// one another it is the one to blame. "" if all are defaults.
+static const char *first_given(const parameters *p, const int *indices)
+{
+    for (; *indices >= 0; indices++) {
+        if (p->set[*indices]) {
+            return parameter_table[*indices].path;
+        }
+    }
+    return "";
+}
+
+// A fault that several parameters make together, in the order in which they are to blame.
+#define BLAME1(p, a)    first_given(p, (const int[]){PARAMETER_INDEX(a), -1})
+#define BLAME2(p, a, b) first_given(p, (const int[]){PARAMETER_INDEX(a), PARAMETER_INDEX(b), -1})
+#define BLAME3(p, a, b, c)                                                                         \
+    first_given(p, (const int[]){PARAMETER_INDEX(a), PARAMETER_INDEX(b), PARAMETER_INDEX(c), -1})
+
+// What was not given follows the model, and the inertia of a link its shape.
+static void resolve_defaults(parameters *p)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        if (!p->set[i] && i != PARAMETER_INDEX(arm.model)) {
+            parameter_set_default(p, i);
+        }
+    }
+    if (!IS_SET(p, method.residual_bound) && p->method.name != METHOD_EVENT) {
+        p->method.residual_bound = STUDY_RESIDUAL_BOUND;
+    }
+}
+
+// Half a cell of beam, length/(2 N), lies between the hub and the middle of the first link.
+static double root_stiffness(const arm_parameters *a)
+{
+    return a->k2 * a->links;
+}
+
+void parameters_follow(parameters *p, int index)
+{
+    assert(p != NULL);
+    arm_parameters *a = &p->arm;
+    if (index == PARAMETER_INDEX(arm.k2)) {
+        a->EI = a->k2 * a->length / 2;
+    } else if (index == PARAMETER_INDEX(arm.EI)) {
+        a->k2 = 2 * a->EI / a->length;
+    }
+    a->k1 = a->hub_joint == HUB_BEAM ? root_stiffness(a) : a->k1;
+}
+
+// The beam's stiffness is given once, and with it that of its root.
+static status resolve_stiffness(parameters *p, fault *f)
+{
+    if (IS_SET(p, arm.EI) && IS_SET(p, arm.k2)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.EI),
+                            "arm.EI and arm.k2 = 2 EI/length are both given, expected one of them");
+    }
+    if (p->arm.hub_joint == HUB_BEAM && IS_SET(p, arm.k1)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.k1),
+                            "arm.k1 is for arm.hub_joint = spring, but with beam the root has the "
+                            "spring k2 N = %g N m/rad",
+                            root_stiffness(&p->arm));
+    }
+    parameters_follow(p, IS_SET(p, arm.EI) ? PARAMETER_INDEX(arm.EI) : PARAMETER_INDEX(arm.k2));
+    return STATUS_OK;
+}
+
+// The shape of the arm, and where it starts.
+static status resolve_arm(parameters *p, fault *f)
+{
+    if (IS_SET(p, arm.link_inertia) && p->arm.links != 2) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.link_inertia, arm.links),
+                            "arm.link_inertia is for two links only, but arm.links = %d (other N "
+                            "take the inertia of a uniform rod)",
+                            p->arm.links);
+    }
+
+    // a uniform rod's moment of inertia about its centre, m l^2 / 12 (errata B3)
+    if (isnan(p->arm.link_inertia)) {
+        double m = p->arm.mass / p->arm.links, l = p->arm.length / p->arm.links;
+        p->arm.link_inertia = m * l * l / 12;
+    }
+
+    if (resolve_stiffness(p, f) != STATUS_OK) {
+        return STATUS_BAD_SCENARIO;
+    }
+
+    // the arm starts in front of the wall
+    if (p->wall.kind != WALL_NONE && p->initial.angle > p->wall.angle) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, initial.angle, wall.angle),
+            "initial.angle = %g rad lies behind the wall, expected at most wall.angle = "
+            "%g rad",
+            p->initial.angle, p->wall.angle);
+    }
+    return STATUS_OK;
+}
+
+// The controller's texts, and its timing: a command goes out before the next one does.
+static status check_control(const parameters *p, fault *f)
+{
+    const control_parameters *c = &p->control;
+    const double period = 1 / c->rate;
+
+    // plug-in and table of k2
+    if (c->law == LAW_PLUGIN && c->plugin[0] == '\0') {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.plugin),
+            "control.law = plugin needs the file of a shared object in control.plugin");
+    }
+    k2_table table;
+    if (k2_table_read(&table, c->k2_table, f) != STATUS_OK) {
+        return STATUS_BAD_SCENARIO;
+    }
+
+    // delays of more than a period would let commands overtake one another, and jitter of more than
+    // half a period samples
+    if (c->delay * c->rate > 1) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, control.delay, control.rate),
+                            "control.delay = %g s is longer than the period of %g s (control.rate)",
+                            c->delay, period);
+    }
+    if (c->delay * c->rate + c->delay_periods > 1) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME3(p, control.delay_periods, control.delay, control.rate),
+            "control.delay_periods = %g and control.delay = %g s are together longer than the "
+            "period of %g s (control.rate)",
+            c->delay_periods, c->delay, period);
+    }
+    if (c->jitter * c->rate > 0.5) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.jitter, control.rate),
+            "control.jitter = %g s is more than half the period of %g s (control.rate)", c->jitter,
+            period);
+    }
+    return STATUS_OK;
+}
+
+// A controller that is to get the piezoelectric sensor's force needs one that shows something.
+static status resolve_piezo(parameters *p, fault *f)
+{
+    if (p->sensor.force == FORCE_BY_PIEZO && !IS_SET(p, sensor.piezo)) {
+        p->sensor.piezo = true;
+    }
+    if (p->sensor.force == FORCE_BY_PIEZO && !p->sensor.piezo) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, sensor.force, sensor.piezo),
+            "sensor.force = piezo needs the sensor that sensor.piezo = false leaves out");
+    }
+
+    // rise and leak are a band-pass: its lower edge lies below its upper one
+    double leak = p->sensor.piezo_leak_time;
+    if (leak > 0 && leak < p->sensor.piezo_rise_time) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, sensor.piezo_leak_time, sensor.piezo_rise_time),
+            "sensor.piezo_leak_time = %g s is shorter than sensor.piezo_rise_time = %g "
+            "s, expected a longer one or 0",
+            leak, p->sensor.piezo_rise_time);
+    }
+    return STATUS_OK;
+}
+
+// The printed equations hold for one arm and one method.
+static status check_printed(const parameters *p, fault *f)
+{
+    if (p->arm.links != 2) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.links),
+                            "the printed model has two links, but arm.links = %d", p->arm.links);
+    }
+    if (p->arm.hub_joint != HUB_SPRING) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.hub_joint),
+                            "the printed model has a hub spring, but arm.hub_joint = %s",
+                            p->arm.hub_joint == HUB_BEAM ? "beam" : "rigid");
+    }
+    if (p->method.name != METHOD_NEWMARK) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.name),
+                            "the printed model runs with method.name = newmark only");
+    }
+    if (p->wall.kind == WALL_PLANE) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.kind),
+                            "the printed model knows wall.kind = point or none, not plane");
+    }
+    return STATUS_OK;
+}
+
+status parameters_resolve(parameters *p, fault *f)
+{
+    assert(p != NULL);
+    resolve_defaults(p);
+    status code = resolve_arm(p, f);
+    code = code == STATUS_OK ? check_control(p, f) : code;
+    code = code == STATUS_OK ? resolve_piezo(p, f) : code;
+    return code == STATUS_OK && p->arm.model == ARM_PRINTED ? check_printed(p, f) : code;
+}
