@@ -1,5 +1,6 @@
 #include "src/arm/modes.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,15 +15,19 @@ static void fill_matrices(const arm *a, double *mass, double *stiffness)
 {
     const int n = a->dof, N = a->links;
     const double l = a->link_length, m = a->link_mass;
+
+    // straight, all cosines are 1: every link beyond the outer one counts whole, that one half
     for (int i = 0; i < N; i++) {
         for (int j = 0; j < N; j++) {
-            int outer = i > j ? i : j; // links beyond: N - 1 - outer, plus half of this one
+            int outer = i > j ? i : j;
             double coupling = m * l * l * (N - 1 - outer + 0.5);
             double own = m * l * l * (N - 1 - i + 0.25) + a->link_inertia;
             mass[(a->first + i) * n + a->first + j] = i == j ? own : coupling;
         }
     }
     mass[0] += a->hub_inertia;
+
+    // a spring between each body and the one before
     for (int k = 1; k < n; k++) {
         double s = k == a->first ? a->hub_stiffness : a->joint_stiffness;
         stiffness[(k - 1) * n + k - 1] += s;
@@ -76,7 +81,10 @@ static void reduce(const double *matrix, const double *basis, int n, int columns
 status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double *frequencies,
                      double *shapes)
 {
+    assert(a != NULL && a->dof > 0 && count != NULL && frequencies != NULL && shapes != NULL);
     const int n = a->dof, itype = 1, work_size = 8 * n + 64;
+
+    // one block for all matrices and vectors
     size_t square = (size_t)n * (size_t)n;
     double *block = calloc(5 * square + (size_t)(2 * n + work_size), sizeof *block);
     if (block == NULL) {
@@ -85,6 +93,8 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
     double *mass = block, *stiffness = mass + square, *basis = stiffness + square;
     double *k = basis + square, *m = k + square, *product = m + square;
     double *values = product + n, *work = values + n;
+
+    // K x = omega^2 M x on the angles that hub and tip allow
     fill_matrices(a, mass, stiffness);
     int columns = allowed_basis(a, hub, tip, basis), info = 0;
     reduce(stiffness, basis, n, columns, product, k);
@@ -94,10 +104,13 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
         dsygv_(&itype, "V", "U", &columns, k, &columns, m, &columns, values, work, &work_size,
                &info);
     }
+
+    // frequencies, and shapes scaled to a largest angle of one
     for (int i = 0; i < columns && info == 0; i++) {
         // a rigid mode's zero comes out as rounding of the stiffest mode's square
         double value = values[i] > 1e-13 * values[columns - 1] ? values[i] : 0;
         frequencies[i] = sqrt(value);
+
         double largest = 0;
         for (int j = 0; j < n; j++) {
             double angle = 0;

@@ -1,5 +1,6 @@
 #include "src/arm/printed_arm.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -8,6 +9,7 @@
 
 void printed_arm_init(printed_arm *a, const parameters *p)
 {
+    assert(a != NULL && p != NULL);
     memset(a, 0, sizeof *a);
     a->link_length = p->arm.length / 2;
     a->centre = a->link_length / 2;
@@ -23,18 +25,10 @@ void printed_arm_init(printed_arm *a, const parameters *p)
 
 double printed_sign(double velocity, bool listed)
 {
-    const double edge = 1e-5, listed_lower_edge = -1e-2;
-    double sign = 0;
-    if (listed && velocity >= listed_lower_edge && velocity <= edge) {
-        sign = 0;
-    }
-    if (velocity > edge) {
-        sign = 1;
-    }
-    if (velocity < -edge) {
-        sign = -1;
-    }
-    return sign;
+    const double edge = 1e-5;
+    // the listing's first test gives 0 from -1e-2 on, but its third one overrules it
+    (void)listed;
+    return velocity > edge ? 1 : velocity < -edge ? -1 : 0;
 }
 
 // Mass terms of (2.16) and (2.17) at a bend, with their parts that do and do not vary with it.
@@ -71,9 +65,13 @@ void printed_residual(const printed_arm *a, const double q[3], const double w[3]
     mass_terms t = mass_terms_at(a, q);
     double bend = q[2] - q[1], hub_bend = q[1] - q[0], both, last;
     force_levers(a, q, &both, &last);
+
+    // (2.15): the hub
     residual[0] = a->hub_inertia * alpha[0] - a->k1 * hub_bend + a->motor.damping * w[0] +
                   a->motor.stiction * printed_sign(w[0], a->switches.sign_dead_band) -
                   a->motor.torque;
+
+    // (2.16): both links, (2.17): the last one
     residual[1] = a->k1 * hub_bend + t.m22 * alpha[1] + t.m23 * alpha[2] -
                   t.coupling * t.s * (w[2] * w[2] - w[1] * w[1]) + force * both;
     if (a->switches.spring_counted_twice) {
@@ -81,6 +79,8 @@ void printed_residual(const printed_arm *a, const double q[3], const double w[3]
     }
     residual[2] = a->k2 * bend + t.m32 * alpha[1] + t.m33 * alpha[2] +
                   t.coupling * t.s * w[1] * w[1] + force * last;
+
+    // (3.9): the constraint
     residual[3] = printed_penetration(a, q);
 }
 
@@ -117,6 +117,7 @@ void printed_newmark_jacobian(const printed_arm *a, newmark_slopes slopes, const
     double bend2 = -ps * (alpha[1] + alpha[2]) - pc * (w[2] * w[2] - w[1] * w[1]) - counted_twice;
     double bend3 = -ps * alpha[1] + pc * w[1] * w[1] + a->k2;
 
+    // by the angles, with what they change in velocities and accelerations; then the force's part
     memset(jacobian, 0, 16 * sizeof(double));
     jacobian[0][0] = a->hub_inertia * da + a->k1 + a->motor.damping * dv;
     jacobian[0][1] = -a->k1;
@@ -153,6 +154,8 @@ bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[
 
     // without accelerations and force the residuals are what the linear system has to balance
     printed_residual(a, q, w, rest, 0, residual);
+
+    // two links and (3.13), d2g/dt2 = 0, whose product w2 w3 the listing puts on the wrong side
     double curvature = -wall_right_of(&a->wall, cos(q[2]), sin(q[2])) + l * t.s;
     double cross = 2 * l * t.s * w[1] * w[2];
     bool listed = a->switches.reevaluation == REEVALUATE_LISTING;
@@ -164,6 +167,7 @@ bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[
     if (!dense_solve(3, matrix, vector)) {
         return false;
     }
+
     alpha[0] = -residual[0] / a->hub_inertia;
     alpha[1] = vector[0];
     alpha[2] = vector[1];

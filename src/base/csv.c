@@ -39,10 +39,11 @@ static bool needs_quotes(const char *text)
 // One field: a name, and a unit in brackets unless that is NULL.
 static void write_field(csv_writer *w, const char *name, const char *unit)
 {
-    assert(w->stream != NULL && name != NULL);
+    assert(w != NULL && w->stream != NULL && name != NULL);
     const char *const parts[] = {name, unit != NULL ? "[" : "", unit != NULL ? unit : "",
                                  unit != NULL ? "]" : ""};
     bool quoted = needs_quotes(name) || (unit != NULL && needs_quotes(unit));
+
     begin_field(w);
     fputs(quoted ? "\"" : "", w->stream);
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
@@ -63,6 +64,7 @@ void csv_text(csv_writer *w, const char *text)
 
 void csv_number(csv_writer *w, double value)
 {
+    assert(w != NULL && w->stream != NULL);
     char text[NUMBER_TEXT];
     begin_field(w);
     if (!isnan(value)) {
@@ -73,6 +75,7 @@ void csv_number(csv_writer *w, double value)
 
 void csv_end_row(csv_writer *w)
 {
+    assert(w != NULL && w->stream != NULL);
     fputc('\n', w->stream);
     w->in_row = false;
 }

@@ -1,6 +1,8 @@
 #include "src/base/dense.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stddef.h>
 
 static void swap_rows(int n, double *matrix, double *vector, int i, int j)
 {
@@ -16,7 +18,11 @@ static void swap_rows(int n, double *matrix, double *vector, int i, int j)
 
 bool dense_solve(int n, double *matrix, double *vector)
 {
+    assert(n > 0 && matrix != NULL && vector != NULL);
+
+    // elimination
     for (int column = 0; column < n; column++) {
+        // the largest entry left in the column becomes the pivot
         int pivot = column;
         for (int row = column + 1; row < n; row++) {
             if (fabs(matrix[row * n + column]) > fabs(matrix[pivot * n + column])) {
@@ -30,6 +36,8 @@ bool dense_solve(int n, double *matrix, double *vector)
         if (pivot != column) {
             swap_rows(n, matrix, vector, pivot, column);
         }
+
+        // the column vanishes in the rows below
         for (int row = column + 1; row < n; row++) {
             double factor = matrix[row * n + column] / divisor;
             for (int k = column; k < n; k++) {
@@ -38,6 +46,8 @@ bool dense_solve(int n, double *matrix, double *vector)
             vector[row] -= factor * vector[column];
         }
     }
+
+    // back substitution
     for (int row = n - 1; row >= 0; row--) {
         for (int k = row + 1; k < n; k++) {
             vector[row] -= matrix[row * n + k] * vector[k];

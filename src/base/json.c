@@ -18,6 +18,7 @@ json_t *json_text(const char *text)
     assert(text != NULL);
     json_t *string = json_string(text);
     char *copy = string == NULL ? strdup(text) : NULL;
+
     // a file's name may be no UTF-8, which JSON cannot hold
     for (char *c = copy; c != NULL && *c != '\0'; c++) {
         *c = (unsigned char)*c < 0x80 ? *c : '?';
@@ -69,6 +70,7 @@ static void write_object(FILE *stream, const json_t *object, int depth)
         write_indented(stream, member, depth + 1);
         separator = ",";
     }
+
     if (separator[0] != '\0') {
         new_line(stream, depth);
     }

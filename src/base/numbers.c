@@ -14,6 +14,7 @@ static void write_digits(char *text, double value, int least)
         snprintf(text, NUMBER_TEXT, "%s", isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
         return;
     }
+
     for (int digits = least; digits <= 17; digits++) {
         snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
         if (digits == 17 || strtod(text, NULL) == value) {
@@ -25,6 +26,7 @@ static void write_digits(char *text, double value, int least)
 void number_format(char *text, double value)
 {
     assert(text != NULL);
+
     // the sign of a zero says nothing to a reader
     write_digits(text, value == 0 ? 0 : value, 15);
 }

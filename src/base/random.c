@@ -1,7 +1,10 @@
 #include "src/base/random.h"
 
+#include <assert.h>
+
 uint64_t splitmix64_next(uint64_t *state)
 {
+    assert(state != NULL);
     // a counter with an odd step near 2^64 divided by the golden ratio, then a mixing of its bits
     *state += UINT64_C(0x9e3779b97f4a7c15);
     uint64_t z = *state;
@@ -12,6 +15,7 @@ uint64_t splitmix64_next(uint64_t *state)
 
 void random_seed(random_generator *g, uint64_t seed)
 {
+    assert(g != NULL);
     for (int i = 0; i < 4; i++) {
         g->state[i] = splitmix64_next(&seed);
     }
@@ -26,6 +30,7 @@ uint64_t random_bits(random_generator *g)
 {
     uint64_t *s = g->state;
     uint64_t result = rotated_left(s[1] * 5, 7) * 9;
+
     // the linear step: x <- x M over the field of two elements
     uint64_t shifted = s[1] << 17;
     s[2] ^= s[0];
@@ -44,6 +49,8 @@ double random_uniform(random_generator *g)
 
 uint64_t random_below(random_generator *g, uint64_t bound)
 {
+    assert(g != NULL && bound > 0);
+
     // the first 2^64 mod bound numbers would make small remainders more likely
     uint64_t uneven = (UINT64_MAX - bound + 1) % bound, bits;
     do {
@@ -54,6 +61,9 @@ uint64_t random_below(random_generator *g, uint64_t bound)
 
 void random_permutation(random_generator *g, size_t *order, size_t count)
 {
+    assert(g != NULL && (order != NULL || count == 0));
+
+    // each number goes to a random place, and the one that stood there to the end
     for (size_t i = 0; i < count; i++) {
         size_t j = (size_t)random_below(g, i + 1);
         order[i] = i;

@@ -1,5 +1,6 @@
 #include "src/base/shared_array.h"
 
+#include <assert.h>
 #include <fcntl.h>
 #include <linux/falloc.h>
 #include <pthread.h>
@@ -27,13 +28,15 @@ static off_t place_of(uint32_t chunk)
     return (off_t)chunk * ARRAY_CHUNK;
 }
 
-// Takes a chunk that nobody uses, or a new one; the caller holds the lock.
-static bool pick_chunk(uint32_t *chunk)
+// Finds a chunk that nobody uses, or adds a new one to the file; the caller holds the lock.
+static bool unused_chunk(uint32_t *chunk)
 {
     if (pool.unused_count > 0) {
         *chunk = pool.unused[--pool.unused_count];
         return true;
     }
+
+    // tables for its number
     if (pool.file < 0) {
         pool.file = memfd_create("impactlab rows", MFD_CLOEXEC);
     }
@@ -48,6 +51,8 @@ static bool pick_chunk(uint32_t *chunk)
         }
         pool.capacity = capacity;
     }
+
+    // its place in the file
     off_t size = place_of((uint32_t)pool.count + 1);
     if (pool.file < 0 || pool.count >= UINT32_MAX - 1 || ftruncate(pool.file, size) != 0) {
         return false;
@@ -56,20 +61,22 @@ static bool pick_chunk(uint32_t *chunk)
     return true;
 }
 
-static bool take_chunk(uint32_t *chunk)
+// A chunk with memory behind it and one user; false if there is none to be had.
+static bool acquire_chunk(uint32_t *chunk)
 {
     pthread_mutex_lock(&pool.lock);
-    bool taken = pick_chunk(chunk);
+    bool got = unused_chunk(chunk);
+
     // memory is asked for here, where its want is an error and not a signal
-    if (taken && fallocate(pool.file, 0, place_of(*chunk), ARRAY_CHUNK) != 0) {
+    if (got && fallocate(pool.file, 0, place_of(*chunk), ARRAY_CHUNK) != 0) {
         pool.unused[pool.unused_count++] = *chunk;
-        taken = false;
+        got = false;
     }
-    if (taken) {
+    if (got) {
         pool.users[*chunk] = 1;
     }
     pthread_mutex_unlock(&pool.lock);
-    return taken;
+    return got;
 }
 
 static void share_chunk(uint32_t chunk)
@@ -79,7 +86,8 @@ static void share_chunk(uint32_t chunk)
     pthread_mutex_unlock(&pool.lock);
 }
 
-static void leave_chunk(uint32_t chunk)
+// Ends one use of a chunk. After the last its memory goes back and its number can be used again.
+static void release_chunk(uint32_t chunk)
 {
     pthread_mutex_lock(&pool.lock);
     if (--pool.users[chunk] == 0) {
@@ -98,44 +106,50 @@ size_t shared_array_memory(void)
     return used * ARRAY_CHUNK;
 }
 
-// Puts a chunk behind the end of a array, which has room for its number. On failure it is left.
-static bool map_chunk(shared_array *c, uint32_t chunk)
+// Puts a chunk's memory where the i-th chunk of an array stands.
+static bool map_chunk(const shared_array *a, size_t i, uint32_t chunk)
 {
-    char *at = (char *)c->base + c->chunk_count * ARRAY_CHUNK;
-    void *mapped = MAP_FAILED;
-    if ((c->chunk_count + 1) * ARRAY_CHUNK <= c->reserved) {
-        mapped = mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, pool.file,
-                      place_of(chunk));
-    }
-    if (mapped == MAP_FAILED) {
-        leave_chunk(chunk);
+    char *at = (char *)a->base + i * ARRAY_CHUNK;
+    return (i + 1) * ARRAY_CHUNK <= a->reserved &&
+           mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, pool.file,
+                place_of(chunk)) != MAP_FAILED;
+}
+
+// Puts a chunk behind the end of an array, which has room for its number. On failure it is
+// released.
+static bool append_chunk(shared_array *a, uint32_t chunk)
+{
+    if (!map_chunk(a, a->chunk_count, chunk)) {
+        release_chunk(chunk);
         return false;
     }
-    c->chunks[c->chunk_count++] = chunk;
-    c->capacity = c->chunk_count * ARRAY_CHUNK / c->size;
+    a->chunks[a->chunk_count++] = chunk;
+    a->capacity = a->chunk_count * ARRAY_CHUNK / a->size;
     return true;
 }
 
-static bool reserve_number(shared_array *c)
+// Makes room for the number of one more chunk.
+static bool reserve_number(shared_array *a)
 {
-    if (c->chunk_count < c->chunk_capacity) {
+    if (a->chunk_count < a->chunk_capacity) {
         return true;
     }
-    size_t capacity = c->chunk_capacity ? 2 * c->chunk_capacity : 16;
-    uint32_t *chunks = realloc(c->chunks, capacity * sizeof *chunks);
+    size_t capacity = a->chunk_capacity ? 2 * a->chunk_capacity : 16;
+    uint32_t *chunks = realloc(a->chunks, capacity * sizeof *chunks);
     if (chunks == NULL) {
         return false;
     }
-    c->chunks = chunks;
-    c->chunk_capacity = capacity;
+    a->chunks = chunks;
+    a->chunk_capacity = capacity;
     return true;
 }
 
 // --- arrays ----------------------------------------------------------------------------------
 
-void shared_array_init(shared_array *c, size_t size)
+void shared_array_init(shared_array *a, size_t size)
 {
-    *c = (shared_array){.size = size};
+    assert(a != NULL && size > 0);
+    *a = (shared_array){.size = size};
 }
 
 static size_t whole_chunks(size_t elements, size_t size)
@@ -143,76 +157,82 @@ static size_t whole_chunks(size_t elements, size_t size)
     return (elements * size / ARRAY_CHUNK + 1) * ARRAY_CHUNK;
 }
 
-bool shared_array_reserve(shared_array *c, size_t size, size_t least, size_t most)
+bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t most)
 {
-    shared_array_init(c, size);
+    assert(least > 0 && least <= most);
+    shared_array_init(a, size);
     for (; most >= least; most /= 2) {
         size_t reserved = whole_chunks(most, size);
         void *base =
             mmap(NULL, reserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (base != MAP_FAILED) {
-            c->base = base;
-            c->reserved = reserved;
+            a->base = base;
+            a->reserved = reserved;
             return true;
         }
     }
     return false;
 }
 
-static bool grow_plain(shared_array *c, size_t count)
+static bool grow_plain(shared_array *a, size_t count)
 {
-    size_t capacity = c->capacity ? 2 * c->capacity : LEAST_ELEMENTS;
+    size_t capacity = a->capacity ? 2 * a->capacity : LEAST_ELEMENTS;
     capacity = capacity < count ? count : capacity;
-    void *base = realloc(c->base, capacity * c->size + 1);
+    void *base = realloc(a->base, capacity * a->size + 1);
     if (base == NULL) {
         return false;
     }
-    c->base = base;
-    c->capacity = capacity;
+    a->base = base;
+    a->capacity = capacity;
     return true;
 }
 
-bool shared_array_grow(shared_array *c, size_t count)
+bool shared_array_grow(shared_array *a, size_t count)
 {
-    if (c->reserved == 0) {
-        return count <= c->capacity || grow_plain(c, count);
+    assert(a != NULL && a->size > 0);
+    if (a->reserved == 0) {
+        return count <= a->capacity || grow_plain(a, count);
     }
-    while (count > c->capacity) {
+    while (count > a->capacity) {
         uint32_t chunk;
-        if (!reserve_number(c) || !take_chunk(&chunk) || !map_chunk(c, chunk)) {
+        if (!reserve_number(a) || !acquire_chunk(&chunk) || !append_chunk(a, chunk)) {
             return false;
         }
     }
     return true;
 }
 
-bool shared_array_share(shared_array *c, const shared_array *from, size_t count)
+bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 {
-    size_t bytes = count * c->size, shared = bytes / ARRAY_CHUNK;
-    if (from->reserved == 0) {
-        shared = 0;
-    }
+    assert(a != NULL && from != NULL && a->size == from->size && a->chunk_count == 0);
+    assert(a->reserved > 0 && count <= from->capacity);
+    size_t bytes = count * a->size, shared = from->reserved > 0 ? bytes / ARRAY_CHUNK : 0;
+
+    // chunks that are full will not change any more
     for (size_t i = 0; i < shared; i++) {
-        if (!reserve_number(c)) {
+        if (!reserve_number(a)) {
             return false;
         }
         share_chunk(from->chunks[i]);
-        if (!map_chunk(c, from->chunks[i])) {
+        if (!append_chunk(a, from->chunks[i])) {
             return false;
         }
     }
+
+    // the elements behind them
     size_t done = shared * ARRAY_CHUNK;
-    if (!shared_array_grow(c, count)) {
+    if (!shared_array_grow(a, count)) {
         return false;
     }
     if (bytes > done) {
-        memcpy((char *)c->base + done, (const char *)from->base + done, bytes - done);
+        memcpy((char *)a->base + done, (const char *)from->base + done, bytes - done);
     }
     return true;
 }
 
 size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, size_t count)
 {
+    assert(a != NULL && b != NULL);
     size_t most = a->size == b->size && b->reserved > 0 ? count * a->size / ARRAY_CHUNK : 0;
     size_t same = 0;
     while (same < most && same < a->chunk_count && same < b->chunk_count) {
@@ -228,34 +248,34 @@ size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, si
     return same;
 }
 
-void shared_array_merge(shared_array *c, const shared_array *with, size_t chunks)
+void shared_array_merge(shared_array *a, const shared_array *with, size_t chunks)
 {
+    assert(a != NULL && with != NULL && chunks <= a->chunk_count && chunks <= with->chunk_count);
     for (size_t i = 0; i < chunks; i++) {
-        uint32_t old = c->chunks[i], shared = with->chunks[i];
-        char *at = (char *)c->base + i * ARRAY_CHUNK;
+        uint32_t old = a->chunks[i], shared = with->chunks[i];
         if (old == shared) {
             continue;
         }
-        if (mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, pool.file,
-                 place_of(shared)) == MAP_FAILED) {
-            return; // then it goes on with its own
+        if (!map_chunk(a, i, shared)) {
+            return; // it goes on with its own
         }
         share_chunk(shared);
-        c->chunks[i] = shared;
-        leave_chunk(old);
+        a->chunks[i] = shared;
+        release_chunk(old);
     }
 }
 
-void shared_array_finish(shared_array *c)
+void shared_array_finish(shared_array *a)
 {
-    if (c->reserved > 0) {
-        munmap(c->base, c->reserved);
-        for (size_t i = 0; i < c->chunk_count; i++) {
-            leave_chunk(c->chunks[i]);
+    assert(a != NULL);
+    if (a->reserved > 0) {
+        munmap(a->base, a->reserved);
+        for (size_t i = 0; i < a->chunk_count; i++) {
+            release_chunk(a->chunks[i]);
         }
     } else {
-        free(c->base);
+        free(a->base);
     }
-    free(c->chunks);
-    *c = (shared_array){0};
+    free(a->chunks);
+    *a = (shared_array){0};
 }

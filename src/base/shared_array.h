@@ -23,28 +23,28 @@ typedef struct shared_array {
 } shared_array;
 
 // An empty plain array of elements of `size` bytes.
-void shared_array_init(shared_array *c, size_t size);
+void shared_array_init(shared_array *a, size_t size);
 
 // An empty shared array for `least` elements, and up to `most` if there is that much address
 // space. False if it cannot be had; then there is nothing to be freed.
-bool shared_array_reserve(shared_array *c, size_t size, size_t least, size_t most);
+bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t most);
 
 // Makes room for `count` elements; false without memory, then the array is as before.
-bool shared_array_grow(shared_array *c, size_t count);
+bool shared_array_grow(shared_array *a, size_t count);
 
 // Lets a shared array, still empty, begin with the first `count` elements of another: all chunks
 // that these fill are shared, the rest is copied. False without memory.
-bool shared_array_share(shared_array *c, const shared_array *from, size_t count);
+bool shared_array_share(shared_array *a, const shared_array *from, size_t count);
 
 // How many chunks two shared arrays begin with have the same bytes, of those that their first
 // `count` elements fill.
 size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, size_t count);
 
-// Lets an array have that many of another one's chunks instead of its own, which have the same
+// Lets an array share that many of another one's chunks instead of its own, which have the same
 // bytes. Nobody else may be reading it.
-void shared_array_merge(shared_array *c, const shared_array *with, size_t chunks);
+void shared_array_merge(shared_array *a, const shared_array *with, size_t chunks);
 
-void shared_array_finish(shared_array *c); // one of zeroes is allowed
+void shared_array_finish(shared_array *a); // one of zeroes is allowed
 
 // Memory behind all shared arrays of the program, chunks that several have counted once [bytes].
 size_t shared_array_memory(void);

@@ -1,11 +1,12 @@
 #include "src/base/whole_file.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <stdbool.h>
 #include <limits.h>
 #include <poll.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -102,6 +103,8 @@ static int obstacle(const char *path, bool *in_place, mode_t *mode)
     if (path[0] == '\0') {
         return ENOENT;
     }
+
+    // what stands there already
     if (stat(path, &about) == 0) {
         if (S_ISDIR(about.st_mode)) {
             return EISDIR;
@@ -117,6 +120,8 @@ static int obstacle(const char *path, bool *in_place, mode_t *mode)
     } else if (errno != ENOENT) {
         return errno;
     }
+
+    // what stands beside it, as a temporary will
     char *folder = folder_of(path);
     if (folder == NULL) {
         return ENOMEM;
@@ -131,6 +136,7 @@ static int obstacle(const char *path, bool *in_place, mode_t *mode)
 
 status whole_file_check(const char *path, fault *f)
 {
+    assert(path != NULL);
     bool in_place;
     mode_t mode;
     int reason = strcmp(path, "-") == 0 ? 0 : obstacle(path, &in_place, &mode);
@@ -148,6 +154,8 @@ static int create_temporary(whole_file *w, mode_t mode)
             errno = ENOMEM;
             return -1;
         }
+
+        // creating it tells whether the name is free
         int descriptor = open(w->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) {
             remember_unfinished(w->temporary);
@@ -157,6 +165,7 @@ static int create_temporary(whole_file *w, mode_t mode)
             }
             return descriptor;
         }
+
         free(w->temporary);
         w->temporary = NULL;
         if (errno != EEXIST) {
@@ -175,10 +184,12 @@ static int open_target(whole_file *w)
     if (reason != 0) {
         return reason;
     }
+
     int descriptor = in_place ? open(w->path, O_WRONLY | O_CLOEXEC) : create_temporary(w, mode);
     if (descriptor < 0) {
         return errno;
     }
+
     w->stream = fdopen(descriptor, "w");
     if (w->stream == NULL) {
         reason = errno;
@@ -194,12 +205,14 @@ static int open_target(whole_file *w)
 
 status whole_file_open(whole_file *w, const char *path, fault *f)
 {
+    assert(w != NULL && path != NULL);
     memset(w, 0, sizeof *w);
     if (strcmp(path, "-") == 0) {
         w->stream = stdout;
         w->path = strdup(path);
         return w->path ? STATUS_OK : cannot_write(f, path, ENOMEM);
     }
+
     w->path = target_of(path);
     int reason = w->path ? open_target(w) : ENOMEM;
     if (reason != 0) {
@@ -213,6 +226,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
 
 int stream_failure(FILE *stream)
 {
+    assert(stream != NULL);
     errno = 0;
     if (fflush(stream) == 0 && !ferror(stream)) {
         return 0;
@@ -241,6 +255,7 @@ static int flush_to_disk(whole_file *w)
 
 status whole_file_commit(whole_file *w, fault *f)
 {
+    assert(w != NULL && w->stream != NULL && w->path != NULL);
     int reason = flush_to_disk(w);
     bool standard_output = w->stream == stdout;
     if (standard_output) {
@@ -248,6 +263,8 @@ status whole_file_commit(whole_file *w, fault *f)
     } else if (fclose(w->stream) != 0 && reason == 0) {
         reason = errno;
     }
+
+    // the new file takes the place of the old one, or goes
     if (w->temporary != NULL) {
         if (reason == 0 && rename(w->temporary, w->path) != 0) {
             reason = errno;
@@ -256,6 +273,7 @@ status whole_file_commit(whole_file *w, fault *f)
             unlink(w->temporary);
         }
     }
+
     status result = reason == 0 ? STATUS_OK : cannot_write(f, w->path, reason);
     forget_unfinished(w->temporary);
     free(w->path);
@@ -266,6 +284,7 @@ status whole_file_commit(whole_file *w, fault *f)
 
 void whole_file_abandon(whole_file *w)
 {
+    assert(w != NULL);
     if (w->stream != NULL && w->stream != stdout) {
         fclose(w->stream);
     }

@@ -76,12 +76,15 @@ void nearest_try(nearest_word *n, const char *candidate)
 
 void make_printable(char *text)
 {
+    assert(text != NULL);
     for (unsigned char *c = (unsigned char *)text; *c != '\0';) {
+        // bytes of the character that begins here, 0 if none can, and how many of them follow
         int length = *c < 0x80 ? 1 : *c >= 0xf0 ? 4 : *c >= 0xe0 ? 3 : *c >= 0xc2 ? 2 : 0;
         int have = length > 0;
         while (have > 0 && have < length && (c[have] & 0xc0) == 0x80) {
             have++;
         }
+
         bool control = *c < 0x20 || *c == 0x7f || (*c == 0xc2 && c[1] < 0xa0);
         if (have < length || length == 0 || control) {
             *c = '?';
