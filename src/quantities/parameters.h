@@ -214,8 +214,8 @@ int parameter_index(const char *path);
 // The path that a parameter has which was once called by this one, or NULL.
 const char *parameter_renamed(const char *path);
 
-// Index of a path as people write it; -1, with a sentence in f that names the nearest, if there is no
-// such parameter.
+// Index of a path as people write it; -1, with a sentence in f that names the nearest, if there is
+// no such parameter.
 int parameter_look_up(const char *path, fault *f);
 
 // The path that replaced this one, or the nearest to a misspelt one (for "did you mean"); NULL if

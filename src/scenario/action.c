@@ -1,10 +1,20 @@
-// What the actions of a script set, and to what.
+// The actions of a script: their order, and what they set.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "src/scenario/scenario.h"
 #include "src/rig/rig.h"
+
+void scenario_insert_action(scenario *s, action a)
+{
+    assert(s != NULL && s->actions != NULL);
+    int i = s->action_count++;
+    for (; i > 0 && s->actions[i - 1].time > a.time; i--) {
+        s->actions[i] = s->actions[i - 1];
+    }
+    s->actions[i] = a;
+}
 
 status action_apply(const action *a, parameters *p, fault *f)
 {
@@ -24,7 +34,9 @@ status action_apply(const action *a, parameters *p, fault *f)
 
 void action_format_value(const action *a, char *text, size_t size)
 {
-    // a value that was checked before formats as a scenario file gives it
+    assert(a != NULL && a->kind == ACTION_SET && text != NULL && size > 0);
+
+    // by way of a parameter, so that it reads as in a scenario file
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     action_apply(a, &p, NULL);
@@ -39,6 +51,7 @@ bool expectation_is_met(const expectation *e, double value)
 
 parameters scenario_parameters_at(const scenario *s, double time)
 {
+    assert(s != NULL && !isnan(time));
     parameters p = s->parameters;
     for (int i = 0; i < s->action_count && s->actions[i].time <= time; i++) {
         action_apply(&s->actions[i], &p, NULL);
@@ -48,11 +61,14 @@ parameters scenario_parameters_at(const scenario *s, double time)
 
 status scenario_check_locks(const scenario *s, const controller *law, fault *f)
 {
+    assert(s != NULL);
     const int lock = PARAMETER_INDEX(control.lock);
     int mode;
     if (law == NULL) {
         return STATUS_OK;
     }
+
+    // the lock from the start, then those of the script
     status code = rig_find_mode(law, s->parameters.control.lock, &mode, f);
     for (int i = 0; i < s->action_count && code == STATUS_OK; i++) {
         const action *a = &s->actions[i];

@@ -62,6 +62,7 @@ static status report_file(const char *path, const char *what, fault_handler repo
 status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
                      void *context)
 {
+    assert(s != NULL && path != NULL && report != NULL);
     char what[256];
     if (is_folder(path)) {
         return report_file(path, "it is a folder", report, context);
@@ -124,11 +125,12 @@ static bool walk(name_list *list, const char *folder, const char *prefix, int de
 static bool add_entry(name_list *list, const char *folder, const char *prefix, const char *entry,
                       int depth)
 {
-    char *path = text_of("%s/%s", folder, entry);
-    char *name = text_of("%s%s", prefix, entry);
+    char *path = text_of("%s/%s", folder, entry), *name = text_of("%s%s", prefix, entry);
     bool good = path != NULL && name != NULL;
     size_t length = good ? strlen(name) : 0;
-    size_t tail = sizeof suffix - 1;
+    const size_t tail = sizeof suffix - 1;
+
+    // a folder's scenarios have its name before theirs; other files than .yaml are none
     if (good && is_folder(path)) {
         char *below = text_of("%s/", name);
         good = below != NULL && (depth >= MAX_FOLDER_DEPTH || walk(list, path, below, depth + 1));
@@ -136,6 +138,7 @@ static bool add_entry(name_list *list, const char *folder, const char *prefix, c
     } else if (good && strlen(entry) > tail && strcmp(name + length - tail, suffix) == 0) {
         good = add_name(list, name, length - tail);
     }
+
     free(path);
     free(name);
     return good;
@@ -175,6 +178,7 @@ static void free_names(char **names, int count)
 
 status scenario_list(char ***names, int *count, fault *f)
 {
+    assert(names != NULL && count != NULL);
     name_list list = {0};
     const char *folder = scenario_folder();
     *names = NULL;
@@ -189,6 +193,7 @@ status scenario_list(char ***names, int *count, fault *f)
         free_names(list.names, list.count);
         return fault_set(f, STATUS_NO_MEMORY, "out of memory");
     }
+
     if (list.count > 0) {
         qsort(list.names, (size_t)list.count, sizeof *list.names, compare_names);
     }
@@ -207,11 +212,13 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     bool has_suffix = length > tail && strcmp(wanted + length - tail, suffix) == 0;
     char *stem = strndup(wanted, has_suffix ? length - tail : length);
 
+    // the nearest of those that ship; without a folder there is none
     nearest_word near = nearest_begin(stem != NULL ? stem : wanted);
     scenario_list(&names, &count, NULL);
     for (int i = 0; i < count; i++) {
         nearest_try(&near, names[i]);
     }
+
     char *sentence = near.best != NULL
                          ? text_of("'%s' is neither a scenario nor a file, did you mean '%s'?",
                                    wanted, near.best)
@@ -220,6 +227,7 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
                                    wanted);
     free_names(names, count);
     free(stem);
+
     if (sentence == NULL) {
         return STATUS_NO_MEMORY;
     }
@@ -248,7 +256,9 @@ static bool find_name(const char *wanted, char **path)
 
 status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context)
 {
-    assert(s != NULL && name_or_file != NULL);
+    assert(s != NULL && name_or_file != NULL && report != NULL);
+
+    // a scenario of the folder
     char *path;
     if (find_name(name_or_file, &path)) {
         status result = scenario_read(s, path, name_or_file, report, context);
@@ -256,7 +266,7 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
         return result;
     }
 
-    // a file, with or without its ending
+    // a file, with its ending or without
     if (is_file(name_or_file)) {
         return scenario_read(s, name_or_file, NULL, report, context);
     }

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "src/base/words.h"
-#include "src/rig/rig.h"
 
 enum { LONGEST_TITLE = 200 }; // bytes
 
@@ -35,6 +34,7 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
         }
     }
 
+    // a title fits on a line
     if (!many_lines && length > LONGEST_TITLE) {
         report_node(r, node, "%s has %zu bytes, expected at most %d", what, length, LONGEST_TITLE);
         return NULL;
@@ -44,6 +44,7 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
     return copy;
 }
 
+// Reports a key that a file does not have at its top, with the nearest one that it may have.
 static void report_unknown_top(reader *r, const tree_node *key)
 {
     static const char *const others[] = {"title", "description", "script", "expect"};
@@ -68,7 +69,7 @@ static void report_unknown_top(reader *r, const tree_node *key)
             size_t used = strlen(groups);
             snprintf(groups + used, sizeof groups - used, ", %s", group);
         }
-        // the group's name is compared where it lasts: as the beginning of its path
+        // compared as a word of its own, kept as the beginning of its path, which lasts
         if (edit_distance(key->text, group, near.distance) < near.distance) {
             near.distance = edit_distance(key->text, group, near.distance);
             near.best = path;
@@ -77,6 +78,8 @@ static void report_unknown_top(reader *r, const tree_node *key)
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         nearest_try(&near, others[i]);
     }
+
+    // the nearest word, or all there are
     if (near.best != NULL) {
         report_node(r, key, "unknown key '%.60s', did you mean '%.*s'?", key->text,
                     (int)strcspn(near.best, "."), near.best);
@@ -86,18 +89,6 @@ static void report_unknown_top(reader *r, const tree_node *key)
                 key->text, groups);
 }
 
-// Reports a lock from the start on a mode that the law does not have.
-static void check_lock(reader *r)
-{
-    fault f;
-    const place *at = &r->given[PARAMETER_INDEX(control.lock)];
-    const controller *law = controller_of(r->s->parameters.control.law);
-    scenario unscripted = {.parameters = r->s->parameters};
-    if (at->line > 0 && scenario_check_locks(&unscripted, law, &f) != STATUS_OK) {
-        reader_report_at(r, at->line, at->column, "%s", f.text);
-    }
-}
-
 // Reads everything; script and expect come after the parameters that they depend on.
 static void parse_root(reader *r, const tree_node *root)
 {
@@ -105,6 +96,8 @@ static void parse_root(reader *r, const tree_node *root)
     if (!reader_expect_map(r, root, "the file", "title: ...")) {
         return;
     }
+
+    // each key once; script and expectations are kept for later
     for (const tree_node *child = root->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, root, child);
         if (key == NULL) {
@@ -128,7 +121,10 @@ static void parse_root(reader *r, const tree_node *root)
     // what depends on all parameters
     r->duration_known = r->given[PARAMETER_INDEX(run.duration)].line > 0 || r->faults == 0;
     reader_resolve(r);
-    check_lock(r);
+    const place lock = r->given[PARAMETER_INDEX(control.lock)];
+    if (lock.line > 0) {
+        reader_check_lock(r, &r->s->parameters, lock);
+    }
     if (script != NULL) {
         reader_script(r, script);
     }

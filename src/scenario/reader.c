@@ -1,15 +1,18 @@
 // Faults of a scenario file with their places, and what its nodes hold.
 #include "src/scenario/reader.h"
-#include "src/base/numbers.h"
-#include "src/base/words.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/numbers.h"
+#include "src/base/words.h"
+
 void reader_report_at(reader *r, int line, int column, const char *format, ...)
 {
+    assert(line > 0 && column > 0);
     char what[1280];
     found_fault found = {{line, column}, r->faults, NULL};
     va_list args;
@@ -51,6 +54,8 @@ void reader_report_all(reader *r, fault_handler report, void *context)
     }
     free(r->found);
     r->found = NULL;
+
+    // what could not be recorded is not lost without a word
     if (r->no_memory) {
         report(context, status_text(STATUS_NO_MEMORY));
     }
@@ -93,6 +98,8 @@ const char *reader_key(reader *r, const tree_node *map, const tree_node *child)
         report_node(r, key, "the key is %s, expected a word", node_kind_name(key));
         return NULL;
     }
+
+    // YAML allows a key twice, and would keep the last
     for (const tree_node *other = map->first; other != child; other = other->next) {
         if (node_is_scalar(other->key) && strcmp(other->key->text, key->text) == 0) {
             report_node(r, key, "'%.60s' is there twice, expected it once (first at line %d)",
@@ -115,8 +122,9 @@ bool reader_expect_map(reader *r, const tree_node *node, const char *what, const
 bool reader_quantity(reader *r, const tree_node *node, const char *what, const char *unit,
                      double *value)
 {
-    const char *rest;
-    const char *space = unit[0] != '\0' ? " in " : "";
+    const char *rest, *space = unit[0] != '\0' ? " in " : "";
+
+    // a number
     if (!node_is_scalar(node) || node_is_empty(node)) {
         report_node(r, node, "%s is %s, expected a number%s%s", what, node_kind_name(node), space,
                     unit);
@@ -127,6 +135,8 @@ bool reader_quantity(reader *r, const tree_node *node, const char *what, const c
                     node->text, space, unit);
         return false;
     }
+
+    // with its unit or without, and finite
     if (*rest != '\0' && strcmp(rest, unit) != 0) {
         report_node(r, node, "%s = '%.60s' carries '%.20s', expected %s", what, node->text, rest,
                     unit[0] != '\0' ? unit : "a number without a unit");

@@ -5,21 +5,21 @@
 #include "src/scenario/yaml_tree.h"
 
 typedef struct place {
-    int line, column; // 0 where the file does not mention it
+    int line, column; // from 1; 0 where the file does not mention it
 } place;
 
 // A fault found, with its place in the file and among the others.
 typedef struct found_fault {
     place at;
-    int number;
-    char *sentence;
+    int number;     // in the order found
+    char *sentence; // with path and place
 } found_fault;
 
 // What the functions below share while one file is read.
 typedef struct reader {
     const char *path;
-    found_fault *found; // faults of them
-    int faults;
+    found_fault *found;
+    int faults; // how many were found
     bool no_memory;
     scenario *s;
     place given[sizeof(((parameters *)0)->set)]; // where each parameter's value stands
@@ -28,16 +28,16 @@ typedef struct reader {
 
 // --- faults and nodes: reader.c
 
-// malloc'ed memory is there, or the reader knows that it is not.
+// Whether an allocation succeeded; the reader remembers one that did not.
 bool reader_have_memory(reader *r, const void *memory);
 
-// Takes note of a fault at a place of the file; printf-like.
+// Records a fault at a place of the file; printf-like.
 void reader_report_at(reader *r, int line, int column, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 // The same at a node or its key.
 #define report_node(r, node, ...) reader_report_at(r, (node)->line, (node)->column, __VA_ARGS__)
 
-// Passes all faults on as somebody who goes through the file meets them, and forgets them.
+// Reports all faults in the order of their places, and frees them.
 void reader_report_all(reader *r, fault_handler report, void *context);
 
 // Whether a node is a single value; nothing at all; the word for nothing (null, ~).
@@ -74,6 +74,9 @@ void reader_group(reader *r, const tree_node *map, const char *group);
 // Resolves the parameters. To report every fault, the one to blame (fault.path) is put back to its
 // default and the rest is resolved again.
 void reader_resolve(reader *r);
+
+// Reports, at a place, that control.lock names a mode which the law does not have.
+void reader_check_lock(reader *r, const parameters *p, place at);
 
 // Parses the script's actions; the parameters must have been resolved.
 void reader_script(reader *r, const tree_node *list);

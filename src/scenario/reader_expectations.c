@@ -30,12 +30,14 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
 {
     const char *quantity = summary_table[e->quantity].key;
     const tree_node *value = NULL, *tolerance = NULL;
-    int faults = r->faults;
+    const int faults = r->faults;
     if (map->kind != TREE_MAP) {
         report_node(r, map, "%s is %s, expected {value: ..., tolerance: ...} or null", quantity,
                     node_kind_name(map));
         return false;
     }
+
+    // which of the two keys are there
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, map, child);
         if (key == NULL) {
@@ -54,6 +56,8 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
         report_node(r, map, "%s has no %s, expected {value: ..., tolerance: ...}", quantity,
                     value == NULL ? "value" : "tolerance");
     }
+
+    // their numbers
     if (value != NULL) {
         reader_quantity(r, value, "value", "", &e->value);
     }
@@ -71,6 +75,8 @@ void reader_expectations(reader *r, const tree_node *map)
     if (!reader_expect_map(r, map, "expect", "impacts: {value: 3, tolerance: 0}")) {
         return;
     }
+
+    // room for as many as there are keys
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         most++;
     }
@@ -78,6 +84,8 @@ void reader_expectations(reader *r, const tree_node *map)
     if (!reader_have_memory(r, s->expectations)) {
         return;
     }
+
+    // null, or a value and how far it may be off
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, map, child);
         int quantity = key != NULL ? parse_quantity(r, child->key) : -1;

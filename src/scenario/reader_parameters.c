@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/base/words.h"
+#include "src/rig/rig.h"
 
 bool parameter_in_group(const char *path, const char *group)
 {
@@ -21,9 +22,10 @@ bool reader_is_group(const char *word)
     return false;
 }
 
+// Reports a key that its group does not have: under another name, near to one, or in another group.
 static void report_unknown_parameter(reader *r, const tree_node *key, const char *group)
 {
-    // one that has another name now
+    // renamed
     char whole[128];
     snprintf(whole, sizeof whole, "%.40s.%.80s", group, key->text);
     const char *now = parameter_renamed(whole);
@@ -32,6 +34,7 @@ static void report_unknown_parameter(reader *r, const tree_node *key, const char
         return;
     }
 
+    // misspelt
     nearest_word near = nearest_begin(key->text);
     char known[640] = "";
     for (int i = 0; i < parameter_count; i++) {
@@ -48,7 +51,8 @@ static void report_unknown_parameter(reader *r, const tree_node *key, const char
                     near.best);
         return;
     }
-    // a parameter of another group under its own name
+
+    // in another group
     const char *elsewhere = parameter_suggest(key->text);
     const char *tail = elsewhere != NULL ? strchr(elsewhere, '.') + 1 : NULL;
     if (tail != NULL && strcmp(tail, key->text) == 0) {
@@ -71,6 +75,8 @@ const char *reader_value_text(reader *r, const tree_node *node, const char *path
 void reader_group(reader *r, const tree_node *map, const char *group)
 {
     fault f;
+
+    // a group that is no map is shown the first of its parameters
     int first = 0;
     while (!parameter_in_group(parameter_table[first].path, group)) {
         first++;
@@ -80,11 +86,14 @@ void reader_group(reader *r, const tree_node *map, const char *group)
     if (!reader_expect_map(r, map, group, example)) {
         return;
     }
+
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, map, child);
         if (key == NULL) {
             continue;
         }
+
+        // the parameter's whole path
         char path[128];
         snprintf(path, sizeof path, "%s.%s", group, key);
         int index = parameter_find(path);
@@ -92,12 +101,12 @@ void reader_group(reader *r, const tree_node *map, const char *group)
             report_unknown_parameter(r, child->key, group);
             continue;
         }
+
+        // its value, and where it stands
         const char *text = reader_value_text(r, child, path);
         if (text != NULL && parameter_set_text(&r->s->parameters, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
-            text = NULL;
-        }
-        if (text != NULL) {
+        } else if (text != NULL) {
             r->given[index] = (place){child->line, child->column};
         }
     }
@@ -122,4 +131,13 @@ void reader_resolve(reader *r)
         trial.set[blamed] = 0;
     }
     r->s->parameters = trial;
+}
+
+void reader_check_lock(reader *r, const parameters *p, place at)
+{
+    fault f;
+    const scenario locked = {.parameters = *p};
+    if (scenario_check_locks(&locked, controller_of(p->control.law), &f) != STATUS_OK) {
+        reader_report_at(r, at.line, at.column, "%s", f.text);
+    }
 }

@@ -4,50 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/rig.h"
 #include "src/base/words.h"
 
-// Puts the action behind all that are not later; false without memory.
-static bool add_action(reader *r, action a)
+static void add_action(reader *r, action a)
 {
     scenario *s = r->s;
     action *grown = realloc(s->actions, (size_t)(s->action_count + 1) * sizeof *grown);
     if (!reader_have_memory(r, grown)) {
-        return false;
+        return;
     }
     s->actions = grown;
-
-    int i = s->action_count++;
-    for (; i > 0 && grown[i - 1].time > a.time; i--) {
-        grown[i] = grown[i - 1];
-    }
-    grown[i] = a;
-    return true;
-}
-
-// Reports a lock on a mode that the law does not have. The one at the top of the file is reported
-// on its own.
-static void check_lock(reader *r, const tree_node *node, const action *a)
-{
-    fault f;
-    scenario locked = {.parameters = r->s->parameters};
-    action_apply(a, &locked.parameters, NULL);
-    if (a->parameter == PARAMETER_INDEX(control.lock) &&
-        scenario_check_locks(&locked, controller_of(locked.parameters.control.law), &f) !=
-            STATUS_OK) {
-        report_node(r, node, "%s", f.text);
-    }
+    scenario_insert_action(s, a);
 }
 
 // Index of the parameter that a key of `set` names; -1 after a fault.
 static int find_timed_parameter(reader *r, const tree_node *key)
 {
-    int index = parameter_find(key->text);
+    fault f;
+    int index = parameter_look_up(key->text, &f);
     if (index < 0) {
-        const char *near = parameter_suggest(key->text);
-        report_node(r, key, "unknown parameter '%.60s'%s%s%s", key->text,
-                    near ? ", did you mean '" : ", expected one that 'show' lists",
-                    near ? near : "", near ? "'?" : "");
+        report_node(r, key, "%s", f.text);
     } else if (!parameter_table[index].timed) {
         report_node(r, key, "%s cannot change during a run, expected it at the top of the file",
                     key->text);
@@ -83,12 +59,15 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
             if (parameter_table[index].type == PARAMETER_TEXT) {
                 parameter_format(&scratch, index, a.text, sizeof a.text);
             }
-            check_lock(r, child, &a);
+            if (index == PARAMETER_INDEX(control.lock)) {
+                reader_check_lock(r, &scratch, (place){child->line, child->column});
+            }
             add_action(r, a);
         }
     }
 }
 
+// Parses `push`; without a time it is only checked.
 static void parse_push(reader *r, const tree_node *node, bool timed, double time)
 {
     double impulse;
@@ -106,7 +85,7 @@ static void parse_push(reader *r, const tree_node *node, bool timed, double time
 // Parses the instant of an action and checks it against the run's duration.
 static bool parse_time(reader *r, const tree_node *node, double *time)
 {
-    double duration = r->s->parameters.run.duration;
+    const double duration = r->s->parameters.run.duration;
     if (!reader_quantity(r, node, "at", "s", time)) {
         return false;
     }
@@ -127,6 +106,8 @@ static void find_action_parts(reader *r, const tree_node *map, const tree_node *
         if (key == NULL) {
             continue;
         }
+
+        // one time, and one of set and push
         if (strcmp(key, "at") == 0) {
             *at = child;
         } else if (strcmp(key, "set") != 0 && strcmp(key, "push") != 0) {

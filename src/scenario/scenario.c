@@ -9,6 +9,7 @@
 
 void scenario_finish(scenario *s)
 {
+    assert(s != NULL);
     free(s->name);
     free(s->file);
     free(s->title);
@@ -29,14 +30,9 @@ static status assign(parameters *p, const char *assignment, fault *f)
     }
 
     snprintf(path, sizeof path, "%.*s", (int)length, assignment);
-    int index = parameter_find(path);
-    if (index < 0) {
-        const char *near = parameter_suggest(path);
-        return fault_set(f, STATUS_BAD_ARGUMENT, "unknown parameter '%.60s'%s%s%s", path,
-                         near ? ", did you mean '" : ", expected one that 'show' lists",
-                         near ? near : "", near ? "'?" : "");
-    }
-    return parameter_set_text(p, index, assignment + length + 1, f);
+    int index = parameter_look_up(path, f);
+    return index < 0 ? STATUS_BAD_ARGUMENT
+                     : parameter_set_text(p, index, assignment + length + 1, f);
 }
 
 // Resolves parameters that were changed, and checks that the scenario's script goes with them.
@@ -48,6 +44,8 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
         changed.parameters = *p;
         result = scenario_check_locks(&changed, controller_of(p->control.law), f);
     }
+
+    // a push acts on the corrected arm only
     for (int i = 0; i < s->action_count && result == STATUS_OK; i++) {
         if (s->actions[i].kind == ACTION_PUSH && p->arm.model == ARM_PRINTED) {
             result = fault_set(f, STATUS_BAD_SCENARIO,
@@ -67,6 +65,8 @@ status scenario_override(scenario *s, const char *assignment, fault *f)
     if (result == STATUS_OK) {
         result = resolve_changed(s, &p, &inner);
     }
+
+    // all or nothing; the sentence begins with what was asked for
     if (result != STATUS_OK) {
         fault_set_at(f, result, inner.path, "--set %.200s: %.700s", assignment, inner.text);
         if (f != NULL) {

@@ -37,6 +37,9 @@ typedef struct scenario {
     int expectation_count;
 } scenario;
 
+// Inserts an action behind those that are not later. s->actions has room for it.
+void scenario_insert_action(scenario *s, action a);
+
 // Sets the parameter of an ACTION_SET; other actions change none.
 status action_apply(const action *a, parameters *p, fault *f);
 // The value that an ACTION_SET gives, as a scenario file would have it.

@@ -43,6 +43,8 @@ static void write_parameters(FILE *stream, const parameters *p)
         if (!p->set[i]) {
             continue;
         }
+
+        // the table has the parameters of a group side by side
         if (strncmp(group, path, length + 1) != 0) {
             fprintf(stream, "%.*s:\n", (int)length, path);
             group = path;
@@ -56,11 +58,13 @@ static void write_parameters(FILE *stream, const parameters *p)
 static void write_actions(FILE *stream, const scenario *s)
 {
     char text[NUMBER_TEXT];
+
     // what a shortened run no longer comes to is no part of it, and a file must not ask for it
     int count = s->action_count;
     while (count > 0 && s->actions[count - 1].time > s->parameters.run.duration) {
         count--;
     }
+
     fputs(count > 0 ? "script:\n" : "", stream);
     for (int i = 0; i < count; i++) {
         const action *a = &s->actions[i];
@@ -82,6 +86,8 @@ static void write_actions(FILE *stream, const scenario *s)
 void scenario_write(FILE *stream, const scenario *s)
 {
     assert(stream != NULL && s != NULL);
+
+    // prose
     fputs("title: ", stream);
     write_text(stream, s->title != NULL ? s->title : "");
     if (s->description != NULL && s->description[0] != '\0') {
@@ -89,6 +95,8 @@ void scenario_write(FILE *stream, const scenario *s)
         write_text(stream, s->description);
     }
     fputc('\n', stream);
+
+    // what runs; expectations hold for the scenario as it was, and are left out
     write_parameters(stream, &s->parameters);
     write_actions(stream, s);
 }

@@ -70,6 +70,9 @@ static tree_node *refuse_syntax(builder *b)
     const yaml_parser_t *p = &b->parser;
     const char *problem = p->problem != NULL ? p->problem : "unknown problem";
     int line = (int)p->problem_mark.line + 1, column = (int)p->problem_mark.column + 1;
+
+    // no fault of the file's; then what is no text, and a tab, which the parser's words do not
+    // explain
     if (p->error == YAML_MEMORY_ERROR) {
         return refuse_for_memory(b);
     }
@@ -81,6 +84,8 @@ static tree_node *refuse_syntax(builder *b)
     if (byte_at(b, p->problem_mark) == '\t') {
         return refuse(b, line, column, "a tab, expected spaces for indentation");
     }
+
+    // the parser's words, with what it was in the middle of
     if (p->context != NULL) {
         return refuse(b, line, column, "not valid YAML: %s, %s that began at line %d", problem,
                       p->context, (int)p->context_mark.line + 1);
@@ -120,6 +125,7 @@ static const char *forbidden(const yaml_event_t *event)
     default:
         break;
     }
+
     if (anchor != NULL) {
         return "an anchor (&name) is not allowed here, expected the value alone";
     }
@@ -129,6 +135,7 @@ static const char *forbidden(const yaml_event_t *event)
     return NULL;
 }
 
+// An empty node; NULL, after a fault, if there are too many or there is no memory.
 static tree_node *new_node(builder *b, tree_kind kind, yaml_mark_t mark)
 {
     if (++b->nodes > TREE_MAX_NODES) {
@@ -137,6 +144,7 @@ static tree_node *new_node(builder *b, tree_kind kind, yaml_mark_t mark)
                  TREE_MAX_NODES);
         return refuse_at(b, mark, sentence);
     }
+
     tree_node *node = calloc(1, sizeof *node);
     if (node == NULL) {
         return refuse_for_memory(b);
@@ -154,6 +162,7 @@ static tree_node *build_scalar(builder *b, const yaml_event_t *event)
     if (memchr(value, '\0', length) != NULL) {
         return refuse_at(b, event->start_mark, "a NUL character, expected text without it");
     }
+
     tree_node *node = new_node(b, TREE_SCALAR, event->start_mark);
     if (node == NULL) {
         return NULL;
@@ -179,6 +188,8 @@ static bool build_children(builder *b, tree_node *parent, int depth)
         if (!next_event(b, &event)) {
             break;
         }
+
+        // the end, or a child with all that is below it
         if (event.type == YAML_MAPPING_END_EVENT || event.type == YAML_SEQUENCE_END_EVENT) {
             yaml_event_delete(&event);
             return true;
@@ -188,6 +199,7 @@ static bool build_children(builder *b, tree_node *parent, int depth)
         if (child == NULL) {
             break;
         }
+
         // in a map every other node is the key of the one that follows
         if (parent->kind == TREE_MAP && key == NULL) {
             key = child;
@@ -202,6 +214,7 @@ static bool build_children(builder *b, tree_node *parent, int depth)
     return false;
 }
 
+// The node that begins with an event, and what is below it.
 static tree_node *build(builder *b, const yaml_event_t *event, int depth)
 {
     const char *reason = forbidden(event);
@@ -211,6 +224,8 @@ static tree_node *build(builder *b, const yaml_event_t *event, int depth)
     if (event->type == YAML_SCALAR_EVENT) {
         return build_scalar(b, event);
     }
+
+    // a list or a map, not so deep that the recursion exhausts the stack
     if (depth >= TREE_MAX_DEPTH) {
         char sentence[96];
         snprintf(sentence, sizeof sentence, "nested too deeply, expected at most %d levels",
@@ -235,6 +250,8 @@ static tree_node *build_document(builder *b)
         if (!next_event(b, &event)) {
             break;
         }
+
+        // one document with one root
         yaml_event_type_t type = event.type;
         bool good = true;
         if (type == YAML_DOCUMENT_START_EVENT && root != NULL) {
@@ -249,6 +266,7 @@ static tree_node *build_document(builder *b)
             good = root != NULL;
         }
         yaml_event_delete(&event);
+
         if (!good) {
             break;
         }
@@ -268,11 +286,14 @@ tree_node *tree_parse(const char *text, size_t length, fault *f)
         return refuse(&b, 1, 1, "the file is larger than %d bytes, expected a scenario",
                       TREE_MAX_BYTES);
     }
+
     // a byte order mark would shift every column of the first line
     if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) {
         b.text += 3;
         b.length -= 3;
     }
+
+    // the parser looks for nothing but UTF-8
     if (!yaml_parser_initialize(&b.parser)) {
         return refuse_for_memory(&b);
     }

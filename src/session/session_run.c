@@ -25,16 +25,6 @@ static int count_actions(const session *s)
     return count;
 }
 
-// Inserts an action behind those that are not later.
-static void insert_action(scenario *to, action a)
-{
-    int at = to->action_count++;
-    for (; at > 0 && to->actions[at - 1].time > a.time; at--) {
-        to->actions[at] = to->actions[at - 1];
-    }
-    to->actions[at] = a;
-}
-
 // The scenario with the inputs in effect. Its actions are the only thing it owns.
 static status build_effective(const session *s, scenario *to, fault *f)
 {
@@ -47,7 +37,7 @@ static status build_effective(const session *s, scenario *to, fault *f)
     }
     status code = STATUS_OK;
     for (int i = 0; i < s->base.action_count; i++) {
-        insert_action(to, s->base.actions[i]);
+        scenario_insert_action(to, s->base.actions[i]);
     }
     for (int i = 0; i < s->input_count && code == STATUS_OK; i++) {
         const session_input *in = &s->inputs[i];
@@ -59,7 +49,7 @@ static status build_effective(const session *s, scenario *to, fault *f)
                         .parameter = in->parameter,
                         .value = in->value};
             snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
-            insert_action(to, a);
+            scenario_insert_action(to, a);
         }
     }
     return code == STATUS_OK ? parameters_resolve(&to->parameters, f) : code;
