@@ -422,7 +422,7 @@ static void leave(soak *s)
 {
     int status = 0;
     double until = seconds_now() + ANSWER_TIME;
-    send_text(s, ":quit\r");
+    send_text(s, ":quit!\r");
     while (!has_ended(s, &status)) {
         watch(s, 0.01);
         if (seconds_now() > until) {

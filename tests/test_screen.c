@@ -157,11 +157,11 @@ static void test_the_list_filters_and_opens(void **state)
     (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
-    press(&ex, "/three");
+    press(&ex, "o/three");
     assert_shows(&ex, "corrected/three-links");
     assert_shows(&ex, "Three links against a flat wall");
     assert_hides(&ex, "five-links");
-    press(&ex, "<Enter><Enter>");
+    press(&ex, "<Enter>");
     assert_string_equal(ex.state.session.base.name, "corrected/three-links");
     press(&ex, ":open thesis/fig-3-4<Enter>");
     assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
@@ -184,7 +184,7 @@ static void test_what_is_typed_is_completed(void **state)
     press(&ex, "<C-u>set motor.vol<Tab>");
     assert_string_equal(ex.state.prompt.text, "set motor.voltage");
     assert_shows(&ex, "motor.voltage_limit");
-    press(&ex, "<Esc>:set motor.voltag 2<Enter>");
+    press(&ex, "<Esc>:set motor.voltgae 2<Enter>");
     assert_shows(&ex, "did you mean motor.voltage?");
     press(&ex, ":brunch<Enter>");
     assert_shows(&ex, "did you mean branch?");

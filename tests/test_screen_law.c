@@ -42,7 +42,7 @@ static void test_the_panel_is_whole_on_every_screen(void **state)
         }
     }
     press(&ex, ":law off<Enter>");
-    assert_hides(&ex, "200 Hz");
+    assert_hides(&ex, ", 200 Hz");
     explorer_finish(&ex);
 }
 
@@ -147,7 +147,7 @@ static void test_laws_and_modes_are_completed_and_checked(void **state)
     press(&ex, "u:law inverse-dynamics<Enter>L");
     assert_shows(&ex, "this law cannot be held in a mode");
     press(&ex, "C");
-    assert_hides(&ex, "200 Hz");
+    assert_hides(&ex, ", 200 Hz");
     press(&ex, "L");
     assert_shows(&ex, "no law is on");
     press(&ex, "C");

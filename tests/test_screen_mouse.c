@@ -163,9 +163,9 @@ static void test_the_wheel_scrolls_pages_and_panels(void **state)
     // elsewhere it selects parameters as the arrows do, but not while something is typed
     press(&ex, "<Tab>");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
-    int before = ex.state.side.parameter;
+    int before = ex.state.parameters.parameter;
     point(&ex, POINTER_WHEEL_DOWN, values.area.x + 5, values.area.y + 5);
-    assert_int_not_equal(ex.state.side.parameter, before);
+    assert_int_not_equal(ex.state.parameters.parameter, before);
     press(&ex, ":set ");
     point(&ex, POINTER_WHEEL_UP, values.area.x + 5, values.area.y + 5);
     assert_string_equal(ex.state.prompt.text, "set ");

@@ -114,7 +114,7 @@ static void test_clicks_select_and_the_wheel_nudges(void **state)
     // the line of it, not its slider
     point(&ex, POINTER_PRESS, s.area.x - 10, s.area.y);
     point(&ex, POINTER_RELEASE, s.area.x - 10, s.area.y);
-    assert_int_equal(ex.state.side.parameter, limit);
+    assert_int_equal(ex.state.parameters.parameter, limit);
     assert_int_equal(ex.state.session.input_count, 0);
     s = slider_of(&ex, limit);
     point(&ex, POINTER_WHEEL_UP, s.area.x + 1, s.area.y);

@@ -242,7 +242,7 @@ mux send-keys Escape
 suspend
 mux send-keys "clear; fg" Enter
 await "impactlab  corrected/first-impact"
-await "motor.voltage"
+await "voltage_limit"
 mux resize-window -x 120 -y 40
 mux send-keys ":colours 256" Enter
 sleep 0.2

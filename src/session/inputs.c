@@ -6,7 +6,48 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/session/cursor.h"
 #include "src/session/session_run.h"
+
+#define BEFORE_EVENT 1e-9 // how much before an event a change at the row before it takes effect [s]
+
+// The row shown, to which undoing returns.
+static void remember_cursor(const session *s, session_input *in)
+{
+    in->seen_at = s->now;
+    in->seen_row = s->row;
+}
+
+// Puts the cursor back where it was when an input was given, if the run is as it was then.
+static void restore_cursor(session *s, const session_input *in)
+{
+    const trace *t = &s->run.trace;
+    session_seek(s, in->seen_at);
+    if (in->seen_row < t->row_count && t->rows[in->seen_row].time <= in->seen_at &&
+        t->rows[s->row].time == t->rows[in->seen_row].time) {
+        s->row = in->seen_row;
+    }
+}
+
+// The instant at which something done at the cursor takes effect: the cursor's own, or one just
+// before an event of the motion where the row shown is the one before it [s].
+static double effect_time(const session *s)
+{
+    const trace *t = &s->run.trace;
+    const double now = s->now;
+    if (s->row + 1 >= t->row_count || t->rows[s->row].time != now ||
+        t->rows[s->row + 1].time != now) {
+        return now;
+    }
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= now; i++) {
+        const event_kind kind = t->events[i].kind;
+        if (t->events[i].time == now && kind != EVENT_CHANGE && kind != EVENT_PUSH) {
+            double before = s->row > 0 ? t->rows[s->row - 1].time : 0;
+            return fmax(now - BEFORE_EVENT, (before + now) / 2);
+        }
+    }
+    return now;
+}
 
 // Adds an input and computes the run; takes it out again if that fails.
 static status add_input(session *s, const session_input *in, fault *f)
@@ -22,9 +63,11 @@ static status add_input(session *s, const session_input *in, fault *f)
     }
     session_input replaced = s->inputs[s->input_count];
     s->inputs[s->input_count++] = *in;
+    session_seek(s, fmin(s->now, in->time));
     status code = session_compute(s, f);
     if (code != STATUS_OK) {
         s->inputs[--s->input_count] = replaced;
+        restore_cursor(s, in);
         return code;
     }
     s->input_total = s->input_count;
@@ -34,13 +77,16 @@ static status add_input(session *s, const session_input *in, fault *f)
 status session_change(session *s, int parameter, const char *text, fault *f)
 {
     assert(s != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
-    session_input in = {.kind = SESSION_INPUT_START, .time = s->now, .parameter = parameter};
+    session_input in = {
+        .kind = SESSION_INPUT_START, .time = effect_time(s), .parameter = parameter};
+    remember_cursor(s, &in);
     const parameter_info *info = &parameter_table[parameter];
     if (strlen(text) >= sizeof in.text) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "the value of %s is too long", info->path);
     }
     snprintf(in.text, sizeof in.text, "%s", text);
     parameters scratch = session_parameters_at(s, s->now);
+    in.before = info->type == PARAMETER_TEXT ? (double)NAN : parameter_get(&scratch, parameter);
     status code = parameter_set_text(&scratch, parameter, text, f);
     if (code != STATUS_OK) {
         return code;
@@ -48,14 +94,53 @@ status session_change(session *s, int parameter, const char *text, fault *f)
     in.value = parameter_get(&scratch, parameter);
     if (info->timed && s->now > 0) {
         in.kind = SESSION_INPUT_TIMED;
+    } else {
+        in.time = s->now;
     }
     return add_input(s, &in, f);
 }
 
+status session_adjust(session *s, int parameter, const char *text, fault *f)
+{
+    assert(s != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
+    const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
+    if (last == NULL || last->kind == SESSION_INPUT_PUSH || last->parameter != parameter ||
+        last->time != s->now) {
+        return session_change(s, parameter, text, f);
+    }
+
+    // back at what it was before there is no input
+    parameters scratch = session_parameters_at(s, s->now);
+    if (parameter_set_text(&scratch, parameter, text, NULL) == STATUS_OK &&
+        parameter_get(&scratch, parameter) == last->before) {
+        return session_undo(s, f);
+    }
+
+    // its place is taken; undoing leads to where the cursor was before the first of them
+    const session_input replaced = *last;
+    const int total = s->input_total;
+    s->input_count--;
+    status code = session_change(s, parameter, text, f);
+    if (code != STATUS_OK) {
+        s->inputs[s->input_count++] = replaced;
+        s->input_total = total;
+        return code;
+    }
+    session_input *now = &s->inputs[s->input_count - 1];
+    now->seen_at = replaced.seen_at;
+    now->seen_row = replaced.seen_row;
+    now->before = replaced.before;
+    return STATUS_OK;
+}
+
 status session_push(session *s, double impulse, fault *f)
 {
-    session_input in = {
-        .kind = SESSION_INPUT_PUSH, .time = s->now, .parameter = -1, .value = impulse};
+    session_input in = {.kind = SESSION_INPUT_PUSH,
+                        .time = effect_time(s),
+                        .parameter = -1,
+                        .value = impulse,
+                        .before = (double)NAN};
+    remember_cursor(s, &in);
     if (!isfinite(impulse)) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s");
     }
@@ -72,8 +157,12 @@ status session_undo(session *s, fault *f)
     }
     s->input_count--;
     status code = session_compute(s, f);
-    s->input_count += code != STATUS_OK;
-    return code;
+    if (code != STATUS_OK) {
+        s->input_count++;
+        return code;
+    }
+    restore_cursor(s, &s->inputs[s->input_count]);
+    return STATUS_OK;
 }
 
 status session_redo(session *s, fault *f)
@@ -83,6 +172,60 @@ status session_redo(session *s, fault *f)
     }
     s->input_count++;
     status code = session_compute(s, f);
-    s->input_count -= code != STATUS_OK;
+    if (code != STATUS_OK) {
+        s->input_count--;
+        return code;
+    }
+    const session_input *in = &s->inputs[s->input_count - 1];
+    if (in->kind != SESSION_INPUT_START) {
+        session_seek(s, in->time);
+    }
+    return STATUS_OK;
+}
+
+status session_change_input(session *s, int index, const char *text, fault *f)
+{
+    assert(s != NULL && text != NULL && index >= 0 && index < s->input_count);
+    const session_input *old = &s->inputs[index];
+    if (old->kind == SESSION_INPUT_PUSH) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "a push has no other value: drop it and push again");
+    }
+    session_input in = *old;
+    if (strlen(text) >= sizeof in.text) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the value is too long");
+    }
+    remember_cursor(s, &in);
+    snprintf(in.text, sizeof in.text, "%s", text);
+    parameters scratch = session_parameters_at(s, in.time);
+    status code = parameter_set_text(&scratch, in.parameter, text, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    in.value = parameter_get(&scratch, in.parameter);
+
+    // of two values given for the same instant the later one counts; the cursor stays
+    code = add_input(s, &in, f);
+    session_seek(s, in.seen_at);
+    return code;
+}
+
+status session_drop_input(session *s, int index, fault *f)
+{
+    assert(s != NULL && index >= 0 && index < s->input_count);
+    const session_input dropped = s->inputs[index];
+    const int last = s->input_count - 1;
+    memmove(&s->inputs[index], &s->inputs[index + 1], (size_t)(last - index) * sizeof *s->inputs);
+    s->inputs[last] = dropped;
+
+    // it is then the first that can be redone
+    s->input_count--;
+    status code = session_compute(s, f);
+    if (code != STATUS_OK) {
+        s->input_count++;
+        memmove(&s->inputs[index + 1], &s->inputs[index],
+                (size_t)(last - index) * sizeof *s->inputs);
+        s->inputs[index] = dropped;
+    }
     return code;
 }

@@ -3,13 +3,25 @@
 
 #include "src/session/session_state.h"
 
-// Gives a parameter another value: from the cursor's instant on if it may change during a run (and
-// the cursor is not at the start), else from the start. Records an input and computes the run anew;
+// Gives a parameter another value: from the row at the cursor on if it may change during a run (and
+// the cursor is not at the start), else from the start. At the row before an event the change comes
+// before the event, and the cursor stands at it. Records an input and computes the run anew;
 // what could be redone is forgotten. On failure nothing changes and f says why.
 status session_change(session *s, int parameter, const char *text, fault *f);
-// The same for an impulse at the tip [N s].
+// The same, in the place of the last input if that gave this parameter a value at this very
+// instant: small steps to a value are one input, and none once they have led back to where they
+// began.
+status session_adjust(session *s, int parameter, const char *text, fault *f);
+// The same as session_change for an impulse at the tip [N s].
 status session_push(session *s, double impulse, fault *f);
 
-// Takes back the last input, or puts it in again. STATUS_BAD_ARGUMENT if there is none.
+// Gives another value to what inputs[index] changed, at its instant; an input of its own, which
+// undoing takes back. STATUS_BAD_ARGUMENT for a push.
+status session_change_input(session *s, int index, const char *text, fault *f);
+// Takes inputs[index] out; it is the next that session_redo puts in, at the end.
+status session_drop_input(session *s, int index, fault *f);
+
+// Takes back the last input, or puts it in again; the cursor goes to where it was, or to where the
+// input takes effect. STATUS_BAD_ARGUMENT if there is none.
 status session_undo(session *s, fault *f);
 status session_redo(session *s, fault *f);

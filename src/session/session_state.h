@@ -15,10 +15,13 @@ typedef enum session_input_kind {
 
 typedef struct session_input {
     session_input_kind kind;
-    double time;                   // [s]
+    double time;                   // from which it takes effect [s]
     int parameter;                 // index in parameter_table; -1 for a push
-    double value;                  // timed: the new value; push: impulse [N s]
+    double value;                  // the new value; push: impulse [N s]
     char text[SESSION_INPUT_TEXT]; // the value as it was given
+    double before;                 // the value until then; NaN for a text and for a push
+    double seen_at;                // where the cursor was when it was given [s]
+    size_t seen_row;
 } session_input;
 
 typedef struct session {

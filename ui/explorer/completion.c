@@ -6,6 +6,8 @@
 
 #include "ui/explorer/state/command_list.h"
 
+enum { CANDIDATE = 160 };
+
 // The i-th control law, then "off"; NULL beyond it.
 static const char *law_name(int i)
 {
@@ -20,29 +22,120 @@ static const char *lock_word(explorer_state *st, int i)
     return i < m->count ? m->names[i] : i < m->count + 2 ? others[i - m->count] : NULL;
 }
 
-// Candidates for the word that is being typed: the i-th, or NULL. `command` is NULL while the
-// command itself is typed.
-static const char *candidate(explorer_state *st, const char *command, int i)
+// The i-th of words with a bar between them; false beyond the last.
+static bool word_between_bars(const char *words, int i, char *text)
 {
-    if (command == NULL) {
-        return i < explorer_command_count ? explorer_command_table[i].name : NULL;
+    for (; i > 0 && words != NULL; i--) {
+        words = strchr(words, '|');
+        words = words != NULL ? words + 1 : NULL;
     }
-    if (strcmp(command, "set") == 0) {
-        return i < parameter_count ? parameter_table[i].path : NULL;
+    if (words != NULL) {
+        snprintf(text, CANDIDATE, "%.*s", (int)strcspn(words, "|"), words);
     }
-    if (strcmp(command, "trace") == 0) {
-        return i < signal_count ? signal_table[i].name : NULL;
+    return words != NULL;
+}
+
+// The values that a parameter of a few can have; false beyond the last.
+static bool parameter_value(int parameter, int i, char *text)
+{
+    const parameter_info *info = parameter >= 0 ? &parameter_table[parameter] : NULL;
+    if (info != NULL && info->type == PARAMETER_CHOICE) {
+        return word_between_bars(info->choices, i, text);
     }
-    if (strcmp(command, "law") == 0) {
-        return law_name(i);
+    return info != NULL && info->type == PARAMETER_BOOLEAN &&
+           word_between_bars("true|false", i, text);
+}
+
+// The words that a command's description gives it to choose from.
+static bool command_word(const char *command, int i, char *text)
+{
+    static const char *const choosing[] = {"glyphs", "theme", "colours", "mouse", "axis",
+                                           "zoom",   "pan",   "speed",   NULL};
+    const int index = explorer_command_find(command);
+    for (int k = 0; choosing[k] != NULL && index >= 0; k++) {
+        const explorer_command *c = &explorer_command_table[index];
+        if (strcmp(c->name, choosing[k]) == 0) {
+            // those in capitals stand for numbers
+            return word_between_bars(c->argument, i, text);
+        }
     }
-    if (strcmp(command, "lock") == 0) {
-        return lock_word(st, i);
+    return false;
+}
+
+// What is being completed: the line's words before the last one.
+typedef struct place {
+    int word; // 0: the command
+    char command[32];
+    char argument[LINE_TEXT]; // the first one
+} place;
+
+static place place_in(const char *line, const char *word)
+{
+    place p = {0};
+    for (const char *c = line; c < word; c++) {
+        p.word += *c == ' ' && (c == line || c[-1] != ' ');
     }
-    if (strcmp(command, "open") == 0) {
-        return i < st->scenarios.count ? st->scenarios.names[i] : NULL;
+    const char *argument = line + strcspn(line, " ");
+    argument += strspn(argument, " ");
+    snprintf(p.command, sizeof p.command, "%.*s", (int)strcspn(line, " "), line);
+    if (p.word > 1) {
+        snprintf(p.argument, sizeof p.argument, "%.*s", (int)strcspn(argument, " "), argument);
     }
-    return NULL;
+    return p;
+}
+
+// Writes the i-th candidate for the word that is being typed; false beyond the last.
+static bool candidate(explorer_state *st, const place *p, int i, char *text)
+{
+    const char *name = NULL;
+    text[0] = '\0';
+    if (p->word == 0) {
+        name = i < explorer_command_count ? explorer_command_table[i].name : NULL;
+    } else if (strcmp(p->command, "set") == 0 && p->word == 1) {
+        name = i < parameter_count ? parameter_table[i].path : NULL;
+    } else if (strcmp(p->command, "set") == 0) {
+        return p->word == 2 && parameter_value(parameter_of_name(p->argument), i, text);
+    } else if (strcmp(p->command, "trace") == 0) {
+        name = i < signal_count ? signal_table[i].name : NULL;
+    } else if (strcmp(p->command, "law") == 0) {
+        name = law_name(i);
+    } else if (strcmp(p->command, "lock") == 0) {
+        name = lock_word(st, i);
+    } else if (strcmp(p->command, "open") == 0) {
+        name = i < st->scenarios.count ? st->scenarios.names[i] : NULL;
+    } else if (p->word == 1) {
+        return command_word(p->command, i, text);
+    }
+    if (name != NULL) {
+        snprintf(text, CANDIDATE, "%s", name);
+    }
+    return name != NULL;
+}
+
+// Whether a candidate or its last part (motor.VOLTAGE, thesis/FIG-3-4) begins with what is typed.
+static bool fits(const char *name, const char *word)
+{
+    const char *part = strpbrk(name, "./");
+    const size_t length = strlen(word);
+    return strncmp(name, word, length) == 0 ||
+           (part != NULL && length > 0 && strncmp(part + 1, word, length) == 0);
+}
+
+// The number of candidates that fit; the i-th of them into `text` (may be NULL).
+static int count_fitting(explorer_state *st, const place *p, const char *word, int wanted,
+                         char *text)
+{
+    char name[CANDIDATE];
+    int count = 0;
+    for (int i = 0; candidate(st, p, i, name); i++) {
+        if (fits(name, word)) {
+            if (count == wanted && text != NULL) {
+                snprintf(text, CANDIDATE, "%s", name);
+            }
+            count++;
+        }
+    }
+    return count;
 }
 
 // Shortens a text to what it has in common with another one.
@@ -55,23 +148,23 @@ static void keep_common(char *text, const char *other)
     text[same] = '\0';
 }
 
-action_result complete_prompt(explorer_state *st)
+// Puts a word in the place of the one that is completed.
+static void put_word(prompt *p, const char *word, const char *after)
 {
-    assert(st != NULL);
-    char *line = st->prompt.text;
-    char *space = strrchr(line, ' '), *word = space ? space + 1 : line;
-    char command[32] = "", common[LINE_TEXT] = "", listed[512] = "";
-    snprintf(command, sizeof command, "%.*s", (int)strcspn(line, " "), line);
+    const size_t at = (size_t)p->stem_at;
+    p->replaces = false;
+    snprintf(p->text + at, sizeof p->text - at, "%s%s", word, after);
+}
 
-    // all that begin with what is typed, and how far they agree
-    const char *name;
+// As far as all candidates agree, and what they are.
+static action_result complete_common(explorer_state *st, const place *where, int count)
+{
+    prompt *p = &st->prompt;
+    char common[CANDIDATE] = "", name[CANDIDATE], listed[512] = "";
     size_t used = 0;
-    int count = 0;
-    for (int i = 0; (name = candidate(st, space ? command : NULL, i)) != NULL; i++) {
-        if (strncmp(name, word, strlen(word)) != 0) {
-            continue;
-        }
-        if (count++ == 0) {
+    for (int i = 0; i < count; i++) {
+        count_fitting(st, where, p->stem, i, name);
+        if (i == 0) {
             snprintf(common, sizeof common, "%s", name);
         }
         keep_common(common, name);
@@ -79,10 +172,38 @@ action_result complete_prompt(explorer_state *st)
             used += (size_t)snprintf(listed + used, sizeof listed - used, "%s ", name);
         }
     }
+
+    // what agrees may be less than what is typed, where last parts fit
+    if (strlen(common) >= strlen(p->stem)) {
+        put_word(p, common, count == 1 ? " " : "");
+    }
+    return result_news("%s", count > 1 ? listed : "");
+}
+
+action_result complete_prompt(explorer_state *st)
+{
+    assert(st != NULL);
+    prompt *p = &st->prompt;
+    char name[CANDIDATE];
+
+    // the first time what all agree in, then one after the other
+    if (!p->cycling) {
+        const char *space = strrchr(p->text, ' ');
+        p->stem_at = space != NULL ? (int)(space + 1 - p->text) : 0;
+        snprintf(p->stem, sizeof p->stem, "%s", p->replaces ? "" : p->text + p->stem_at);
+        p->cycle = -1;
+    }
+    const place where = place_in(p->text, p->text + p->stem_at);
+    const int count = count_fitting(st, &where, p->stem, -1, NULL);
     if (count == 0) {
         return result_done();
     }
-    size_t room = sizeof st->prompt.text - (size_t)(word - line);
-    snprintf(word, room, "%s%s", common, count == 1 ? " " : "");
-    return result_news("%s", count > 1 ? listed : "");
+    if (!p->cycling) {
+        p->cycling = count > 1;
+        return complete_common(st, &where, count);
+    }
+    p->cycle = (p->cycle + 1) % count;
+    count_fitting(st, &where, p->stem, p->cycle, name);
+    put_word(p, name, "");
+    return result_done();
 }

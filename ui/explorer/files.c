@@ -1,5 +1,8 @@
 // The commands that read and write files: scenarios, figures, rows, screens, scenes.
+#include <ctype.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "render/plot/trace_plot.h"
 #include "render/scene/scene.h"
@@ -61,18 +64,80 @@ static const struct {
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
-action_result act_save(explorer_state *st, const char *argument)
-{
-    // without a name the prompt proposes one
-    if (argument[0] == '\0') {
-        const char *name = st->session.base.name, *slash = strrchr(name, '/');
-        prompt_open(&st->prompt, "save %.200s.png", slash ? slash + 1 : name);
-        return result_news(".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
-                           "gives this run; .txt: the screen");
-    }
+// --- names of files ---------------------------------------------------------------------------
 
+static bool exists(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
+// A file's whole path, or its name as given if there is none.
+static void whole_path(const char *name, char *path, size_t size)
+{
+    char *found = realpath(name, NULL);
+    snprintf(path, size, "%s", found != NULL ? found : name);
+    free(found);
+}
+
+static action_result tell_saved(const char *name)
+{
+    char path[MESSAGE_TEXT / 2];
+    whole_path(name, path, sizeof path);
+    return result_news("saved %s", path);
+}
+
+// Refused where something would be lost.
+static action_result need_new_file(const char *name, const char *command)
+{
+    char path[MESSAGE_TEXT / 2];
+    if (!exists(name)) {
+        return result_done();
+    }
+    whole_path(name, path, sizeof path);
+    return result_refused("%s is there already: another name, or :%s! %.100s replaces it", path,
+                          command, name);
+}
+
+// Appends a word to a file's name, letters, digits and a few marks only.
+static void append_word(char *name, size_t size, const char *word)
+{
+    size_t used = strlen(name);
+    for (; *word != '\0' && used + 2 < size; word++) {
+        const bool plain = isalnum((unsigned char)*word) || strchr(".-_", *word) != NULL;
+        name[used++] = plain ? *word : '-';
+    }
+    name[used] = '\0';
+}
+
+// A name that no file has: the scenario's, what the last change changed, and a number if need be.
+static void propose_name(const explorer_state *st, const char *ending, char *name, size_t size)
+{
+    const session *s = &st->session;
+    const char *slash = strrchr(s->base.name, '/');
+    char stem[LINE_TEXT / 2] = "";
+    append_word(stem, 60, slash != NULL ? slash + 1 : s->base.name);
+    const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
+    if (last != NULL && last->kind == SESSION_INPUT_PUSH) {
+        append_word(stem, sizeof stem, "-push");
+    } else if (last != NULL) {
+        append_word(stem, 80, "-");
+        append_word(stem, 80, strchr(parameter_table[last->parameter].path, '.') + 1);
+        append_word(stem, 100, "-");
+        append_word(stem, 100, last->text);
+    }
+    snprintf(name, size, "%s%s", stem, ending);
+    for (int i = 2; exists(name) && i < 10000; i++) {
+        snprintf(name, size, "%s-%d%s", stem, i, ending);
+    }
+}
+
+// --- the commands -----------------------------------------------------------------------------
+
+// Writes what the name's ending asks for; a file that is there is replaced.
+static action_result save_over(explorer_state *st, const char *name)
+{
     int kind = 0;
-    while (kind < KINDS && !ends_with(argument, kinds[kind].ending)) {
+    while (kind < KINDS && !ends_with(name, kinds[kind].ending)) {
         kind++;
     }
     if (kind == KINDS || kinds[kind].needs_whole_run) {
@@ -89,12 +154,35 @@ action_result act_save(explorer_state *st, const char *argument)
     status code;
     whole_file file;
     if (kinds[kind].write == NULL) {
-        code = write_figure(st, argument, &f);
-    } else if ((code = whole_file_open(&file, argument, &f)) == STATUS_OK) {
+        code = write_figure(st, name, &f);
+    } else if ((code = whole_file_open(&file, name, &f)) == STATUS_OK) {
         kinds[kind].write(st, file.stream);
         code = whole_file_commit(&file, &f);
     }
-    return code == STATUS_OK ? result_news("saved %s", argument) : result_of(code, &f);
+    if (code == STATUS_OK && ends_with(name, ".yaml")) {
+        st->saved_version = state_run_id(st);
+    }
+    return code == STATUS_OK ? tell_saved(name) : result_of(code, &f);
+}
+
+action_result act_save(explorer_state *st, const char *argument)
+{
+    // without a name the prompt proposes one
+    if (argument[0] == '\0') {
+        char name[LINE_TEXT / 2];
+        propose_name(st, ".png", name, sizeof name);
+        prompt_open_value(&st->prompt, "save ", name);
+        return result_news(".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
+                           "gives this run; .txt: the screen");
+    }
+    action_result fresh = need_new_file(argument, "save");
+    return result_ok(&fresh) ? save_over(st, argument) : fresh;
+}
+
+action_result act_save_over(explorer_state *st, const char *argument)
+{
+    return argument[0] == '\0' ? result_refused("save! takes the file that it is to replace")
+                               : save_over(st, argument);
 }
 
 // The arm in space at the cursor's instant.
@@ -104,13 +192,18 @@ action_result act_save_scene(explorer_state *st, const char *argument)
     const scene_options options = {0};
     fault f = {0};
     if (argument[0] == '\0') {
-        prompt_open(&st->prompt, "scene arm.png");
+        char name[LINE_TEXT / 2];
+        propose_name(st, "-arm.png", name, sizeof name);
+        prompt_open_value(&st->prompt, "scene ", name);
         return result_done();
+    }
+    if (exists(argument)) {
+        return result_refused("%.200s is there already: give the scene another name", argument);
     }
     action_result whole = act_need_whole_run(st);
     if (!result_ok(&whole)) {
         return whole;
     }
     status code = scene_write(&s->effective, &s->run, &options, &s->now, 1, argument, &f);
-    return code == STATUS_OK ? result_news("saved %s", argument) : result_of(code, &f);
+    return code == STATUS_OK ? tell_saved(argument) : result_of(code, &f);
 }

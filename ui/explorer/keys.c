@@ -35,6 +35,7 @@ static void key_in_prompt(explorer *ex, int key)
     prompt *p = &ex->state.prompt;
     message_line *message = &ex->state.message;
     char line[LINE_TEXT];
+    p->cycling = p->cycling && key == KEY_CODE_TAB;
     switch (key) {
     case KEY_CODE_ESCAPE:
     case 'c' & 0x1f:
@@ -56,11 +57,58 @@ static void key_in_prompt(explorer *ex, int key)
         break;
     }
     case KEY_CODE_UP:
-        snprintf(p->text, sizeof p->text, "%s", p->history);
+        prompt_open(p, "%s", p->history);
         break;
     default:
-        text_type(p->text, key);
+        prompt_type(p, key);
     }
+}
+
+// Keys go to a panel's filter: Enter keeps it and goes on with what is selected, Esc empties it.
+static void key_in_filter(explorer *ex, int key)
+{
+    explorer_state *st = &ex->state;
+    const panel_id filtered = st->filters.typing;
+    switch (key) {
+    case KEY_CODE_ESCAPE:
+    case 'c' & 0x1f:
+        st->filters.text[filtered][0] = '\0';
+        st->filters.typing = PANEL_NONE;
+        break;
+    case KEY_CODE_ENTER:
+    case '\n':
+        st->filters.typing = PANEL_NONE;
+        if (filtered == PANEL_PARAMETERS && !st->parameters.on_heading) {
+            explorer_carry_out(ex, "edit");
+        }
+        return;
+    case KEY_CODE_UP:
+        explorer_carry_out(ex, "select -1");
+        return;
+    case KEY_CODE_DOWN:
+        explorer_carry_out(ex, "select");
+        return;
+    default:
+        text_type(st->filters.text[filtered], key);
+    }
+    act_settle_filter(st, filtered);
+}
+
+// Esc takes back one thing at a time: what is computed, a filter, the mark.
+static void escape(explorer *ex)
+{
+    explorer_state *st = &ex->state;
+    char *filter = st->filters.text[st->side.panel];
+    if (st->session.computing != NULL) {
+        explorer_carry_out(ex, "stop");
+        return;
+    }
+    if (filter[0] != '\0') {
+        filter[0] = '\0';
+    } else {
+        st->mark.set = false;
+    }
+    message_clear(&st->message);
 }
 
 static void key_by_table(explorer *ex, int key)
@@ -68,21 +116,24 @@ static void key_by_table(explorer *ex, int key)
     explorer_state *st = &ex->state;
     key = key == '\n' ? KEY_CODE_ENTER : key == 127 || key == 8 ? KEY_CODE_BACKSPACE : key;
     const char *bound = key_line(&st->keys, key);
+    const bool asked = st->asked_to_quit;
     if (bound != NULL) {
         // a copy: the command may be one that binds keys
         char line[LINE_TEXT];
         snprintf(line, sizeof line, "%s", bound);
         message_clear(&st->message);
         explorer_carry_out(ex, line);
-    } else if (key == KEY_CODE_ESCAPE && st->session.computing != NULL) {
-        explorer_carry_out(ex, "stop");
     } else if (key == KEY_CODE_ESCAPE) {
-        message_clear(&st->message);
-        st->mark.set = false;
+        escape(ex);
     } else if (key > ' ' && key < KEY_CODE_FIRST && key != 127) {
         char name[8];
         glyph_encode((uint32_t)key, name);
         message_say(&st->message, true, "'%s' does nothing here, ? lists the keys", name);
+    }
+
+    // the answer is the very next key
+    if (asked) {
+        st->asked_to_quit = false;
     }
 }
 
@@ -93,6 +144,8 @@ void explorer_key(explorer *ex, int key)
     bool leaves = key == ('c' & 0x1f) && st->page.panel != PANEL_SCENARIOS;
     if (st->prompt.open) {
         key_in_prompt(ex, key);
+    } else if (st->filters.typing != PANEL_NONE) {
+        key_in_filter(ex, key);
     } else if (key == ':') {
         prompt_open(&st->prompt, "%s", "");
         message_clear(&st->message);

@@ -28,6 +28,10 @@ action_result act_open_scenario(explorer_state *st, const char *name);
 // Gives a parameter another value, from the cursor on or from the start.
 action_result act_change(explorer_state *st, int parameter, const char *text);
 
+// The same with a number, in small steps: several at one instant are one change, and none at all
+// once the value is what it was.
+action_result act_adjust(explorer_state *st, int parameter, double value);
+
 // A warning if the present run stopped on the way, nothing to say if not.
 action_result act_tell_failed_run(const explorer_state *st);
 
@@ -46,6 +50,12 @@ void act_scrub(explorer_state *st, double time);
 // it [s].
 void act_zoom_at(explorer_state *st, double factor, double time);
 void act_pan_by(explorer_state *st, double seconds);
+
+// --- filters ----------------------------------------------------------------------------------
+
+// After the filter of a panel changed: back to its top, with something selected that it lets
+// through.
+void act_settle_filter(explorer_state *st, panel_id panel);
 
 // --- axes of values ---------------------------------------------------------------------------
 

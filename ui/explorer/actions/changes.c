@@ -8,26 +8,67 @@
 
 #include "src/base/numbers.h"
 
-action_result act_change(explorer_state *st, int parameter, const char *text)
+// What the last input came to: that the run stops with it, that it has no effect, or its news.
+static action_result tell_change(const explorer_state *st)
 {
-    assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
-    fault f = {0};
-    session *s = &st->session;
-    const parameter_info *info = &parameter_table[parameter];
-    status code = session_change(s, parameter, text, &f);
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
-    }
-
-    // the run may stop with the new value, which must be known
+    const session *s = &st->session;
     const session_input *in = &s->inputs[s->input_count - 1];
+    const parameter_info *info = &parameter_table[in->parameter];
+    char when[48] = "from the start";
     if (s->run.summary.status != STATUS_OK || s->run.summary.inaccurate) {
         return act_tell_failed_run(st);
     }
     if (in->kind == SESSION_INPUT_TIMED) {
-        return result_news("%s = %s %s from %.4f s on", info->path, text, info->unit, in->time);
+        snprintf(when, sizeof when, "from %.4f s on", in->time);
     }
-    return result_news("%s = %s %s from the start", info->path, text, info->unit);
+
+    // a change without effect must not look like one with it
+    const parameters p = session_parameters_at(s, in->time);
+    const char *inert = state_inert_reason(st, in->parameter);
+    const char *blank = info->unit[0] ? " " : "";
+    if (inert != NULL) {
+        return result_warning("%s = %s%s%s %s, without effect: %s", info->path, in->text, blank,
+                              info->unit, when, inert);
+    }
+    if (in->parameter == PARAMETER_INDEX(motor.voltage) &&
+        fabs(p.motor.voltage) > p.motor.voltage_limit) {
+        return result_warning("%s = %s V %s, more than motor.voltage_limit: the command saturates "
+                              "at %g V",
+                              info->path, in->text, when, p.motor.voltage_limit);
+    }
+    return result_news("%s = %s%s%s %s", info->path, in->text, blank, info->unit, when);
+}
+
+action_result act_change(explorer_state *st, int parameter, const char *text)
+{
+    assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
+    fault f = {0};
+    status code = session_change(&st->session, parameter, text, &f);
+    return code != STATUS_OK ? result_of(code, &f) : tell_change(st);
+}
+
+action_result act_adjust(explorer_state *st, int parameter, double value)
+{
+    assert(st != NULL && parameter >= 0 && parameter < parameter_count);
+    session *s = &st->session;
+    parameters p = state_parameters(st);
+    char text[LINE_TEXT];
+    fault f = {0};
+    status code = parameter_set_number(&p, parameter, value, &f);
+    if (code != STATUS_OK) {
+        return result_of(code, &f);
+    }
+    parameter_format(&p, parameter, text, sizeof text);
+    const int changes = s->input_count;
+    code = session_adjust(s, parameter, text, &f);
+    if (code != STATUS_OK) {
+        return result_of(code, &f);
+    }
+    if (s->input_count < changes) {
+        return result_news("%s is %s %s again", parameter_table[parameter].path, text,
+                           parameter_table[parameter].unit);
+    }
+    return tell_change(st);
 }
 
 action_result act_set(explorer_state *st, const char *argument)
@@ -37,7 +78,10 @@ action_result act_set(explorer_state *st, const char *argument)
     size_t length = strcspn(argument, " =");
     snprintf(path, sizeof path, "%.*s", (int)length, argument);
     const char *value = argument + length + strspn(argument + length, " =");
-    int parameter = parameter_find(path);
+    int parameter = parameter_of_name(path);
+    if (parameter == -2) {
+        return result_refused("several parameters begin with '%s' (Tab lists them)", path);
+    }
     if (parameter < 0) {
         const char *near = parameter_suggest(path);
         return result_refused("there is no parameter '%s'%s%s%s", path,
@@ -45,23 +89,53 @@ action_result act_set(explorer_state *st, const char *argument)
     }
 
     // without a value it is only selected
-    st->side.parameter = parameter;
+    parameter_list_select(&st->parameters, (parameter_line){parameter, false});
     if (value[0] == '\0') {
         const parameter_info *info = &parameter_table[parameter];
-        return result_news("%s: %s", info->path, info->description);
+        const char *inert = state_inert_reason(st, parameter);
+        return result_news("%s: %s%s%s", info->path, info->description,
+                           inert != NULL ? "; without effect, " : "", inert != NULL ? inert : "");
     }
     return act_change(st, parameter, value);
 }
 
-// The next or the previous value of the selected parameter: a tenth more or less, another choice.
+// How far a nudge of a real parameter goes up from a value: a fixed step, or on a logarithmic scale
+// a tenth of the value's decade.
+static double nudge_step(int parameter, double value)
+{
+    enum { LEAST_STEPS = 50 };
+    slider_scale scale;
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    const double usual = parameter_get(&p, parameter);
+    if (!slider_scale_of(parameter, isfinite(usual) ? usual : value, &scale)) {
+        return 0;
+    }
+    if (scale.logarithmic) {
+        return pow(10, floor(log10(fabs(value)) + 1e-9)) / 10;
+    }
+    return pow(10, floor(log10((scale.high - scale.low) / LEAST_STEPS) + 1e-9));
+}
+
+// A real parameter's value one nudge up or down; what goes down comes up to where it was.
+static double nudged(int parameter, double value, int direction)
+{
+    const double step = nudge_step(parameter, direction < 0 ? value * (1 - 1e-6) : value);
+    char text[NUMBER_TEXT];
+    snprintf(text, sizeof text, "%.6g", value + direction * step);
+    return strtod(text, NULL);
+}
+
+// The next or the previous value of the selected parameter: a step more or less, another choice.
 action_result act_nudge(explorer_state *st, const char *argument)
 {
-    int direction = argument[0] == '-' ? -1 : 1, index = st->side.parameter;
+    int direction = argument[0] == '-' ? -1 : 1, index = st->parameters.parameter;
     const parameter_info *info = &parameter_table[index];
+    if (st->parameters.on_heading) {
+        return result_refused("no parameter is selected (arrows up and down select one)");
+    }
     parameters p = state_parameters(st);
     double value = parameter_get(&p, index);
-    char text[LINE_TEXT];
-    fault f = {0};
     if (strcmp(info->path, "control.lock") == 0) {
         return act_lock(st, direction > 0 ? "next" : "previous");
     }
@@ -69,34 +143,31 @@ action_result act_nudge(explorer_state *st, const char *argument)
         return result_refused("%s is a text: Enter edits it", info->path);
     }
 
-    // a number by a tenth of its decade, anything else to its neighbour
-    if (info->type == PARAMETER_REAL) {
-        double size = value != 0 ? fabs(value) : 0.1;
-        value += direction * pow(10, floor(log10(size) + 1e-9)) / 10;
-        snprintf(text, sizeof text, "%.6g", value);
-        value = strtod(text, NULL);
-    } else {
-        value += direction;
-    }
-    value = fmax(info->minimum, fmin(info->maximum, value));
-    status code = parameter_set_number(&p, index, value, &f);
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
-    }
-    parameter_format(&p, index, text, sizeof text);
-    return act_change(st, index, text);
+    // a number by a step, anything else to its neighbour
+    value = info->type == PARAMETER_REAL ? nudged(index, value, direction) : value + direction;
+    return act_adjust(st, index, fmax(info->minimum, fmin(info->maximum, value)));
 }
 
 action_result act_edit(explorer_state *st, const char *argument)
 {
     (void)argument;
+    if (st->parameters.on_heading) {
+        parameter_list_fold(&st->parameters, st->parameters.parameter);
+        return result_done();
+    }
     char value[LINE_TEXT];
     parameters p = state_parameters(st);
-    parameter_format(&p, st->side.parameter, value, sizeof value);
-    const parameter_info *info = &parameter_table[st->side.parameter];
-    prompt_open(&st->prompt, "set %s %.160s", info->path, value);
+    parameter_format(&p, st->parameters.parameter, value, sizeof value);
+    const parameter_info *info = &parameter_table[st->parameters.parameter];
+    char line[LINE_TEXT];
+    snprintf(line, sizeof line, "set %s ", info->path);
+    prompt_open_value(&st->prompt, line, value);
 
-    // what can be typed
+    // what can be typed, or why it makes no difference
+    const char *inert = state_inert_reason(st, st->parameters.parameter);
+    if (inert != NULL) {
+        return result_warning("%s has no effect: %s", info->path, inert);
+    }
     if (info->choices != NULL && info->type == PARAMETER_CHOICE) {
         return result_news("%s: %s", info->description, info->choices);
     }
@@ -197,7 +268,8 @@ void act_hold_slider(explorer_state *st, slider_drag d)
         return;
     }
     grip->held = true;
-    grip->parameter = st->side.parameter = d.parameter;
+    grip->parameter = d.parameter;
+    parameter_list_select(&st->parameters, (parameter_line){d.parameter, false});
     grip->value = slider_value(&grip->scale, d.parameter, d.share, d.cells);
 }
 
@@ -211,13 +283,5 @@ action_result act_drop_slider(explorer_state *st)
         return result_done();
     }
 
-    // the value is given as text, as one that was typed would be
-    char text[64];
-    fault f = {0};
-    status code = parameter_set_number(&p, grip.parameter, grip.value, &f);
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
-    }
-    parameter_format(&p, grip.parameter, text, sizeof text);
-    return act_change(st, grip.parameter, text);
+    return act_adjust(st, grip.parameter, grip.value);
 }

@@ -6,14 +6,83 @@
 
 action_result act_select_parameter(explorer_state *st, const char *argument)
 {
-    int direction = argument[0] == '-' ? -1 : 1;
-    for (int i = st->side.parameter + direction; i >= 0 && i < parameter_count; i += direction) {
-        if (state_parameter_applies(st, i)) {
-            st->side.parameter = i;
-            break;
-        }
+    parameter_line lines[PARAMETER_LINES];
+    const int direction = argument[0] == '-' ? -1 : 1;
+    if (st->side.panel == PANEL_VALUES) {
+        st->scroll[PANEL_VALUES] += direction;
+        return result_done();
+    }
+    const int count = state_parameter_lines(st, lines);
+    const int next = parameter_list_selected(&st->parameters, lines, count) + direction;
+    if (next >= 0 && next < count) {
+        parameter_list_select(&st->parameters, lines[next]);
     }
     return result_done();
+}
+
+// The group of a name, that of the selected parameter without one, or all of them.
+action_result act_fold(explorer_state *st, const char *argument)
+{
+    parameter_list *list = &st->parameters;
+    if (strcmp(argument, "all") == 0 || strcmp(argument, "none") == 0) {
+        for (int i = 0; i < PARAMETER_GROUPS; i++) {
+            list->folded[i] = argument[0] == 'a';
+        }
+        list->on_heading = argument[0] == 'a';
+        return result_done();
+    }
+    if (argument[0] == '\0') {
+        parameter_list_fold(list, list->parameter);
+        return result_done();
+    }
+    for (int i = 0; i < parameter_count; i++) {
+        char name[PARAMETER_NAME];
+        parameter_group_name(i, name, sizeof name);
+        if (strcmp(name, argument) == 0) {
+            parameter_list_fold(list, i);
+            return result_done();
+        }
+    }
+    return result_refused("there is no group '%s' of parameters", argument);
+}
+
+// The panel whose filter `/` means: the page that is open, or what stands on the side.
+static panel_id filtered_panel(const explorer_state *st)
+{
+    return st->page.panel != PANEL_NONE ? st->page.panel : st->side.panel;
+}
+
+action_result act_filter(explorer_state *st, const char *argument)
+{
+    const panel_id panel = filtered_panel(st);
+    char *text = st->filters.text[panel];
+    snprintf(text, FILTER_TEXT, "%s", argument);
+    st->filters.typing = argument[0] == '\0' ? panel : PANEL_NONE;
+    st->scroll[panel] = 0;
+    act_settle_filter(st, panel);
+    return result_done();
+}
+
+void act_settle_filter(explorer_state *st, panel_id panel)
+{
+    parameter_line lines[PARAMETER_LINES];
+    st->scroll[panel] = 0;
+    if (panel != PANEL_PARAMETERS || st->filters.text[panel][0] == '\0') {
+        return;
+    }
+
+    // the selected parameter if it is still there, else the first that is
+    const int count = state_parameter_lines(st, lines);
+    const parameter_list *list = &st->parameters;
+    const int selected = parameter_list_selected(list, lines, count);
+    const bool there =
+        count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
+    for (int i = 0; i < count && !there; i++) {
+        if (!lines[i].heading) {
+            parameter_list_select(&st->parameters, lines[i]);
+            return;
+        }
+    }
 }
 
 action_result act_set_mark(explorer_state *st, const char *argument)
@@ -93,6 +162,7 @@ static action_result toggle_page(explorer_state *st, panel_id page)
 {
     st->page.panel = st->page.panel == page ? PANEL_NONE : page;
     st->scroll[page] = 0;
+    st->filters.text[page][0] = '\0';
     return result_done();
 }
 
@@ -100,6 +170,12 @@ action_result act_show_help(explorer_state *st, const char *argument)
 {
     (void)argument;
     return toggle_page(st, PANEL_HELP);
+}
+
+action_result act_show_info(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_INFO);
 }
 
 action_result act_compare(explorer_state *st, const char *argument)
@@ -173,6 +249,27 @@ action_result act_redraw(explorer_state *st, const char *argument)
 action_result act_quit(explorer_state *st, const char *argument)
 {
     (void)argument;
+    const session *s = &st->session;
+    const bool unsaved = s->input_count > 0 && st->saved_version != state_run_id(st);
+    if (!unsaved || st->asked_to_quit) {
+        st->quit = true;
+        return result_done();
+    }
+    st->asked_to_quit = true;
+    return result_warning("%d change%s would be lost: q leaves all the same, :save NAME.yaml keeps "
+                          "%s, Esc stays",
+                          s->input_count, s->input_count == 1 ? "" : "s",
+                          s->input_count == 1 ? "it" : "them");
+}
+
+action_result act_quit_now(explorer_state *st, const char *argument)
+{
+    (void)argument;
     st->quit = true;
     return result_done();
+}
+
+action_result act_interrupt(explorer_state *st, const char *argument)
+{
+    return st->session.computing != NULL ? act_stop(st, "") : act_quit(st, argument);
 }

@@ -19,10 +19,14 @@ static int cells_of(const char *text)
 void draw_title(const explorer_state *st, screen *s)
 {
     const session *e = &st->session;
-    char changes[32] = "";
+    char changes[64] = "";
     if (e->input_count > 0) {
-        snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
-                 e->input_count == 1 ? "" : "s");
+        const int later = state_later_changes(st);
+        int used = snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
+                            e->input_count == 1 ? "" : "s");
+        if (later > 0) {
+            snprintf(changes + used, sizeof changes - (size_t)used, ", \u25cb %d later", later);
+        }
     }
     // the name and the changes go before the title
     const char *title = e->base.title ? e->base.title : "";
@@ -143,6 +147,12 @@ static int draw_prompt(const explorer_state *st, screen *s)
     blank_row(s, y);
     int x = screen_print(s, 0, y, room, INK_TITLE, ":%s", text);
     screen_put(s, x, y, ' ', INK_SELECTED);
+
+    // a value that typing replaces looks selected
+    if (st->prompt.replaces) {
+        int value = cells_of(st->prompt.text + st->prompt.fixed);
+        screen_tint(s, x - value, y, value, 1, INK_SELECTED);
+    }
     if (st->message.text[0] != '\0' && x + 4 + cells_of(st->message.text) <= s->width) {
         screen_text(s, x + 3, y, s->width - x - 3, INK_DIM, st->message.text);
     } else if (st->message.text[0] != '\0') {
@@ -208,6 +218,15 @@ int draw_bottom(const explorer_state *st, screen *s)
     enum { MOST = 3 };
     if (st->prompt.open) {
         return draw_prompt(st, s);
+    }
+    if (st->filters.typing != PANEL_NONE) {
+        blank_row(s, s->height - 1);
+        int x = screen_print(s, 0, s->height - 1, s->width - 2, INK_TITLE, "/%s",
+                             st->filters.text[st->filters.typing]);
+        screen_put(s, x, s->height - 1, ' ', INK_SELECTED);
+        screen_text(s, x + 3, s->height - 1, s->width - x - 3, INK_DIM,
+                    "filters by words and their parts; Enter takes, Esc shows all");
+        return 1;
     }
     if (st->message.text[0] == '\0') {
         blank_row(s, s->height - 1);

@@ -2,25 +2,42 @@
 #include "ui/explorer/panels/help_text.h"
 #include "ui/explorer/panels/page.h"
 
+// Leaves the lines that a filter lets through; returns how many.
+static int keep_matching(help_line *lines, int count, const char *filter)
+{
+    int kept = 0;
+    for (int i = 0; i < count && filter[0] != '\0'; i++) {
+        if (lines[i].text[0] != '\0' && filter_passes(filter, lines[i].text)) {
+            lines[kept++] = lines[i];
+        }
+    }
+    return filter[0] != '\0' ? kept : count;
+}
+
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
     (void)body;
     enum { MOST = 400 };
     static help_line lines[MOST];
+    const char *filter = st->filters.text[PANEL_HELP];
 
     // as wide as it may be, then as high as its lines need
     area a = page_area(s, 114, s->height);
     int count = help_write(&st->keys, a.width - 4, lines, MOST);
+    count = keep_matching(lines, count, filter);
     a = page_area(s, 114, count + 2);
     int shown = a.height - 2, last = count > shown ? count - shown : 0;
     int scroll = layout_keep_scroll(lay, PANEL_HELP, last);
     lay->page_lines = shown > 1 ? shown - 1 : 1;
     char title[LINE_TEXT];
     snprintf(title, sizeof title,
-             last == 0      ? "keys and commands (Esc closes)"
+             last == 0      ? "keys and commands (/ filters, Esc closes)"
              : a.width < 60 ? "%d of %d lines (Esc closes)"
-                            : "keys and commands, %d of %d lines (arrows scroll, Esc closes)",
+                            : "keys and commands, %d of %d lines (/ filters, Esc closes)",
              scroll + shown, count);
+    if (filter[0] != '\0') {
+        snprintf(title, sizeof title, "keys and commands /%.200s", filter);
+    }
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
     layout_add_hit(lay, (hit_area){.panel = PANEL_HELP, .area = a});
     for (int i = 0; i < shown && scroll + i < count; i++) {

@@ -2,7 +2,7 @@
 // be scrolled; and what it remembers from one picture to the next. The state stays as it is.
 #pragma once
 
-#include "src/predict/predict.h"
+#include "src/predict/predictors.h"
 #include "ui/explorer/state/state.h"
 
 enum { LABEL_WIDTH = 9 };                     // of an axis of values [cells]
@@ -17,6 +17,7 @@ typedef struct area {
 typedef enum hit_part {
     PART_BODY,     // the panel itself, or its plot
     PART_LINES,    // its lines; index: the first one shown, or the line's own
+    PART_HEADING,  // of a group of lines; index: its first parameter
     PART_SLIDER,   // index: the parameter
     PART_LABELS,   // an axis of values; index: the pane
     PART_TIME_AXIS // below curves
@@ -44,8 +45,7 @@ typedef struct arm_extent {
 typedef struct linearised_answer {
     unsigned long run; // 0: nothing was asked
     size_t row;
-    bool known;
-    prediction answer;
+    prediction_answer answer;
 } linearised_answer;
 
 typedef struct layout {

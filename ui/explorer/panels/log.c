@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+enum { MOST_LATER = 32 }; // changes to come that are listed
+
 static void draw_change(const explorer_state *st, screen *s, area a, const event *v)
 {
     char value[128], text[256];
@@ -37,6 +39,22 @@ static void draw_entry(const explorer_state *st, screen *s, area a, const log_en
     }
 }
 
+// Changes and pushes that are still to come after the first `seen` entries; returns how many.
+static int find_later_inputs(const explorer_state *st, size_t seen, int later[MOST_LATER])
+{
+    const run_log *log = &st->log;
+    const trace *t = &st->session.run.trace;
+    int count = 0;
+    for (size_t i = seen; i < log->count && count < MOST_LATER; i++) {
+        const int index = log->entries[i].event;
+        if (index >= 0 &&
+            (t->events[index].kind == EVENT_CHANGE || t->events[index].kind == EVENT_PUSH)) {
+            later[count++] = (int)i;
+        }
+    }
+    return count;
+}
+
 static int rows(const explorer_state *st, screen_size body)
 {
     (void)st;
@@ -49,26 +67,31 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const run_log *log = &st->log;
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "events (n, N)");
 
-    // what has been seen, and the last of it that is not after the cursor
+    // what has been seen, the last of it that is not after the cursor, and what is to be done
     size_t seen = 0;
-    int current = 0, height = a.height - 2;
+    int current = 0, height = a.height - 2, later[MOST_LATER];
     while (seen < log->count && log->entries[seen].time <= e->seen) {
         current = log->entries[seen].time <= e->now ? (int)seen : current;
         seen++;
     }
+    const int count = (int)seen + find_later_inputs(st, seen, later);
 
     // that one in the middle, or the last ones; scrolling counts from there
-    int still = draw_first_line(current, (int)seen, height), last = (int)seen - height;
+    int still = draw_first_line(current, count, height), last = count - height;
     int first = still + st->scroll[PANEL_LOG];
     first = first > last ? last : first;
     first = first < 0 ? 0 : first;
     lay->scroll[PANEL_LOG] = first - still;
     const area lines = {a.x + 1, a.y + 1, a.width - 2, height};
     layout_add_hit(lay, (hit_area){PANEL_LOG, PART_LINES, first, lines});
-    for (int i = first; i < (int)seen && i < first + height; i++) {
+    for (int i = first; i < count && i < first + height; i++) {
+        const log_entry *entry = &log->entries[i < (int)seen ? i : later[i - (int)seen]];
         int y = lines.y + i - first;
-        draw_entry(st, s, (area){a.x + 2, y, a.width - 4, 1}, &log->entries[i]);
-        if (log->entries[i].time == e->now) {
+        draw_entry(st, s, (area){a.x + 2, y, a.width - 4, 1}, entry);
+        if (entry->time > e->seen) {
+            screen_tint(s, lines.x, y, lines.width, 1, INK_DIM);
+        }
+        if (entry->time == e->now) {
             screen_tint(s, lines.x, y, lines.width, 1, INK_SELECTED);
         }
     }

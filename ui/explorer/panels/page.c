@@ -24,6 +24,10 @@ action_result page_key(explorer_state *st, int key)
         *scroll = INT_MAX / 2;
     } else if (key == KEY_CODE_HOME || key == 'g') {
         *scroll = 0;
+    } else if (key == '/' && st->page.panel == PANEL_HELP) {
+        return act_filter(st, "");
+    } else if (key == KEY_CODE_ESCAPE && st->filters.text[st->page.panel][0] != '\0') {
+        st->filters.text[st->page.panel][0] = '\0';
     } else {
         st->page.panel = PANEL_NONE;
     }

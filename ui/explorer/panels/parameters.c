@@ -53,7 +53,7 @@ static void draw_wide_slider(layout *lay, screen *s, area a, const track *k)
     draw_track(lay, s, (area){a.x + before + 1, a.y, a.width - before - after - 2, 1}, k);
 }
 
-// Path, value and unit in a line, with a slider behind them where there is room.
+// Name, value and unit in a line, with a slider behind them where there is room.
 static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, const parameters *p,
                       int parameter)
 {
@@ -61,14 +61,15 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, 
     char value[160], shown[200];
     slider_scale scale;
     bool has_slider, held = st->slider.held && st->slider.parameter == parameter;
+    const bool inert = state_inert_reason(st, parameter) != NULL;
     double number = shown_value(st, p, parameter, &scale, &has_slider);
     if (info->type == PARAMETER_REAL || held) {
         snprintf(value, sizeof value, "%.6g", number);
     } else {
         parameter_format(p, parameter, value, sizeof value);
     }
-    snprintf(shown, sizeof shown, "%.12s %s", value, info->unit);
-    ink colour = held ? INK_EVENT : info->timed ? INK_ARM : INK_DIM;
+    snprintf(shown, sizeof shown, "%.12s%s%s", value, info->unit[0] ? " " : "", info->unit);
+    ink colour = inert ? INK_FRAME : held ? INK_EVENT : info->timed ? INK_ARM : INK_DIM;
     int slider = a.width - PATH_ROOM, room = a.width;
     if (slider >= LEAST_SLIDER) {
         slider = slider > MOST_SLIDER ? MOST_SLIDER : slider;
@@ -77,56 +78,95 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, 
     int start = room - (int)strlen(shown);
     bool given = st->session.effective.parameters.set[parameter] != 0;
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_LINES, parameter, a});
-    // where not all fits the group goes first, then the unit
-    const char *name = info->path;
-    if ((int)strlen(name) >= start) {
-        name = strchr(name, '.') + 1;
-    }
-    if ((int)strlen(name) >= start) {
+
+    // the heading has the group; where not all fits the unit goes
+    const char *name = strchr(info->path, '.') + 1;
+    if ((int)strlen(name) + 2 >= start) {
         start = room - snprintf(shown, sizeof shown, "%.12s", value);
     }
-    screen_text(s, a.x, a.y, start - 1, given ? INK_TITLE : INK_TEXT, name);
+    screen_text(s, a.x + 1, a.y, start - 2, inert ? INK_FRAME : given ? INK_TITLE : INK_TEXT, name);
     screen_text(s, a.x + start, a.y, room - start, colour, shown);
-    if (has_slider && slider >= LEAST_SLIDER) {
+    if (has_slider && slider >= LEAST_SLIDER && !inert) {
         const track beside = {parameter, scale, number, colour};
         draw_track(lay, s, (area){a.x + room + 1, a.y, slider, 1}, &beside);
+    }
+}
+
+// The heading of a group: its name, and how many parameters it hides.
+static void draw_heading(const explorer_state *st, layout *lay, screen *s, area a, int parameter)
+{
+    char name[PARAMETER_NAME];
+    const bool filtered = st->filters.text[PANEL_PARAMETERS][0] != '\0';
+    const bool folded = st->parameters.folded[parameter_group(parameter)] && !filtered;
+    parameter_group_name(parameter, name, sizeof name);
+    int x = a.x + screen_print(s, a.x, a.y, a.width, INK_EVENT, "%s %s",
+                               folded ? "\u25b8" : "\u25be", name);
+    if (folded) {
+        int hidden = 0;
+        const int group = parameter_group(parameter);
+        for (int i = parameter; i < parameter_count && parameter_group(i) == group; i++) {
+            hidden++;
+        }
+        screen_print(s, x + 1, a.y, a.x + a.width - x - 1, INK_FRAME, "%d", hidden);
+    }
+    layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, parameter, a});
+}
+
+// What stands below the selected parameter: its wide slider, or why it has no effect.
+static void draw_below(const explorer_state *st, layout *lay, screen *s, area a, const track *wide)
+{
+    const char *inert = state_inert_reason(st, wide->parameter);
+    if (inert == NULL) {
+        draw_wide_slider(lay, s, a, wide);
+    } else {
+        screen_text(s, a.x + 1, a.y, a.width - 1, INK_WARNING, inert);
     }
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
     parameters p = state_parameters(st);
-    int count = 0, selected = 0, line = 0, height = a.height - 2;
-    track wide = {.parameter = st->side.parameter,
-                  .knob = st->slider.held ? INK_EVENT : INK_CURSOR};
-    bool expands;
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "parameters (Tab: values)");
-
-    // a number that is selected takes a second line for its wide slider
-    wide.value = shown_value(st, &p, st->side.parameter, &wide.scale, &expands);
-    expands = expands && height >= 2;
-    for (int i = 0; i < parameter_count; i++) {
-        selected = i == st->side.parameter ? count : selected;
-        count += state_parameter_applies(st, i);
+    parameter_line lines[PARAMETER_LINES];
+    const parameter_list *list = &st->parameters;
+    const char *filter = st->filters.text[PANEL_PARAMETERS];
+    char title[LINE_TEXT + 32] = "parameters (Tab: values, / filters)";
+    int line = 0, height = a.height - 2;
+    track wide = {.parameter = list->parameter, .knob = st->slider.held ? INK_EVENT : INK_CURSOR};
+    bool number;
+    if (filter[0] != '\0') {
+        snprintf(title, sizeof title, "parameters /%s", filter);
+    } else if (a.width < 46) {
+        snprintf(title, sizeof title, "parameters (Tab: values)");
     }
-    count += expands;
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
 
-    int first = draw_first_line(selected, count, height);
-    for (int i = 0; i < parameter_count && line - first < height; i++) {
-        if (!state_parameter_applies(st, i)) {
-            continue;
-        }
+    // a number that is selected takes a second line, and so does what has no effect
+    int count = state_parameter_lines(st, lines);
+    const int selected = parameter_list_selected(list, lines, count);
+    wide.value = shown_value(st, &p, list->parameter, &wide.scale, &number);
+    const bool shows_parameter =
+        count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
+    const bool expands = shows_parameter && height >= 2 &&
+                         (number || state_inert_reason(st, list->parameter) != NULL);
+    if (count == 0) {
+        screen_text(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "none has these words");
+    }
+
+    int first = draw_first_line(selected, count + expands, height);
+    for (int i = 0; i < count && line - first < height; i++) {
         area at = {a.x + 2, a.y + 1 + line++ - first, a.width - 4, 1};
-        if (at.y > a.y) {
-            draw_line(st, lay, s, at, &p, i);
+        if (at.y > a.y && lines[i].heading) {
+            draw_heading(st, lay, s, at, lines[i].parameter);
+        } else if (at.y > a.y) {
+            draw_line(st, lay, s, at, &p, lines[i].parameter);
         }
-        if (i != st->side.parameter) {
+        if (i != selected) {
             continue;
         }
         screen_tint(s, a.x + 1, at.y, a.width - 2, 1, INK_SELECTED);
         if (expands && line - first < height) {
             at.y = a.y + 1 + line++ - first;
-            draw_wide_slider(lay, s, at, &wide);
+            draw_below(st, lay, s, at, &wide);
         }
     }
 }
@@ -146,7 +186,7 @@ static bool point_at_slider(explorer_state *st, const panel_gesture *g, action_r
         *result = act_drop_slider(st);
         return true;
     default:
-        st->side.parameter = h->index;
+        parameter_list_select(&st->parameters, (parameter_line){h->index, false});
         *result = act_nudge(st, g->event.kind == POINTER_WHEEL_UP ? "" : "-1");
         return true;
     }
@@ -159,8 +199,12 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
     if (g->hit.part == PART_SLIDER) {
         return point_at_slider(st, g, result);
     }
+    if (g->event.kind == POINTER_PRESS && g->hit.part == PART_HEADING) {
+        parameter_list_fold(&st->parameters, g->hit.index);
+        return true;
+    }
     if (g->event.kind == POINTER_PRESS) {
-        st->side.parameter = g->hit.index;
+        parameter_list_select(&st->parameters, (parameter_line){g->hit.index, false});
         return true;
     }
     return false;

@@ -94,8 +94,15 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
         double at = (v->time - from) / (to - from) * line.width;
         bool impact = v->kind == EVENT_IMPACT;
         bool input = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
-        if (v->time <= e->seen && at >= 0 && at < line.width && (impact || input)) {
-            screen_put(s, line.x + (int)at, a.y, impact ? 0x25b2 : 0x25cf, INK_EVENT);
+        bool seen = v->time <= e->seen;
+
+        // what is to come of the motion is not known yet, what is to be done is
+        if (at >= 0 && at < line.width && ((impact && seen) || input)) {
+            screen_put(s, line.x + (int)at, a.y,
+                       impact ? 0x25b2
+                       : seen ? 0x25cf
+                              : 0x25cb,
+                       seen ? INK_EVENT : INK_DIM);
         }
     }
 

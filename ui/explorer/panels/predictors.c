@@ -2,47 +2,49 @@
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
-#include <string.h>
-
-#include "src/predict/linearised.h"
 
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
 enum { ROWS = 6 };            // of the panel [cells]
 
-// The linearised arm's answer for the state in a row; false where it has none.
-static bool ask_linearised(const parameters *p, const trace *t, size_t r, prediction *out)
+// The parameters in a row, with the voltage that is in force there: under a control law that is the
+// law's, and beyond the limit the amplifier gets no more.
+static parameters parameters_in_row(const explorer_state *st, size_t r)
 {
-    size_t state = r * (size_t)t->angle_count;
-    if (p->arm.model == ARM_PRINTED || p->arm.links > MOST_PREDICTED) {
-        return false;
-    }
-    arm a;
-    arm_init(&a, p);
-    motion *work = motion_create(&a, &p->method);
-    if (work == NULL) {
-        return false;
-    }
-    status code = predict_linearised(&a, work, t->angles + state, t->velocities + state, out);
-    motion_destroy(work);
-    return code == STATUS_OK;
+    const sample *row = &st->session.run.trace.rows[r];
+    parameters p = session_parameters_at(&st->session, row->time);
+    p.motor.voltage = row->voltage;
+    return p;
 }
 
-// The same, asked once for each row: with more links than two it takes milliseconds, too long for
-// every frame of a run that plays.
-static bool linearised_at(const explorer_state *st, linearised_answer *known, const parameters *p,
-                          size_t r, prediction *out)
+// What a predictor says of the state in a row. The linearised arm is asked once for each row: with
+// more links than two it takes milliseconds, too long for every frame of a run that plays.
+static prediction_answer ask(const explorer_state *st, layout *lay, predictor which, size_t r)
 {
+    const trace *t = &st->session.run.trace;
+    const sample *row = &t->rows[r];
+    const size_t state = r * (size_t)t->angle_count;
+    const parameters p = parameters_in_row(st, r);
+    const prediction_question question = {
+        .parameters = &p,
+        .bodies = {{row->hub_angle, row->first_angle, row->last_angle},
+                   {row->hub_velocity, row->first_velocity, row->last_velocity}},
+        .angles = t->angles + state,
+        .velocities = t->velocities + state};
+    if (which != PREDICTOR_LINEARISED) {
+        return predict_with(which, &question);
+    }
+
+    linearised_answer *known = &lay->linearised;
     const unsigned long run = state_run_id(st);
     if (known->run != run || known->row != r) {
-        if (st->playback.playing && p->arm.links > 2) {
-            return false;
+        const bool waits = st->playback.playing && p.arm.links > 2;
+        if (waits || p.arm.links > MOST_PREDICTED) {
+            return (prediction_answer){.short_label = "linearised",
+                                       .outcome = PREDICTION_LINKS_UNKNOWN};
         }
-        known->run = run;
-        known->row = r;
-        known->known = ask_linearised(p, &st->session.run.trace, r, &known->answer);
+        *known = (linearised_answer){run, r, predict_with(which, &question)};
     }
-    *out = known->answer;
-    return known->known;
+    return known->answer;
 }
 
 // The row whose touch is asked about: the present one in free flight, else the last free one.
@@ -111,21 +113,16 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
     const session *e = &st->session;
     size_t r = free_row(e);
-    const sample *row = &e->run.trace.rows[r];
     bool touches = session_sample(e)->contact != 0;
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
                  touches ? "when it touched: peak" : "if it touched now: peak");
-    parameters p = session_parameters_at(e, row->time);
-    three_body_state state = {{row->hub_angle, row->first_angle, row->last_angle},
-                              {row->hub_velocity, row->first_velocity, row->last_velocity}};
-    prediction out = {0};
-    fault ignored;
-    bool known = predict_energy(&p, &state, &out, &ignored) == STATUS_OK;
-    predictor_line(s, a, 0, "energy", &out, known);
-    known = predict_impact_dynamics(&p, &state, &out, &ignored) == STATUS_OK;
-    predictor_line(s, a, 1, "impact dynamics", &out, known);
-    known = linearised_at(st, &lay->linearised, &p, r, &out);
-    predictor_line(s, a, 2, "linearised", &out, known);
+    static const predictor asked[] = {PREDICTOR_ENERGY, PREDICTOR_IMPACT_DYNAMICS,
+                                      PREDICTOR_LINEARISED};
+    for (int i = 0; i < 3; i++) {
+        const prediction_answer answer = ask(st, lay, asked[i], r);
+        predictor_line(s, a, i, answer.short_label, &answer.prediction, prediction_known(&answer));
+    }
+    prediction out;
     if (touches) {
         out = what_came(e, r);
         predictor_line(s, a, 3, "what came", &out, true);

@@ -2,6 +2,8 @@
 #include "ui/explorer/panels/page.h"
 #include "ui/terminal/key_codes.h"
 
+enum { PREVIEW = 6, TALL_SCREEN = 22 }; // rows of the preview, and of a screen that has room for it
+
 // The first line to show. It moves only as far as it must, so that a second click meets what the
 // first one selected.
 static int first_line(const scenario_menu *menu, int height)
@@ -33,12 +35,31 @@ static void draw_scenario(const scenario_menu *menu, int index, screen *s, area 
     }
 }
 
+// What the selected scenario is about, below a line.
+static void draw_preview(const scenario_menu *menu, screen *s, area a)
+{
+    text_line lines[PREVIEW];
+    for (int x = 0; x < a.width; x++) {
+        screen_put(s, a.x + x, a.y, 0x2500, INK_FRAME);
+    }
+    if (menu->selected >= menu->count || !scenario_menu_shows(menu, menu->selected)) {
+        return;
+    }
+    const char *text = scenario_menu_description(menu, menu->selected);
+    const int count = text_wrap(text, a.width, lines, a.height - 1, NULL);
+    for (int i = 0; i < count; i++) {
+        screen_print(s, a.x, a.y + 1 + i, a.width, INK_TEXT, "%.*s", lines[i].bytes,
+                     lines[i].start);
+    }
+}
+
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
     (void)body;
     const scenario_menu *menu = &st->scenarios;
-    area a = page_area(s, 96, menu->count + 4);
-    int height = a.height - 4, first = first_line(menu, height);
+    const int preview = s->height >= TALL_SCREEN ? PREVIEW : 0;
+    area a = page_area(s, 96, menu->count + 4 + preview);
+    int height = a.height - 4 - preview, first = first_line(menu, height);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  "scenarios (Enter opens, / filters, Esc closes)");
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "/ filter: %s%s", menu->filter,
@@ -57,9 +78,12 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
             continue;
         }
         int y = lines.y + line++ - first;
-        if (y >= lines.y && y < a.y + a.height - 1) {
+        if (y >= lines.y && y < lines.y + height) {
             draw_scenario(menu, i, s, (area){a.x + 2, y, a.width - 4, 1});
         }
+    }
+    if (preview > 0) {
+        draw_preview(menu, s, (area){a.x + 2, lines.y + height, a.width - 4, preview});
     }
 }
 
@@ -73,22 +97,27 @@ static action_result open_selected(explorer_state *st)
     return result_done();
 }
 
-// Keys go to the filter until it is closed.
-static void filter_key(scenario_menu *menu, int key)
+// Keys go to the filter until it is closed; Enter opens what is selected.
+static action_result filter_key(explorer_state *st, int key)
 {
-    if (key == KEY_CODE_ENTER || key == '\n' || key == KEY_CODE_ESCAPE) {
+    scenario_menu *menu = &st->scenarios;
+    const bool opens = key == KEY_CODE_ENTER || key == '\n';
+    if (opens || key == KEY_CODE_ESCAPE) {
         menu->filtering = false;
+    } else if (key == KEY_CODE_UP || key == KEY_CODE_DOWN) {
+        scenario_menu_move(menu, key == KEY_CODE_UP ? -1 : 1);
     } else {
         text_type(menu->filter, key);
     }
     scenario_menu_keep_selection_shown(menu);
+    return opens ? open_selected(st) : result_done();
 }
 
 static action_result list_key(explorer_state *st, int key)
 {
     scenario_menu *menu = &st->scenarios;
     if (menu->filtering) {
-        filter_key(menu, key);
+        return filter_key(st, key);
     } else if (key == '/') {
         menu->filtering = true;
         menu->filter[0] = '\0';

@@ -2,6 +2,9 @@
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
+#include <string.h>
+
+enum { NAME = 19, NUMBER = 10, UNIT = 6 }; // columns [cells]
 
 // Signals of sensors that are not fitted have none.
 static bool has_value(const sample *row, int signal)
@@ -9,11 +12,18 @@ static bool has_value(const sample *row, int signal)
     return !signal_table[signal].optional || !isnan(signal_value(row, signal));
 }
 
+// Whether a signal is in the list: it has a value, and the filter lets it through.
+static bool is_listed(const explorer_state *st, const sample *row, int signal)
+{
+    return has_value(row, signal) &&
+           filter_passes(st->filters.text[PANEL_VALUES], signal_table[signal].name);
+}
+
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
     const session *e = &st->session;
     const sample *row = session_sample(e), *beside = NULL;
-    const char *against = "";
+    const char *against = "", *filter = st->filters.text[PANEL_VALUES];
 
     // beside the values at the mark, or else those of the kept run
     if (st->mark.set) {
@@ -23,36 +33,48 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         beside = &e->other.trace.rows[trace_row_at(&e->other.trace, e->now)];
         against = ", minus old run";
     }
-    char title[64];
-    snprintf(title, sizeof title, "values%s", against);
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
 
     // as many as there is room for, from the line that it is scrolled to
     int height = a.height - 2, shown = 0, line = 0;
     for (int i = 0; i < signal_count; i++) {
-        shown += has_value(row, i);
+        shown += is_listed(st, row, i);
     }
     int first = layout_keep_scroll(lay, PANEL_VALUES, shown > height ? shown - height : 0);
     layout_add_hit(lay, (hit_area){.panel = PANEL_VALUES, .area = a});
+    char title[LINE_TEXT + 64], part[32] = "";
+    if (shown > height) {
+        snprintf(part, sizeof part, ", %d-%d of %d", first + 1, first + height, shown);
+    }
+    snprintf(title, sizeof title, "values%s%s%s%s", against, filter[0] ? " /" : "", filter, part);
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
 
+    // names in full where there is room for them beside two numbers
+    const int room = a.width - 4, numbers = beside != NULL ? 2 * NUMBER : NUMBER;
+    const bool wide = room >= NAME + numbers + UNIT;
+    const int names = room - numbers - (wide || beside == NULL ? UNIT : 0);
     for (int i = 0; i < signal_count && line < first + height; i++) {
-        if (!has_value(row, i) || line++ < first) {
+        if (!is_listed(st, row, i) || line++ < first) {
             continue;
         }
+        const signal_info *info = &signal_table[i];
         double value = signal_value(row, i), other = beside ? signal_value(beside, i) : 0;
         double difference = value - other, size = fmax(fabs(value), fabs(other));
         bool differs = beside != NULL && fabs(difference) > 1e-6 * size;
         char text[32];
-        int y = a.y + line - first;
-        screen_text(s, a.x + 2, y, 16, INK_TEXT, signal_table[i].name);
+        int y = a.y + line - first, x = a.x + 2;
+        const bool fits = (int)strlen(info->name) < names;
+        screen_text(s, x, y, names - 1, INK_TEXT, fits ? info->name : info->ascii);
+        x += names;
         draw_number(text, sizeof text, value);
-        screen_print(s, a.x + 18, y, a.width - 20, INK_TITLE, "%9s", text);
+        screen_print(s, x, y, NUMBER, INK_TITLE, "%9s", text);
+        x += NUMBER;
         if (beside != NULL) {
             draw_number(text, sizeof text, difference);
-            screen_print(s, a.x + 28, y, a.width - 30, differs ? INK_WARNING : INK_DIM, "%9s",
-                         text);
-        } else {
-            screen_text(s, a.x + 28, y, a.width - 30, INK_DIM, signal_table[i].unit);
+            screen_print(s, x, y, NUMBER, differs ? INK_WARNING : INK_DIM, "%9s", text);
+            x += NUMBER;
+        }
+        if (wide || beside == NULL) {
+            screen_text(s, x, y, a.x + a.width - 2 - x, INK_DIM, info->unit);
         }
     }
 }

@@ -21,7 +21,9 @@ int explorer_command_find(const char *name)
         if (strcmp(explorer_command_table[i].name, name) == 0) {
             return i;
         }
-        if (strncmp(explorer_command_table[i].name, name, strlen(name)) == 0) {
+        // a beginning never means the one that asks no questions
+        const char *own = explorer_command_table[i].name;
+        if (strncmp(own, name, strlen(name)) == 0 && own[strlen(own) - 1] != '!') {
             found = i;
             matches++;
         }

@@ -16,11 +16,15 @@
     X("", "edit", "", "type a new value of the selected parameter", act_edit)                      \
     X("", "nudge", "[-1]", "selected parameter a little up or down", act_nudge)                    \
     X("", "select", "[-1]", "next or previous parameter", act_select_parameter)                    \
+    X("", "fold", "[GROUP|all|none]", "fold a group of parameters, or show it", act_fold)          \
     X("", "push", "[N s]", "an impulse at the tip, 0.01 N s", act_push)                            \
     X("", "law", "[NAME|off]", "another control law; alone: off or on again", act_law)             \
     X("", "lock", "MODE|next|off", "hold the law in a mode, or let it choose", act_lock)           \
     X("", "model", "", "corrected or printed equations", act_exchange_model)                       \
     X("", "extend", "[S]", "a longer run", act_extend)                                             \
+    X("", "changes", "", "all changes: edit them, take single ones out", act_show_changes)         \
+    X("", "change", "N VALUE", "another value for the N-th change", act_edit_change)               \
+    X("", "drop", "N", "take the N-th change out", act_drop_change)                                \
     X("Two runs, undo", "branch", "", "keep this run and make another beside it", act_branch)      \
     X("", "forget", "", "drop the run kept for comparison", act_forget)                            \
     X("", "stop", "", "compute no further; Space at its end goes on", act_stop)                    \
@@ -29,6 +33,8 @@
     X("", "redo", "", "put it in again", act_redo)                                                 \
     X("Looking", "mark", "", "second cursor: differences to it", act_set_mark)                     \
     X("", "side", "", "parameters or values on the right", act_other_side)                         \
+    X("", "filter", "[WORDS]", "of parameters, values or help: those with all words", act_filter)  \
+    X("", "info", "", "what the scenario is about", act_show_info)                                 \
     X("Curves and their axes", "zoom", "in|out|all|FROM TO", "time axis round the cursor",         \
       act_zoom)                                                                                    \
     X("", "pan", "left|right|SECONDS", "time axis along the run", act_pan)                         \
@@ -42,6 +48,7 @@
       act_open_scenario_by)                                                                        \
     X("", "find", "[TEXT]", "the list, filtered by what is typed", act_find_scenario)              \
     X("", "save", "FILE", ".png .pdf .svg .csv .yaml .txt", act_save)                              \
+    X("", "save!", "FILE", "the same over a file that is there", act_save_over)                    \
     X("", "scene", "FILE.png", "picture of the arm at this instant", act_save_scene)               \
     X("The lab", "glyphs", "braille|blocks|ascii", "characters to draw with", act_set_glyphs)      \
     X("", "theme", "dark|light|mono", "colours for that ground", act_set_theme)                    \
@@ -54,7 +61,9 @@
     X("", "redraw", "", "draw the whole screen anew", act_redraw)                                  \
     X("", "wait", "SECONDS", "in a script: let time pass", act_wait_for)                           \
     X("", "help", "", "this page", act_show_help)                                                  \
-    X("", "quit", "", "leave the lab", act_quit)
+    X("", "interrupt", "", "stop what is being computed, else leave", act_interrupt)               \
+    X("", "quit", "", "leave the lab; asks if changes would be lost", act_quit)                    \
+    X("", "quit!", "", "leave the lab, whatever is lost", act_quit_now)
 
 // What is said of a command.
 typedef struct explorer_command {

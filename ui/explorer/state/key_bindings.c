@@ -81,7 +81,9 @@ static const binding bindings[] = {
     {"8", "trace 8"},
     {"9", "trace 9"},
     {"o", "open"},
-    {"/", "find"},
+    {"/", "filter"},
+    {"d", "info"},
+    {"H", "changes"},
     {"]", "open +1"},
     {"[", "open -1"},
     {"s", "save"},
@@ -90,7 +92,7 @@ static const binding bindings[] = {
     {"?", "help"},
     {"F1", "help"},
     {"q", "quit"},
-    {"C-c", "quit"},
+    {"C-c", "interrupt"},
 };
 enum { BINDINGS = sizeof bindings / sizeof bindings[0] };
 

@@ -25,7 +25,9 @@ typedef enum panel_place {
     X(PANEL_LOG, PLACE_STACK, log_panel)                                                           \
     X(PANEL_HELP, PLACE_PAGE, help_panel)                                                          \
     X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                                \
-    X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)
+    X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)                                              \
+    X(PANEL_CHANGES, PLACE_PAGE, changes_panel)                                                    \
+    X(PANEL_INFO, PLACE_PAGE, info_panel)
 
 typedef enum panel_id {
     PANEL_NONE,

@@ -17,6 +17,39 @@ void prompt_open(prompt *p, const char *format, ...)
     vsnprintf(p->text, sizeof p->text, format, list);
     va_end(list);
     p->open = true;
+    p->fixed = 0;
+    p->replaces = p->cycling = false;
+}
+
+void prompt_open_value(prompt *p, const char *text, const char *value)
+{
+    assert(p != NULL && text != NULL && value != NULL);
+    prompt_open(p, "%s%s", text, value);
+    p->fixed = (int)strlen(text);
+    p->replaces = value[0] != '\0';
+}
+
+bool prompt_type(prompt *p, int key)
+{
+    assert(p != NULL);
+    const bool erases = key == KEY_CODE_BACKSPACE || key == 127 || key == 8;
+    const bool has_value = strlen(p->text) > (size_t)p->fixed;
+    const bool replaces = p->replaces;
+    p->replaces = false;
+
+    // the end of the line keeps the value and goes on behind it
+    if (key == KEY_CODE_RIGHT || key == KEY_CODE_END || key == KEY_CODE_LEFT ||
+        key == KEY_CODE_HOME) {
+        return replaces;
+    }
+    if (has_value && (key == ('u' & 0x1f) || (replaces && erases))) {
+        p->text[p->fixed] = '\0';
+        return true;
+    }
+    if (replaces && key >= ' ' && key < KEY_CODE_FIRST) {
+        p->text[p->fixed] = '\0';
+    }
+    return text_type(p->text, key);
 }
 
 bool text_type(char *text, int key)

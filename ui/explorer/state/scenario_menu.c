@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/scenario/scenario.h"
+#include "ui/explorer/state/filters.h"
 
 void scenario_menu_read(scenario_menu *menu)
 {
@@ -29,10 +30,12 @@ void scenario_menu_read_titles(scenario_menu *menu)
         return;
     }
     menu->titles = calloc((size_t)menu->count, sizeof *menu->titles);
-    for (int i = 0; menu->titles != NULL && i < menu->count; i++) {
+    menu->descriptions = calloc((size_t)menu->count, sizeof *menu->descriptions);
+    for (int i = 0; menu->titles != NULL && menu->descriptions != NULL && i < menu->count; i++) {
         scenario s;
         if (scenario_open(&s, menu->names[i], ignore_fault, NULL) == STATUS_OK) {
             menu->titles[i] = s.title != NULL ? strdup(s.title) : NULL;
+            menu->descriptions[i] = s.description != NULL ? strdup(s.description) : NULL;
             scenario_finish(&s);
         }
     }
@@ -44,7 +47,9 @@ void scenario_menu_finish(scenario_menu *menu)
     for (int i = 0; i < menu->count; i++) {
         free(menu->names[i]);
         free(menu->titles != NULL ? menu->titles[i] : NULL);
+        free(menu->descriptions != NULL ? menu->descriptions[i] : NULL);
     }
+    free(menu->descriptions);
     free(menu->titles);
     free(menu->names);
     *menu = (scenario_menu){0};
@@ -66,11 +71,20 @@ const char *scenario_menu_title(const scenario_menu *menu, int index)
     return menu->titles != NULL && menu->titles[index] != NULL ? menu->titles[index] : "";
 }
 
+const char *scenario_menu_description(const scenario_menu *menu, int index)
+{
+    assert(menu != NULL && index >= 0 && index < menu->count);
+    return menu->descriptions != NULL && menu->descriptions[index] != NULL
+               ? menu->descriptions[index]
+               : "";
+}
+
 bool scenario_menu_shows(const scenario_menu *menu, int index)
 {
     assert(menu != NULL && index >= 0 && index < menu->count);
-    return strcasestr(menu->names[index], menu->filter) != NULL ||
-           strcasestr(scenario_menu_title(menu, index), menu->filter) != NULL;
+    char text[1024];
+    snprintf(text, sizeof text, "%s %s", menu->names[index], scenario_menu_title(menu, index));
+    return filter_passes(menu->filter, text);
 }
 
 int scenario_menu_in_line(const scenario_menu *menu, int line)

@@ -9,6 +9,7 @@
 typedef struct scenario_menu {
     char **names;  // of all scenarios
     char **titles; // theirs, where there is one; NULL before they are wanted
+    char **descriptions;
     int count;
     char filter[LINE_TEXT];
     bool filtering; // keys go to the filter
@@ -18,7 +19,7 @@ typedef struct scenario_menu {
 
 // Reads the names; the list stays empty if that fails.
 void scenario_menu_read(scenario_menu *menu);
-// Reads the titles, once.
+// Reads titles and descriptions, once.
 void scenario_menu_read_titles(scenario_menu *menu);
 void scenario_menu_finish(scenario_menu *menu);
 
@@ -26,7 +27,9 @@ void scenario_menu_finish(scenario_menu *menu);
 int scenario_menu_find(const scenario_menu *menu, const char *name);
 // The title of a scenario, "" if there is none or none was read.
 const char *scenario_menu_title(const scenario_menu *menu, int index);
-// Whether the filter lets a scenario through, by name or title.
+// What a scenario is about, "" if it does not say or none was read.
+const char *scenario_menu_description(const scenario_menu *menu, int index);
+// Whether the filter lets a scenario through, by words of its name or title.
 bool scenario_menu_shows(const scenario_menu *menu, int index);
 // The index of the scenario in a line of those shown, -1 beyond them.
 int scenario_menu_in_line(const scenario_menu *menu, int line);

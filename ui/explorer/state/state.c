@@ -4,6 +4,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/rig/controller.h"
+#include "src/rig/rig.h"
+#include "ui/explorer/state/inert.h"
+
 #define ROUNDING 1e-12 // a smaller range is rounding, and shown as a flat line
 
 static double duration_of(const explorer_state *st)
@@ -13,10 +17,34 @@ static double duration_of(const explorer_state *st)
 
 // --- opening and closing ----------------------------------------------------------------------
 
+// The parameter that a run is about: what its law presses with, or the voltage.
+static int main_parameter(const explorer_state *st)
+{
+    const parameters *p = &st->session.effective.parameters;
+    const controller *law = controller_of(p->control.law);
+    if (!state_has_law(st)) {
+        return PARAMETER_INDEX(motor.voltage);
+    }
+    for (int i = 0; law != NULL && i < law->parameter_count; i++) {
+        if (strcmp(law->parameters[i].name, "force") == 0) {
+            return PARAMETER_INDEX(control.force);
+        }
+    }
+    for (int i = 0; law != NULL && i < parameter_count; i++) {
+        const char *path = parameter_table[i].path;
+        const bool own = strncmp(path, "control.", 8) == 0 && law->parameter_count > 0;
+        if (own && strcmp(path + 8, law->parameters[0].name) == 0) {
+            return i;
+        }
+    }
+    return PARAMETER_INDEX(control.rate);
+}
+
 // How a session is looked at at first.
 static void look_afresh(explorer_state *st)
 {
     st->opened++;
+    parameter_list_arrange(&st->parameters, &st->session.effective.parameters, main_parameter(st));
     st->mark.set = false;
     time_window_show_all(&st->window);
     panes_define(&st->panes, state_has_law(st));
@@ -34,7 +62,6 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
     st->playback.speed = 0.2;
     st->looks.mouse = true;
     st->side.panel = panel_first_on_side();
-    st->side.parameter = PARAMETER_INDEX(motor.voltage);
     scenario_menu_read(&st->scenarios);
     look_afresh(st);
     return STATUS_OK;
@@ -109,17 +136,39 @@ const run_log *state_run_log(explorer_state *st)
     return &st->log;
 }
 
-bool state_parameter_applies(const explorer_state *st, int parameter)
+void state_change_text(const explorer_state *st, int index, char *text, size_t size)
 {
-    assert(st != NULL && parameter >= 0 && parameter < parameter_count);
-    const char *path = parameter_table[parameter].path;
-    if (strncmp(path, "printed.", 8) == 0) {
-        return st->session.effective.parameters.arm.model == ARM_PRINTED;
+    assert(st != NULL && index >= 0 && index < st->session.input_count && text != NULL);
+    const session_input *in = &st->session.inputs[index];
+    if (in->kind == SESSION_INPUT_PUSH) {
+        snprintf(text, size, "push %g N s", in->value);
+        return;
     }
-    if (strncmp(path, "sensor.", 7) == 0 || strncmp(path, "control.", 8) == 0) {
-        return state_has_law(st) || strcmp(path, "control.law") == 0;
+    const parameter_info *info = &parameter_table[in->parameter];
+    snprintf(text, size, "%s = %s%s%s", info->path, in->text, info->unit[0] ? " " : "", info->unit);
+}
+
+int state_later_changes(const explorer_state *st)
+{
+    assert(st != NULL);
+    const session *s = &st->session;
+    int count = 0;
+    for (int i = 0; i < s->input_count; i++) {
+        count += s->inputs[i].kind != SESSION_INPUT_START && s->inputs[i].time > s->now;
     }
-    return true;
+    return count;
+}
+
+int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES])
+{
+    assert(st != NULL);
+    return parameter_list_lines(&st->parameters, st->filters.text[PANEL_PARAMETERS], lines);
+}
+
+const char *state_inert_reason(const explorer_state *st, int parameter)
+{
+    assert(st != NULL);
+    return inert_reason(&st->session.effective.parameters, parameter);
 }
 
 // --- the visible part -------------------------------------------------------------------------

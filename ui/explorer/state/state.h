@@ -4,12 +4,14 @@
 
 #include "src/session/session.h"
 #include "ui/explorer/state/extremes.h"
+#include "ui/explorer/state/filters.h"
 #include "ui/explorer/state/key_bindings.h"
 #include "ui/explorer/state/law_modes.h"
 #include "ui/explorer/state/looks.h"
 #include "ui/explorer/state/message.h"
 #include "ui/explorer/state/panel_list.h"
 #include "ui/explorer/state/panes.h"
+#include "ui/explorer/state/parameter_list.h"
 #include "ui/explorer/state/playback.h"
 #include "ui/explorer/state/prompt.h"
 #include "ui/explorer/state/run_log.h"
@@ -30,7 +32,6 @@ typedef struct time_mark {
 typedef struct side_view {
     panel_id panel;
     bool in_front; // a narrow screen shows it in the place of the curves
-    int parameter; // selected, index in parameter_table
 } side_view;
 
 // What has opened over the panels.
@@ -56,8 +57,11 @@ typedef struct explorer_state {
     // what is shown of them
     pane_set panes;
     side_view side;
+    parameter_list parameters;
+    filters filters;
     page_view page;
     scenario_menu scenarios;
+    int change;            // selected among the changes, index in session.inputs
     int scroll[PANEL_IDS]; // by panel: lines it is away from where it stands by itself
     slider_grip slider;
     looks looks;
@@ -67,8 +71,10 @@ typedef struct explorer_state {
     message_line message;
     prompt prompt;
     key_bindings keys;
-    char last_law[LINE_TEXT]; // the one that was on when it was switched off, "" for none
-    bool settings_broken;     // the settings file has faults
+    char last_law[LINE_TEXT];    // the one that was on when it was switched off, "" for none
+    bool settings_broken;        // the settings file has faults
+    unsigned long saved_version; // the run that was saved as a scenario last, 0 for none
+    bool asked_to_quit;          // the last key did, and changes would be lost
     bool quit;
 
     // what is known of the runs, kept until they change
@@ -111,5 +117,11 @@ const law_modes *state_law_modes(explorer_state *st);
 // The log of the present run.
 const run_log *state_run_log(explorer_state *st);
 
-// Whether a parameter means anything for the run (printed.* only for the printed model...).
-bool state_parameter_applies(const explorer_state *st, int parameter);
+// The lines of the list of parameters that are shown; returns how many.
+int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES]);
+// A change as a line of text: what it gives what, without its instant.
+void state_change_text(const explorer_state *st, int index, char *text, size_t size);
+// Changes that take effect after the cursor.
+int state_later_changes(const explorer_state *st);
+// Why a parameter has no effect on the run, half a sentence; NULL if it has one.
+const char *state_inert_reason(const explorer_state *st, int parameter);

@@ -1,0 +1,387 @@
+// What the explorer must never do: change something else than was asked, lose something, or leave
+// one in the dark about what has an effect and when.
+#include "tests/explorer_on_screen.h"
+
+#include <math.h>
+#include <unistd.h>
+
+static double value_of(const explorer *ex, int parameter)
+{
+    parameters p = session_parameters_at(&ex->state.session, ex->state.session.now);
+    return parameter_get(&p, parameter);
+}
+
+static void test_typing_replaces_the_value(void **state)
+{
+    (void)state;
+    const int voltage = PARAMETER_INDEX(motor.voltage);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.2<Enter><Enter>0.5<Enter>");
+    check_close(value_of(&ex, voltage), 0.5, 0);
+
+    // Right keeps it and goes on behind it
+    press(&ex, "<Enter><Right>5<Enter>");
+    check_close(value_of(&ex, voltage), 0.55, 1e-15);
+
+    // C-u clears the value only, then the line
+    press(&ex, "<Enter><Right><C-u>");
+    assert_string_equal(ex.state.prompt.text, "set motor.voltage ");
+    press(&ex, "<C-u>");
+    assert_string_equal(ex.state.prompt.text, "");
+    press(&ex, "<Esc><Enter><Backspace>2<Enter>");
+    check_close(value_of(&ex, voltage), 2, 0);
+
+    // more than the amplifier gets is said
+    press(&ex, "<Enter>20<Enter>");
+    assert_shows(&ex, "the command saturates at 10 V");
+    assert_true(ex.state.message.warning);
+    explorer_finish(&ex);
+}
+
+// The first event of a kind after an instant; fails if there is none.
+static double event_after(const explorer *ex, event_kind kind, double time)
+{
+    const trace *t = &ex->state.session.run.trace;
+    for (size_t i = 0; i < t->event_count; i++) {
+        if (t->events[i].kind == kind && t->events[i].time >= time) {
+            return t->events[i].time;
+        }
+    }
+    fail_msg("no such event");
+    return 0;
+}
+
+static void change_before_contact(const char *name, const char *setting)
+{
+    char line[96];
+    explorer ex;
+    open_explorer(&ex, name);
+    press(&ex, "<End>II");
+    const session *s = &ex.state.session;
+    const double instant = s->now;
+    const size_t row = s->row;
+    assert_int_equal(session_sample(s)->contact, 0);
+    const double touched = event_after(&ex, EVENT_IMPACT, instant);
+    snprintf(line, sizeof line, ":set %s<Enter>", setting);
+    press(&ex, line);
+
+    // from the row shown on, before what comes; the cursor stays in free flight
+    const double changed = event_after(&ex, EVENT_CHANGE, 0);
+    const double touches = event_after(&ex, EVENT_IMPACT, changed);
+    assert_true(changed <= instant && changed > instant - 1e-6);
+    assert_true(touches > changed);
+    check_close(touches, touched, 1e-6);
+    assert_int_equal(session_sample(s)->contact, 0);
+    check_close(s->now, instant, 1e-6);
+
+    // undoing leads back to that very row
+    press(&ex, ":seek 0.1<Enter>u");
+    assert_int_equal(s->row, row);
+    check_close(s->now, instant, 0);
+    press(&ex, "U");
+    check_close(s->now, changed, 1e-12);
+    explorer_finish(&ex);
+}
+
+static void test_a_change_comes_before_the_contact_it_was_made_before(void **state)
+{
+    (void)state;
+    change_before_contact("corrected/first-impact", "motor.voltage 0.5");
+    change_before_contact("corrected/restitution", "wall.restitution 0.1");
+    change_before_contact("corrected/five-links", "motor.voltage 0.5");
+    change_before_contact("compare/hybrid", "control.lock approach");
+}
+
+static void test_what_has_no_effect_says_why(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    assert_int_equal(ex.state.parameters.parameter, PARAMETER_INDEX(control.force));
+    press(&ex, ":set motor.voltage 2<Enter>");
+    assert_shows(&ex, "without effect: the control law commands the voltage");
+    assert_true(ex.state.message.warning);
+    press(&ex, ":set sensor.film_gain<Enter>");
+    assert_shows(&ex, "no piezo film is fitted (sensor.film)");
+    press(&ex, ":open corrected/first-impact<Enter>");
+    assert_int_equal(ex.state.parameters.parameter, PARAMETER_INDEX(motor.voltage));
+    assert_null(state_inert_reason(&ex.state, PARAMETER_INDEX(motor.voltage)));
+    press(&ex, ":set printed.newton_iterations<Enter>");
+    assert_shows(&ex, "it belongs to arm.model = printed");
+
+    // a parameter that is called inert is: the run is the same to the last bit
+    press(&ex, ":seek end<Enter>");
+    const double end = session_sample(&ex.state.session)->hub_angle;
+    press(&ex, ":set printed.newton_iterations 5<Enter>:set control.kp 3<Enter>:set arm.k1 100"
+               "<Enter>:seek end<Enter>");
+    check_close(session_sample(&ex.state.session)->hub_angle, end, 0);
+    explorer_finish(&ex);
+}
+
+static void test_predictors_take_the_voltage_in_force(void **state)
+{
+    (void)state;
+    explorer ex;
+    char wanted[64];
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":set motor.voltage 0<Enter>i");
+    const session *s = &ex.state.session;
+    const sample *row = session_sample(s);
+    parameters p = session_parameters_at(s, s->now);
+    check_close(row->voltage, 1, 0.01);
+    p.motor.voltage = row->voltage;
+    const three_body_state bodies = {{row->hub_angle, row->first_angle, row->last_angle},
+                                     {row->hub_velocity, row->first_velocity, row->last_velocity}};
+    const prediction_question question = {.parameters = &p, .bodies = bodies};
+    const prediction_answer answer = predict_with(PREDICTOR_IMPACT_DYNAMICS, &question);
+    assert_true(answer.prediction.holds);
+    snprintf(wanted, sizeof wanted, "impact dynamics %.3f N in %.0f ms", answer.prediction.force,
+             1e3 * answer.prediction.delay);
+    assert_shows(&ex, wanted);
+    explorer_finish(&ex);
+}
+
+static void test_changes_to_come_are_seen_edited_and_dropped(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.5<Enter>:set motor.voltage 2<Enter>:seek 0.7<Enter>p<Home>");
+    assert_shows(&ex, "\u25cf 2 changes, \u25cb 2 later");
+    assert_shows(&ex, "0.50000 s  change motor.voltage = 2");
+    press(&ex, ":changes<Enter>");
+    assert_shows(&ex, "1 \u25cb   0.50000 s     motor.voltage = 2 V");
+    assert_shows(&ex, "2 \u25cb   0.70000 s     push 0.01 N s");
+
+    // the push goes, and comes back
+    press(&ex, "d");
+    assert_int_equal(ex.state.session.input_count, 1);
+    press(&ex, "U");
+    assert_int_equal(ex.state.session.input_count, 2);
+
+    // another value at the same instant, which undoing takes back
+    press(&ex, "k<Enter>3<Enter><Esc>");
+    check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 3, 0);
+    check_close(session_parameters_at(&ex.state.session, 0.49).motor.voltage, 1, 0);
+    check_close(ex.state.session.now, 0.7, 1e-15);
+    press(&ex, "u");
+    check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 2, 0);
+    press(&ex, ":drop 1<Enter>");
+    check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 1, 0);
+    press(&ex, ":drop 7<Enter>");
+    assert_true(ex.state.message.warning);
+    explorer_finish(&ex);
+}
+
+static void test_nudges_are_one_change_and_reversible(void **state)
+{
+    (void)state;
+    const int voltage = PARAMETER_INDEX(motor.voltage);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.2<Enter><lt>");
+    check_close(value_of(&ex, voltage), 0.9, 1e-15);
+    press(&ex, "<lt><lt>");
+    check_close(value_of(&ex, voltage), 0.7, 1e-15);
+    assert_int_equal(ex.state.session.input_count, 1);
+    press(&ex, "u");
+    check_close(value_of(&ex, voltage), 1, 0);
+    press(&ex, "<lt>>");
+    check_close(value_of(&ex, voltage), 1, 0);
+    assert_int_equal(ex.state.session.input_count, 0);
+
+    // whatever the number, as many steps back lead to where it was
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        const double before = value_of(&ex, i);
+        const bool leaves =
+            strncmp(info->path, "run.", 4) == 0 || strncmp(info->path, "method.", 7) == 0;
+        if (info->type != PARAMETER_REAL || leaves || !(before > info->minimum)) {
+            continue;
+        }
+        parameter_list_select(&ex.state.parameters, (parameter_line){i, false});
+        press(&ex, "<lt><lt><lt>>>>");
+        if (fabs(value_of(&ex, i) - before) > 1e-5 * fabs(before)) {
+            fail_msg("%s: %.17g and then %.17g", info->path, before, value_of(&ex, i));
+        }
+    }
+    explorer_finish(&ex);
+}
+
+static void test_saving_never_replaces_a_file_unasked(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/impactlab-save-XXXXXX", before[1024], whole[256];
+    explorer ex;
+    assert_non_null(mkdtemp(folder));
+    assert_non_null(getcwd(before, sizeof before));
+    assert_int_equal(chdir(folder), 0);
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":save run.csv<Enter>");
+    snprintf(whole, sizeof whole, "saved %s/run.csv", folder);
+    assert_shows(&ex, whole);
+    assert_false(explorer_carry_out(&ex, "save run.csv"));
+    assert_non_null(strstr(ex.state.message.text, "is there already"));
+    assert_true(explorer_carry_out(&ex, "save! run.csv"));
+
+    // names that are proposed say what changed, and count
+    press(&ex, ":seek 0.2<Enter>:set motor.voltage 0.5<Enter>s");
+    assert_string_equal(ex.state.prompt.text, "save first-impact-voltage-0.5.png");
+    press(&ex, "<Enter>s");
+    assert_string_equal(ex.state.prompt.text, "save first-impact-voltage-0.5-2.png");
+    press(&ex, "<Esc>");
+    assert_int_equal(unlink("run.csv"), 0);
+    assert_int_equal(unlink("first-impact-voltage-0.5.png"), 0);
+    assert_int_equal(chdir(before), 0);
+    assert_int_equal(rmdir(folder), 0);
+    explorer_finish(&ex);
+}
+
+static void test_everything_that_is_listed_can_be_filtered(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "/stic");
+    assert_shows(&ex, "parameters /stic");
+    assert_shows(&ex, "stiction");
+    assert_hides(&ex, "amplifier_gain");
+
+    // Enter goes on with what is selected
+    press(&ex, "<Enter>");
+    assert_string_equal(ex.state.prompt.text, "set motor.stiction 0.045");
+    press(&ex, "<Esc><Esc>");
+    assert_shows(&ex, "amplifier_gain");
+    press(&ex, "<Tab>/loss<Enter>");
+    assert_shows(&ex, "friction_loss");
+    assert_hides(&ex, "hub_acceleration");
+    press(&ex, "<Esc>");
+    assert_shows(&ex, "hub_acceleration");
+    press(&ex, "?/scenario<Enter>");
+    assert_shows(&ex, ":open");
+    assert_hides(&ex, ":zoom");
+    press(&ex, "<Esc><Esc>");
+
+    // a filtered list of scenarios opens at once
+    press(&ex, "o/five<Enter>");
+    assert_string_equal(ex.state.session.base.name, "corrected/five-links");
+    explorer_finish(&ex);
+}
+
+static void test_groups_of_parameters_fold(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    assert_shows(&ex, "\u25be motor");
+    assert_shows(&ex, "amplifier_gain");
+    press(&ex, "k<Enter>");
+    assert_shows(&ex, "\u25b8 motor");
+    assert_hides(&ex, "amplifier_gain");
+    press(&ex, "<Enter>");
+    assert_shows(&ex, "amplifier_gain");
+    press(&ex, ":fold all<Enter>");
+    assert_shows(&ex, "\u25b8 sensor");
+    press(&ex, ":set film_gain<Enter>");
+    assert_shows(&ex, "film_gain");
+    explorer_finish(&ex);
+}
+
+static void test_values_and_last_parts_are_completed_in_turn(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":set wall.kind p<Tab>");
+    assert_shows(&ex, "point plane");
+    press(&ex, "<Tab>");
+    assert_string_equal(ex.state.prompt.text, "set wall.kind point");
+    press(&ex, "<Tab>");
+    assert_string_equal(ex.state.prompt.text, "set wall.kind plane");
+    press(&ex, "<Tab>");
+    assert_string_equal(ex.state.prompt.text, "set wall.kind point");
+    press(&ex, "<C-u>set stic<Tab>");
+    assert_string_equal(ex.state.prompt.text, "set motor.stiction ");
+    press(&ex, "0.01<Enter>:set resti 0.5<Enter>");
+    check_close(ex.state.session.effective.parameters.motor.stiction, 0.01, 0);
+    check_close(ex.state.session.effective.parameters.wall.restitution, 0.5, 0);
+    press(&ex, ":open three<Tab>");
+    assert_string_equal(ex.state.prompt.text, "open corrected/three-links ");
+    press(&ex, "<C-u>theme l<Tab>");
+    assert_string_equal(ex.state.prompt.text, "theme light ");
+    explorer_finish(&ex);
+}
+
+static void test_descriptions_are_shown(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":info<Enter>");
+    assert_shows(&ex, "The thesis's three modes with");
+    press(&ex, "<Esc>o");
+    assert_shows(&ex, "The thesis's three modes with");
+    explorer_finish(&ex);
+}
+
+static void test_leaving_asks_if_changes_would_be_lost(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.2<Enter><lt>q");
+    assert_false(ex.state.quit);
+    assert_shows(&ex, "1 change would be lost");
+    press(&ex, "<Right>q");
+    assert_false(ex.state.quit);
+    press(&ex, "q");
+    assert_true(ex.state.quit);
+    ex.state.quit = false;
+    press(&ex, "<C-c>");
+    assert_false(ex.state.quit);
+    press(&ex, "<C-c>");
+    assert_true(ex.state.quit);
+    ex.state.quit = false;
+    press(&ex, "u<C-c>");
+    assert_true(ex.state.quit);
+    explorer_finish(&ex);
+}
+
+static void test_an_interrupt_stops_a_computation_first(void **state)
+{
+    (void)state;
+    explorer ex;
+    scenario s;
+    fault f = {0};
+    assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(scenario_override(&s, "run.duration=20", &f), STATUS_OK);
+    assert_int_equal(explorer_init(&ex, &s, 0, &f), STATUS_OK);
+    assert_non_null(ex.state.session.computing);
+    press(&ex, "<C-c>");
+    assert_null(ex.state.session.computing);
+    assert_false(ex.state.quit);
+    press(&ex, "<C-c>");
+    assert_true(ex.state.quit);
+    explorer_finish(&ex);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_typing_replaces_the_value),
+        cmocka_unit_test(test_a_change_comes_before_the_contact_it_was_made_before),
+        cmocka_unit_test(test_what_has_no_effect_says_why),
+        cmocka_unit_test(test_predictors_take_the_voltage_in_force),
+        cmocka_unit_test(test_changes_to_come_are_seen_edited_and_dropped),
+        cmocka_unit_test(test_nudges_are_one_change_and_reversible),
+        cmocka_unit_test(test_saving_never_replaces_a_file_unasked),
+        cmocka_unit_test(test_everything_that_is_listed_can_be_filtered),
+        cmocka_unit_test(test_groups_of_parameters_fold),
+        cmocka_unit_test(test_values_and_last_parts_are_completed_in_turn),
+        cmocka_unit_test(test_descriptions_are_shown),
+        cmocka_unit_test(test_leaving_asks_if_changes_would_be_lost),
+        cmocka_unit_test(test_an_interrupt_stops_a_computation_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,7 @@
+// Parameters that mean nothing for a run, and why.
+#pragma once
+
+#include "src/quantities/parameters.h"
+
+// Why a parameter has no effect on a run of these parameters: half a sentence; NULL if it has one.
+const char *inert_reason(const parameters *p, int parameter);

@@ -1,0 +1,43 @@
+// The list of parameters as it is shown: in groups that can be folded, and filtered.
+#pragma once
+
+#include "src/quantities/parameters.h"
+
+enum { PARAMETER_GROUPS = 16, PARAMETER_LINES = 256, PARAMETER_NAME = 80 };
+
+typedef struct parameter_list {
+    bool folded[PARAMETER_GROUPS]; // by group, in the order of the table
+    int parameter;                 // selected, index in parameter_table
+    bool on_heading;               // its group's heading is selected instead
+} parameter_list;
+
+// A line: a parameter, or the heading of the group that begins with it.
+typedef struct parameter_line {
+    int parameter;
+    bool heading;
+} parameter_line;
+
+// The group of a parameter, counted from 0, and its name ("motor").
+int parameter_group(int parameter);
+void parameter_group_name(int parameter, char *name, size_t size);
+
+// Folds what a run of these parameters has no use for, and the sensors' and beliefs' many numbers
+// where none was given; selects a parameter.
+void parameter_list_arrange(parameter_list *list, const parameters *p, int selected);
+
+// Fills the lines that are shown; returns how many. A filter shows what it lets through, folded or
+// not.
+int parameter_list_lines(const parameter_list *list, const char *filter,
+                         parameter_line lines[PARAMETER_LINES]);
+
+// The number of the selected line among those shown; 0 if it is not among them.
+int parameter_list_selected(const parameter_list *list, const parameter_line *lines, int count);
+
+// Selects a line.
+void parameter_list_select(parameter_list *list, parameter_line line);
+// Folds the group of a parameter, or shows it again; its heading is selected.
+void parameter_list_fold(parameter_list *list, int parameter);
+
+// The parameter of a path, of its last part or of a beginning of either, if only one has it; -1 if
+// none has, -2 if several have.
+int parameter_of_name(const char *name);
