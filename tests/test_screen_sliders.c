@@ -36,12 +36,14 @@ static void test_every_number_has_a_scale_that_suits_it(void **state)
     parameters p;
     fault f;
     parameters_defaults(&p, ARM_CORRECTED);
-    p.arm.link_inertia = 1e-3; // derived otherwise
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         bool number = info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER;
         double value = parameter_get(&p, i);
         slider_scale scale;
+        if (number && !isfinite(value)) {
+            continue; // follows from others where it is not given
+        }
         assert_int_equal(slider_scale_of(i, value, &scale), number);
         if (!number) {
             continue;
