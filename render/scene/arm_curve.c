@@ -6,27 +6,11 @@
 
 enum { CURVE_PIECES = 96 }; // of a beam with few links
 
-// The last row at or before t, -1 if there is none.
-static ptrdiff_t row_before(const trace *t, double time)
-{
-    size_t low = 0, high = t->row_count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (t->rows[middle].time <= time) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return (ptrdiff_t)low - 1;
-}
-
 // The rows on both sides of t and the share of the second.
 static size_t bracket(const trace *t, double time, size_t *after, double *share)
 {
-    ptrdiff_t found = row_before(t, time);
-    size_t before = found < 0 ? 0 : (size_t)found;
-    *after = before + 1 < t->row_count && found >= 0 ? before + 1 : before;
+    size_t until = trace_rows_until(t, time), before = until > 0 ? until - 1 : 0;
+    *after = until > 0 && until < t->row_count ? until : before;
     double span = t->rows[*after].time - t->rows[before].time;
     *share = span > 0 ? (time - t->rows[before].time) / span : 0;
     return before;
@@ -112,7 +96,7 @@ void scene_instants(const run_result *result, double *times, int count)
     }
 
     // the length of the tip's path, as an angle
-    size_t last = (size_t)row_before(t, end);
+    size_t last = trace_row_at(t, end);
     for (size_t i = 1; i <= last; i++) {
         path += fabs(t->rows[i].last_angle - t->rows[i - 1].last_angle);
     }

@@ -95,6 +95,7 @@ static size_t offset_of(int index)
 
 double summary_value(const summary *s, int index)
 {
+    assert(s != NULL);
     double value;
     memcpy(&value, (const char *)s + offset_of(index), sizeof value);
     return value;
@@ -105,10 +106,18 @@ const char *summary_status(const summary *s)
     return s->status != STATUS_OK ? "failed" : s->inaccurate ? "inaccurate" : "ok";
 }
 
+status summary_fault(const summary *s, fault *f)
+{
+    assert(s != NULL && s->status != STATUS_OK);
+    return fault_set_at(f, s->status, s->path, "%s", s->message);
+}
+
 void summary_init(summary *s)
 {
+    assert(s != NULL);
     const double none = (double)NAN;
     memset(s, 0, sizeof *s);
+    s->path = "";
     for (int i = 0; i < summary_count; i++) {
         memcpy((char *)s + offset_of(i), &none, sizeof none);
     }

@@ -5,12 +5,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 // The results of a run. A quantity that did not occur is NaN (null in JSON).
 typedef struct summary {
     status status;
     bool inaccurate;    // it came to its end, but the energy ledger lacks more than may be
+    const char *path;   // of the parameter that stopped the run, a literal; "" if none did
     char message[1024]; // what stopped the run, or a remark; "" if there is none
     char method[32];    // the method in fact used, "Runge-Kutta 8"
     // numbers only from here on, see summary_value
@@ -72,6 +73,10 @@ double summary_value(const summary *s, int index);
 
 // "ok", "inaccurate" or "failed", as JSON and databases have it.
 const char *summary_status(const summary *s);
+
+// The fault that ended a run: fills f (may be NULL) with its sentence and parameter. Returns the
+// status.
+status summary_fault(const summary *s, fault *f);
 
 // The summary of a run of which nothing is known yet: STATUS_OK, no texts, every number NaN.
 void summary_init(summary *s);

@@ -24,10 +24,10 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
         return STATUS_OK;
     }
     if (!law->lockable || law->modes == NULL) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "control.lock = '%.60s', but the law '%s' cannot be held in a mode, "
-                         "expected none",
-                         lock, law->name);
+        return fault_set_at(f, STATUS_BAD_SCENARIO, "control.lock",
+                            "control.lock = '%.60s', but the law '%s' cannot be held in a mode, "
+                            "expected none",
+                            lock, law->name);
     }
 
     for (int i = 0; law->modes[i] != NULL; i++) {
@@ -39,9 +39,9 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
 
     char modes[256];
     list_modes(law, modes, sizeof modes);
-    return fault_set(f, STATUS_BAD_SCENARIO,
-                     "control.lock = '%.60s' is no mode of the law '%s', expected none, %s", lock,
-                     law->name, modes);
+    return fault_set_at(f, STATUS_BAD_SCENARIO, "control.lock",
+                        "control.lock = '%.60s' is no mode of the law '%s', expected none, %s",
+                        lock, law->name, modes);
 }
 
 status rig_lock(rig *r, const char *lock, fault *f)

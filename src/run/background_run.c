@@ -1,5 +1,6 @@
 #include "src/run/background_run.h"
 
+#include <assert.h>
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -40,6 +41,8 @@ static bool start_thread(background_run *c)
 {
     static const int own[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL};
     sigset_t blocked, before;
+
+    // a new thread inherits the mask of the one that starts it
     sigfillset(&blocked);
     for (size_t i = 0; i < sizeof own / sizeof own[0]; i++) {
         sigdelset(&blocked, own[i]);
@@ -53,10 +56,13 @@ static bool start_thread(background_run *c)
 background_run *background_run_start(const scenario *s, size_t rows_expected, bool resume,
                                      run_result *begun, const run_result *other, bool at_once)
 {
+    assert(s != NULL && rows_expected > 0 && (begun != NULL || !resume));
     background_run *c = calloc(1, sizeof *c);
     if (c == NULL) {
         return NULL;
     }
+
+    // the scenario, the rows that it begins with, and the run that it may have rows in common with
     c->scenario = *s;
     c->options = (run_options){.keep_trace = true,
                                .monitor = &c->monitor,
@@ -68,12 +74,16 @@ background_run *background_run_start(const scenario *s, size_t rows_expected, bo
     if (other != NULL && run_share(other, rows_expected, &c->other) != STATUS_OK) {
         c->other = (run_result){0}; // then rows are kept twice
     }
+
+    // waiting is by a clock that nobody sets
     pthread_condattr_t clock;
     pthread_condattr_init(&clock);
     pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
     pthread_mutex_init(&c->lock, NULL);
     pthread_cond_init(&c->ended, &clock);
     pthread_condattr_destroy(&clock);
+
+    // without a thread it is computed here
     c->threaded = !at_once && start_thread(c);
     if (!c->threaded) {
         compute(c);
@@ -83,6 +93,9 @@ background_run *background_run_start(const scenario *s, size_t rows_expected, bo
 
 bool background_run_wait(background_run *c, double seconds)
 {
+    assert(c != NULL && seconds >= 0);
+
+    // the instant at which waiting ends
     struct timespec until;
     clock_gettime(CLOCK_MONOTONIC, &until);
     double whole = floor(seconds);
@@ -92,6 +105,7 @@ bool background_run_wait(background_run *c, double seconds)
         until.tv_sec++;
         until.tv_nsec -= 1000000000;
     }
+
     pthread_mutex_lock(&c->lock);
     int late = 0;
     while (!c->over && late == 0) {
@@ -104,6 +118,7 @@ bool background_run_wait(background_run *c, double seconds)
 
 size_t background_run_look(background_run *c, run_result *view)
 {
+    assert(c != NULL && view != NULL);
     size_t rows = atomic_load_explicit(&c->monitor.rows, memory_order_acquire);
     if (rows > 0) {
         const trace *t = &c->result.trace;
@@ -120,21 +135,25 @@ size_t background_run_look(background_run *c, run_result *view)
 
 double background_run_time(background_run *c)
 {
+    assert(c != NULL);
     return atomic_load_explicit(&c->monitor.time, memory_order_relaxed);
 }
 
 void background_run_stop(background_run *c)
 {
+    assert(c != NULL);
     atomic_store_explicit(&c->monitor.stop, true, memory_order_relaxed);
 }
 
 run_result background_run_finish(background_run *c)
 {
+    assert(c != NULL);
     if (c->threaded) {
         pthread_join(c->thread, NULL);
     }
+
+    // rows are shared here, where the caller reads no rows
     run_result result = c->result;
-    // here, where the caller reads no rows
     run_merge(&result, &c->other, &c->same);
     run_finish(&c->other);
     pthread_mutex_destroy(&c->lock);

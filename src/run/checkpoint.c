@@ -1,9 +1,9 @@
 #include "src/run/checkpoint.h"
 
-#include "src/base/instant.h"
-
 #include <assert.h>
 #include <string.h>
+
+#include "src/base/instant.h"
 
 enum {
     CHECKPOINT_ROWS = 512, // from one checkpoint to the next
@@ -36,6 +36,8 @@ status checkpoint_open_history(recording *r, const motion *m, fault *f)
     run_history *h = &r->result->history;
     size_t expected = r->options->rows_expected;
     size_t size = sizeof(checkpoint) + (size_t)m->size * sizeof(double);
+
+    // shared, plain, or one that others can share
     if (h->forces.array.reserved > 0) {
         return STATUS_OK; // shared with the run that is resumed
     }
@@ -66,6 +68,7 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
         return false;
     }
 
+    // all that the steps to come depend on
     h->checkpoint_count++;
     checkpoint *kept = checkpoint_at(h, h->checkpoint_count - 1);
     *kept = (checkpoint){.time = now,
@@ -97,6 +100,7 @@ void checkpoint_restore(recording *r, arm *a, motion *m)
     arm_init(a, &r->now);
     r->state = kept->recording;
 
+    // and the motion
     memcpy(m->state, kept->state, (size_t)m->size * sizeof(double));
     m->steps = kept->steps;
     m->start_energy = kept->start_energy;

@@ -100,6 +100,7 @@ static status begin(corrected_run *c, fault *f)
     const parameters *p = &r->scenario->parameters;
     summary *s = &r->result->summary;
     snprintf(s->method, sizeof s->method, "%s", m->engine->name);
+
     if (motion_unresolved(&c->arm, m)) {
         snprintf(s->message, sizeof s->message,
                  "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): the "
@@ -112,6 +113,7 @@ static status begin(corrected_run *c, fault *f)
     if (failed != STATUS_OK) {
         return failed;
     }
+
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
     failed = corrected_run_rig(c, f);
     r->state.grid_row = 1;
@@ -126,6 +128,8 @@ static status advance_to_end(corrected_run *c, fault *f)
     const parameters *p = &r->scenario->parameters;
     const double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
     status failed = STATUS_OK;
+
+    // script and rig act between stretches of motion, each ending where one of them is due
     while (failed == STATUS_OK && m->state[SLOT_TIME] < duration) {
         if (same_instant(m->state[SLOT_TIME], window)) {
             r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
@@ -197,6 +201,8 @@ static void sum_up(corrected_run *c, status failed)
     s->max_penetration_m = fmax(0, m->largest_penetration);
     s->motor_work_J = m->state[SLOT_MOTOR_WORK];
     s->separations += r->state.separated;
+
+    // what contact came to
     if (!isnan(s->first_contact_s)) {
         if (r->state.pulse_open) {
             corrected_close_first_pulse(c);

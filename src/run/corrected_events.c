@@ -63,8 +63,8 @@ static status record_applied_event(corrected_run *c, const motion_report *report
     recording *r = c->recording;
     motion *m = c->motion;
     summary *s = &r->result->summary;
-    double now = m->state[SLOT_TIME];
-    bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
+    const double now = m->state[SLOT_TIME];
+    const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
     status failed = record_event(r, m, kind_of(m, report), report);
     s->impacts += report->event == MOTION_IMPACT;
 
@@ -88,6 +88,7 @@ static status record_applied_event(corrected_run *c, const motion_report *report
         r->state.chatters++;
     }
 
+    // it opens again, for the first time the pulse ends
     bool apart = m->state[SLOT_CONTACT] == 0 && (closes || report->event == MOTION_RELEASE);
     if (apart && r->state.pulse_open) {
         corrected_close_first_pulse(c);
@@ -122,6 +123,8 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
 {
     motion *m = c->motion;
     run_result *result = c->recording->result;
+
+    // before it
     status failed = corrected_record_row(c, m->state, 0);
     if (failed == STATUS_OK && report->event == MOTION_IMPACT && result->before_impact == NULL) {
         failed = keep_state_before_impact(result, m);
@@ -130,6 +133,7 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
         return failed;
     }
 
+    // and after it
     motion_apply(&c->arm, m, report);
     add_impulse_to_sensors(c, report);
     failed = record_applied_event(c, report);
@@ -169,6 +173,7 @@ static status run_action(corrected_run *c, int index, fault *f)
         return failed;
     }
 
+    // the arm goes on under another parameter, or with the push's impulse
     if (todo->kind == ACTION_SET) {
         failed = set_parameter(c, todo, f);
     } else {
@@ -214,10 +219,13 @@ static status apply_command(corrected_run *c)
     motion *m = c->motion;
     bool contact = m->state[SLOT_CONTACT] != 0;
     double now = m->state[SLOT_TIME], before = c->arm.motor.torque;
+
+    // the motor's torque until now is done with
     recording_change_command(r, now, state_angles(m, m->state)[0]);
     arm_set_voltage(&c->arm, r->rig->voltage);
     motion_retorque(&c->arm, m, before);
 
+    // less torque may let the contact go
     status failed = STATUS_OK;
     if (contact && m->state[SLOT_CONTACT] == 0) {
         motion_report lost = {.event = MOTION_RELEASE};

@@ -35,6 +35,7 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
         return STATUS_OK;
     }
 
+    // the state's parts, and the links that the signals name
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
     int first = a->first, last = a->dof - 1;
@@ -68,6 +69,7 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
         .impact_loss = state[SLOT_IMPACT_LOSS],
         .energy_residual = motion_energy_residual(a, m, state),
     };
+
     recording_add_rig_signals(r, &row);
     return recording_add_row(r, &row, q, w);
 }
@@ -95,6 +97,7 @@ static status record_grid(corrected_run *c, bool at_event)
     if (!r->options->keep_trace) {
         return STATUS_OK;
     }
+
     for (;; r->state.grid_row++) {
         double time = (double)r->state.grid_row * interval;
         bool at_end = fabs(time - now) <= GRID_TOLERANCE * interval;
@@ -151,6 +154,7 @@ static force_step force_over_step(const motion *m)
     double length = m->state[SLOT_TIME] - start[SLOT_TIME];
     double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
                       state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+
     // between stops that differ by rounding only, the integral's difference is all rounding
     double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
     return (force_step){.start = start[SLOT_TIME],
@@ -165,7 +169,9 @@ status corrected_record_step(corrected_run *c, bool at_event)
     recording *r = c->recording;
     motion *m = c->motion;
     const force_step force = force_over_step(m);
-    double length = force.end - force.start;
+    const double length = force.end - force.start;
+
+    // how far the arm has gone from the wall
     if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
         r->state.separated = step_separated(c);
     }

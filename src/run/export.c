@@ -83,16 +83,21 @@ static json_t *events_array(const scenario *s, const trace *t)
 
 json_t *export_run(const scenario *s, const run_result *result)
 {
+    assert(s != NULL && result != NULL);
     const summary *m = &result->summary;
     json_t *object = json_object();
     if (object == NULL) {
         return NULL;
     }
+
+    // which run, and how it went
     json_object_set_new(object, "scenario", json_text(s->name));
     json_object_set_new(object, "version", json_string(lab_version()));
     json_object_set_new(object, "status", json_string(summary_status(m)));
     json_object_set_new(object, "message", json_text(m->message));
     json_object_set_new(object, "method_used", json_text(m->method));
+
+    // what went in and what came out
     json_object_set_new(object, "parameters", parameters_object(&s->parameters));
     for (int i = 0; i < summary_count; i++) {
         json_object_set_new(object, summary_table[i].key, json_number(summary_value(m, i)));
@@ -123,6 +128,7 @@ void export_csv(FILE *stream, const trace *t, int links)
     size_t angles = links > 2 ? (size_t)t->angle_count : 0;
     csv_writer csv = csv_begin(stream);
 
+    // headings: signals, and the angles of a beam that the signals do not show whole
     for (int i = 0; i < count; i++) {
         csv_heading(&csv, signal_table[columns[i]].name, signal_table[columns[i]].unit);
     }
@@ -133,6 +139,7 @@ void export_csv(FILE *stream, const trace *t, int links)
     }
     csv_end_row(&csv);
 
+    // a row each; writing ends with the first error, which the stream keeps
     for (size_t row = 0; row < t->row_count && !ferror(stream); row++) {
         for (int i = 0; i < count; i++) {
             csv_number(&csv, signal_value(&t->rows[row], columns[i]));

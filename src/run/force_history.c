@@ -20,6 +20,7 @@ bool force_history_reserve(force_history *h, size_t least, size_t most)
 
 void force_history_finish(force_history *h)
 {
+    assert(h != NULL);
     shared_array_finish(&h->array);
     memset(h, 0, sizeof *h);
 }
@@ -36,9 +37,8 @@ status force_history_add(force_history *h, force_step step)
 // The last instant within a step at which the force is `edge`, as a share of it; -1 if none.
 static double last_crossing(const force_step *step, double edge)
 {
-    // force = first + slope s + curve s^2 for 0 <= s <= 1
-    double curve = 3 * (step->first + step->last) - 6 * step->mean;
-    double slope = step->last - step->first - curve, offset = step->first - edge;
+    const step_parabola force = step_parabola_of(step);
+    const double curve = force.curve, slope = force.slope, offset = force.first - edge;
     double latest = -1;
 
     // a straight line
@@ -58,6 +58,7 @@ static double last_crossing(const force_step *step, double edge)
 
 double force_settled_since(const force_history *h, double final)
 {
+    assert(h != NULL && isfinite(final));
     const force_step *steps = force_steps(h);
     double band = SETTLED_BAND * fabs(final);
 

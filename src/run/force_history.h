@@ -12,6 +12,18 @@ typedef struct force_step {
     double first, last, mean; // [N]
 } force_step;
 
+// The force within a step as a parabola of its share s of the step: first + slope s + curve s^2.
+typedef struct step_parabola {
+    double first, slope, curve; // [N]
+} step_parabola;
+
+// The parabola through the ends of a step that has its mean.
+static inline step_parabola step_parabola_of(const force_step *step)
+{
+    double curve = 3 * (step->first + step->last) - 6 * step->mean;
+    return (step_parabola){step->first, step->last - step->first - curve, curve};
+}
+
 // The array is plain (after force_history_init) or shared between runs (after
 // force_history_reserve); all zero is an empty one that may be finished.
 typedef struct force_history {

@@ -12,23 +12,12 @@ typedef struct window_end {
     double impulses; // of those that it has passed [N s]
 } window_end;
 
-// The force within a step as a parabola of its share s of the step: first + slope s + curve s^2.
-typedef struct step_parabola {
-    double first, slope, curve; // [N]
-} step_parabola;
-
-static step_parabola parabola_of(const force_step *step)
-{
-    double curve = 3 * (step->first + step->last) - 6 * step->mean;
-    return (step_parabola){step->first, step->last - step->first - curve, curve};
-}
-
 // Integral of the force from the step's start to an instant within it [N s].
 static double integral_within(const force_step *step, double time)
 {
     double length = step->end - step->start;
     double s = length > 0 ? fmin(fmax((time - step->start) / length, 0), 1) : 0;
-    step_parabola p = parabola_of(step);
+    step_parabola p = step_parabola_of(step);
     return length * s * (p.first + s * (p.slope / 2 + s * p.curve / 3));
 }
 
@@ -46,6 +35,8 @@ static void advance(const run_result *r, window_end *w, double time, bool past_i
         w->before += steps[w->step].mean * (steps[w->step].end - steps[w->step].start);
         w->step++;
     }
+
+    // and past impulses
     while (w->event < t->event_count && (t->events[w->event].time < time ||
                                          (past_impulses && t->events[w->event].time == time))) {
         w->impulses += is_impulse(&t->events[w->event]) ? t->events[w->event].impulse : 0;
@@ -71,6 +62,8 @@ static double next_change(const run_result *r, const window_end *front, const wi
     double next = steps[front->step].end;
     double after = steps[back->step].end + window;
     next = after > front->time && after < next ? after : next;
+
+    // events of both ends, the back's as the front meets them later
     for (int end = 0; end < 2; end++) {
         const window_end *w = end == 0 ? front : back;
         for (size_t i = w->event; i < r->trace.event_count; i++) {
@@ -99,12 +92,13 @@ static double largest_between(const run_result *r, const window_end *front, cons
             continue;
         }
         double s = (from - (end == 0 ? 0 : window) - step->start) / length;
-        step_parabola p = parabola_of(step);
+        step_parabola p = step_parabola_of(step);
         sums[0] += sign * (p.first + s * (p.slope + s * p.curve));
         sums[1] += sign * (p.slope + 2 * s * p.curve) / length;
         sums[2] += sign * p.curve / (length * length);
     }
 
+    // its roots: between them the integral only grows or only falls
     double square = sums[1] * sums[1] - 4 * sums[2] * sums[0];
     for (int sign = -1; sign <= 1 && square >= 0; sign += 2) {
         double denominator = -sums[1] + sign * sqrt(square); // 2 a / (...) stands c = 0 as well

@@ -49,8 +49,10 @@ static status note_contact(recording *r, const printed_row *row)
 {
     summary *s = &r->result->summary;
     recording_state *state = &r->state;
-    bool was_in_contact = state->pulse_open;
+    const bool was_in_contact = state->pulse_open;
     status failed = STATUS_OK;
+
+    // the first row in contact
     s->max_penetration_m = fmax(s->max_penetration_m, -row->gap);
     if (row->contact && isnan(s->first_contact_s)) {
         begin_first_pulse(r, row);
@@ -59,6 +61,7 @@ static status note_contact(recording *r, const printed_row *row)
         return STATUS_OK; // the wall is still to be met
     }
 
+    // contact begins anew, or ends
     note_peaks(r, row);
     if (row->contact && !was_in_contact) {
         s->impacts++;
@@ -71,6 +74,7 @@ static status note_contact(recording *r, const printed_row *row)
         }
         failed = record_event(r, row->time, EVENT_RELEASE, -1);
     }
+
     state->pulse_open = row->contact;
     state->separated |= row->gap > SEPARATION_GAP;
     return failed;
@@ -83,6 +87,8 @@ static status add_row(const printed_run_state *run, const printed_row *row)
     if (!r->options->keep_trace) {
         return STATUS_OK;
     }
+
+    // the printed equations keep no energies, and their listing no rate of the gap
     sample sampled = {
         .time = row->time,
         .hub_angle = row->angle[0],
@@ -111,6 +117,7 @@ static status add_row(const printed_run_state *run, const printed_row *row)
         .impact_loss = (double)NAN,
         .energy_residual = (double)NAN,
     };
+
     recording_add_rig_signals(r, &sampled);
     return recording_add_row(r, &sampled, row->angle, row->velocity);
 }
@@ -139,6 +146,7 @@ static status record_row(printed_run_state *run, fault *f)
     double before = first ? 0 : last->last, start = first ? row->time : last->end;
     force_step step = {start, row->time, before, row->force, (before + row->force) / 2};
 
+    // what the sensors felt of it
     if (r->rig != NULL) {
         sensed_motion now = sensed_at(row);
         sensors_follow(&r->rig->sensors, row->time - start, first ? &now : &run->sensed, &now,
@@ -173,6 +181,7 @@ static status run_script(printed_run_state *run, fault *f)
         if (todo->time > time) {
             break;
         }
+
         status failed = action_apply(todo, &r->now, f);
         if (failed == STATUS_OK && r->rig != NULL) {
             failed = rig_lock(r->rig, r->now.control.lock, f);
@@ -185,6 +194,7 @@ static status run_script(printed_run_state *run, fault *f)
         }
         changed = true;
     }
+
     if (changed) {
         printed_motion_rebind(&run->motion, &r->now);
     }
@@ -222,6 +232,8 @@ static void refine_sampled_peak(const recording *r, double *force, double *since
         if (steps[i].end != at) {
             continue;
         }
+
+        // the top lies between the neighbours where the parabola opens downwards
         double before = steps[i - 1].last, after = steps[i + 1].last;
         double h = steps[i].end - steps[i - 1].end;
         double second = before - 2 * *force + after, slope = (after - before) / 2;
@@ -259,6 +271,8 @@ static void sum_up(const printed_run_state *run, status failed)
     s->steps = (double)run->motion.steps;
     s->motor_work_J = s->energy_residual_J = (double)NAN; // (2.16) as printed conserves no energy
     s->separations += r->state.separated;
+
+    // peaks between rows
     if (!isnan(s->first_contact_s)) {
         refine_sampled_peak(r, &s->first_pulse_peak_N, &s->first_pulse_time_to_peak_s);
         refine_sampled_peak(r, &s->peak_force_N, &s->time_to_peak_s);
@@ -297,12 +311,15 @@ status run_printed(recording *r, fault *f)
         return failed;
     }
 
+    // the row of time 0, with the command that the rig starts with
     force_history_init(&r->result->history.forces);
     printed_motion_start(&run.motion, &r->now);
     if (r->rig != NULL) {
         printed_motion_set_voltage(&run.motion, r->rig->voltage);
     }
     failed = record_row(&run, f);
+
+    // between two rows: script, rig, a step
     while (failed == STATUS_OK && !printed_motion_ended(&run.motion)) {
         failed = run_script(&run, f);
         if (failed == STATUS_OK) {

@@ -24,6 +24,8 @@ static double same_until(const scenario *a, const scenario *b)
 {
     const int duration = PARAMETER_INDEX(run.duration);
     double until = HUGE_VAL;
+
+    // parameters: only the duration may differ later than at the start
     for (int i = 0; i < parameter_count; i++) {
         if (same_parameter(&a->parameters, &b->parameters, i)) {
             continue;
@@ -35,6 +37,8 @@ static double same_until(const scenario *a, const scenario *b)
         double shorter = fmin(a->parameters.run.duration, b->parameters.run.duration);
         until = fmax(0, shorter - STEADY_WINDOW);
     }
+
+    // scripts: up to the first action that is not in both
     for (int i = 0; i < a->action_count || i < b->action_count; i++) {
         const action *x = i < a->action_count ? &a->actions[i] : NULL;
         const action *y = i < b->action_count ? &b->actions[i] : NULL;
@@ -62,7 +66,9 @@ static bool share(const run_result *from, const shared_part *part, size_t rows_e
 {
     const run_history *old = &from->history;
     run_history *own = &result->history;
-    size_t most = recording_most_rows(rows_expected);
+    const size_t most = recording_most_rows(rows_expected);
+
+    // rows and events
     bool shared =
         trace_reserve(&result->trace, from->trace.angle_count, rows_expected, most) == STATUS_OK &&
         trace_share(&result->trace, &from->trace, part->rows, part->events) == STATUS_OK;
@@ -70,6 +76,7 @@ static bool share(const run_result *from, const shared_part *part, size_t rows_e
         return shared; // there is no history to be shared
     }
 
+    // forces and checkpoints
     shared = checkpoint_reserve(own, old->checkpoints.size, rows_expected) &&
              shared_array_share(&own->forces.array, &old->forces.array, part->force_steps) &&
              shared_array_share(&own->checkpoints, &old->checkpoints, part->checkpoints);
@@ -142,6 +149,7 @@ static size_t fewer(size_t a, size_t b)
 
 shared_chunks run_compare_rows(const run_result *result, const run_result *other)
 {
+    assert(result != NULL && other != NULL);
     const trace *a = &result->trace, *b = &other->trace;
     const run_history *h = &result->history, *k = &other->history;
     size_t rows = fewer(a->row_count, b->row_count);
@@ -157,6 +165,7 @@ shared_chunks run_compare_rows(const run_result *result, const run_result *other
 
 void run_merge(run_result *result, const run_result *other, const shared_chunks *same)
 {
+    assert(result != NULL && other != NULL && same != NULL);
     shared_array_merge(&result->trace.row_array, &other->trace.row_array, same->rows);
     shared_array_merge(&result->trace.angle_array, &other->trace.angle_array, same->angles);
     shared_array_merge(&result->trace.velocity_array, &other->trace.velocity_array,

@@ -17,6 +17,7 @@ status recording_start_rig(recording *r, fault *f)
     if (p->control.law == LAW_NONE) {
         return STATUS_OK;
     }
+
     r->command = (recorded_command){.hub_angle = p->initial.angle};
     r->result->summary.electrical_energy_J = 0;
     status s = rig_create(&r->rig, p, f);
@@ -42,6 +43,7 @@ void recording_add_rig_signals(const recording *r, sample *row)
 
 void recording_change_command(recording *r, double time, double hub_angle)
 {
+    assert(r != NULL && r->rig != NULL);
     const recorded_command *c = &r->command;
     r->result->summary.electrical_energy_J +=
         motor_electrical_energy(&r->now.motor, c->volts, time - c->time, hub_angle - c->hub_angle);
@@ -56,6 +58,8 @@ void recording_finish_rig_summary(recording *r, double hub_angle)
     if (r->rig == NULL) {
         return;
     }
+
+    // energy up to the end, and what the controller made of its task
     recording_change_command(r, p->run.duration, hub_angle);
     s->largest_command_V = r->rig->largest_command;
     s->force_command_N = p->control.force;

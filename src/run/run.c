@@ -35,24 +35,28 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
 {
     assert(s != NULL && options != NULL && result != NULL);
     recording r = {.scenario = s, .result = result, .options = options, .now = s->parameters};
-    fault f = {STATUS_OK, ""};
-    double start = computing_time();
+    fault f = {.text = "", .path = ""};
+    const double start = computing_time();
     if (!options->resume) {
         memset(result, 0, sizeof *result);
         summary_start(&result->summary);
     }
+
+    // the model's run, with the rig if a law is chosen
     status code = recording_start_rig(&r, &f);
     if (code == STATUS_OK) {
         code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
     }
     rig_destroy(r.rig);
-    if (code != STATUS_OK && f.code == STATUS_OK) {
-        fault_set(&f, code, "%s", status_text(code));
-    }
+
+    // what stopped it
     result->summary.status = code;
     if (code != STATUS_OK) {
-        snprintf(result->summary.message, sizeof result->summary.message, "%s", f.text);
+        const char *why = f.code != STATUS_OK ? f.text : status_text(code);
+        snprintf(result->summary.message, sizeof result->summary.message, "%s", why);
+        result->summary.path = f.path;
     }
+
     result->summary.wall_time_s = computing_time() - start;
     if (result->history.forces.array.reserved == 0) {
         force_history_finish(&result->history.forces); // needed until here only
@@ -63,6 +67,7 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
 int run_check_expectations(const scenario *s, const run_result *result, fault_handler report,
                            void *context)
 {
+    assert(s != NULL && result != NULL && (report != NULL || s->expectation_count == 0));
     int missed = 0;
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
@@ -72,6 +77,7 @@ int run_check_expectations(const scenario *s, const run_result *result, fault_ha
             continue;
         }
 
+        // as the editor that opens the file wants it: place, what is and what was expected
         char sentence[512], found[64] = "nothing (null)";
         if (!isnan(value)) {
             snprintf(found, sizeof found, "%.9g", value);

@@ -1,5 +1,6 @@
 #include "src/run/trace.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -15,6 +16,7 @@ static size_t angles_size(int angle_count)
     return (angle_count > 0 ? (size_t)angle_count : 1) * sizeof(double);
 }
 
+// Plain arrays move as they grow: where the four lie now.
 static void find_places(trace *t)
 {
     t->rows = t->row_array.base;
@@ -25,6 +27,7 @@ static void find_places(trace *t)
 
 void trace_init(trace *t, int angle_count)
 {
+    assert(t != NULL && angle_count >= 0);
     memset(t, 0, sizeof *t);
     t->angle_count = angle_count;
     shared_array_init(&t->row_array, sizeof(sample));
@@ -35,6 +38,7 @@ void trace_init(trace *t, int angle_count)
 
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
 {
+    assert(t != NULL && angle_count >= 0);
     memset(t, 0, sizeof *t);
     t->angle_count = angle_count;
     bool reserved =
@@ -46,12 +50,14 @@ status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
         trace_finish(t);
         return STATUS_NO_MEMORY;
     }
+
     find_places(t);
     return STATUS_OK;
 }
 
 void trace_finish(trace *t)
 {
+    assert(t != NULL);
     shared_array_finish(&t->row_array);
     shared_array_finish(&t->angle_array);
     shared_array_finish(&t->velocity_array);
@@ -61,6 +67,8 @@ void trace_finish(trace *t)
 
 status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 {
+    assert(t != NULL && t->row_count == 0 && from != NULL);
+    assert(rows <= from->row_count && events <= from->event_count);
     if (!shared_array_share(&t->row_array, &from->row_array, rows) ||
         !shared_array_share(&t->angle_array, &from->angle_array, rows) ||
         !shared_array_share(&t->velocity_array, &from->velocity_array, rows) ||
@@ -92,6 +100,7 @@ status trace_add_row(trace *t, const sample *row, const double *angles, const do
     if (full && !make_room(t)) {
         return STATUS_NO_MEMORY;
     }
+
     t->rows[t->row_count] = *row;
     memcpy(t->angles + t->row_count * n, angles, n * sizeof *angles);
     memcpy(t->velocities + t->row_count * n, velocities, n * sizeof *velocities);
@@ -113,8 +122,30 @@ status trace_add_event(trace *t, event e)
     return STATUS_OK;
 }
 
+size_t trace_rows_until(const trace *t, double time)
+{
+    assert(t != NULL && !isnan(time));
+    size_t low = 0, high = t->row_count; // the first row after `time` lies in [low, high]
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (t->rows[middle].time <= time) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+size_t trace_row_at(const trace *t, double time)
+{
+    size_t until = trace_rows_until(t, time);
+    return until > 0 ? until - 1 : 0;
+}
+
 bool trace_has(const trace *t, int signal)
 {
+    assert(t != NULL);
     for (size_t i = 0; i < t->row_count; i++) {
         if (isfinite(signal_value(&t->rows[i], signal))) {
             return true;

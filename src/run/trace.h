@@ -32,8 +32,7 @@ const char *event_name(event_kind kind);
 
 typedef struct trace {
     sample *rows;
-    double *
-        angles; // row r: angles[r * angle_count ...], hub first if it has an angle of its own [rad]
+    double *angles;     // row r: angles[r * angle_count ...], the hub's first if it has one [rad]
     double *velocities; // the same of their velocities [rad/s]
     event *events;
     size_t row_count, event_count;
@@ -56,6 +55,12 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events);
 // is no room.
 status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities);
 status trace_add_event(trace *t, event e);
+
+// How many rows have a time that is not after `time` [s].
+size_t trace_rows_until(const trace *t, double time);
+
+// The last row whose time is not after `time` [s]; 0 for an earlier time.
+size_t trace_row_at(const trace *t, double time);
 
 // Whether any row holds a finite value of the signal.
 bool trace_has(const trace *t, int signal);

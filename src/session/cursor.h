@@ -16,7 +16,3 @@ bool session_step(session *s, long rows);
 // after the event. False if there is none. session_event tells the event at the cursor, or NULL.
 bool session_step_event(session *s, int direction);
 const event *session_event(const session *s);
-
-// The last row of a trace whose time is not after `time`; 0 for an earlier time. The trace must
-// have a row.
-size_t trace_row_at(const trace *t, double time);

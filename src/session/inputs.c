@@ -52,6 +52,7 @@ static double effect_time(const session *s)
 // Adds an input and computes the run; takes it out again if that fails.
 static status add_input(session *s, const session_input *in, fault *f)
 {
+    // room for it
     if (s->input_count == s->input_capacity) {
         int capacity = s->input_capacity ? 2 * s->input_capacity : 16;
         session_input *inputs = realloc(s->inputs, (size_t)capacity * sizeof *inputs);
@@ -61,6 +62,8 @@ static status add_input(session *s, const session_input *in, fault *f)
         s->inputs = inputs;
         s->input_capacity = capacity;
     }
+
+    // it takes the place of the first that could be redone, which comes back if the run fails
     session_input replaced = s->inputs[s->input_count];
     s->inputs[s->input_count++] = *in;
     session_seek(s, fmin(s->now, in->time));
@@ -85,12 +88,15 @@ status session_change(session *s, int parameter, const char *text, fault *f)
         return fault_set(f, STATUS_BAD_ARGUMENT, "the value of %s is too long", info->path);
     }
     snprintf(in.text, sizeof in.text, "%s", text);
+
+    // a copy of the parameters checks the value
     parameters scratch = session_parameters_at(s, s->now);
     in.before = info->type == PARAMETER_TEXT ? (double)NAN : parameter_get(&scratch, parameter);
     status code = parameter_set_text(&scratch, parameter, text, f);
     if (code != STATUS_OK) {
         return code;
     }
+
     in.value = parameter_get(&scratch, parameter);
     if (info->timed && s->now > 0) {
         in.kind = SESSION_INPUT_TIMED;
@@ -135,6 +141,7 @@ status session_adjust(session *s, int parameter, const char *text, fault *f)
 
 status session_push(session *s, double impulse, fault *f)
 {
+    assert(s != NULL);
     session_input in = {.kind = SESSION_INPUT_PUSH,
                         .time = effect_time(s),
                         .parameter = -1,
@@ -152,6 +159,7 @@ status session_push(session *s, double impulse, fault *f)
 
 status session_undo(session *s, fault *f)
 {
+    assert(s != NULL);
     if (s->input_count == 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo");
     }
@@ -167,6 +175,7 @@ status session_undo(session *s, fault *f)
 
 status session_redo(session *s, fault *f)
 {
+    assert(s != NULL);
     if (s->input_count == s->input_total) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo");
     }

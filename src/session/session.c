@@ -25,6 +25,7 @@ status session_init(session *s, scenario *base, fault *f)
 
 void session_finish(session *s)
 {
+    assert(s != NULL);
     session_stop(s);
     session_forget_other(s);
     run_finish(&s->run);

@@ -35,6 +35,8 @@ static status build_effective(const session *s, scenario *to, fault *f)
     if (to->actions == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
     }
+
+    // the script's actions, then the inputs among them: an input comes after what is due with it
     status code = STATUS_OK;
     for (int i = 0; i < s->base.action_count; i++) {
         scenario_insert_action(to, s->base.actions[i]);
@@ -62,8 +64,8 @@ static double expected_rows(const parameters *p)
 
 static status check_memory(const parameters *p, fault *f)
 {
-    double rows = expected_rows(p);
-    double bytes =
+    const double rows = expected_rows(p);
+    const double bytes =
         rows * (double)(sizeof(sample) + 2 * sizeof(double) * (size_t)(p->arm.links + 1));
     if (bytes > MEMORY_BUDGET) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -85,7 +87,8 @@ static void survey_force(session *s)
     }
 }
 
-// Takes over the run that was being computed, as far as it went. The cursor may be beyond its end.
+// Puts the run that was being computed in the place of the present one, as far as it went. The
+// cursor may be beyond its end.
 static void collect_run(session *s)
 {
     s->run = background_run_finish(s->computing);
@@ -133,8 +136,9 @@ static status start_run(session *s, const scenario *effective, fault *f)
 
     // a run that diverges is worth looking at; one without a single row is not
     if (run.trace.row_count == 0) {
-        status code = run.summary.status == STATUS_OK ? STATUS_NO_MEMORY : run.summary.status;
-        fault_set(f, code, "%s", run.summary.message);
+        status code = run.summary.status != STATUS_OK
+                          ? summary_fault(&run.summary, f)
+                          : fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
         run_finish(&run);
         return code;
     }
@@ -149,11 +153,15 @@ static status start_run(session *s, const scenario *effective, fault *f)
 status session_compute(session *s, fault *f)
 {
     assert(s != NULL);
+
+    // what it would be
     scenario effective;
     status code = build_effective(s, &effective, f);
     if (code == STATUS_OK) {
         code = check_memory(&effective.parameters, f);
     }
+
+    // the machine is needed for the new run alone
     bool unfinished = end_computing(s);
     if (code == STATUS_OK) {
         code = start_run(s, &effective, f);
@@ -184,14 +192,19 @@ status session_compute(session *s, fault *f)
 
 bool session_follow(session *s)
 {
+    assert(s != NULL);
     if (s->computing == NULL) {
         return false;
     }
+
+    // it is over
     if (background_run_wait(s->computing, 0)) {
         collect_run(s);
         session_seek(s, s->now);
         return true;
     }
+
+    // or has more rows
     size_t before = s->run.trace.row_count;
     bool more = background_run_look(s->computing, &s->run) > before;
     survey_force(s);
@@ -201,6 +214,7 @@ bool session_follow(session *s)
 
 bool session_stop(session *s)
 {
+    assert(s != NULL);
     bool stopped = end_computing(s);
     if (s->run.trace.row_count > 0) {
         session_seek(s, s->now);
@@ -210,9 +224,12 @@ bool session_stop(session *s)
 
 status session_go_on(session *s, fault *f)
 {
+    assert(s != NULL);
     if (s->computing != NULL || s->run.summary.status != STATUS_STOPPED) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "the run was not stopped");
     }
+
+    // a cursor that has been further than the rows there are stays remembered
     double seen = s->seen;
     status code = start_run(s, &s->effective, f);
     s->version += code == STATUS_OK;
@@ -224,21 +241,26 @@ status session_go_on(session *s, fault *f)
 
 parameters session_parameters_at(const session *s, double time)
 {
+    assert(s != NULL);
     return scenario_parameters_at(&s->effective, time);
 }
 
 status session_branch(session *s, fault *f)
 {
+    assert(s != NULL);
     run_result kept;
     if (s->computing != NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "the run is still being computed: wait for its end, or stop it with Esc");
     }
+
+    // the rows are shared, not copied
     size_t rows = (size_t)expected_rows(&s->effective.parameters) + 1;
     status code = run_share(&s->run, rows, &kept);
     if (code != STATUS_OK) {
         return fault_set(f, code, "%s", status_text(code));
     }
+
     session_forget_other(s);
     s->other = kept;
     s->has_other = true;
@@ -248,6 +270,7 @@ status session_branch(session *s, fault *f)
 
 void session_forget_other(session *s)
 {
+    assert(s != NULL);
     if (s->has_other) {
         run_finish(&s->other);
         s->has_other = false;

@@ -36,9 +36,9 @@ static status run_with(const scenario *s, const parameters *p, summary *result, 
     status code = run_scenario(&changed, false, &run);
     *result = run.summary;
     run_finish(&run);
-    return code == STATUS_OK
-               ? code
-               : fault_set(f, code, "with a step of %g s: %s", p->method.step, result->message);
+    return code == STATUS_OK ? code
+                             : fault_set_at(f, code, result->path, "with a step of %g s: %s",
+                                            p->method.step, result->message);
 }
 
 status convergence_compute(const scenario *s, convergence_panel *panel, fault *f)

@@ -33,6 +33,7 @@ static void summarise_refusal(summary *s, const fault *why)
 {
     summary_init(s);
     s->status = why->code;
+    s->path = why->path;
     snprintf(s->message, sizeof s->message, "%s", why->text);
 }
 
@@ -41,7 +42,7 @@ static void compute_run(void *context, size_t run, void *scratch, void *result)
     const sweep_execution *e = context;
     summary *s = result;
     scenario derived;
-    fault f = {0};
+    fault f = {.path = ""};
     (void)scratch;
     // the computing time of this thread alone
     double start = seconds(CLOCK_THREAD_CPUTIME_ID);

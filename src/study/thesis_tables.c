@@ -137,7 +137,7 @@ static status simulate_corrected(const parameters *p, cell *c, fault *f)
         c->peak = result.summary.first_pulse_peak_N;
         c->delay = result.summary.first_pulse_time_to_peak_s;
     } else {
-        fault_set(f, outcome, "%s", result.summary.message);
+        summary_fault(&result.summary, f);
     }
     run_finish(&result);
     return outcome;

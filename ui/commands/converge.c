@@ -87,7 +87,7 @@ static status run_all(const scenario *s, const convergence_panel *panel, three_r
         r->scenario[i].parameters.method.step = panel->step[i];
         status code = run_scenario(&r->scenario[i], true, &r->result[i]);
         if (code != STATUS_OK) {
-            return fault_set(f, code, "%s", r->result[i].summary.message);
+            return summary_fault(&r->result[i].summary, f);
         }
     }
     return STATUS_OK;
