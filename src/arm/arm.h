@@ -29,6 +29,7 @@ typedef struct arm {
     motor_model motor;        // with the command in force
     wall_model wall;
     double highest_frequency; // upper estimate over the arm's free modes [rad/s]
+    double fastest_decay;     // of overdamped modes and of the hub alone [1/s]
     double fastest_rate;      // the same or, if faster, weighted decays: sets the steps [1/s]
 } arm;
 

@@ -6,6 +6,10 @@
 
 #include "src/arm/chain.h"
 
+// What a decay counts against a vibration: it dies within a step or two and need only be stable,
+// not accurate, which an explicit method is at a step several times longer.
+#define DECAY_WEIGHT 0.125
+
 void arm_set_voltage(arm *a, double volts)
 {
     assert(a != NULL && isfinite(volts));
@@ -104,19 +108,16 @@ static double highest_frequency(const arm *source)
 
 // How fast the linear motion can be, for choosing steps: modes vibrate at w; overdamped ones, since
 // stiffness-proportional damping has zeta grow with w, decay at w (zeta + sqrt(zeta^2 - 1)); so
-// does the hub alone. A decay dies within a step or two and need only be stable, not accurate,
-// which an explicit method is at a step several times longer than a vibration allows.
-static double fastest_rate(const arm *a)
+// does the hub alone.
+static double fastest_decay(const arm *a)
 {
-    const double decay_weight = 1.0 / 8;
     double w = a->highest_frequency, stiffest = fmax(a->joint_stiffness, a->hub_stiffness);
     double damping = fmax(a->joint_damping, a->hub_joint_damping);
     double ratio = stiffest > 0 ? 0.5 * w * damping / stiffest : 0;
     double decay = ratio > 1 ? w * (ratio + sqrt(ratio * ratio - 1)) : 0;
     double reach = a->link_length * (a->hub_spring ? 0 : 1);
     double hub = a->hub_inertia + a->link_mass * reach * reach / 12;
-    decay = fmax(decay, hub > 0 ? a->motor.damping / hub : 0);
-    return fmax(w, decay_weight * decay);
+    return fmax(decay, hub > 0 ? a->motor.damping / hub : 0);
 }
 
 void arm_init(arm *a, const parameters *p)
@@ -142,5 +143,6 @@ void arm_init(arm *a, const parameters *p)
         a->hub_joint_damping = per_stiffness * a->hub_stiffness;
     }
     a->highest_frequency = highest_frequency(a);
-    a->fastest_rate = fastest_rate(a);
+    a->fastest_decay = fastest_decay(a);
+    a->fastest_rate = fmax(a->highest_frequency, DECAY_WEIGHT * a->fastest_decay);
 }

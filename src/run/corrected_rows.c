@@ -10,7 +10,12 @@
 #define WRONG_ENERGY   0.1  // share of the energy turned over that may not be unaccounted for
 #define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near a step's end lies at it
 
-enum { SEPARATION_BISECTIONS = 30 };
+// A parabola is right to 1e-4 of the fastest mode's force, and of what sensors with a lag see of it
+// to 1e-5, over so much of (fastest rate) x (time).
+#define FORCE_REACH  0.25
+#define SENSOR_REACH 0.5
+
+enum { SEPARATION_BISECTIONS = 30, MOST_PIECES = 64 };
 
 status corrected_audit(corrected_run *c)
 {
@@ -164,6 +169,76 @@ static force_step force_over_step(const motion *m)
                         .mean = length > SHORTEST_MEAN ? integral / length : ends};
 }
 
+// In how many pieces a step that goes far in (fastest rate) x (length) is taken where parabolas
+// have to do for what happens within it. Only a dense engine goes so far.
+static int pieces_of_step(const corrected_run *c, double length, double reach)
+{
+    const motion *m = c->motion;
+    if (!engine_is_dense(m->engine) || motion_held_still(m)) {
+        return 1;
+    }
+    return (int)fmin(fmax(1, ceil(length * c->arm.highest_frequency / reach)), MOST_PIECES);
+}
+
+// Keeps the force over the step just made, in pieces that are parabolas to sight.
+static status record_force(corrected_run *c, const force_step *whole)
+{
+    recording *r = c->recording;
+    const motion *m = c->motion;
+    const double length = whole->end - whole->start;
+    const bool contact = m->trial[SLOT_CONTACT] != 0;
+    const int pieces = contact ? pieces_of_step(c, length, FORCE_REACH) : 1;
+    if (pieces == 1) {
+        return recording_add_step(r, *whole);
+    }
+
+    // the mean of the cubic through both ends' values and slopes
+    status s = STATUS_OK;
+    const double width = length / pieces;
+    glance last = m->engine->force_at(&c->arm, m, 0);
+    for (int i = 1; i <= pieces && s == STATUS_OK; i++) {
+        glance first = last;
+        last = m->engine->force_at(&c->arm, m, i * width);
+        double mean = (first.value + last.value) / 2 + width * (first.slope - last.slope) / 12;
+        force_step piece = {.start = whole->start + (i - 1) * width,
+                            .end = i < pieces ? whole->start + i * width : whole->end,
+                            .first = first.value,
+                            .last = last.value,
+                            .mean = mean};
+        s = recording_add_step(r, piece);
+    }
+    return s;
+}
+
+// Lets the sensors follow the arm over the step just made.
+static status follow_with_sensors(corrected_run *c, const force_step *whole)
+{
+    motion *m = c->motion;
+    sensors *on = &c->recording->rig->sensors;
+    const double length = whole->end - whole->start;
+    const int pieces = pieces_of_step(c, length, SENSOR_REACH);
+    sensed_motion first = corrected_sensed_motion(c, m->trial);
+    double integral = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    for (int i = 1; i < pieces; i++) {
+        double *state = motion_between(&c->arm, m, whole->start + length * i / pieces);
+        if (state == NULL) {
+            return STATUS_NOT_FINITE;
+        }
+        sensed_motion here = corrected_sensed_motion(c, state);
+        double pressed = state_quadratures(m, state)[QUADRATURE_FORCE];
+        double mean = (pressed - integral) / (length / pieces);
+        sensors_follow(on, length / pieces, &first, &here, mean);
+        first = here;
+        integral = pressed;
+    }
+
+    sensed_motion last = corrected_sensed_motion(c, m->state);
+    double pressed = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    double mean = pieces > 1 ? (pressed - integral) / (length / pieces) : whole->mean;
+    sensors_follow(on, length / pieces, &first, &last, mean);
+    return STATUS_OK;
+}
+
 status corrected_record_step(corrected_run *c, bool at_event)
 {
     recording *r = c->recording;
@@ -181,14 +256,12 @@ status corrected_record_step(corrected_run *c, bool at_event)
     status s = motion_held_still(m) ? STATUS_OK : corrected_audit(c);
 
     // the sensors lag behind what they are fixed to
-    if (r->rig != NULL) {
-        sensed_motion first = corrected_sensed_motion(c, m->trial);
-        sensed_motion last = corrected_sensed_motion(c, m->state);
-        sensors_follow(&r->rig->sensors, length, &first, &last, force.mean);
+    if (s == STATUS_OK && r->rig != NULL) {
+        s = follow_with_sensors(c, &force);
     }
 
     if (s == STATUS_OK && length > 0) {
-        s = recording_add_step(r, force);
+        s = record_force(c, &force);
     }
     return s == STATUS_OK ? record_grid(c, at_event) : s;
 }

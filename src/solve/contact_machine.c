@@ -45,6 +45,7 @@
 #include <string.h>
 
 #include "src/arm/impact.h"
+#include "src/solve/dense_location.h"
 #include "src/solve/locate.h"
 #include "src/base/instant.h"
 
@@ -106,6 +107,9 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
     hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
     int choices = hub_rests ? 3 : 1, ways = touching ? 2 : 1;
+    // what the event itself has ended would violate something an instant later: what it left for is
+    // taken although rounding speaks against it
+    int preferred = event == MOTION_RELEASE ? choices : event == MOTION_SLIP ? 2 : 0;
     double least = 0;
     contact_state best = {false, sliding};
 
@@ -120,7 +124,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
             least = v;
             best = contact_state_of(state);
         }
-        if (v <= FORCE_TOLERANCE / 1000) {
+        if (v <= (i < preferred ? FORCE_TOLERANCE : FORCE_TOLERANCE / 1000)) {
             best = contact_state_of(state);
             break;
         }
@@ -319,6 +323,34 @@ static status cut_step(const arm *a, motion *m, double step, status tried, doubl
     return s == STATUS_OK ? s : step_to_event(a, m, h, first, any);
 }
 
+// A stride of a dense engine, which looks for events within it: to the first of them, to the cut or
+// to its end, h [s].
+static status dense_stride(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    dense_first_event(a, m, h, first, any);
+    double left = m->cut - m->state[SLOT_TIME];
+    if (*h > left) {
+        *h = left;
+        *any = false;
+    }
+    if (m->state[SLOT_CONTACT] != 0) {
+        dense_peak(a, m, *h);
+    }
+    return motion_try_step(a, m, *h);
+}
+
+// A step of a stepping engine, which steps again for all that may be within.
+static status tried_step(const arm *a, motion *m, double step, double wanted, double *h,
+                         watch *first, bool *any)
+{
+    status s = step_to_event(a, m, h, first, any);
+    s = cut_step(a, m, step, s, wanted, h, first, any);
+    if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
+        s = locate_peak(a, m, *h);
+    }
+    return s;
+}
+
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL && step > 0);
@@ -328,10 +360,11 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step), h = wanted;
     watch first = WATCH_GAP;
     bool any = false;
-    status s = step_to_event(a, m, &h, &first, &any);
-    s = cut_step(a, m, step, s, wanted, &h, &first, &any);
-    if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
-        s = locate_peak(a, m, h);
+    status s = STATUS_NO_PROGRESS;
+    if (engine_is_dense(m->engine) && !motion_held_still(m)) {
+        s = wanted > 0 ? dense_stride(a, m, &h, &first, &any) : s;
+    } else {
+        s = tried_step(a, m, step, wanted, &h, &first, &any);
     }
     if (s != STATUS_OK) {
         m->failure_time = m->state[SLOT_TIME] + h;

@@ -24,7 +24,7 @@ static double watch_value(const arm *a, const motion *m, const double *state, wa
     return 1;
 }
 
-static double watch_tolerance(watch w)
+double watch_tolerance(watch w)
 {
     return w == WATCH_GAP        ? TOUCH_TOLERANCE
            : w == WATCH_FORCE    ? FORCE_TOLERANCE
@@ -32,7 +32,7 @@ static double watch_tolerance(watch w)
                                  : 0;
 }
 
-static bool watch_active(const arm *a, const motion *m, watch w)
+bool watch_active(const arm *a, const motion *m, watch w)
 {
     bool contact = m->state[SLOT_CONTACT] != 0;
     bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;

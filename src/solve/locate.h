@@ -1,9 +1,16 @@
-// What happens within a step, and when: located by stepping again from the step's start.
+// What happens within a step, and when: located by stepping again from the step's start. Where the
+// engine is dense, dense_location.h does it in the stride itself.
 #pragma once
 
 #include "src/solve/motion.h"
 
 #define FORCE_TOLERANCE 1e-9 // tension that counts as a release [N]
+
+// Whether the function says anything about the contact state that the motion is in.
+bool watch_active(const arm *a, const motion *m, watch w);
+
+// How far below zero it may be without having left its admissible side, in its unit.
+double watch_tolerance(watch w);
 
 // Looks for the first function that leaves its admissible side within (0, *h], m->trial being the
 // state after a step *h. If there is one, *any is true, *first says which, and *h and m->trial move

@@ -21,6 +21,8 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->engine = &newmark_engine;
         m->beta = method->beta;
         m->gamma = method->gamma;
+    } else if (method->name == METHOD_EVENT && taylor_engine_suits(a)) {
+        m->engine = &taylor_engine;
     } else if (method->name == METHOD_GENERALIZED_ALPHA || too_stiff) {
         m->engine = &generalized_alpha_engine;
         // Chung and Hulbert (1993), equations (17), (18), (25)

@@ -1,0 +1,161 @@
+#include "src/solve/dense_location.h"
+
+#include <math.h>
+
+#include "src/solve/locate.h"
+
+#define ROOT_RESOLUTION 1e-16 // [s]
+#define SAME_PEAK       1e-13 // share of a peak that makes no difference
+
+enum { MOST_CUTS = 40, MOST_ITERATIONS = 100 };
+
+// A function at one instant of the stride.
+typedef struct point {
+    double time; // since the stride's start [s]
+    glance at;
+} point;
+
+// The root of a function that falls from `lo` to `hi`, the function taken from `look`, its slope
+// too: Newton's method within the bracket, halved where that leaves it or gains too little.
+static double root_between(const arm *a, const motion *m, watch w, point lo, point hi)
+{
+    double from = lo.time, to = hi.time;
+    double t = from + (to - from) * lo.at.value / (lo.at.value - hi.at.value);
+    double width = to - from;
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        if (!(t > from && t < to)) {
+            t = 0.5 * (from + to);
+        }
+        glance g = m->engine->look(a, m, w, t);
+        if (g.value > 0) {
+            from = t;
+        } else {
+            to = t;
+        }
+        double next = t - g.value / g.slope;
+        double resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
+        if (fabs(next - t) <= resolution || to - from <= resolution) {
+            return fmin(fmax(next, lo.time), hi.time);
+        }
+        // three steps that do not halve the bracket are followed by one that does
+        if (i % 3 == 2) {
+            next = to - from > 0.5 * width ? 0.5 * (from + to) : next;
+            width = to - from;
+        }
+        t = next;
+    }
+    return t;
+}
+
+// The first fall below zero from `lo` to `hi`, both known; negative if there is none. Intervals in
+// which the bound on the second derivative leaves no room for one are passed, those in which it
+// leaves none for a slope upwards have one root, and all others are cut in two.
+static double first_fall(const arm *a, const motion *m, watch w, point lo, point hi, int cuts)
+{
+    const double length = hi.time - lo.time;
+    const double bend = m->engine->bend(a, m, w, lo.time, hi.time);
+    const double room = bend * length * length / 8;
+    if (fmin(lo.at.value, hi.at.value) > room) {
+        return -1;
+    }
+    const bool falls = hi.at.value < 0;
+    const bool steady = fmax(lo.at.slope, hi.at.slope) + bend * length / 2 < 0;
+    const bool flat = cuts == 0 || room <= watch_tolerance(w);
+    if (steady || flat) {
+        return falls ? root_between(a, m, w, lo, hi) : -1;
+    }
+
+    double time = 0.5 * (lo.time + hi.time);
+    point middle = {time, m->engine->look(a, m, w, time)};
+    if (middle.at.value < 0) {
+        return first_fall(a, m, w, lo, middle, cuts - 1);
+    }
+    double first = first_fall(a, m, w, lo, middle, cuts - 1);
+    return first >= 0 ? first : first_fall(a, m, w, middle, hi, cuts - 1);
+}
+
+void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    *any = false;
+    *first = WATCH_GAP;
+    for (watch w = WATCH_GAP; w <= WATCH_STICTION; w++) {
+        if (!watch_active(a, m, w)) {
+            continue;
+        }
+        point start = {0, m->engine->look(a, m, w, 0)}, end = {*h, m->engine->look(a, m, w, *h)};
+        double fall = start.at.value < 0 ? 0 : first_fall(a, m, w, start, end, MOST_CUTS);
+        if (fall >= 0) {
+            *any = true;
+            *first = w;
+            *h = fall;
+        }
+    }
+}
+
+// --- the largest force
+// ----------------------------------------------------------------------------
+
+static void note_force(motion *m, point p)
+{
+    if (p.at.value > m->pulse_peak) {
+        m->pulse_peak = p.at.value;
+        m->pulse_peak_time = m->state[SLOT_TIME] + p.time;
+    }
+}
+
+// Where the force stops growing between `lo`, where it grows, and `hi`, where it falls: secants of
+// the slope within the bracket, halved where they gain too little.
+static point summit(const arm *a, const motion *m, point lo, point hi)
+{
+    point top = lo.at.value > hi.at.value ? lo : hi;
+    double resolution = 1e-9 * (hi.time - lo.time);
+    for (int i = 0; i < MOST_ITERATIONS && hi.time - lo.time > resolution; i++) {
+        double share = lo.at.slope / (lo.at.slope - hi.at.slope);
+        share = i % 3 == 2 ? 0.5 : fmin(fmax(share, 1e-3), 1 - 1e-3);
+        double time = lo.time + share * (hi.time - lo.time);
+        double last = top.time;
+        top = (point){time, m->engine->force_at(a, m, time)};
+        if (fabs(time - last) <= resolution) {
+            break;
+        }
+        if (top.at.slope > 0) {
+            lo = top;
+        } else {
+            hi = top;
+        }
+    }
+    return top;
+}
+
+static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts)
+{
+    // no room for a larger force, or a slope that keeps its sign
+    const double length = hi.time - lo.time;
+    const double bend = m->engine->bend(a, m, WATCH_FORCE, lo.time, hi.time);
+    const double most = fmax(lo.at.value, hi.at.value) + bend * length * length / 8;
+    const double change = bend * length / 2; // of the slope from the nearer end
+    if (most <= m->pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
+        fmax(lo.at.slope, hi.at.slope) < -change) {
+        return;
+    }
+    if (cuts == 0) {
+        if (lo.at.slope > 0 && hi.at.slope < 0) {
+            note_force(m, summit(a, m, lo, hi));
+        }
+        return;
+    }
+    double time = 0.5 * (lo.time + hi.time);
+    point middle = {time, m->engine->force_at(a, m, time)};
+    note_force(m, middle);
+    raise_peak(a, m, lo, middle, cuts - 1);
+    raise_peak(a, m, middle, hi, cuts - 1);
+}
+
+void dense_peak(const arm *a, motion *m, double h)
+{
+    enum { CUTS = 4 };
+    point start = {0, m->engine->force_at(a, m, 0)}, end = {h, m->engine->force_at(a, m, h)};
+    note_force(m, start);
+    note_force(m, end);
+    raise_peak(a, m, start, end, CUTS);
+}

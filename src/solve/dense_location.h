@@ -1,0 +1,15 @@
+// Events and peaks within the stride of a dense engine (engine.h), without another stride.
+//
+// What is guaranteed: a watched function that falls below zero by more than its tolerance (1e-12 m,
+// 1e-9 N, 1e-12 N m, 1e-12 rad/s) is found at the first such fall, and the fall's root to rounding;
+// a dip that stays above minus the tolerance may be passed over.
+#pragma once
+
+#include "src/solve/motion.h"
+
+// The first instant in [0, *h] of the stride at which a function that is watched leaves its
+// admissible side: *any, *first and *h as locate_first_event has them; m->trial is left alone.
+void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
+
+// Raises m->pulse_peak to the largest force in [0, h] of a stride in contact.
+void dense_peak(const arm *a, motion *m, double h);

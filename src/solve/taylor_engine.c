@@ -1,0 +1,352 @@
+// The two-link arm by power series (taylor_kernel.h): a dense engine.
+//
+// The stride goes as far as the fastest mode and the rotation let a series of the highest order
+// reach, and is shortened until its last terms are small; where something else ends it sooner a
+// lower order does. Everything within it (events, rows, peaks, quadratures) is a polynomial.
+#include <math.h>
+#include <string.h>
+
+#include "src/base/sincos.h"
+#include "src/solve/motion.h"
+#include "src/solve/taylor_series.h"
+
+// Strides stay below this over the fastest rate and the angular velocities.
+#define LONGEST_REACH 1.8
+// A decay over a stride: the series of order 16 is stable on the negative axis to 7.
+#define LONGEST_DECAY 4.0
+
+// What is nothing but rounding in the first coefficients of a watched function at its edge: of the
+// value and of its derivatives, over which nothing is known but that they are small.
+#define EDGE_VALUE 1e-9
+#define EDGE_RATE  1e-9
+#define EDGE_MORE  1e-7
+#define EDGE_GAP   1e-12 // [m]
+
+enum { MOST_TERMS = TAYLOR_MOST + 2, ANGLES = 3 };
+
+typedef struct polynomial {
+    double terms[MOST_TERMS];
+    int degree;
+} polynomial;
+
+typedef struct taylor_stride {
+    double block[TAYLOR_PLACES];
+    taylor_form form;
+    polynomial watched[WATCH_STICTION + 1]; // those of the contact state; stiction: nearer limit
+    polynomial far_limit;                   // of stiction
+} taylor_stride;
+
+bool taylor_engine_suits(const arm *a)
+{
+    const bool wall =
+        a->wall.kind == WALL_NONE || a->wall.kind == WALL_POINT || a->wall.kind == WALL_PLANE;
+    return a->links == 2 && wall;
+}
+
+// --- polynomials --------------------------------------------------------------------------------
+
+static double value_at(const double *terms, int degree, double t)
+{
+    double value = terms[degree];
+    for (int n = degree - 1; n >= 0; n--) {
+        value = value * t + terms[n];
+    }
+    return value;
+}
+
+static glance glance_at(const double *terms, int degree, double t)
+{
+    double value = terms[degree], slope = 0;
+    for (int n = degree - 1; n >= 0; n--) {
+        slope = slope * t + value;
+        value = value * t + terms[n];
+    }
+    return (glance){value, slope};
+}
+
+// Value, first and second derivative.
+static void derivatives_at(const double *terms, int degree, double t, double result[3])
+{
+    double value = terms[degree], slope = 0, half = 0;
+    for (int n = degree - 1; n >= 0; n--) {
+        half = half * t + slope;
+        slope = slope * t + value;
+        value = value * t + terms[n];
+    }
+    result[0] = value;
+    result[1] = slope;
+    result[2] = 2 * half;
+}
+
+// Integral from 0 to t; degree is below TAYLOR_MOST.
+static double integral_to(const double *terms, int degree, double t)
+{
+    double value = 0;
+    for (int n = degree; n >= 0; n--) {
+        value = value * t + terms[n] * (1.0 / (n + 1));
+    }
+    return value * t;
+}
+
+// The largest second derivative for times from 0 to t, from the magnitudes of the terms.
+static double bend_of(const polynomial *p, double t)
+{
+    double bound = 0;
+    for (int n = p->degree; n >= 2; n--) {
+        bound = bound * t + fabs(p->terms[n]) * (double)(n * (n - 1));
+    }
+    return bound;
+}
+
+// Divides the function by the time as often as its first coefficients are nothing but rounding.
+static void leave_edge(polynomial *p, double value)
+{
+    int edge = 0;
+    double limit = value;
+    while (edge < 3 && fabs(p->terms[edge]) <= limit) {
+        limit = edge == 0 ? EDGE_RATE : EDGE_MORE;
+        edge++;
+    }
+    // falling to its edge rather than from it, it is left as it is: its root is what matters
+    if (edge > 0 && p->terms[edge] < 0 && p->terms[0] > 0) {
+        return;
+    }
+    if (edge > 0) {
+        p->degree -= edge;
+        memmove(p->terms, p->terms + edge, (size_t)(p->degree + 1) * sizeof(double));
+    }
+}
+
+// --- a stride -----------------------------------------------------------------------------------
+
+static void put_inputs(const arm *a, motion *m, double wanted, double *block)
+{
+    const double l = a->link_length, mass = a->link_mass;
+    const double own = a->link_inertia + mass * l * l / 4;
+    const contact_state now = contact_state_of(m->state);
+    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    const bool point = a->wall.kind == WALL_POINT;
+
+    // the arm, its motor and its wall
+    block[AT_M11] = own + mass * l * l + (a->hub_spring ? 0 : a->hub_inertia);
+    block[AT_M22] = own;
+    block[AT_M12] = mass * l * l / 2;
+    block[AT_STIFFNESS] = a->joint_stiffness;
+    block[AT_DAMPING] = a->joint_damping;
+    block[AT_LENGTH] = l;
+    block[AT_REACH_X] = point ? a->wall.x : l * a->wall.cosine;
+    block[AT_REACH_Y] = point ? a->wall.y : l * a->wall.sine;
+    block[AT_DRIVE] = a->motor.torque - now.friction * a->motor.stiction;
+    block[AT_VISCOUS] = a->motor.damping;
+    block[AT_HUB_STIFFNESS] = a->hub_stiffness;
+    block[AT_HUB_DAMPING] = a->hub_joint_damping;
+    block[AT_HUB_INERTIA] = a->hub_inertia;
+    block[AT_STUCK] = now.friction == HUB_STICK;
+
+    // the state
+    block[AT_START_ANGLE] = q[0];
+    block[AT_START_ANGLE + 1] = q[a->first];
+    block[AT_START_ANGLE + 2] = q[a->first + 1];
+    block[AT_START_VELOCITY] = w[0];
+    block[AT_START_VELOCITY + 1] = w[a->first];
+    block[AT_START_VELOCITY + 2] = w[a->first + 1];
+    block[AT_WANTED] = wanted;
+}
+
+// The length that is tried, and the order that is enough for it.
+static double wanted_stride(const arm *a, const motion *m, double remaining, int *order)
+{
+    // how far a series of each order reaches with small last terms, in units of the fastest rate
+    static const struct {
+        int order;
+        double reach;
+    } orders[] = {{8, 0.1}, {10, 0.25}, {12, 0.5}, {14, 0.8}};
+
+    const double *w = state_velocities(m, m->state);
+    double rate = fmax(a->highest_frequency, 1e-3);
+    for (int i = 0; i < m->dof; i++) {
+        rate = fmax(rate, 1.2 * fabs(w[i]));
+    }
+    double wanted = fmin(remaining, LONGEST_REACH / rate);
+    if (a->fastest_decay * wanted > LONGEST_DECAY) {
+        wanted = LONGEST_DECAY / a->fastest_decay;
+    }
+    *order = TAYLOR_MOST;
+    for (int i = 3; i >= 0; i--) {
+        *order = wanted * rate <= orders[i].reach ? orders[i].order : *order;
+    }
+    return wanted;
+}
+
+static void set_polynomial(polynomial *p, const double *terms, int degree, double factor)
+{
+    p->degree = degree;
+    for (int n = 0; n <= degree; n++) {
+        p->terms[n] = factor * terms[n];
+    }
+}
+
+// The functions that say when this contact state ends.
+static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
+{
+    const int order = s->form.order;
+    const bool at_edge = m->state[SLOT_JUMPED] != 0;
+    const contact_state now = contact_state_of(m->state);
+    const double stiction = a->motor.stiction;
+
+    // the wall
+    if (now.contact) {
+        set_polynomial(&s->watched[WATCH_FORCE], s->block + AT_FORCE, order - 1, 1);
+    } else {
+        set_polynomial(&s->watched[WATCH_GAP], s->block + AT_GAP, order + 1, 1);
+    }
+
+    // the hub
+    if (now.friction != HUB_STICK) {
+        const double *rate = s->block + (a->hub_spring ? AT_RATE_0 : AT_RATE_1);
+        set_polynomial(&s->watched[WATCH_HUB], rate, order, now.friction);
+    } else {
+        const double sign = s->block[AT_HOLD] < 0 ? -1 : 1;
+        set_polynomial(&s->watched[WATCH_STICTION], s->block + AT_HOLD, order - 1, -sign);
+        set_polynomial(&s->far_limit, s->block + AT_HOLD, order - 1, sign);
+        s->watched[WATCH_STICTION].terms[0] += stiction;
+        s->far_limit.terms[0] += stiction;
+    }
+
+    // just after an event they may begin at zero
+    if (at_edge) {
+        leave_edge(&s->watched[now.contact ? WATCH_FORCE : WATCH_GAP],
+                   now.contact ? EDGE_VALUE : EDGE_GAP);
+        leave_edge(&s->watched[now.friction != HUB_STICK ? WATCH_HUB : WATCH_STICTION],
+                   now.friction != HUB_STICK ? 0 : EDGE_VALUE);
+    }
+}
+
+static double begin(const arm *a, motion *m, double remaining, double step)
+{
+    taylor_stride *s = m->memory;
+    (void)step;
+    int order;
+    double wanted = wanted_stride(a, m, remaining, &order);
+    put_inputs(a, m, wanted, s->block);
+    s->form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
+                            .point = a->wall.kind == WALL_POINT,
+                            .hub_spring = a->hub_spring,
+                            .damped = a->joint_damping > 0 || a->hub_joint_damping > 0,
+                            .order = order};
+    taylor_series_1(s->block, s->form);
+    prepare_watched(a, m, s);
+    return s->block[AT_ALLOWED];
+}
+
+// Gap and its velocity in contact, where both ought to be zero.
+static void measure_gap(const arm *a, const motion *m, double *state)
+{
+    const double *q = state_angles(m, state) + a->first, *w = state_velocities(m, state) + a->first;
+    const double l = a->link_length;
+    double s1, c1, s2, c2;
+    inline_sincos(q[0], &s1, &c1);
+    inline_sincos(q[1], &s2, &c2);
+    const double vx = -l * s1 * w[0], vy = l * c1 * w[0];
+    wall_contact at = wall_contact_at(&a->wall, l, l * c1, l * s1, vx, vy, c2, s2, w[1]);
+    state[SLOT_GAP] = -at.penetration;
+    state[SLOT_GAP_VELOCITY] =
+        -wall_penetration_rate(&at, vx, vy, wall_last_lever(&at, l, c2, s2), w[1]);
+    state[SLOT_GAP_ACCELERATION] = 0;
+}
+
+static status state_at(const arm *a, motion *m, double h)
+{
+    const taylor_stride *s = m->memory;
+    const int order = s->form.order;
+    const double *block = s->block, *before = state_quadratures(m, m->state);
+    double *state = m->trial, *quadrature = state_quadratures(m, state);
+    double *q = state_angles(m, state), *w = state_velocities(m, state);
+    double *acceleration = state_accelerations(m, state);
+
+    // the motion
+    for (int i = 0; i < m->dof; i++) {
+        double d[3];
+        derivatives_at(block + AT_ANGLE_0 + (i + 1 - a->first) * MOST_TERMS, order + 1, h, d);
+        q[i] = d[0];
+        w[i] = d[1];
+        acceleration[i] = state_algorithmic(m, state)[i] = d[2];
+    }
+    if (state[SLOT_FRICTION] == HUB_STICK) {
+        w[0] = acceleration[0] = 0;
+    }
+
+    // what it has lost and pressed
+    quadrature[QUADRATURE_VISCOUS] =
+        before[QUADRATURE_VISCOUS] +
+        a->motor.damping * integral_to(block + AT_HUB_SQUARE, order - 1, h);
+    quadrature[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
+    if (s->form.damped) {
+        quadrature[QUADRATURE_DAMPING] += integral_to(block + AT_DISSIPATION, order - 1, h);
+        state[SLOT_DAMPING_POWER] = value_at(block + AT_DISSIPATION, order - 1, h);
+    }
+    quadrature[QUADRATURE_FORCE] = before[QUADRATURE_FORCE];
+    state[SLOT_VISCOUS_POWER] = a->motor.damping * w[0] * w[0];
+
+    // friction and wall
+    state[SLOT_FRICTION_TORQUE] = state[SLOT_FRICTION] == HUB_STICK
+                                      ? value_at(block + AT_HOLD, order - 1, h)
+                                      : -state[SLOT_FRICTION] * a->motor.stiction;
+    if (s->form.contact) {
+        state[SLOT_FORCE] = value_at(block + AT_FORCE, order - 1, h);
+        quadrature[QUADRATURE_FORCE] += integral_to(block + AT_FORCE, order - 1, h);
+        measure_gap(a, m, state);
+        motion_project(a, m, state);
+    } else if (wall_stands(&a->wall)) {
+        double d[3];
+        derivatives_at(block + AT_GAP, order + 1, h, d);
+        state[SLOT_GAP] = d[0];
+        state[SLOT_GAP_VELOCITY] = d[1];
+        state[SLOT_GAP_ACCELERATION] = d[2];
+    }
+    return STATUS_OK;
+}
+
+// --- what the contact machine asks --------------------------------------------------------------
+
+static glance look(const arm *a, const motion *m, watch w, double h)
+{
+    const taylor_stride *s = m->memory;
+    const polynomial *p = &s->watched[w];
+    (void)a;
+    glance near = glance_at(p->terms, p->degree, h);
+    if (w != WATCH_STICTION) {
+        return near;
+    }
+    glance far = glance_at(s->far_limit.terms, s->far_limit.degree, h);
+    return near.value < far.value ? near : far;
+}
+
+static double bend(const arm *a, const motion *m, watch w, double from, double to)
+{
+    const taylor_stride *s = m->memory;
+    (void)a, (void)from;
+    double near = bend_of(&s->watched[w], to);
+    if (w == WATCH_FORCE && s->watched[w].degree < s->form.order - 1) {
+        // divided by the time: the force itself may bend more
+        polynomial force;
+        set_polynomial(&force, s->block + AT_FORCE, s->form.order - 1, 1);
+        return fmax(near, bend_of(&force, to));
+    }
+    return w == WATCH_STICTION ? fmax(near, bend_of(&s->far_limit, to)) : near;
+}
+
+static glance force_at(const arm *a, const motion *m, double h)
+{
+    const taylor_stride *s = m->memory;
+    (void)a;
+    return glance_at(s->block + AT_FORCE, s->form.order - 1, h);
+}
+
+const engine taylor_engine = {.name = "Taylor series",
+                              .begin = begin,
+                              .state_at = state_at,
+                              .look = look,
+                              .bend = bend,
+                              .force_at = force_at,
+                              .memory_size = sizeof(taylor_stride)};

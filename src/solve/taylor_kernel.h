@@ -1,0 +1,396 @@
+// Series of the two-link arm's motion, for LANES arms at once (a power of two, given by whoever
+// includes this; vectors are those of the compiler).
+//
+// Let d = q2 - q1 be the bend, s and c its sine and cosine, and S, C those of an angle from the
+// wall times a length. The equations of chain.h for two links are
+//
+//     m11 a1 + m12 c a2 = b1,     b1 = drive - kv w1 + spring + m12 s w2^2 - J1 f
+//     m12 c a1 + m22 a2 = b2,     b2 =               - spring - m12 s w1^2 - J2 f
+//     spring = k d + kd d'
+//
+// with a hub on a spring taking drive and kv away from b1 into I1 a0 = drive - kv w0 - hub spring.
+// In contact J1 a1 + J2 a2 + convection = 0 gives f:
+//
+//     point: gap = l s - S2,      J1 = l c,  J2 = C2 - l c,  convection = l s (w1^2 - 2 w1 w2)
+//     plane: gap = -(S1 + S2),    J1 = C1,   J2 = C2,        convection = -(S1 w1^2 + S2 w2^2)
+//
+// (the gap itself, which is zero, left out). Put x = sum x_n t^n. Sums and springs go by
+// coefficient, products are Cauchy's, (x y)_n = sum x_j y_(n-j), and sine and cosine of an angle
+// with the velocity v follow from s' = v c, c' = -v s:
+//
+//     n s_n = sum v_j c_(n-1-j),     n c_n = -sum v_j s_(n-1-j),     j = 0 ... n - 1 .
+//
+// Of the n-th coefficient of each equation all is known but a1_n, a2_n and f_n, which the matrix of
+// the stride's start, inverted once, gives; w_(n+1) = a_n/(n + 1) and q_(n+1) = w_n/(n + 1) follow.
+//
+// Every operation is written out in its order, without a branch on what a lane holds but where all
+// take the same value from both ways. So all widths give the same bits.
+#include <stdint.h>
+#include <string.h>
+
+#include "src/solve/taylor_series.h"
+
+#define GLUE_(a, b) a##b
+#define GLUE(a, b)  GLUE_(a, b)
+#define KERNEL      static inline __attribute__((always_inline))
+
+#if LANES == 1
+typedef double real;
+typedef int64_t mask;
+#define MASK(condition) ((condition) ? (mask)-1 : (mask)0)
+#else
+typedef double real __attribute__((vector_size(8 * LANES)));
+typedef int64_t mask __attribute__((vector_size(8 * LANES)));
+#define MASK(condition) ((mask)(condition))
+#endif
+
+// The last terms of the velocities stay below this share of 1 rad/s or the largest velocity; the
+// first one left out is about ten times smaller.
+#define LAST_TERMS 1e-13
+// A stride that is too long for that is shortened by this factor, at most so often.
+#define SHORTENING       0.75
+#define MOST_SHORTENINGS 100
+
+// 1/n
+static const double inverse[TAYLOR_MOST + 2] = {
+    0,      1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,  1. / 7,  1. / 8,
+    1. / 9, 1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17};
+
+// --- numbers ----------------------------------------------------------------------------------
+
+KERNEL mask bits_of(real x)
+{
+    mask m;
+    memcpy(&m, &x, sizeof m);
+    return m;
+}
+
+KERNEL real real_of(mask m)
+{
+    real x;
+    memcpy(&x, &m, sizeof x);
+    return x;
+}
+
+KERNEL real choose(mask where, real yes, real no)
+{
+    return real_of((where & bits_of(yes)) | (~where & bits_of(no)));
+}
+
+KERNEL real magnitude(real x)
+{
+    return real_of(bits_of(x) & INT64_MAX);
+}
+
+KERNEL real greater(real x, real y)
+{
+    return choose(MASK(x > y), x, y);
+}
+
+KERNEL bool any(mask m)
+{
+#if LANES == 1
+    return m != 0;
+#else
+    int64_t some = 0;
+    for (int i = 0; i < LANES; i++) {
+        some |= m[i];
+    }
+    return some != 0;
+#endif
+}
+
+// inline_sincos (src/base/sincos.h) to the last bit, for |x| < 1e5.
+KERNEL void sine_cosine(real x, real *sine, real *cosine)
+{
+    real r = x;
+    mask quadrant = (mask){0};
+    const mask large = ~MASK(magnitude(x) <= 0.78539816339744831);
+    const bool reduced = any(large);
+    if (reduced) {
+        // adding and taking away 1.5 * 2^52 rounds to a whole number
+        const real shifted = x * 6.36619772367581382433e-01 + 6755399441055744.0;
+        const real n = choose(large, shifted - 6755399441055744.0, (real){0});
+        const real part2 = n * 6.07710050630396597660e-11;
+        const real part3 = n * 2.02226624879595063154e-21;
+        quadrant = large & bits_of(shifted) & 3;
+        r = x - n * 1.57079632673412561417e+00;
+        const real high = r - part2;
+        r = choose(large, high - (part3 - ((r - high) - part2)), x);
+    }
+
+    const real z = r * r, zz = z * z;
+    const real s_tail = (8.33333333332248946124e-03 + z * -1.98412698298579493134e-04) +
+                        zz * ((2.75573137070700676789e-06 + z * -2.50507602534068634195e-08) +
+                              zz * 1.58969099521155010221e-10);
+    const real s = r + z * r * (-1.66666666666666324348e-01 + z * s_tail);
+
+    const real c_tail =
+        zz * ((4.16666666666666019037e-02 + z * -1.38888888888741095749e-03) +
+              zz * ((2.48015872894767294178e-05 + z * -2.75573143513906633035e-07) +
+                    zz * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)));
+    const real half = 0.5 * z, w = 1 - half;
+    const real c = w + (((1 - w) - half) + c_tail);
+
+    *sine = s;
+    *cosine = c;
+    if (reduced) {
+        const mask odd = -(quadrant & 1), lower = -((quadrant >> 1) & 1);
+        const mask left = -(((quadrant + 1) >> 1) & 1);
+        const real a = choose(odd, c, s), b = choose(odd, s, c);
+        *sine = choose(lower, -a, a);
+        *cosine = choose(left, -b, b);
+    }
+}
+
+// --- series -----------------------------------------------------------------------------------
+
+// (x y)_n, and without its first product: of x whose zeroth coefficient stands elsewhere.
+KERNEL real product(const real *x, const real *y, int n)
+{
+    real sum = x[0] * y[n];
+    for (int j = 1; j <= n; j++) {
+        sum += x[j] * y[n - j];
+    }
+    return sum;
+}
+
+KERNEL real product_beyond(const real *x, const real *y, int n)
+{
+    real sum = (real){0};
+    for (int j = 1; j <= n; j++) {
+        sum += x[j] * y[n - j];
+    }
+    return sum;
+}
+
+// (x^2)_n: twice the half of the sum.
+KERNEL real square(const real *x, int n)
+{
+    real sum = (real){0};
+    for (int j = 0; j < (n + 1) / 2; j++) {
+        sum += x[j] * x[n - j];
+    }
+    sum += sum;
+    return n % 2 == 0 ? sum + x[n / 2] * x[n / 2] : sum;
+}
+
+// The n-th coefficients of sine and cosine of an angle with the velocity v.
+KERNEL void turn(real *s, real *c, const real *v, int n)
+{
+    real sine = v[0] * c[n - 1], cosine = v[0] * s[n - 1];
+    for (int j = 1; j < n; j++) {
+        sine += v[j] * c[n - 1 - j];
+        cosine += v[j] * s[n - 1 - j];
+    }
+    s[n] = sine * inverse[n];
+    c[n] = -(cosine * inverse[n]);
+}
+
+// The longest stride, up to `wanted`, whose last terms in velocity are small; terms: magnitudes of
+// the coefficients of the two last orders.
+KERNEL real allowed_stride(real wanted, real before_last, real last, real scale, int order)
+{
+    real h = wanted;
+    const real limit = LAST_TERMS * scale;
+    for (int i = 0; i < MOST_SHORTENINGS; i++) {
+        real power = (real){0} + 1.0, base = h; // h^(order - 1)
+        for (int e = order - 1; e > 0; e >>= 1) {
+            power = e & 1 ? power * base : power;
+            base *= base;
+        }
+        const mask bad = ~MASK((last * h + before_last) * power <= limit);
+        if (!any(bad)) {
+            break;
+        }
+        h = choose(bad, SHORTENING * h, h);
+    }
+    return h;
+}
+
+KERNEL void series(real *block, const int contact, const int point, const int hub_spring,
+                   bool damped, const int order)
+{
+    const real zero = (real){0};
+    const mask stuck = MASK(block[AT_STUCK] != 0);
+    const real m11 = block[AT_M11], m22 = block[AT_M22], m12 = block[AT_M12];
+    const real k = block[AT_STIFFNESS], kd = block[AT_DAMPING], l = block[AT_LENGTH];
+    const real reach_x = block[AT_REACH_X], reach_y = block[AT_REACH_Y];
+    const real kh = block[AT_HUB_STIFFNESS], khd = block[AT_HUB_DAMPING];
+    const real viscous = block[AT_VISCOUS];
+    real *q0 = block + AT_ANGLE_0, *q1 = block + AT_ANGLE_1, *q2 = block + AT_ANGLE_2;
+    real *w0 = block + AT_RATE_0, *w1 = block + AT_RATE_1, *w2 = block + AT_RATE_2;
+    real *f = block + AT_FORCE, *hold = block + AT_HOLD, *gap = block + AT_GAP;
+    real *hub_square = block + AT_HUB_SQUARE, *dissipation = block + AT_DISSIPATION;
+    real v[TAYLOR_MOST + 2], s[TAYLOR_MOST + 2], c[TAYLOR_MOST + 2]; // of the bend
+    real S1[TAYLOR_MOST + 2], C1[TAYLOR_MOST + 2];                   // plane: first link
+    real S2[TAYLOR_MOST + 2], C2[TAYLOR_MOST + 2];                   // second link
+    real j1[TAYLOR_MOST + 1], j2[TAYLOR_MOST + 1];                   // J
+    real a1[TAYLOR_MOST + 1], a2[TAYLOR_MOST + 1], hub_rate[TAYLOR_MOST + 1];
+    real square1[TAYLOR_MOST + 1], square2[TAYLOR_MOST + 1], mixed[TAYLOR_MOST + 1];
+
+    // the state at the start, and the angles' sines and cosines there
+    q1[0] = block[AT_START_ANGLE + 1];
+    q2[0] = block[AT_START_ANGLE + 2];
+    w1[0] = block[AT_START_VELOCITY + 1];
+    w2[0] = block[AT_START_VELOCITY + 2];
+    if (hub_spring) {
+        q0[0] = block[AT_START_ANGLE];
+        w0[0] = block[AT_START_VELOCITY];
+    }
+    real sine, cosine;
+    sine_cosine(q2[0] - q1[0], &s[0], &c[0]);
+    sine_cosine(q2[0], &sine, &cosine);
+    S2[0] = reach_x * sine - reach_y * cosine;
+    C2[0] = reach_x * cosine + reach_y * sine;
+    if (!point) {
+        S1[0] = S2[0] * c[0] - C2[0] * s[0];
+        C1[0] = C2[0] * c[0] + S2[0] * s[0];
+    }
+
+    // the matrix of the start, inverted; a stuck rigid hub takes the first row away
+    const real coupling = m12 * c[0];
+    const real inverse_det = 1 / (m11 * m22 - coupling * coupling);
+    real i11 = m22 * inverse_det, i12 = -(coupling * inverse_det), i22 = m11 * inverse_det;
+    if (!hub_spring) {
+        i11 = choose(stuck, zero, i11);
+        i12 = choose(stuck, zero, i12);
+        i22 = choose(stuck, 1 / m22, i22);
+    }
+    real y1 = zero, y2 = zero, per_force = zero; // M^-1 J, 1/(J M^-1 J)
+    if (contact) {
+        j1[0] = point ? l * c[0] : C1[0];
+        j2[0] = point ? C2[0] - l * c[0] : C2[0];
+        y1 = i11 * j1[0] + i12 * j2[0];
+        y2 = i12 * j1[0] + i22 * j2[0];
+        per_force = 1 / (j1[0] * y1 + j2[0] * y2);
+    }
+    const real inverse_hub = hub_spring ? choose(stuck, zero, 1 / block[AT_HUB_INERTIA]) : zero;
+
+    for (int n = 0; n < order; n++) {
+        // directions
+        v[n] = w2[n] - w1[n];
+        if (n > 0) {
+            turn(s, c, v, n);
+            turn(S2, C2, w2, n);
+            if (!point) {
+                turn(S1, C1, w1, n);
+            }
+            if (contact) {
+                j1[n] = point ? l * c[n] : C1[n];
+                j2[n] = point ? C2[n] - l * c[n] : C2[n];
+            }
+        }
+
+        // right sides, without what a1_n, a2_n and f_n give
+        square1[n] = square(w1, n);
+        square2[n] = square(w2, n);
+        const real spring = k * (q2[n] - q1[n]) + kd * v[n];
+        const real drive = n == 0 ? block[AT_DRIVE] : zero;
+        real b1 = spring + m12 * product(s, square2, n) - m12 * product_beyond(c, a2, n);
+        real b2 = -spring - m12 * product(s, square1, n) - m12 * product_beyond(c, a1, n);
+        if (hub_spring) {
+            hub_rate[n] = w1[n] - w0[n];
+            const real pull = kh * (q1[n] - q0[n]) + khd * hub_rate[n];
+            const real moment = drive - viscous * w0[n] + pull;
+            b1 -= pull;
+            hold[n] = -moment;
+            w0[n + 1] = moment * inverse_hub * inverse[n + 1];
+            q0[n + 1] = w0[n] * inverse[n + 1];
+            hub_square[n] = square(w0, n);
+        } else {
+            b1 += drive - viscous * w1[n];
+            hub_square[n] = square1[n];
+        }
+
+        // accelerations, and in contact the force that keeps the gap's second derivative zero
+        if (contact) {
+            real convection;
+            if (point) {
+                const real twice = product(w1, w2, n);
+                mixed[n] = square1[n] - (twice + twice);
+                convection = l * product(s, mixed, n);
+            } else {
+                convection = -(product(S1, square1, n) + product(S2, square2, n));
+            }
+            b1 -= product_beyond(j1, f, n);
+            b2 -= product_beyond(j2, f, n);
+            const real beyond = product_beyond(j1, a1, n) + product_beyond(j2, a2, n);
+            f[n] = (y1 * b1 + y2 * b2 + convection + beyond) * per_force;
+            a1[n] = i11 * b1 + i12 * b2 - y1 * f[n];
+            a2[n] = i12 * b1 + i22 * b2 - y2 * f[n];
+        } else {
+            a1[n] = i11 * b1 + i12 * b2;
+            a2[n] = i12 * b1 + i22 * b2;
+        }
+        if (!hub_spring) {
+            hold[n] = coupling * a2[n] - b1;
+            if (contact) {
+                hold[n] += j1[0] * f[n];
+            }
+        }
+        if (damped) {
+            dissipation[n] = kd * square(v, n);
+            if (hub_spring) {
+                dissipation[n] += khd * square(hub_rate, n);
+            }
+        }
+
+        w1[n + 1] = a1[n] * inverse[n + 1];
+        w2[n + 1] = a2[n] * inverse[n + 1];
+        q1[n + 1] = w1[n] * inverse[n + 1];
+        q2[n + 1] = w2[n] * inverse[n + 1];
+    }
+    q1[order + 1] = w1[order] * inverse[order + 1];
+    q2[order + 1] = w2[order] * inverse[order + 1];
+    real last = magnitude(w1[order]) + magnitude(w2[order]);
+    real before_last = magnitude(w1[order - 1]) + magnitude(w2[order - 1]);
+    if (hub_spring) {
+        q0[order + 1] = w0[order] * inverse[order + 1];
+        last += magnitude(w0[order]);
+        before_last += magnitude(w0[order - 1]);
+    }
+
+    // the gap, as far as the angles are known
+    if (!contact) {
+        v[order] = w2[order] - w1[order];
+        for (int n = order; n <= order + 1; n++) {
+            turn(s, c, v, n);
+            turn(S2, C2, w2, n);
+            if (!point) {
+                turn(S1, C1, w1, n);
+            }
+        }
+        for (int n = 0; n <= order + 1; n++) {
+            gap[n] = point ? l * s[n] - S2[n] : -(S1[n] + S2[n]);
+        }
+    }
+
+    const real scale = greater(greater(magnitude(w1[0]), magnitude(w2[0])), zero + 1.0);
+    block[AT_ALLOWED] = allowed_stride(block[AT_WANTED], before_last, last, scale, order);
+}
+
+// --- entries ----------------------------------------------------------------------------------
+
+#define FORM(name, contact, point, hub_spring)                                                     \
+    static __attribute__((noinline)) void name(real *block, taylor_form form)                      \
+    {                                                                                              \
+        series(block, contact, point, hub_spring, form.damped, form.order);                        \
+    }
+FORM(free_plane, 0, 0, 0)
+FORM(free_point, 0, 1, 0)
+FORM(held_plane, 1, 0, 0)
+FORM(held_point, 1, 1, 0)
+FORM(spring_free_plane, 0, 0, 1)
+FORM(spring_free_point, 0, 1, 1)
+FORM(spring_held_plane, 1, 0, 1)
+FORM(spring_held_point, 1, 1, 1)
+#undef FORM
+
+void GLUE(taylor_series_, LANES)(double *block, taylor_form form)
+{
+    static void (*const forms[2][2][2])(real *, taylor_form) = {
+        {{free_plane, free_point}, {held_plane, held_point}},
+        {{spring_free_plane, spring_free_point}, {spring_held_plane, spring_held_point}}};
+    forms[form.hub_spring][form.contact][form.point]((real *)block, form);
+}

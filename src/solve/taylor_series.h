@@ -1,0 +1,61 @@
+// The motion of two links as power series of the time since a stride's start.
+//
+// One source, taylor_kernel.h, is compiled for every width of vectors the processor may have; an
+// arm gets the same bits whichever lane it is in.
+#pragma once
+
+#include <stdbool.h>
+
+// Highest order of the velocities' series; strides that something cuts short take less.
+enum { TAYLOR_MOST = 16, TAYLOR_WIDEST = 8 };
+
+// A block holds what the series of an arm start from and the series themselves: one number per
+// lane and place, lanes side by side. An array of places begins at the constant of its name.
+enum taylor_place {
+    // constants of the arm
+    AT_M11,       // inertia of the first link about its base, the second carried [kg m2]
+    AT_M22,       // of the second about its base [kg m2]
+    AT_M12,       // m12 = AT_M12 cos(bend) couples them [kg m2]
+    AT_STIFFNESS, // of the joint [N m/rad]
+    AT_DAMPING,   // of the joint [N m s/rad]
+    AT_LENGTH,    // of a link [m]
+    AT_REACH_X,   // point wall: the contact point; plane: a link's length along the wall [m]
+    AT_REACH_Y,
+    AT_DRIVE,         // motor and sliding friction at the hub [N m]
+    AT_VISCOUS,       // viscous friction and back EMF [N m s/rad]
+    AT_HUB_STIFFNESS, // of the hub spring [N m/rad]
+    AT_HUB_DAMPING,   // [N m s/rad]
+    AT_HUB_INERTIA,   // with a hub spring [kg m2]
+    AT_STUCK,         // 1 with a stuck hub, else 0
+    // the state at the stride's start
+    AT_START_ANGLE,                         // hub (with a spring), first, second link [rad]
+    AT_START_VELOCITY = AT_START_ANGLE + 3, // [rad/s]
+    AT_WANTED = AT_START_VELOCITY + 3,      // length of the stride that is wanted [s]
+    AT_INPUTS,                              // how many of the above
+    // what comes of it: powers of the time, from the zeroth
+    AT_ALLOWED = AT_INPUTS,                    // length that the series are good for [s]
+    AT_ANGLE_0,                                // of the hub, with a spring [rad]
+    AT_ANGLE_1 = AT_ANGLE_0 + TAYLOR_MOST + 2, // of the links; orders to TAYLOR_MOST + 1
+    AT_ANGLE_2 = AT_ANGLE_1 + TAYLOR_MOST + 2,
+    AT_RATE_0 = AT_ANGLE_2 + TAYLOR_MOST + 2, // angular velocities [rad/s]; to TAYLOR_MOST
+    AT_RATE_1 = AT_RATE_0 + TAYLOR_MOST + 1,
+    AT_RATE_2 = AT_RATE_1 + TAYLOR_MOST + 1,
+    AT_GAP = AT_RATE_2 + TAYLOR_MOST + 1,         // in free flight [m]; to TAYLOR_MOST + 1
+    AT_FORCE = AT_GAP + TAYLOR_MOST + 2,          // in contact [N]; to TAYLOR_MOST - 1
+    AT_HOLD = AT_FORCE + TAYLOR_MOST,             // friction torque of a stuck hub [N m]; the same
+    AT_HUB_SQUARE = AT_HOLD + TAYLOR_MOST,        // square of the hub's velocity; the same
+    AT_DISSIPATION = AT_HUB_SQUARE + TAYLOR_MOST, // power lost in the springs [W]; the same
+    TAYLOR_PLACES = AT_DISSIPATION + TAYLOR_MOST
+};
+
+// Which equations a block is for, the same in all its lanes.
+typedef struct taylor_form {
+    bool contact;    // held on the wall, else in free flight
+    bool point;      // the wall is a point, else a plane
+    bool hub_spring; // the hub is a body of its own
+    bool damped;     // some spring has damping: AT_DISSIPATION is wanted
+    int order;       // of the velocities' series, up to TAYLOR_MOST
+} taylor_form;
+
+// Computes the series of one arm, of several. block: TAYLOR_PLACES times the width, aligned to it.
+void taylor_series_1(double *block, taylor_form form);
