@@ -19,8 +19,8 @@ void chain_node(const arm *a, const double *q, int k, double *x, double *y)
 {
     *x = *y = 0;
     for (int i = 0; i < k; i++) {
-        *x += a->link_length * cos(q[a->first + i]);
-        *y += a->link_length * sin(q[a->first + i]);
+        *x += a->link_length * inline_cos(q[a->first + i]);
+        *y += a->link_length * inline_sin(q[a->first + i]);
     }
 }
 
@@ -32,14 +32,14 @@ static wall_contact contact_of(const arm *a, const double *q, const double *w, d
     double x = 0, y = 0;
     *vx = *vy = 0;
     for (int k = a->first; k < last; k++) {
-        double c = cos(q[k]), s = sin(q[k]);
+        double c = inline_cos(q[k]), s = inline_sin(q[k]);
         x += a->link_length * c;
         y += a->link_length * s;
         *vx -= a->link_length * s * w[k];
         *vy += a->link_length * c * w[k];
     }
-    return wall_contact_at(&a->wall, a->link_length, x, y, *vx, *vy, cos(q[last]), sin(q[last]),
-                           w[last]);
+    return wall_contact_at(&a->wall, a->link_length, x, y, *vx, *vy, inline_cos(q[last]),
+                           inline_sin(q[last]), w[last]);
 }
 
 double chain_penetration_rate(const arm *a, const double *q, const double *v)
@@ -47,7 +47,7 @@ double chain_penetration_rate(const arm *a, const double *q, const double *v)
     double vx, vy;
     int last = a->first + a->links - 1;
     wall_contact wall = contact_of(a, q, v, &vx, &vy);
-    double lever = wall_last_lever(&wall, a->link_length, cos(q[last]), sin(q[last]));
+    double lever = wall_last_lever(&wall, a->link_length, inline_cos(q[last]), inline_sin(q[last]));
     return wall_penetration_rate(&wall, vx, vy, lever, v[last]);
 }
 
@@ -79,7 +79,7 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
     double pxx = 0, pxy = 0, pyy = 0, fx = ex, fy = ey;
     for (int k = a->links - 1; k >= 0; k--) {
-        double c = cos(q[a->first + k]), s = sin(q[a->first + k]);
+        double c = inline_cos(q[a->first + k]), s = inline_sin(q[a->first + k]);
         double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c;
         double ux = l * ptx - m * half * s, uy = l * pty + m * half * c;
         double d = a->link_inertia + m * half * half + l * l * (c * pty - s * ptx);
@@ -120,7 +120,7 @@ void chain_contact_response(const arm *a, chain_link *work, const double *q, boo
 void chain_tip_response(const arm *a, chain_link *work, const double *q, double *response)
 {
     int last = a->first + a->links - 1;
-    unit_response(a, work, q, sin(q[last]), -cos(q[last]), 0, false, response);
+    unit_response(a, work, q, inline_sin(q[last]), -inline_cos(q[last]), 0, false, response);
 }
 
 double chain_kinetic_energy(const arm *a, const double *q, const double *w)

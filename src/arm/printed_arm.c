@@ -6,6 +6,7 @@
 
 #include "src/arm/arm.h"
 #include "src/base/dense.h"
+#include "src/base/sincos.h"
 
 void printed_arm_init(printed_arm *a, const parameters *p)
 {
@@ -42,7 +43,8 @@ typedef struct mass_terms {
 static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
 {
     double l = a->link_length, e = a->centre, m = a->link_mass;
-    mass_terms t = {.coupling = m * l * e, .c = cos(q[2] - q[1]), .s = sin(q[2] - q[1])};
+    mass_terms t = {
+        .coupling = m * l * e, .c = inline_cos(q[2] - q[1]), .s = inline_sin(q[2] - q[1])};
     t.m22 = m * e * e + m * l * l + a->link_inertia + t.coupling * t.c;
     t.m23 = m * e * e + a->link_inertia + t.coupling * t.c;
     t.m32 = t.coupling * t.c;
@@ -53,8 +55,9 @@ static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
 // Levers of the contact force in (2.16) and (2.17) [m].
 static void force_levers(const printed_arm *a, const double q[3], double *both, double *last)
 {
-    double l = a->link_length, c = cos(q[2] - q[1]);
-    double reach = wall_along(&a->wall, cos(q[2]), sin(q[2])); // of the contact point, along link 3
+    double l = a->link_length, c = inline_cos(q[2] - q[1]);
+    double reach = wall_along(&a->wall, inline_cos(q[2]),
+                              inline_sin(q[2])); // of the contact point, along link 3
     *last = a->switches.force_at_link_end ? l : reach - l * c;
     *both = a->switches.force_at_link_end ? l + l * c : reach;
 }
@@ -96,7 +99,8 @@ static void add_force_derivatives(const printed_arm *a, const double q[3], const
         jacobian[1][1] += force * l * t->s;
         jacobian[1][2] -= force * l * t->s;
     } else {
-        double turn = -wall_right_of(&a->wall, cos(q[2]), sin(q[2])); // d reach / d theta3
+        double turn =
+            -wall_right_of(&a->wall, inline_cos(q[2]), inline_sin(q[2])); // d reach / d theta3
         jacobian[1][2] += force * turn;
         jacobian[2][1] -= force * l * t->s;
         jacobian[2][2] += force * (turn + l * t->s);
@@ -132,15 +136,16 @@ void printed_newmark_jacobian(const printed_arm *a, newmark_slopes slopes, const
 
 double printed_penetration(const printed_arm *a, const double q[3])
 {
-    return wall_right_of(&a->wall, cos(q[2]), sin(q[2])) - a->link_length * sin(q[2] - q[1]);
+    return wall_right_of(&a->wall, inline_cos(q[2]), inline_sin(q[2])) -
+           a->link_length * inline_sin(q[2] - q[1]);
 }
 
 void printed_constraint_gradient(const printed_arm *a, const double q[3], double gradient[3])
 {
-    double projected = a->link_length * cos(q[2] - q[1]);
+    double projected = a->link_length * inline_cos(q[2] - q[1]);
     gradient[0] = 0;
     gradient[1] = projected;
-    gradient[2] = wall_along(&a->wall, cos(q[2]), sin(q[2])) - projected;
+    gradient[2] = wall_along(&a->wall, inline_cos(q[2]), inline_sin(q[2])) - projected;
 }
 
 bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[3], double alpha[3],
@@ -156,7 +161,7 @@ bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[
     printed_residual(a, q, w, rest, 0, residual);
 
     // two links and (3.13), d2g/dt2 = 0, whose product w2 w3 the listing puts on the wrong side
-    double curvature = -wall_right_of(&a->wall, cos(q[2]), sin(q[2])) + l * t.s;
+    double curvature = -wall_right_of(&a->wall, inline_cos(q[2]), inline_sin(q[2])) + l * t.s;
     double cross = 2 * l * t.s * w[1] * w[2];
     bool listed = a->switches.reevaluation == REEVALUATE_LISTING;
     double matrix[9] = {t.m22,       t.m23,       both, //

@@ -1,4 +1,5 @@
 #include "src/arm/wall.h"
+#include "src/base/sincos.h"
 
 #include <assert.h>
 #include <math.h>
@@ -7,8 +8,8 @@ void wall_init(wall_model *w, const parameters *p)
 {
     assert(w != NULL && p != NULL);
     *w = (wall_model){.kind = (wall_kind)p->wall.kind,
-                      .cosine = cos(p->wall.angle),
-                      .sine = sin(p->wall.angle),
+                      .cosine = inline_cos(p->wall.angle),
+                      .sine = inline_sin(p->wall.angle),
                       .restitution = p->wall.restitution,
                       .rest_speed = p->method.rest_speed};
     w->x = p->arm.length * w->cosine;

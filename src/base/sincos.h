@@ -54,3 +54,17 @@ static inline __attribute__((always_inline)) void inline_sincos(double x, double
     *sine = quadrant & 2 ? -a : a;
     *cosine = (quadrant + 1) & 2 ? -b : b;
 }
+
+static inline double inline_sin(double x)
+{
+    double sine, cosine;
+    inline_sincos(x, &sine, &cosine);
+    return sine;
+}
+
+static inline double inline_cos(double x)
+{
+    double sine, cosine;
+    inline_sincos(x, &sine, &cosine);
+    return cosine;
+}

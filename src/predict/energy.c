@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "src/predict/two_link.h"
+#include "src/base/sincos.h"
 
 void quasi_principle_deflections(int n, const double *k, double energy, double *deflection)
 {
@@ -27,7 +28,8 @@ static double listed_energy(const parameters *p, const three_body_state *s)
     double cross = p->printed.energy_cross_term ? e : 2 * l * e;
     double hub = p->arm.hub_inertia * w[0] * w[0];
     double first = m * e * e * w[1] * w[1];
-    double last = m * (l * l * w[1] * w[1] + e * e * w[2] * w[2] + cross * w[1] * w[2] * cos(bend));
+    double last =
+        m * (l * l * w[1] * w[1] + e * e * w[2] * w[2] + cross * w[1] * w[2] * inline_cos(bend));
     return (hub + first + last + p->arm.k2 * bend * bend) / 2;
 }
 
@@ -40,7 +42,8 @@ static double whole_energy(const parameters *p, const three_body_state *s)
     double bend = q[2] - q[1], hub_bend = rigid ? 0 : q[1] - q[0], hub_speed = w[rigid ? 1 : 0];
     double kinetic = p->arm.hub_inertia * hub_speed * hub_speed +
                      (inertia + m * e * e + m * l * l) * w[1] * w[1] +
-                     (inertia + m * e * e) * w[2] * w[2] + 2 * m * l * e * cos(bend) * w[1] * w[2];
+                     (inertia + m * e * e) * w[2] * w[2] +
+                     2 * m * l * e * inline_cos(bend) * w[1] * w[2];
     double strain = p->arm.k2 * bend * bend + (rigid ? 0 : p->arm.k1 * hub_bend * hub_bend);
     return (kinetic + strain) / 2;
 }

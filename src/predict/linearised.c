@@ -25,6 +25,7 @@
 
 #include "src/arm/chain_kernel.h"
 #include "src/arm/impact.h"
+#include "src/base/sincos.h"
 
 enum { PIECES = 3 };
 
@@ -34,7 +35,7 @@ static arm touching_now(const arm *a, const double *q)
     arm touched = *a;
     double x, y;
     if (a->wall.kind == WALL_POINT) {
-        double t_x = -sin(q[a->dof - 1]), t_y = cos(q[a->dof - 1]);
+        double t_x = -inline_sin(q[a->dof - 1]), t_y = inline_cos(q[a->dof - 1]);
         chain_node(a, q, a->links - 1, &x, &y);
         double across = t_x * (a->wall.x - x) + t_y * (a->wall.y - y);
         touched.wall.x -= across * t_x;
@@ -74,7 +75,7 @@ static void oscillation_at(const oscillation *o, double t, double *y, double *ve
 {
     double c, s, decay = exp(-o->decay * t), turn = o->square >= 0 ? -o->frequency : o->frequency;
     if (o->square >= 0) {
-        sincos(o->frequency * t, &s, &c);
+        inline_sincos(o->frequency * t, &s, &c);
     } else {
         c = cosh(o->frequency * t);
         s = sinh(o->frequency * t);
@@ -138,7 +139,7 @@ static void pressed_tangents(const arm *a, const double *q, double *c, double *k
     double ratio = -chain_penetration_rate(a, q, unit[0]) / chain_penetration_rate(a, q, unit[1]);
     double own = a->link_inertia + m * l * l / 4, bend = ratio - 1;
     double mass = a->hub_inertia + own + m * l * l + own * ratio * ratio +
-                  m * l * l * cos(q[1] - q[0]) * ratio;
+                  m * l * l * inline_cos(q[1] - q[0]) * ratio;
     *c = (a->motor.damping + a->joint_damping * bend * bend) / mass;
     *k = a->joint_stiffness * bend * bend / mass;
 }

@@ -5,6 +5,7 @@
 
 #include "src/arm/arm.h"
 #include "src/base/dense.h"
+#include "src/base/sincos.h"
 
 double two_link_inertia(const parameters *p)
 {
@@ -18,9 +19,9 @@ double two_link_inertia(const parameters *p)
 // tip; seen from there each link makes half the bend with it.
 static void contact_on_the_arm(two_link *t, int wall, double bend)
 {
-    double l = t->length, c = cos(bend);
+    double l = t->length, c = inline_cos(bend);
     if (wall == WALL_PLANE) {
-        t->j2 = t->j3 = l * cos(bend / 2);
+        t->j2 = t->j3 = l * inline_cos(bend / 2);
     } else {
         t->j2 = l * c;
         t->j3 = l * (sqrt(c * c + 3) - c);
@@ -31,7 +32,7 @@ void two_link_at(two_link *t, const parameters *p, two_link_form form, double an
 {
     memset(t, 0, sizeof *t);
     double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, inertia = two_link_inertia(p);
-    double bend = angle3 - angle2, c = cos(bend);
+    double bend = angle3 - angle2, c = inline_cos(bend);
     t->length = l;
     t->centre = e;
     t->motor_torque =
@@ -53,11 +54,13 @@ void two_link_at(two_link *t, const parameters *p, two_link_form form, double an
         t->m22 += t->rigid_hub ? p->arm.hub_inertia : 0;
         return;
     }
-    double a = p->arm.length * cos(p->wall.angle), b = p->arm.length * sin(p->wall.angle);
+    double a = p->arm.length * inline_cos(p->wall.angle),
+           b = p->arm.length * inline_sin(p->wall.angle);
     t->both = l * (1 + c);
     t->last = l;
     t->j2 = l * c;
-    t->j3 = form == FORM_LISTED_ENERGY ? l : a * cos(angle3) + b * sin(angle3) - l * c;
+    t->j3 =
+        form == FORM_LISTED_ENERGY ? l : a * inline_cos(angle3) + b * inline_sin(angle3) - l * c;
 }
 
 double two_link_approach_speed(const two_link *t, const three_body_state *s)
@@ -93,14 +96,14 @@ double two_link_first_force(const two_link *t, const parameters *p, const three_
                             const double after[3])
 {
     double l = t->length, bend = s->angle[2] - s->angle[1], w2 = after[1], w3 = after[2];
-    double coupling = p->arm.mass / 2 * l * t->centre * sin(bend);
+    double coupling = p->arm.mass / 2 * l * t->centre * inline_sin(bend);
     double hub_torque = p->arm.k1 * (s->angle[0] - s->angle[1]);
     if (t->rigid_hub) {
         double friction = p->motor.stiction * ((w2 > 0) - (w2 < 0));
         hub_torque = t->motor_torque - t->hub_damping * w2 - friction;
     }
-    double curve = p->wall.kind == WALL_PLANE ? l * sin(bend / 2) * (w3 * w3 - w2 * w2)
-                                              : l * sin(bend) * (2 * w2 * w3 - w2 * w2);
+    double curve = p->wall.kind == WALL_PLANE ? l * inline_sin(bend / 2) * (w3 * w3 - w2 * w2)
+                                              : l * inline_sin(bend) * (2 * w2 * w3 - w2 * w2);
     double r[3] = {hub_torque + coupling * (w3 * w3 - w2 * w2),
                    -p->arm.k2 * bend - coupling * w2 * w2, curve};
     return two_link_solve(t, r) ? r[2] : (double)NAN;

@@ -29,6 +29,7 @@
 // Only the small change of the contact point's lever with the base's displacement is left out
 // (it is of order f l against I / h^2), so Newton converges a little slower than quadratically.
 #include "src/solve/motion.h"
+#include "src/base/sincos.h"
 
 #include <math.h>
 #include <string.h>
@@ -123,7 +124,8 @@ static double rate_change(const arm *a, const implicit_sweep *link, contact_poin
     // dg/dt = s w + t'v_base with s = r'd, see wall.h
     double along = 0; // r'v_base
     for (int k = 0; k < last; k++) {
-        double sine = end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l sin(q_N - q_k)
+        double sine =
+            end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l inline_sin(q_N - q_k)
         along += l * sine * v[k];
         sum += l * (-sine * v[last] + sine * v[k]) * x[k];
     }
@@ -148,7 +150,7 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
     const int first = a->first, last = a->links - 1;
     contact_point point = {0};
     for (int k = 0; k <= last; k++) {
-        sincos(q[first + k], &link[k].s, &link[k].c);
+        inline_sincos(q[first + k], &link[k].s, &link[k].c);
     }
     if (it->contact) {
         point = contact_at(a, link);

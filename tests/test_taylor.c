@@ -1,0 +1,263 @@
+// The two-link arm by power series: that they solve the equations of chain.h all over the stride,
+// that the bounds hold, and that whole runs through events come out of it.
+#include <math.h>
+
+#include "src/base/random.h"
+#include "src/run/run.h"
+#include "src/solve/contact_machine.h"
+#include "tests/arm_fixture.h"
+
+// An arm in some state of motion, in free flight or on the wall.
+typedef struct moving_arm {
+    arm arm;
+    motion *motion;
+} moving_arm;
+
+static moving_arm some_motion(const char *const *settings, bool contact, random_generator *g)
+{
+    moving_arm made;
+    parameters p = fixture_parameters(settings);
+    arm_init(&made.arm, &p);
+    motion *m = made.motion = motion_create(&made.arm, &p.method);
+    assert_ptr_equal(m->engine, &taylor_engine);
+    motion_start(&made.arm, m, -0.2, 0.3);
+
+    // on the wall: the state nearest to a random one that is admissible
+    double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    for (int i = 0; i < m->dof; i++) {
+        q[i] = (contact ? 0.1 : 0) + 0.05 * (random_uniform(g) - 0.5);
+        w[i] = 2 * (random_uniform(g) - 0.5);
+    }
+    if (made.arm.hub_spring) {
+        q[0] = q[1] + 1e-5 * (random_uniform(g) - 0.5);
+    }
+    m->state[SLOT_CONTACT] = contact;
+    m->state[SLOT_FRICTION] = w[0] < 0 ? HUB_BACKWARD : HUB_FORWARD;
+    if (random_uniform(g) < 0.25) {
+        m->state[SLOT_FRICTION] = HUB_STICK;
+        w[0] = 0;
+    }
+    for (int i = 0; i < 3; i++) { // the metric is that of the state before
+        motion_evaluate(&made.arm, m, m->state);
+        if (contact) {
+            motion_project(&made.arm, m, m->state);
+        }
+    }
+    m->state[SLOT_JUMPED] = 0;
+    return made;
+}
+
+static const char *const *const arms[] = {
+    SETTINGS("wall.kind=point"),
+    SETTINGS("wall.kind=plane"),
+    SETTINGS("wall.kind=point", "arm.damping_ratio=0.05"),
+    SETTINGS("wall.kind=plane", "arm.hub_joint=spring", "arm.k1=90"),
+    SETTINGS("wall.kind=point", "arm.hub_joint=spring", "arm.k1=20000", "arm.damping_ratio=0.01"),
+};
+enum { ARM_COUNT = sizeof arms / sizeof arms[0], STATES = 40, PLACES = 8 };
+
+// What the series give at a place of the stride is what the chain's sweeps give for its angles and
+// velocities.
+static void check_place(moving_arm *moving, double h)
+{
+    const arm *a = &moving->arm;
+    motion *m = moving->motion;
+    assert_int_equal(motion_try_step(a, m, h), STATUS_OK);
+    double alpha[3], *at = state_accelerations(m, m->trial);
+    memcpy(alpha, at, (size_t)m->dof * sizeof(double));
+    double force = m->trial[SLOT_FORCE], friction = m->trial[SLOT_FRICTION_TORQUE];
+    double gap = m->trial[SLOT_GAP], gap_velocity = m->trial[SLOT_GAP_VELOCITY];
+    double gap_acceleration = m->trial[SLOT_GAP_ACCELERATION];
+
+    motion_evaluate(a, m, m->trial);
+    double scale = 1 + fabs(at[0]) + fabs(at[m->dof - 1]) + a->hub_stiffness * 1e-5;
+    for (int i = 0; i < m->dof; i++) {
+        check_close(alpha[i], at[i], 2e-10 * scale);
+    }
+    check_close(force, m->trial[SLOT_FORCE], 1e-10 * scale);
+    check_close(friction, m->trial[SLOT_FRICTION_TORQUE], 1e-10 * scale);
+    check_close(gap, m->trial[SLOT_GAP], 1e-13);
+    check_close(gap_velocity, m->trial[SLOT_GAP_VELOCITY], 2e-12);
+    check_close(gap_acceleration, m->trial[SLOT_GAP_ACCELERATION], 2e-10 * scale);
+}
+
+static void the_series_solve_the_equations_all_over_the_stride(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 1);
+    for (int i = 0; i < ARM_COUNT * STATES; i++) {
+        moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
+        // strides that something cuts short take lower orders
+        for (double remaining = 0.1; remaining > 1e-4; remaining /= 3) {
+            double h = motion_begin_stride(&moving.arm, moving.motion, remaining, 1e-3);
+            assert_true(h > 0 && h <= remaining);
+            for (int k = 0; k <= PLACES; k++) {
+                check_place(&moving, h * k / PLACES);
+            }
+        }
+        motion_destroy(moving.motion);
+    }
+}
+
+// A long stride and the short ones of lower order that make it up end in the same state.
+static void orders_agree_and_the_ledger_closes(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 2);
+    for (int i = 0; i < ARM_COUNT * STATES; i++) {
+        moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
+        motion *m = moving.motion;
+        double *q = state_angles(m, m->state);
+        m->start_energy = chain_kinetic_energy(&moving.arm, q, state_velocities(m, m->state)) +
+                          chain_strain_energy(&moving.arm, q);
+        double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3), whole[SLOT_COUNT + 16];
+        assert_int_equal(motion_try_step(&moving.arm, m, h), STATUS_OK);
+        check_below(fabs(motion_energy_residual(&moving.arm, m, m->trial)), 1e-12);
+        memcpy(whole, m->trial, (size_t)m->size * sizeof(double));
+
+        int strides = 0;
+        for (int k = 1; k <= 8; k++) {
+            while (m->state[SLOT_TIME] < h * k / 8 - 1e-15) {
+                double left = h * k / 8 - m->state[SLOT_TIME];
+                double step = motion_begin_stride(&moving.arm, m, left, 1e-3);
+                assert_int_equal(motion_try_step(&moving.arm, m, step), STATUS_OK);
+                memcpy(m->state, m->trial, (size_t)m->size * sizeof(double));
+                strides++;
+            }
+        }
+        assert_in_range(strides, 8, 24);
+        for (int k = 0; k < smooth_length(m); k++) {
+            check_close(m->state[SLOT_COUNT + k], whole[SLOT_COUNT + k], 1e-12);
+        }
+        motion_destroy(m);
+    }
+}
+
+// No watched function is anywhere below what its ends and the bound on its bend leave room for.
+static void the_bounds_hold(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 3);
+    for (int i = 0; i < ARM_COUNT * STATES; i++) {
+        moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
+        motion *m = moving.motion;
+        const engine *e = m->engine;
+        double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3);
+        bool contact = m->state[SLOT_CONTACT] != 0, stuck = m->state[SLOT_FRICTION] == HUB_STICK;
+        const watch watched[] = {contact ? WATCH_FORCE : WATCH_GAP,
+                                 stuck ? WATCH_STICTION : WATCH_HUB};
+        for (int n = 0; n < 2; n++) {
+            watch w = watched[n];
+            for (int part = 0; part < 4; part++) {
+                double from = h * part / 4, to = h * (part + 1) / 4, width = to - from;
+                double lower = fmin(e->look(&moving.arm, m, w, from).value,
+                                    e->look(&moving.arm, m, w, to).value) -
+                               e->bend(&moving.arm, m, w, from, to) * width * width / 8;
+                for (int k = 1; k < 16; k++) {
+                    double t = from + width * k / 16;
+                    check_below(lower, e->look(&moving.arm, m, w, t).value + 1e-12);
+                }
+            }
+        }
+        motion_destroy(m);
+    }
+}
+
+static run_result run(const char *const *settings)
+{
+    scenario s = {.parameters = fixture_parameters(settings)};
+    run_result r;
+    if (run_scenario(&s, true, &r) != STATUS_OK) {
+        fail_msg("%s", r.summary.message);
+    }
+    return r;
+}
+
+// Rows so near each other that none of them misses the peak by more than rounding.
+static void peaks_are_the_largest_force_there_is(void **state)
+{
+    (void)state;
+    const char *const voltages[] = {"motor.voltage=0.5537109375", "motor.voltage=1",
+                                    "motor.voltage=3.3"};
+    for (int i = 0; i < 3; i++) {
+        run_result r = run(SETTINGS(voltages[i], "method.step=2e-6", "run.duration=0.7"));
+        double largest = 0;
+        for (size_t k = 0; k < r.trace.row_count; k++) {
+            largest = fmax(largest, r.trace.rows[k].force);
+        }
+        check_close(r.summary.peak_force_N, largest, 1e-9);
+        check_below(largest, r.summary.peak_force_N * (1 + 1e-13));
+        run_finish(&r);
+    }
+}
+
+// Rows are read off the stride: the more of them, the more strides are the same.
+static void rows_change_nothing(void **state)
+{
+    (void)state;
+    run_result few = run(SETTINGS("method.step=0.1")), many = run(SETTINGS("method.step=1e-4"));
+    assert_true(few.summary.first_contact_s == many.summary.first_contact_s);
+    assert_true(few.summary.peak_force_N == many.summary.peak_force_N);
+    assert_true(few.summary.motor_work_J == many.summary.motor_work_J);
+    assert_true(few.summary.energy_residual_J == many.summary.energy_residual_J);
+    run_finish(&few);
+    run_finish(&many);
+}
+
+// An impact, a release and a touch within microseconds of each other.
+static void events_that_nearly_coincide_are_told_apart(void **state)
+{
+    (void)state;
+    run_result r =
+        run(SETTINGS("motor.voltage=0.63671875", "arm.k2=6.909140625", "wall.angle=0.141015625"));
+    check_close(r.summary.first_contact_s, 0.452259, 1e-6);
+    check_below(r.summary.energy_residual_J, 1e-13);
+    run_finish(&r);
+}
+
+// Motor, arm, wall and restitution at random.
+static void random_runs_neither_fail_nor_lose_energy(void **state)
+{
+    (void)state;
+    enum { RUNS = 3000 };
+    random_generator g;
+    random_seed(&g, 4);
+    for (int i = 0; i < RUNS; i++) {
+        double u[6];
+        for (int k = 0; k < 6; k++) {
+            u[k] = random_uniform(&g);
+        }
+        scenario s = {.parameters = fixture_parameters(NULL)};
+        parameters *p = &s.parameters;
+        p->motor.voltage = 0.3 + 3 * u[0];
+        p->motor.stiction = u[1] < 0.2 ? 0 : 0.1 * u[1];
+        p->arm.k2 = 2.5 + 10 * u[2];
+        p->wall.angle = 0.02 + 0.3 * u[3];
+        p->wall.restitution = u[4] < 0.4 ? 0 : u[4];
+        p->wall.kind = i % 2 ? WALL_POINT : WALL_PLANE;
+        p->arm.damping_ratio = u[5] < 0.5 ? 0 : 0.1 * (u[5] - 0.5);
+        run_result r;
+        if (run_scenario(&s, false, &r) != STATUS_OK) {
+            fail_msg("run %d: %s", i, r.summary.message);
+        }
+        check_below(r.summary.energy_residual_J, 1e-11 * (1 + r.summary.motor_work_J));
+        run_finish(&r);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_series_solve_the_equations_all_over_the_stride),
+        cmocka_unit_test(orders_agree_and_the_ledger_closes),
+        cmocka_unit_test(the_bounds_hold),
+        cmocka_unit_test(peaks_are_the_largest_force_there_is),
+        cmocka_unit_test(rows_change_nothing),
+        cmocka_unit_test(events_that_nearly_coincide_are_told_apart),
+        cmocka_unit_test(random_runs_neither_fail_nor_lose_energy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
