@@ -76,8 +76,8 @@ static void check_place(moving_arm *moving, double h)
     }
     check_close(force, m->trial[SLOT_FORCE], 1e-10 * scale);
     check_close(friction, m->trial[SLOT_FRICTION_TORQUE], 1e-10 * scale);
-    check_close(gap, m->trial[SLOT_GAP], 1e-13);
-    check_close(gap_velocity, m->trial[SLOT_GAP_VELOCITY], 5e-11);
+    check_close(gap, m->trial[SLOT_GAP], 1e-15);
+    check_close(gap_velocity, m->trial[SLOT_GAP_VELOCITY], 1e-13);
     check_close(gap_acceleration, m->trial[SLOT_GAP_ACCELERATION], 2e-10 * scale);
 }
 

@@ -239,7 +239,8 @@ static double begin(const arm *a, motion *m, double remaining, double step)
     return s->block[AT_ALLOWED];
 }
 
-// Gap and its velocity in contact, where both ought to be zero.
+// Gap, velocity and acceleration of it from angles, velocities and accelerations; in contact all
+// three ought to be zero, and the last one is taken so.
 static void measure_gap(const arm *a, const motion *m, double *state)
 {
     const double *q = state_angles(m, state) + a->first, *w = state_velocities(m, state) + a->first;
@@ -250,9 +251,16 @@ static void measure_gap(const arm *a, const motion *m, double *state)
     const double vx = -l * s1 * w[0], vy = l * c1 * w[0];
     wall_contact at = wall_contact_at(&a->wall, l, l * c1, l * s1, vx, vy, c2, s2, w[1]);
     state[SLOT_GAP] = -at.penetration;
-    state[SLOT_GAP_VELOCITY] =
-        -wall_penetration_rate(&at, vx, vy, wall_last_lever(&at, l, c2, s2), w[1]);
-    state[SLOT_GAP_ACCELERATION] = 0;
+    const double lever = wall_last_lever(&at, l, c2, s2);
+    state[SLOT_GAP_VELOCITY] = -wall_penetration_rate(&at, vx, vy, lever, w[1]);
+    if (state[SLOT_CONTACT] != 0) {
+        state[SLOT_GAP_ACCELERATION] = 0;
+        return;
+    }
+    const double *al = state_accelerations(m, state) + a->first;
+    const double ax = -l * (s1 * al[0] + c1 * w[0] * w[0]);
+    const double ay = l * (c1 * al[0] - s1 * w[0] * w[0]);
+    state[SLOT_GAP_ACCELERATION] = -(at.ex * ax + at.ey * ay + lever * al[1] + at.convective);
 }
 
 static status state_at(const arm *a, motion *m, double h)
@@ -298,11 +306,7 @@ static status state_at(const arm *a, motion *m, double h)
         measure_gap(a, m, state);
         motion_project(a, m, state);
     } else if (wall_stands(&a->wall)) {
-        double d[3];
-        derivatives_at(block + AT_GAP, order + 1, h, d);
-        state[SLOT_GAP] = d[0];
-        state[SLOT_GAP_VELOCITY] = d[1];
-        state[SLOT_GAP_ACCELERATION] = d[2];
+        measure_gap(a, m, state);
     }
     return STATUS_OK;
 }
