@@ -179,7 +179,8 @@ static void unknown_keys_suggest_what_was_meant(void **state)
     (void)state;
     check_fault("titel: x\n", 1, 1, "did you mean 'title'?");
     check_fault("title: x\nmotr: {voltage: 1}\n", 2, 1, "did you mean 'motor'?");
-    check_fault("title: x\nqwertyuiop: 1\n", 2, 1, "expected title, description, arm, motor, wall");
+    check_fault("title: x\nqwertyuiop: 1\n", 2, 1,
+                "expected title, description, panes, arm, motor, wall");
     check_fault("arm:\n  k3: 5\n", 2, 3, "in arm, did you mean 'k1'?");
     check_fault("wall:\n  kind: point\n  angel: 0.1\n", 3, 3, "did you mean 'angle'?");
     check_fault("wall: {kind: point, voltage: 1}\n", 1, 21, "did you mean motor.voltage?");

@@ -112,8 +112,8 @@ static void test_eighty_columns_show_what_a_first_visit_needs(void **state)
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
-    static const char *const wanted[] = {"force 1.2", "w1 0.2", "gap 0",      "voltage",
-                                         "0.0\u2524", "1 s",    "0.10\u2524", "N, 93 ms"};
+    static const char *const wanted[] = {"force 1.2", "w1 0.2", "gap 0",     "voltage",
+                                         "0.0\u2524", "1 s",    "0.1\u2524", "N, 93 ms"};
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
         assert_has(&ex, 80, 24, wanted[i]);
     }

@@ -366,6 +366,110 @@ static void test_an_interrupt_stops_a_computation_first(void **state)
     explorer_finish(&ex);
 }
 
+// The numbers of the panes that are shown on a screen of 120 columns.
+static void assert_panes(explorer *ex, int height, const char *wanted)
+{
+    char shown[PANES + 1] = "";
+    free(picture(ex, 120, height, GLYPHS_BRAILLE));
+    for (int i = 0, n = 0; i < PANES; i++) {
+        if (ex->state.panes.pane[i].shown) {
+            shown[n++] = (char)('0' + (i + 1) % 10);
+            shown[n] = '\0';
+        }
+    }
+    assert_string_equal(shown, wanted);
+}
+
+static void test_panes_follow_scenario_and_height(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    assert_panes(&ex, 24, "134");
+    assert_panes(&ex, 60, "12345");
+    press(&ex, ":open thesis/fig-3-2<Enter>");
+    assert_panes(&ex, 24, "123");
+    press(&ex, ":open thesis/fig-3-5<Enter>");
+    assert_panes(&ex, 24, "130");
+    press(&ex, ":open thesis/fig-5-5<Enter>");
+    assert_panes(&ex, 24, "135");
+
+    // what the user chose stays
+    press(&ex, "7");
+    assert_panes(&ex, 60, "1357");
+    press(&ex, ":open corrected/first-impact<Enter>");
+    assert_panes(&ex, 24, "1357");
+    explorer_finish(&ex);
+}
+
+static void test_setpoints_and_limits_are_lines(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    assert_shows(&ex, "\u2508force");
+    press(&ex, ":axis -12 12 5<Enter>");
+    assert_shows(&ex, "\u2508voltage_limit");
+    press(&ex, ":open corrected/first-impact<Enter>2");
+    assert_shows(&ex, "\u2508angle");
+    assert_hides(&ex, "\u2508force");
+    explorer_finish(&ex);
+}
+
+static void test_ticks_are_even_and_names_whole(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":seek 0.35<Enter>");
+
+    // the force's axis in three rows: no tick is left out between two others
+    char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    assert_null(strstr(text, "rad/s\u2524"));
+    free(text);
+    press(&ex, ":law off<Enter>");
+    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    assert_false(strstr(text, "1.2\u2524") && strstr(text, "0.8\u2524") &&
+                 !strstr(text, "0.4\u2524"));
+    free(text);
+    press(&ex, "<Tab>");
+    assert_shows(&ex, "first_acceleration");
+    assert_shows(&ex, "\u25c6 contact point");
+
+    // keys reach the last value
+    assert_hides(&ex, "energy_residual");
+    for (int i = 0; i < 60; i++) {
+        press(&ex, "j");
+    }
+    assert_shows(&ex, "energy_residual");
+    explorer_finish(&ex);
+}
+
+// The head of the arrow stands in the column of its shaft, wherever the tip is.
+static void test_the_arrow_has_its_head_on(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":seek 0.65<Enter>");
+    for (int width = 90; width < 160; width++) {
+        screen s = {0};
+        assert_true(screen_resize(&s, width, 40));
+        explorer_draw(&ex, &s);
+        int heads = 0;
+        for (int i = width; i < width * 20; i++) {
+            if (s.cells[i].glyph == 0x25bc && s.cells[i].ink == INK_FORCE) {
+                const uint32_t above = s.cells[i - width].glyph;
+                assert_true(above > 0x2800 && above < 0x2900);
+                heads++;
+            }
+        }
+        assert_int_equal(heads, 1);
+        screen_finish(&s);
+    }
+    explorer_finish(&ex);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -382,6 +486,10 @@ int main(void)
         cmocka_unit_test(test_descriptions_are_shown),
         cmocka_unit_test(test_leaving_asks_if_changes_would_be_lost),
         cmocka_unit_test(test_an_interrupt_stops_a_computation_first),
+        cmocka_unit_test(test_panes_follow_scenario_and_height),
+        cmocka_unit_test(test_setpoints_and_limits_are_lines),
+        cmocka_unit_test(test_ticks_are_even_and_names_whole),
+        cmocka_unit_test(test_the_arrow_has_its_head_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -47,7 +47,7 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
 // Reports a key that a file does not have at its top, with the nearest one that it may have.
 static void report_unknown_top(reader *r, const tree_node *key)
 {
-    static const char *const others[] = {"title", "description", "script", "expect"};
+    static const char *const others[] = {"title", "description", "panes", "script", "expect"};
     nearest_word near = nearest_begin(key->text);
 
     // a parameter's whole path, which belongs under its group
@@ -85,7 +85,8 @@ static void report_unknown_top(reader *r, const tree_node *key)
                     (int)strcspn(near.best, "."), near.best);
         return;
     }
-    report_node(r, key, "unknown key '%.60s', expected title, description%s, script or expect",
+    report_node(r, key,
+                "unknown key '%.60s', expected title, description, panes%s, script or expect",
                 key->text, groups);
 }
 
@@ -107,6 +108,8 @@ static void parse_root(reader *r, const tree_node *root)
             r->s->title = parse_prose(r, child, "title", false);
         } else if (strcmp(key, "description") == 0) {
             r->s->description = parse_prose(r, child, "description", true);
+        } else if (strcmp(key, "panes") == 0) {
+            reader_panes(r, child);
         } else if (strcmp(key, "script") == 0) {
             script = child;
         } else if (strcmp(key, "expect") == 0) {

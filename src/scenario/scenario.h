@@ -25,11 +25,15 @@ typedef struct expectation {
     int line, column; // where it stands in the file, from 1
 } expectation;
 
+enum { SCENARIO_PANES = 6 }; // signals that a scenario is looked at by, at most
+
 typedef struct scenario {
-    char *name;            // "thesis/fig-3-4", or the path it was read from
-    char *file;            // path of the file
-    char *title;           // one line
-    char *description;     // several sentences, "" if none
+    char *name;                // "thesis/fig-3-4", or the path it was read from
+    char *file;                // path of the file
+    char *title;               // one line
+    char *description;         // several sentences, "" if none
+    int panes[SCENARIO_PANES]; // signals to look at first, indices in signal_table
+    int pane_count;
     parameters parameters; // resolved
     action *actions;       // sorted by time
     int action_count;

@@ -2,6 +2,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "src/quantities/signals.h"
 #include "src/scenario/scenario.h"
 #include "src/base/numbers.h"
 
@@ -95,6 +96,12 @@ void scenario_write(FILE *stream, const scenario *s)
         write_text(stream, s->description);
     }
     fputc('\n', stream);
+
+    // what to look at
+    for (int i = 0; i < s->pane_count; i++) {
+        fprintf(stream, "%s%s%s", i == 0 ? "panes: [" : ", ", signal_table[s->panes[i]].name,
+                i == s->pane_count - 1 ? "]\n" : "");
+    }
 
     // what runs; expectations hold for the scenario as it was, and are left out
     write_parameters(stream, &s->parameters);

@@ -152,6 +152,16 @@ static void say_goodbye(const explorer *ex)
            e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
 }
 
+// What the terminal can be expected to show: the console of Linux has no braille in its fonts.
+static glyph_set usual_glyphs(void)
+{
+    const char *name = getenv("TERM");
+    if (!terminal_has_utf8()) {
+        return GLYPHS_ASCII;
+    }
+    return name != NULL && strcmp(name, "linux") == 0 ? GLYPHS_BLOCKS : GLYPHS_BRAILLE;
+}
+
 static int open_explorer(explorer *ex, const arguments *a)
 {
     scenario s;
@@ -165,7 +175,7 @@ static int open_explorer(explorer *ex, const arguments *a)
         return complain_fault(&f);
     }
     char line[LINE_TEXT];
-    ex->state.looks.glyphs = terminal_has_utf8() ? GLYPHS_BRAILLE : GLYPHS_ASCII;
+    ex->state.looks.glyphs = usual_glyphs();
     if (live) {
         ex->state.looks.theme = terminal_is_light() ? COLOURS_LIGHT : COLOURS_DARK;
         explorer_load_settings(ex);

@@ -248,7 +248,8 @@ static uint32_t ascii_glyph(uint32_t glyph)
                  {0x2518, '+'}, {0x25b6, '>'}, {0x25c0, '<'}, {0x25b2, '^'}, {0x25bc, 'v'},
                  {0x25cf, 'o'}, {0x25c6, '*'}, {0x2592, '%'}, {0x0394, 'd'}, {0x2016, '='},
                  {0x00d7, 'x'}, {0x2025, '~'}, {0x25b8, '>'}, {0x2506, ':'}, {0x2524, '+'},
-                 {0x252c, '+'}, {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'}};
+                 {0x252c, '+'}, {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'}, {0x25be, 'v'},
+                 {0x25cb, '.'}};
     for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++) {
         if (twins[i].glyph == glyph) {
             return (uint32_t)twins[i].ascii;

@@ -130,7 +130,8 @@ bool terminal_usable(fault *f)
     }
     if (!usable) {
         fault_set(f, STATUS_BAD_ARGUMENT,
-                  "TERM is '%s', %s; the lab needs a terminal that can place its cursor",
+                  "TERM is '%s', %s; the lab needs a terminal that can place its cursor: "
+                  "TERM=xterm-256color suits most (TERM=xterm-256color impactlab)",
                   name ? name : "", known ? "which cannot place its cursor" : "which is not known");
     }
     return usable;

@@ -140,6 +140,7 @@ action_result act_trace_pane(explorer_state *st, const char *argument)
         return result_refused("trace takes a number from 1 to 9 or names of signals");
     }
     st->panes.pane[PANES - 1] = own;
+    st->panes.chosen = true;
     st->panes.focus = PANES - 1;
     return result_done();
 }

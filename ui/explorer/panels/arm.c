@@ -163,11 +163,13 @@ static void draw_force(const view *v, point tip, double force, double peak)
         return;
     }
     double x = dot_x(v, tip.x), y = dot_y(v, tip.y), length = 1.2 * v->canvas.height * force / peak;
-    int column = v->canvas.x + (int)(x / 2), row = v->canvas.y + (int)(y / 4);
-    canvas_line(&v->canvas, x - 2, y - 8 - length, x - 2, y - 6, INK_FORCE);
-    if (row - 1 > v->canvas.y) {
-        screen_put(v->canvas.screen, column - 1, row - 1, 0x25bc, INK_FORCE);
-        screen_print(v->canvas.screen, column - 11, row - 2, 9, INK_FORCE, "%7.3f N", force);
+    // shaft and head in one column of cells
+    const int across = (int)lround(x - 2) / 2, head = (int)(y / 4) - 1;
+    const int column = v->canvas.x + across, row = v->canvas.y + head;
+    canvas_line(&v->canvas, 2.0 * across, y - 8 - length, 2.0 * across, 4.0 * head - 1, INK_FORCE);
+    if (row > v->canvas.y) {
+        screen_put(v->canvas.screen, column, row, 0x25bc, INK_FORCE);
+        screen_print(v->canvas.screen, column - 10, row - 1, 9, INK_FORCE, "%7.3f N", force);
     }
 }
 
@@ -196,6 +198,10 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     draw_hub(&v, row->hub_angle);
     point tip = draw_links(&v, &e->run.trace, &p->arm, e->row, INK_ARM, false);
     draw_force(&v, tip, row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
+    if (p->wall.kind != WALL_NONE && a.height >= 9 && a.width >= 40) {
+        screen_text(s, a.x + a.width - 18, a.y + a.height - 2, 17, INK_WALL,
+                    "\u25c6 contact point");
+    }
     if (row->sticking != 0) {
         screen_text(s, a.x + 2, a.y + a.height - 2, 12, INK_DIM, "hub sticks");
     }

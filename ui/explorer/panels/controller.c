@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { NUMBERS_AT = 17 };      // column of the numbers [cells]
+enum { NUMBERS_AT = 16 };      // column of the numbers [cells]
 enum { TALL = 10, BRIEF = 7 }; // rows of the panel [cells]
 
 // The modes in a line, the present one in brackets; where not all fit, those up to the present one.
@@ -54,8 +54,8 @@ static void draw_quantity(screen *s, area a, const char *name, double value, con
     char number[32];
     draw_number(number, sizeof number, value);
     screen_text(s, a.x, a.y, a.width, INK_TEXT, name);
-    screen_print(s, a.x + NUMBERS_AT, a.y, a.width - NUMBERS_AT, INK_TITLE, "%7s", number);
-    screen_text(s, a.x + NUMBERS_AT + 8, a.y, a.width - NUMBERS_AT - 8, INK_DIM,
+    screen_print(s, a.x + NUMBERS_AT, a.y, a.width - NUMBERS_AT, INK_TITLE, "%8s", number);
+    screen_text(s, a.x + NUMBERS_AT + 9, a.y, a.width - NUMBERS_AT - 9, INK_DIM,
                 isfinite(value) ? unit : "");
 }
 
@@ -65,7 +65,7 @@ static void draw_command(screen *s, area a, const parameters *p, double command)
     draw_quantity(s, a, "command", command, "V");
     if (fabs(command) >= p->motor.voltage_limit) {
         screen_text(s, a.x + 8, a.y, 9, INK_WARNING, "saturated");
-        screen_print(s, a.x + NUMBERS_AT + 10, a.y, a.width - NUMBERS_AT - 10, INK_WARNING, ">%g",
+        screen_print(s, a.x + NUMBERS_AT + 11, a.y, a.width - NUMBERS_AT - 11, INK_WARNING, ">%g",
                      p->motor.voltage_limit);
     }
 }

@@ -255,6 +255,52 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int 
     }
 }
 
+// A setpoint or a limit across a pane, and what it is called.
+static void draw_level(const plot_frame *f, screen *s, double value, const char *name)
+{
+    const int y = f->canvas.y + (int)(lround(plot_y(f, value)) / 4);
+    if (!(value >= f->axis.low && value <= f->axis.high)) {
+        return;
+    }
+    const int length = (int)strlen(name), end = f->canvas.x + f->canvas.width;
+    for (int x = f->canvas.x; x < end; x++) {
+        cell *at = &s->cells[(long)y * s->width + x];
+        if (at->glyph == ' ') {
+            const int in_name = x - (end - length);
+            screen_put(s, x, y, in_name >= 0 ? (uint32_t)name[in_name] : 0x2508, INK_FRAME);
+        }
+    }
+}
+
+// The setpoints and limits of what a pane shows, as they are at the cursor.
+static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s, const pane *p)
+{
+    static const struct {
+        const char *signal, *parameter;
+        bool both_ways;
+    } levels[] = {
+        {"force", "control.force", false},
+        {"force", "control.force_limit", false},
+        {"command", "motor.voltage_limit", true},
+        {"hub_angle", "wall.angle", false},
+        {"hub_velocity", "control.speed_limit", true},
+    };
+    const parameters now = state_parameters(st);
+    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
+        const int signal = signal_find(levels[i].signal);
+        const int parameter = parameter_index(levels[i].parameter);
+        const char *name = strchr(levels[i].parameter, '.') + 1;
+        if (p->signals[0] != signal || state_inert_reason(st, parameter) != NULL) {
+            continue;
+        }
+        const double value = parameter_get(&now, parameter);
+        draw_level(f, s, value, name);
+        if (levels[i].both_ways) {
+            draw_level(f, s, -value, name);
+        }
+    }
+}
+
 static void draw_pane(const explorer_state *st, layout *lay, screen *s, int index, area a)
 {
     plot_frame f = {
@@ -271,10 +317,11 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     draw_value_axis(s, labels, f.axis);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LABELS, index, labels});
 
-    // the present run over those kept beside it, the cursors where nothing is drawn
+    // the present run over those kept beside it, limits and cursors where nothing is drawn
     for (int run = state_run_count(st); run-- > 0;) {
         draw_run(st, f, &st->panes.pane[index], run);
     }
+    draw_levels(st, &f, s, &st->panes.pane[index]);
     if (st->mark.set) {
         draw_cursor(&f, s, st->mark.time);
     }

@@ -21,18 +21,41 @@ static bool outranks(double value, double other, bool upper_half)
     return other != 0 && (value == 0 || (upper_half ? value > other : value < other));
 }
 
+// The row of an axis at which a value lies.
+static long row_of(value_range axis, int height, double value)
+{
+    return lround((axis.high - value) / (axis.high - axis.low) * (4.0 * height - 1)) / 4;
+}
+
+// Whether each tick has a row of its own.
+static bool have_rows(const ticks *t, value_range axis, int height)
+{
+    for (int i = 1; i < t->count; i++) {
+        if (row_of(axis, height, t->value[i]) == row_of(axis, height, t->value[i - 1])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void draw_value_axis(screen *s, area a, value_range axis)
 {
     assert(s != NULL && axis.high > axis.low);
     const double low = axis.low, high = axis.high;
     ticks t;
-    ticks_between(&t, low, high, a.height >= 12 ? 5 : a.height >= 6 ? 4 : 3);
+
+    // as many as have a row each: one that is left out would make the others look uneven
+    for (int wanted = a.height >= 12 ? 5 : a.height >= 6 ? 4 : 3; wanted > 1; wanted--) {
+        ticks_between(&t, low, high, wanted);
+        if (have_rows(&t, axis, a.height)) {
+            break;
+        }
+    }
     for (int y = 0; y < a.height; y++) {
         int best = -1;
         for (int i = 0; i < t.count; i++) {
-            double down = (high - t.value[i]) / (high - low) * (4.0 * a.height - 1);
             bool better = best < 0 || outranks(t.value[i], t.value[best], 2 * y < a.height);
-            best = lround(down) / 4 == y && better ? i : best;
+            best = row_of(axis, a.height, t.value[i]) == y && better ? i : best;
         }
         screen_put(s, a.x + a.width - 1, a.y + y, best < 0 ? 0x2502 : 0x2524, INK_FRAME);
         if (best >= 0) {

@@ -42,13 +42,56 @@ void value_range_widen(value_range *r, value_range other)
     r->high = fmax(r->high, other.high);
 }
 
-void panes_define(pane_set *set, bool controlled)
+// Shows the first pane that has a signal, or the user's own with it if none has.
+static void show_signal(pane_set *set, int signal)
 {
-    assert(set != NULL);
-    set->controlled = controlled;
+    pane *own = &set->pane[PANES - 1];
+    for (int i = 0; i < PANES; i++) {
+        for (int k = 0; k < set->pane[i].count; k++) {
+            if (set->pane[i].signals[k] == signal) {
+                set->pane[i].shown = true;
+                return;
+            }
+        }
+    }
+    if (own->count < PANE_SIGNALS) {
+        own->signals[own->count++] = signal;
+        own->grown = value_range_empty;
+        own->shown = true;
+    }
+}
+
+// Shows what is wished for, and the usual panes beside it as far as there is room.
+static void show_panes(pane_set *set, const pane_wishes *wishes)
+{
+    const char *usual = wishes->controlled ? "1352486" : "1342567";
+    int shown = 0;
+    for (int i = 0; i < PANES; i++) {
+        set->pane[i].shown = false;
+    }
+    set->pane[PANES - 1].count = 0;
+    for (int i = 0; i < wishes->signal_count; i++) {
+        show_signal(set, wishes->signals[i]);
+        set->focus = i == 0 ? 0 : set->focus;
+    }
+    for (int i = 0; i < PANES; i++) {
+        shown += set->pane[i].shown;
+    }
+    for (; *usual != '\0' && shown < wishes->room; usual++) {
+        pane *p = &set->pane[*usual - '1'];
+        shown += !p->shown;
+        p->shown = true;
+    }
+}
+
+void panes_define(pane_set *set, const pane_wishes *wishes)
+{
+    assert(set != NULL && wishes != NULL);
+    set->controlled = wishes->controlled;
+    set->room = wishes->room;
     for (int i = 0; i < PANES; i++) {
         pane *p = &set->pane[i];
-        const char *const *names = controlled ? controlled_panes[i] : scripted_panes[i];
+        const char *const *names = set->controlled ? controlled_panes[i] : scripted_panes[i];
         p->grown = value_range_empty;
 
         // the user's own has no names here
@@ -61,9 +104,9 @@ void panes_define(pane_set *set, bool controlled)
             assert(signal >= 0);
             p->signals[p->count++] = signal;
         }
-        if (!set->chosen) {
-            p->shown = strchr(controlled ? "135" : "134", '1' + i) != NULL;
-        }
+    }
+    if (!set->chosen) {
+        show_panes(set, wishes);
     }
 }
 

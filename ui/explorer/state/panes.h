@@ -39,13 +39,23 @@ typedef struct pane {
 typedef struct pane_set {
     pane pane[PANES]; // the last one is the user's own
     bool controlled;  // they are those of a controlled run
+    int room;         // that they were shown for
     bool chosen;      // by the user: another scenario shows the same ones
     int focus;        // pane that the keys for axes mean
     bool alone;       // that pane only
 } pane_set;
 
-// Fills the panes with what a run has to show: a controlled one has readings and commands too.
-void panes_define(pane_set *set, bool controlled);
+// What panes are filled for.
+typedef struct pane_wishes {
+    bool controlled;    // the run has readings and commands too
+    const int *signals; // to be shown first, indices in the signal table
+    int signal_count;
+    int room; // panes that have enough rows on the screen
+} pane_wishes;
+
+// Fills the panes with what a run has to show, and shows those wished for, then the usual ones as
+// far as there is room, unless the user chose some.
+void panes_define(pane_set *set, const pane_wishes *wishes);
 
 // The pane the keys for axes mean: one that is shown, or -1.
 int panes_focused(const pane_set *set);

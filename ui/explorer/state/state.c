@@ -17,6 +17,17 @@ static double duration_of(const explorer_state *st)
 
 // --- opening and closing ----------------------------------------------------------------------
 
+// Fills the panes for the present run on the present screen.
+static void define_panes(explorer_state *st)
+{
+    enum { FEWEST = 3, ROWS = 6, HEAD = 8 };
+    const scenario *base = &st->session.base;
+    const int room = (st->size.height - HEAD) * 3 / 5 / ROWS;
+    const pane_wishes wishes = {state_has_law(st), base->panes, base->pane_count,
+                                room < FEWEST ? FEWEST : room};
+    panes_define(&st->panes, &wishes);
+}
+
 // The parameter that a run is about: what its law presses with, or the voltage.
 static int main_parameter(const explorer_state *st)
 {
@@ -47,7 +58,7 @@ static void look_afresh(explorer_state *st)
     parameter_list_arrange(&st->parameters, &st->session.effective.parameters, main_parameter(st));
     st->mark.set = false;
     time_window_show_all(&st->window);
-    panes_define(&st->panes, state_has_law(st));
+    define_panes(st);
 }
 
 status state_init(explorer_state *st, scenario *s, double patience, fault *f)
@@ -279,8 +290,10 @@ static void grow_axes(explorer_state *st)
 void state_update(explorer_state *st)
 {
     assert(st != NULL);
-    if (state_has_law(st) != st->panes.controlled) {
-        panes_define(&st->panes, state_has_law(st));
+    const bool taller = st->size.height != st->panes_height;
+    if (state_has_law(st) != st->panes.controlled || taller) {
+        define_panes(st);
+        st->panes_height = st->size.height;
     }
     update_extremes(st);
     grow_axes(st);

@@ -56,6 +56,7 @@ typedef struct explorer_state {
 
     // what is shown of them
     pane_set panes;
+    int panes_height; // of the screen they were filled for [cells]
     side_view side;
     parameter_list parameters;
     filters filters;
