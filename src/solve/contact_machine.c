@@ -53,6 +53,10 @@
 #define SHORT_FLIGHT    0.01  // of the arm's shortest period, a flight that says nothing by itself
 #define MOST_HALVINGS   8     // of a step that does not converge or makes energy
 #define LEAST_AFTER_CUT 1e-9  // share of a step; what is left of one before a cut is longer
+// Angles, velocities and accelerations below this are zero [rad, rad/s, rad/s2]. The square of what
+// is left is a normal number: a motion that dies away never computes with denormal ones, which some
+// processors do many times more slowly.
+#define FADED 1e-150
 
 // --- what holds at an instant -----------------------------------------------------------------
 
@@ -279,6 +283,21 @@ static void accept(motion *m, double step)
     m->largest_penetration = fmax(m->largest_penetration, -m->state[SLOT_GAP]);
 }
 
+// A motion that dies away comes to rest: what has faded becomes exactly zero. A velocity that has
+// gives it away.
+static void come_to_rest(motion *m)
+{
+    const double *w = state_velocities(m, m->state);
+    const double *acceleration = state_accelerations(m, m->state);
+    bool fading = false;
+    for (int i = 0; i < m->dof && !fading; i++) {
+        fading = fabs(w[i]) < FADED && (w[i] != 0 || acceleration[i] != 0);
+    }
+    for (int i = SLOT_COUNT; fading && i < m->size; i++) {
+        m->state[i] = fabs(m->state[i]) < FADED ? 0 : m->state[i];
+    }
+}
+
 static motion_event event_of(const motion *m, watch w)
 {
     switch (w) {
@@ -374,6 +393,8 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     accept(m, step);
     if (any) {
         report->event = event_of(m, first);
+    } else {
+        come_to_rest(m);
     }
     // an instant that was meant is met to the last bit
     double stop = fmin(until, m->cut);
