@@ -14,7 +14,7 @@ offered=$(for package in $("$root/lab" packages); do
     dpkg -L "$package" 2>/dev/null | sed -n 's|.*/\([^/]*\)\.pc$|\1|p'
 done | sort -u)
 
-wanted=$(find "$root" -name meson.build -not -path '*/build*/*' -exec cat {} + |
+wanted=$(cd "$root" && find . -name meson.build -not -path './build*/*' -exec cat {} + |
     sed 's/#.*//' | grep -o "dependency('[^']*'" | sed "s/.*('//; s/'//" | sort -u)
 [ -n "$wanted" ] || { echo "no dependency found in the meson files"; exit 1; }
 

@@ -1,14 +1,21 @@
 #!/bin/bash
 # The terminal lab in a real pseudo-terminal (tmux): it shows, acts, and gives the terminal back.
 # $1: the program
+#
+# Whatever the lab does is waited for, so that a slow or busy machine makes no difference: LIMIT
+# only catches a lab that hangs, and is a hundred times what anything here takes on an idle machine.
+# shellcheck disable=SC2317 # functions that until_true calls
 set -u
-program=$(readlink -f "$1")
+LIMIT=120 # [s]
 export LC_ALL=C.UTF-8
 # a sanitizer's own handlers would end the program with another status
 export ASAN_OPTIONS=${ASAN_OPTIONS:-}:handle_segv=0:handle_sigbus=0:handle_sigill=0:handle_sigfpe=0:handle_abort=0
 # the console's mouse library, which ncurses loads for TERM=linux, leaks a few bytes
 export NCURSES_GPM_TERMS=none
-folder=$(mktemp -d)
+# blanks and the like in the program's own path are no matter for the shells in here
+folder=$(mktemp -d /tmp/impactlab-terminal-XXXXXX)
+program=$folder/impactlab
+ln -s "$(readlink -f "$1")" "$program"
 socket=impactlab-$$
 failed=0
 
@@ -38,24 +45,27 @@ fail() {
     failed=1
 }
 
-# waits until the screen shows the text $1
-await() {
-    for _ in $(seq 200); do
-        picture | grep -qF -- "$1" && return 0
+# waits until the command "$@" succeeds; false after LIMIT
+until_true() {
+    local end=$((SECONDS + LIMIT))
+    until "$@"; do
+        [ $SECONDS -lt $end ] || return 1
         sleep 0.05
     done
-    fail "'$1' does not appear"
-    return 1
+}
+
+shows() {
+    picture | grep -qF -- "$1"
+}
+
+# waits until the screen shows the text $1
+await() {
+    until_true shows "$1" || { fail "'$1' does not appear"; return 1; }
 }
 
 # waits until a file exists and has a line
 await_file() {
-    for _ in $(seq 200); do
-        [ -s "$1" ] && return 0
-        sleep 0.05
-    done
-    fail "$1 is not written"
-    return 1
+    until_true test -s "$1" || { fail "$1 is not written"; return 1; }
 }
 
 # starts the lab; afterwards its exit status and the terminal's settings go to files
@@ -68,22 +78,25 @@ start() {
 # suspends the lab; on a busy machine the shell may not have handed the terminal over when the key
 # comes, which is then lost
 suspend() {
-    for _ in 1 2 3; do
+    local end=$((SECONDS + LIMIT)) patience=2
+    while [ $SECONDS -lt $end ]; do
         mux send-keys C-z
-        for _ in $(seq 60); do
-            picture | grep -qF "ready>" && return 0
-            sleep 0.05
-        done
+        LIMIT=$patience until_true shows "ready>" && return 0
+        patience=$((2 * patience))
     done
     fail "^Z does not suspend"
+}
+
+# tmux has read all that the lab wrote: no alternate screen, cursor shown, no mouse
+modes_are_given_back() {
+    [ "$(mux display-message -p '#{alternate_on} #{cursor_flag} #{mouse_any_flag}')" = "0 1 0" ]
 }
 
 # the terminal is as it was: settings, alternate screen, cursor, mouse
 check_given_back() {
     await_file "$folder/after" || return
     cmp -s "$folder/before" "$folder/after" || fail "$1: stty settings differ"
-    [ "$(mux display-message -p '#{alternate_on} #{cursor_flag} #{mouse_any_flag}')" = "0 1 0" ] ||
-        fail "$1: alternate screen, cursor or mouse are left over"
+    until_true modes_are_given_back || fail "$1: alternate screen, cursor or mouse are left over"
 }
 
 cat >"$folder/profile" <<PROFILE
@@ -153,8 +166,10 @@ check_given_back resize
 mux new-window "sh -c 'echo \$\$ >$folder/gone; exec $program'"
 await "Space run/pause"
 mux kill-window
-sleep 0.5
-kill -0 "$(cat "$folder/gone")" 2>/dev/null && fail "the lab outlives its terminal"
+is_gone() {
+    ! kill -0 "$1" 2>/dev/null
+}
+until_true is_gone "$(cat "$folder/gone")" || fail "the lab outlives its terminal"
 
 # a click in the curves moves the cursor, unless the mouse is off
 mux send-keys "export TERM=xterm-256color" Enter
@@ -165,7 +180,10 @@ mux send-keys -l $'\033[<0;45;30M\033[<0;45;30m'
 await "t 0.53906 s"
 mux send-keys ":mouse off" Enter
 await "the mouse is off"
-[ "$(mux display-message -p '#{mouse_any_flag}')" = 0 ] || fail "the mouse stays on"
+mouse_is_off() {
+    [ "$(mux display-message -p '#{mouse_any_flag}')" = 0 ]
+}
+until_true mouse_is_off || fail "the mouse stays on"
 mux send-keys q
 await "status 0"
 check_given_back mouse
