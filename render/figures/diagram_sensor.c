@@ -5,6 +5,8 @@
 
 #include "render/figures/diagram.h"
 #include "render/figures/figures.h"
+#include "render/page/text.h"
+#include "src/base/numbers.h"
 #include "src/rig/sensors.h"
 
 // The circuit's resistors are the thesis's. Supply and sensor, which it does not print, are the
@@ -39,7 +41,7 @@ static void draw_amplifier(sketch *s, double x, double y)
 static void draw_divider(sketch *s, const sensor_parameters *p, double x, double y)
 {
     char text[96];
-    snprintf(text, sizeof text, "<i>V</i><sub>+</sub> = %g\u2009V", p->fsr_supply);
+    decimal_print(text, sizeof text, "<i>V</i><sub>+</sub> = %g\u2009V", p->fsr_supply);
     sketch_text(s, x, y, 0.5, 0, text, SKETCH_SMALL);
     sketch_disc(s, x, y + 14, 1.8, SKETCH_INK, false);
     wire(s, x, y + 16, x, y + 20);
@@ -48,7 +50,7 @@ static void draw_divider(sketch *s, const sensor_parameters *p, double x, double
     sketch_arrow(s, x - 34, y + 40, x - 8, y + 40, 5);
     sketch_text(s, x - 38, y + 40, 1, 0.5, "<i>f</i>", SKETCH_LABEL);
     sketch_resistor(s, x, y + 62, x, y + 116);
-    snprintf(text, sizeof text, "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
+    decimal_print(text, sizeof text, "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
     sketch_text(s, x - 9, y + 92, 1, 0.5, text, SKETCH_SMALL);
     draw_ground(s, x, y + 112);
     sketch_disc(s, x, y + 62, 1.7, SKETCH_INK, true);
@@ -132,7 +134,7 @@ status diagram_sensor(const char *title, const figure_options *o, artwork *out, 
     (void)f;
     diagram *d = diagram_create(title, NULL, 186 + 52 / 25.4 * 72, o);
     const sensor_parameters *p = &d->p.sensor;
-    d->caption = g_strdup_printf(
+    d->caption = text_printf(
         "The sheet sensor (FSR) and the measuring resistor divide the supply; a buffer keeps the "
         "divider unloaded, a second amplifier doubles its output. Resistors as in the thesis; "
         "supply and sensor are not printed there and are the rig's: %g\u2009V, %g\u2009kΩ at "

@@ -5,7 +5,9 @@
 
 #include "render/figures/diagram.h"
 #include "render/figures/figures.h"
+#include "render/page/text.h"
 #include "render/plot/opened_run.h"
+#include "src/base/numbers.h"
 
 #define DEGREE     (G_PI / 180)
 #define HUB_RADIUS 0.11 // of the experiment's hub, section 2.3 [m]
@@ -115,7 +117,7 @@ status diagram_links(const char *title, const figure_options *o, artwork *out, f
     diagram *d = diagram_create(title, NULL, 190, o);
     d->draw = draw_links;
     add_arm_values(d);
-    d->caption = g_strdup_printf(
+    d->caption = text_printf(
         "Hub (body 1) and two rigid links (bodies 2 and 3) in the proportions of the model, bent "
         "far more than in use. <i>l</i> = %g\u2009m, <i>ε</i> = %g\u2009m, <i>m</i> = "
         "%.4g\u2009kg, "
@@ -221,15 +223,15 @@ static void draw_springs(sketch *s, const diagram *d)
     sketch_coil(s, middle, y, wall, y, 9, 0);
     sketch_disc(s, middle, y, 2, SKETCH_INK, true);
     sketch_wall(s, wall, y + 34, wall, y - 34);
-    snprintf(text, sizeof text, "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", d->p.arm.k1);
+    decimal_print(text, sizeof text, "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", d->p.arm.k1);
     sketch_text(s, (mass + 26 + middle) / 2, y + 26, 0.5, 0, text, SKETCH_SMALL);
-    snprintf(text, sizeof text, "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", d->p.arm.k2);
+    decimal_print(text, sizeof text, "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", d->p.arm.k2);
     sketch_text(s, (middle + wall) / 2, y + 26, 0.5, 0, text, SKETCH_SMALL);
     double k1 = d->p.arm.k1, k2 = d->p.arm.k2;
-    snprintf(text, sizeof text,
-             "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + 1/<i>k</i><sub>2</sub>,   "
-             "<i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
-             k1 * k2 / (k1 + k2));
+    decimal_print(text, sizeof text,
+                  "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + 1/<i>k</i><sub>2</sub>,   "
+                  "<i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
+                  k1 * k2 / (k1 + k2));
     sketch_text(s, (s->left + s->right) / 2, y + 50, 0.5, 0, text, SKETCH_LABEL);
 }
 
@@ -281,7 +283,7 @@ status diagram_springs(const char *title, const figure_options *o, artwork *out,
     diagram_add_value(d, "approach speed", speed, "m/s");
     diagram_add_value(d, "impulse", d->impulse, "N s");
     diagram_add_value(d, "mass at the contact point", d->impulse / speed, "kg");
-    d->caption = g_strdup_printf(
+    d->caption = text_printf(
         "What the wall feels: a mass on the arm's springs in series. The stiff hub joint hardly "
         "counts, the beam's spring takes almost all the energy. At 1\u2009V the contact point "
         "arrives with <i>v</i><sub>0</sub> = %.3g\u2009m/s and the impact of %.3g\u2009N·s shows a "
@@ -325,16 +327,16 @@ static void draw_collision(sketch *s, const diagram *d)
     sketch_arrow(s, joint_page.x - 6, y, joint_page.x - 6, y - SPEED_LENGTH * joint_before, 2);
     sketch_dashed_arrow(s, joint_page.x + 6, y, joint_page.x + 6, y - SPEED_LENGTH * joint_after,
                         1);
-    snprintf(text, sizeof text, "before\n%.3f\u2009m/s", joint_before);
+    decimal_print(text, sizeof text, "before\n%.3f\u2009m/s", joint_before);
     sketch_text(s, joint_page.x - 12, y - 4, 1, 1, text, SKETCH_SMALL);
-    snprintf(text, sizeof text, "after\n%.3f\u2009m/s", joint_after);
+    decimal_print(text, sizeof text, "after\n%.3f\u2009m/s", joint_after);
     sketch_text(s, joint_page.x + 12, y - 4, 0, 1, text, SKETCH_SMALL);
     sketch_arrow(s, contact.x - 8, contact.y + 6 + SPEED_LENGTH * tip_before, contact.x - 8,
                  contact.y + 6, 2);
-    snprintf(text, sizeof text, "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
+    decimal_print(text, sizeof text, "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
     sketch_text(s, contact.x - 14, contact.y + 14, 1, 0, text, SKETCH_SMALL);
     sketch_arrow(s, contact.x, contact.y - 56, contact.x, contact.y - 6, 5);
-    snprintf(text, sizeof text, "impulse %.4f\u2009N·s", d->impulse);
+    decimal_print(text, sizeof text, "impulse %.4f\u2009N·s", d->impulse);
     sketch_text(s, contact.x, contact.y - 60, 0.5, 1, text, SKETCH_SMALL);
 }
 
@@ -359,7 +361,7 @@ status diagram_collision(const char *title, const figure_options *o, artwork *ou
     }
     diagram_add_value(d, "impulse", d->impulse, "N s");
     diagram_add_value(d, "approach speed", speed, "m/s");
-    d->caption = g_strdup_printf(
+    d->caption = text_printf(
         "The arm of corrected/first-impact at the instant of its first contact, seen along the "
         "line to the contact point and enlarged %g times across it. The impulse of the wall stops "
         "the contact point and throws the joint forward: the links' angular velocities jump from "

@@ -7,10 +7,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/page/sketch.h"
+#include "render/page/text.h"
 #include "render/plot/curve.h"
 #include "render/plot/figure_file.h"
 #include "render/plot/opened_run.h"
-#include "render/page/sketch.h"
+#include "src/base/numbers.h"
 #include "src/base/version.h"
 
 #define IMPACT_SCENARIO "corrected/first-impact"
@@ -170,8 +172,8 @@ status figure_contact(const char *title, const figure_options *o, artwork *out, 
     size_t first = first_contact_pair(t);
     for (size_t i = first; i < first + 2 && i < t->row_count; i++) {
         const sample *row = &t->rows[i];
-        char *label = own(fig, g_strdup_printf("arm at <i>t</i> = %.2f\u2009s", row->time));
-        char *name = own(fig, g_strdup_printf("arm at %.2f s", row->time));
+        char *label = own(fig, text_printf("arm at <i>t</i> = %.2f\u2009s", row->time));
+        char *name = own(fig, text_printf("arm at %.2f s", row->time));
         add_shape(fig, row->first_angle, row->last_angle,
                   (figure_series){.name = name,
                                   .label = label,
@@ -243,7 +245,7 @@ status figure_peak_shape(const char *title, const figure_options *o, artwork *ou
     describe_shapes(fig);
     fig->figure.caption = own(
         fig,
-        g_strdup_printf(
+        text_printf(
             "The arm of corrected/first-impact %.1f\u2009ms after first contact, at its peak "
             "force of %.3g\u2009N: <i>θ</i><sub>2</sub> = %.4f, <i>θ</i><sub>3</sub> = "
             "%.4f\u2009rad, bend \u2212%.4f\u2009rad. The energy principle puts the %.3g\u2009mJ "
@@ -279,8 +281,8 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
         char text[64];
         cairo_save(cr);
         sketch_measure(&s, x0, y, x1, y);
-        snprintf(text, sizeof text, "<i>T</i> = %.1f\u2009ms",
-                 1e3 * (fig->peak_time - fig->contact));
+        decimal_print(text, sizeof text, "<i>T</i> = %.1f\u2009ms",
+                      1e3 * (fig->peak_time - fig->contact));
         sketch_text(&s, (x0 + x1) / 2, y - 2, 0.5, 1, text, SKETCH_SMALL);
         cairo_restore(cr);
         g_object_unref(s.context);
@@ -317,7 +319,7 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
     panel->impulse_label = "Impulse <i>p</i>";
     panel->impulse_unit = "N s";
     fig->levels[0] = (figure_level){
-        fig->peak, own(fig, g_strdup_printf("<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak))};
+        fig->peak, own(fig, text_printf("<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak))};
     panel->levels = fig->levels;
     panel->level_count = 1;
     fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
@@ -443,8 +445,8 @@ static status assumed_motion(const char *title, bool of_angle, const figure_opti
     fig->figure.x.low = fig->contact - 0.4 * period;
     fig->figure.x.high = fig->contact + 1.4 * period;
     fig->figure.panel_count = PANELS;
-    fig->figure.caption = own(
-        fig, g_strdup_printf("First and last link of corrected/first-impact from first contact to "
+    fig->figure.caption =
+        own(fig, text_printf("First and last link of corrected/first-impact from first contact to "
                              "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
                              "departure between them: %.2g and %.2g\u2009%s.",
                              1e3 * period,

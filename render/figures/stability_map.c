@@ -6,9 +6,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "render/plot/opened_run.h"
-#include "src/base/whole_file.h"
 #include "src/base/csv.h"
+#include "src/base/whole_file.h"
 
 #define MAP_SCENARIO "corrected/first-impact"
 #define WINDOW       0.15 // length of the force that is compared, from first contact [s]
@@ -327,7 +328,7 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
         return code;
     }
     m->title = g_strdup(title);
-    m->caption = g_strdup_printf(
+    m->caption = text_printf(
         "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root of "
         "the mean square difference of the contact force from the event method's over the "
         "%g\u2009ms after first contact, in per cent of its peak. Lines: <i>γ</i> = ½ and "

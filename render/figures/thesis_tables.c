@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "src/arm/modes.h"
 #include "src/study/thesis_tables.h"
 
@@ -58,8 +59,8 @@ static void add_motor_row(table_page *t, const parameters *p, const char *symbol
     int index = parameter_find(path);
     const parameter_info *info = &parameter_table[index];
     text_unit(info->unit, unit, sizeof unit);
-    char *used = g_strdup_printf("%.6g\u2009%s", parameter_get(p, index),
-                                 strcmp(unit, "ohm") == 0 ? "Ω" : unit);
+    char *used =
+        text_printf("%.6g\u2009%s", parameter_get(p, index), strcmp(unit, "ohm") == 0 ? "Ω" : unit);
     char *name = g_strdup_printf("%s: %s", path, info->description);
     table_add_row(t, (const char *[]){symbol, printed, used, name});
     g_free(used);
@@ -99,14 +100,14 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
 static void add_pair(table_page *t, const char *name, double beta, double gamma, double fastest)
 {
     bool always = 2 * beta >= gamma;
-    char *pair = g_strdup_printf("%.4g, %.4g", beta, gamma), *bound, *step;
+    char *pair = text_printf("%.4g, %.4g", beta, gamma), *bound, *step;
     if (always) {
         bound = g_strdup("none");
         step = g_strdup("any");
     } else {
         double critical = 1 / sqrt(gamma / 2 - beta);
-        bound = g_strdup_printf("%.4g", critical);
-        step = g_strdup_printf("%.3g\u2009ms", 1e3 * critical / fastest);
+        bound = text_printf("%.4g", critical);
+        step = text_printf("%.3g\u2009ms", 1e3 * critical / fastest);
     }
     table_add_row(t, (const char *[]){name, pair, bound, step, gamma > 0.5 ? "1" : "2"});
     g_free(pair);
@@ -149,7 +150,7 @@ status table_stability(const char *title, const figure_options *o, artwork *out,
     add_pair(t, "linear acceleration", 1.0 / 6, 0.5, fastest);
     add_pair(t, "Fox and Goodwin", 1.0 / 12, 0.5, fastest);
     add_pair(t, "central differences", 0, 0.5, fastest);
-    t->caption = g_strdup_printf(
+    t->caption = text_printf(
         "Without damping; <i>ω</i> is the fastest mode, for the two-link arm with the printed hub "
         "spring %.4g\u2009rad/s. <i>γ</i> > ½ damps fast modes and costs one order. In contact "
         "<i>β</i> "
@@ -229,7 +230,7 @@ static char *cell_text(const char *format, double value)
     if (!isfinite(value)) {
         return g_strdup("–");
     }
-    char *text = g_strdup_printf(format, fabs(value));
+    char *text = text_printf(format, fabs(value));
     char *cell = g_strconcat(value < 0 ? "\u2212" : "", text, NULL);
     g_free(text);
     return cell;
@@ -298,7 +299,7 @@ static status open_predictions(const char *table, const char *title, const figur
         add_model(t, printed, scale, format);
         add_model(t, corrected, scale, format);
     }
-    t->caption = g_strdup_printf(
+    t->caption = text_printf(
         "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are from what "
         "the thesis prints. The printed model has the constants inferred from these tables "
         "(docs/physics.md, section 1); the corrected one has the mechanics derived anew and is not "

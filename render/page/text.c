@@ -3,9 +3,11 @@
 #include <assert.h>
 #include <fontconfig/fontconfig.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/page/page.h"
+#include "src/base/numbers.h"
 
 static bool family_matches(void)
 {
@@ -198,7 +200,7 @@ void text_unit(const char *unit, char *out, size_t size)
 char *text_quantity(double value, int digits, const char *unit)
 {
     char number[48], shown[64];
-    g_snprintf(number, sizeof number, "%#.*g", digits, fabs(value));
+    decimal_print(number, sizeof number, "%#.*g", digits, fabs(value));
     size_t length = strlen(number);
     if (length > 0 && number[length - 1] == '.') {
         number[length - 1] = '\0';
@@ -254,6 +256,36 @@ void report_add_text(figure_report *report, const char *markup, figure_rect plac
         t->text[end - t->text] = '\0';
     }
     g_free(plain);
+}
+
+// Without memory GLib ends the program, and so does this.
+__attribute__((format(printf, 2, 0))) static void append_list(GString *text, const char *format,
+                                                              va_list list)
+{
+    char *printed = decimal_vtext(format, list);
+    if (printed == NULL) {
+        g_error("out of memory");
+    }
+    g_string_append(text, printed);
+    free(printed);
+}
+
+char *text_printf(const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    GString *text = g_string_new(NULL);
+    append_list(text, format, list);
+    va_end(list);
+    return g_string_free(text, FALSE);
+}
+
+void text_append(GString *text, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    append_list(text, format, list);
+    va_end(list);
 }
 
 void text_release(void)

@@ -64,6 +64,10 @@ char *text_plain(const char *markup);
 // Any bytes as valid UTF-8 that markup shows as they stand. Free the result with g_free.
 char *text_escape(const char *bytes);
 
+// As g_strdup_printf and g_string_append_printf, with a decimal point in every locale.
+char *text_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void text_append(GString *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 // Gives back what Pango and cairo keep for later figures (for leak checkers). No figure may be in
 // work.
 void text_release(void);

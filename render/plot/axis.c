@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "render/page/text.h"
+#include "src/base/numbers.h"
 
 #define MINOR_SPACING 2.5 // least distance of minor ticks [pt]
 #define FEW_DECADES   1.2 // below which 2 and 5 always have ticks, so that there are some
@@ -38,7 +39,7 @@ static void choose_even_ticks(axis *a, int wanted)
 static void format_decade(const axis_scale *s, int mantissa, int power, char text[AXIS_LABEL])
 {
     if (s->low > -2.5 && s->high < 4.5) {
-        snprintf(text, AXIS_LABEL, "%.*f", power < 0 ? -power : 0, mantissa * pow(10, power));
+        decimal_print(text, AXIS_LABEL, "%.*f", power < 0 ? -power : 0, mantissa * pow(10, power));
         return;
     }
     char factor[16] = "";

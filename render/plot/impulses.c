@@ -5,11 +5,13 @@
 
 #include "render/plot/drawing.h"
 
+#include "src/base/numbers.h"
+
 // Three digits, with a power of ten where a reader would count zeros.
 static void number_markup(double value, char *out, size_t size)
 {
     char digits[32];
-    snprintf(digits, sizeof digits, "%.3g", fabs(value));
+    decimal_print(digits, sizeof digits, "%.3g", fabs(value));
     char *e = strchr(digits, 'e');
     const char *sign = value < 0 ? "\u2212" : "";
     if (e == NULL) {

@@ -8,6 +8,7 @@
 
 #include "render/page/text.h"
 #include "render/plot/figure_file.h"
+#include "src/base/numbers.h"
 #include "src/base/version.h"
 #include "src/quantities/summary.h"
 
@@ -50,7 +51,7 @@ static char *number_label(double value)
 {
     char digits[24];
     const char *sign = value < 0 ? "\u2212" : "";
-    snprintf(digits, sizeof digits, "%.6g", fabs(value));
+    decimal_print(digits, sizeof digits, "%.6g", fabs(value));
     char *exponent = strchr(digits, 'e');
     if (exponent == NULL) {
         return g_strdup_printf("%s%s", sign, digits);
@@ -94,8 +95,8 @@ static bool points_are_good_ticks(const varied *v)
         (axis->logarithmic || !axis->is_range) && v->count > 0 && v->count <= LABELLED_VALUES;
     for (size_t i = 0; i < v->count && good; i++) {
         char digits[32];
-        snprintf(digits, sizeof digits, "%.3g", axis->values[i]);
-        good = fabs(strtod(digits, NULL) - axis->values[i]) <= 1e-9 * fabs(axis->values[i]);
+        decimal_print(digits, sizeof digits, "%.3g", axis->values[i]);
+        good = fabs(decimal_parse(digits, NULL) - axis->values[i]) <= 1e-9 * fabs(axis->values[i]);
     }
     return good;
 }

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/base/numbers.h"
+
 // the nice numbers, nicest first; each is tenths / 10
 static const int nice_tenths[] = {10, 50, 20, 25, 40, 30};
 enum { NICE = 6 };
@@ -239,7 +241,7 @@ void tick_label(const ticks *t, int index, char text[TICK_TEXT])
     assert(t != NULL && index >= 0 && index < t->count);
     double value = t->value[index] / pow(10, t->exponent);
     char digits[TICK_TEXT - 4];
-    snprintf(digits, sizeof digits, "%.*f", t->decimals, fabs(value));
+    decimal_print(digits, sizeof digits, "%.*f", t->decimals, fabs(value));
     snprintf(text, TICK_TEXT, "%s%s", value < 0 ? "\u2212" : "", digits);
 }
 

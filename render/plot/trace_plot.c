@@ -7,12 +7,12 @@
 #include <string.h>
 
 #include "render/plot/curve.h"
+#include "render/page/text.h"
 #include "render/plot/figure_file.h"
 #include "render/plot/opened_run.h"
 #include "render/plot/overlay.h"
-#include "render/page/text.h"
-#include "src/rig/rig.h"
 #include "src/base/version.h"
+#include "src/rig/rig.h"
 
 #define SHORT_PULSE 0.1  // share of the run below which the first pulse is shown enlarged
 #define INSET_SPACE 0.15 // of the pulse, shown before and after it
@@ -94,13 +94,13 @@ static char *own_label(const scenario *s, const signal_info *signal)
 static char *duration_text(double seconds)
 {
     bool milli = seconds < 1 && seconds >= 1e-3, micro = seconds < 1e-3;
-    return g_strdup_printf("%g\u2009%s",
-                           seconds * (milli   ? 1e3
-                                      : micro ? 1e6
-                                              : 1),
-                           milli   ? "ms"
-                           : micro ? "\u00b5s"
-                                   : "s");
+    return text_printf("%g\u2009%s",
+                       seconds * (milli   ? 1e3
+                                  : micro ? 1e6
+                                          : 1),
+                       milli   ? "ms"
+                       : micro ? "\u00b5s"
+                               : "s");
 }
 
 static bool on_the_rig(const scenario *s)
@@ -124,15 +124,15 @@ static const char *mode_name(const scenario *s, int mode)
 static void add_drive(GString *out, const parameters *p)
 {
     if (p->control.law == LAW_NONE) {
-        g_string_append_printf(out, ", %g\u2009V; ", p->motor.voltage);
+        text_append(out, ", %g\u2009V; ", p->motor.voltage);
         return;
     }
     const char *law = control_law_table[p->control.law].word;
-    g_string_append_printf(out, ", on the rig: %s at %g\u2009Hz", law, p->control.rate);
+    text_append(out, ", on the rig: %s at %g\u2009Hz", law, p->control.rate);
     if (p->control.law == LAW_OPEN_LOOP) {
-        g_string_append_printf(out, ", %g\u2009V; ", p->control.approach_voltage);
+        text_append(out, ", %g\u2009V; ", p->control.approach_voltage);
     } else {
-        g_string_append_printf(out, ", %g\u2009N commanded; ", p->control.force);
+        text_append(out, ", %g\u2009N commanded; ", p->control.force);
     }
 }
 
@@ -148,11 +148,9 @@ static char *caption_of(const trace_run *run, const char *shaded)
                            hub_texts[p->arm.hub_joint]);
     add_drive(out, p);
     if (p->arm.model == ARM_PRINTED || p->method.name == METHOD_NEWMARK) {
-        g_string_append_printf(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta,
-                               p->method.gamma);
+        text_append(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta, p->method.gamma);
     } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
-        g_string_append_printf(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g",
-                               p->method.spectral_radius);
+        text_append(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g", p->method.spectral_radius);
     } else {
         g_string_append(out, "explicit steps, located events");
     }
@@ -178,7 +176,7 @@ static void add_mark(trace_figure *t, double time, char *label)
 static char *action_label(const scenario *s, const event *e)
 {
     if (e->kind == EVENT_PUSH) {
-        return g_strdup_printf("push %.3g\u2009N·s", e->impulse);
+        return text_printf("push %.3g\u2009N·s", e->impulse);
     }
     if (e->kind != EVENT_CHANGE || e->index < 0 || e->index >= s->action_count) {
         return NULL;
@@ -194,7 +192,7 @@ static char *action_label(const scenario *s, const event *e)
 
 static char *mode_label(const char *name, double mode)
 {
-    char *escaped = name != NULL ? text_escape(name) : g_strdup_printf("%g", mode);
+    char *escaped = name != NULL ? text_escape(name) : text_printf("%g", mode);
     char *label = g_strdup_printf(name != NULL ? "%s mode" : "mode %s", escaped);
     g_free(escaped);
     return label;

@@ -3,10 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "render/scene/film_file.h"
 #include "render/page/text.h"
 #include "render/plot/opened_run.h"
 #include "render/plot/trace_plot.h"
+#include "render/scene/film_file.h"
+#include "src/base/numbers.h"
 #include "src/base/version.h"
 
 enum { CLOCK_CELLS = 4000 };
@@ -169,9 +170,10 @@ static void draw_speed(const film *m, cairo_t *cr, double speed)
     double scale = fmin(m->options.height / 720.0, m->scene_width / 800.0);
     if (speed < 1) {
         double times = 1 / speed;
-        snprintf(text, sizeof text, "%.*f times slower than real", times < 9.95 ? 1 : 0, times);
+        decimal_print(text, sizeof text, "%.*f times slower than real", times < 9.95 ? 1 : 0,
+                      times);
     } else {
-        snprintf(text, sizeof text, "%.1f times faster than real", speed);
+        decimal_print(text, sizeof text, "%.1f times faster than real", speed);
     }
     const text_block t = {.markup = text, .size = 13 * scale};
     cairo_set_source_rgb(cr, 0.38, 0.40, 0.43);

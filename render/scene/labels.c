@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "render/page/text.h"
+#include "src/base/numbers.h"
 
 #define TITLE_LETTERS 15.0 // [pixels of a picture 720 high]
 #define FACT_LETTERS  13.0
@@ -53,7 +54,7 @@ void labels_force(const labels *l, vector from, vector end, double force, colour
 {
     char text[48];
     double width, height, digits = force < 10 ? 2 : force < 100 ? 1 : 0;
-    snprintf(text, sizeof text, "%.*f\u2009N", (int)digits, force);
+    decimal_print(text, sizeof text, "%.*f\u2009N", (int)digits, force);
     const text_block t = {.markup = text, .size = TITLE_LETTERS * l->scale, .bold = true};
     text_measure(l->context, &t, &width, &height);
     vector start = camera_project(l->camera, from), tip = camera_project(l->camera, end);
@@ -83,7 +84,7 @@ void labels_instants(const labels *l, const double *times, const colour *inks, i
     double bottom = l->camera->height - MARGIN * l->scale, width = 0, height = 0;
     for (int i = 0; i < count; i++) {
         char text[48];
-        snprintf(text, sizeof text, "%.1f\u2009ms", 1e3 * times[i]);
+        decimal_print(text, sizeof text, "%.1f\u2009ms", 1e3 * times[i]);
         const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
         double own;
         text_measure(l->context, &t, &own, &height);
@@ -93,7 +94,7 @@ void labels_instants(const labels *l, const double *times, const colour *inks, i
     for (int i = 0; i < count; i++) {
         char text[48];
         double own, y = bottom - (count - i) * step;
-        snprintf(text, sizeof text, "%.1f\u2009ms", 1e3 * times[i]);
+        decimal_print(text, sizeof text, "%.1f\u2009ms", 1e3 * times[i]);
         const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
         text_measure(l->context, &t, &own, &height);
         draw_text(l, right - own, y, text, FACT_LETTERS, false, ink_faint);

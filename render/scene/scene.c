@@ -7,13 +7,14 @@
 
 #include "render/page/picture_file.h"
 #include "render/page/png_file.h"
+#include "render/page/text.h"
 #include "render/plot/opened_run.h"
 #include "render/scene/floor.h"
 #include "render/scene/labels.h"
-#include "render/page/text.h"
 #include "src/base/instant.h"
-#include "src/base/whole_file.h"
+#include "src/base/numbers.h"
 #include "src/base/version.h"
+#include "src/base/whole_file.h"
 
 enum {
     TRAIL_POINTS = 240,
@@ -405,8 +406,8 @@ static void draw_labels(scene *sc, const double *times, const colour *inks, int 
         if (force_arrow(sc, &row, &start, &end)) {
             labels_force(&l, start, end, row.force, (colour){0.70, 0.28, 0});
         }
-        snprintf(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m", 1e3 * time,
-                 sc->grid);
+        decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m",
+                      1e3 * time, sc->grid);
         labels_caption(&l, sc->scenario->title, facts);
         if (count > 1) {
             labels_instants(&l, times, inks, count);

@@ -4,12 +4,14 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "src/base/numbers.h"
+
 static void fill(fault *f, status code, const char *format, va_list args)
 {
     f->code = code;
     f->path = "";
     f->line = f->column = 0;
-    vsnprintf(f->text, sizeof f->text, format, args);
+    decimal_vprint(f->text, sizeof f->text, format, args);
 }
 
 status fault_set(fault *f, status code, const char *format, ...)

@@ -2,10 +2,51 @@
 
 #include <assert.h>
 #include <ctype.h>
+#include <locale.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+// Gives the calling thread the "C" locale; returns the one to go back to. The C library keeps the
+// "C" locale for good: it is neither allocated here nor freed.
+static locale_t enter_plain(void)
+{
+    return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
+}
+
+int decimal_vprint(char *text, size_t size, const char *format, va_list list)
+{
+    locale_t before = enter_plain();
+    int length = vsnprintf(text, size, format, list);
+    uselocale(before);
+    return length;
+}
+
+int decimal_print(char *text, size_t size, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    int length = decimal_vprint(text, size, format, list);
+    va_end(list);
+    return length;
+}
+
+char *decimal_vtext(const char *format, va_list list)
+{
+    char *text;
+    locale_t before = enter_plain();
+    int length = vasprintf(&text, format, list);
+    uselocale(before);
+    return length < 0 ? NULL : text;
+}
+
+double decimal_parse(const char *text, char **end)
+{
+    locale_t before = enter_plain();
+    double value = strtod(text, end);
+    uselocale(before);
+    return value;
+}
 
 // Writes with the fewest digits, from `least` on, that read back as the same number.
 static void write_digits(char *text, double value, int least)
@@ -16,8 +57,8 @@ static void write_digits(char *text, double value, int least)
     }
 
     for (int digits = least; digits <= 17; digits++) {
-        snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
-        if (digits == 17 || strtod(text, NULL) == value) {
+        decimal_print(text, NUMBER_TEXT, "%.*g", digits, value);
+        if (digits == 17 || decimal_parse(text, NULL) == value) {
             return;
         }
     }
@@ -50,8 +91,8 @@ bool decimal_read(const char *text, double *value, const char **rest)
     }
 
     char *end;
-    *value = strtod(text, &end);
-    while (isspace((unsigned char)*end)) {
+    *value = decimal_parse(text, &end);
+    while (is_blank(*end)) {
         end++;
     }
     *rest = end;

@@ -1,6 +1,5 @@
 // Values of parameters: stored in and read from struct parameters, parsed and formatted.
 #include <assert.h>
-#include <ctype.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -163,7 +162,7 @@ static status store_text(parameters *p, int index, const char *text, size_t leng
 {
     const parameter_info *info = row_of(index);
     for (size_t i = 0; i < length; i++) {
-        if (iscntrl((unsigned char)text[i])) {
+        if (is_control(text[i])) {
             return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
                                 "%s holds a control character, expected one line of text",
                                 info->path);
@@ -211,7 +210,7 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
     // what counts is what stands between the blanks
     text += strspn(text, " \t\n\v\f\r");
     size_t length = strlen(text);
-    while (length > 0 && isspace((unsigned char)text[length - 1])) {
+    while (length > 0 && is_blank(text[length - 1])) {
         length--;
     }
     if (info->type == PARAMETER_TEXT && length < PARAMETER_TEXT_SIZE) {

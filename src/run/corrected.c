@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include "src/base/numbers.h"
 #include "src/run/checkpoint.h"
 #include "src/run/corrected_events.h"
 #include "src/run/rig_recording.h"
@@ -102,11 +103,12 @@ static status begin(corrected_run *c, fault *f)
     snprintf(s->method, sizeof s->method, "%s", m->engine->name);
 
     if (motion_unresolved(&c->arm, m)) {
-        snprintf(s->message, sizeof s->message,
-                 "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): the "
-                 "method was %s, what happens within a few steps of an impact is rough; a shorter "
-                 "method.step resolves it",
-                 p->method.step, c->arm.links, c->arm.highest_frequency, m->engine->name);
+        decimal_print(
+            s->message, sizeof s->message,
+            "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): the "
+            "method was %s, what happens within a few steps of an impact is rough; a shorter "
+            "method.step resolves it",
+            p->method.step, c->arm.links, c->arm.highest_frequency, m->engine->name);
     }
 
     status failed = recording_open_trace(r, c->arm.dof, f);

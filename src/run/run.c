@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "src/base/numbers.h"
 #include "src/run/corrected.h"
 #include "src/run/printed.h"
 #include "src/run/rig_recording.h"
@@ -80,14 +81,14 @@ int run_check_expectations(const scenario *s, const run_result *result, fault_ha
         // as the editor that opens the file wants it: place, what is and what was expected
         char sentence[512], found[64] = "nothing (null)";
         if (!isnan(value)) {
-            snprintf(found, sizeof found, "%.9g", value);
+            decimal_print(found, sizeof found, "%.9g", value);
         }
         if (e->is_null) {
             snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected null", s->file,
                      e->line, e->column, key, found);
         } else {
-            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected %.9g within %g",
-                     s->file, e->line, e->column, key, found, e->value, e->tolerance);
+            decimal_print(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected %.9g within %g",
+                          s->file, e->line, e->column, key, found, e->value, e->tolerance);
         }
         report(context, sentence);
         missed++;

@@ -17,7 +17,7 @@ void reader_report_at(reader *r, int line, int column, const char *format, ...)
     found_fault found = {{line, column}, r->faults, NULL};
     va_list args;
     va_start(args, format);
-    vsnprintf(what, sizeof what, format, args);
+    decimal_vprint(what, sizeof what, format, args);
     va_end(args);
 
     // the list has the place of each fault, so that they can be sorted

@@ -3,11 +3,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/csv.h"
+#include "src/base/json.h"
+#include "src/base/numbers.h"
+#include "src/base/words.h"
 #include "src/predict/best_stop.h"
 #include "src/rig/rig.h"
-#include "src/base/words.h"
-#include "src/base/json.h"
-#include "src/base/csv.h"
 
 enum {
     PEAK,
@@ -209,7 +210,7 @@ void compare_text(FILE *stream, const compare_table *t)
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             char text[32] = "-";
             if (!isnan(row->values[k])) {
-                snprintf(text, sizeof text, "%.4g", row->values[k]);
+                decimal_print(text, sizeof text, "%.4g", row->values[k]);
             }
             if (!t->hidden[k]) {
                 fprintf(stream, "  %11s%c", text, marked(t, i, k) ? '*' : ' ');
@@ -250,11 +251,8 @@ void compare_markdown(FILE *stream, const compare_table *t)
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             double value = t->rows[i].values[k];
             if (!t->hidden[k]) {
-                fprintf(stream,
-                        isnan(value)          ? " – |"
-                        : fabs(value) >= 1000 ? " %.0f |"
-                                              : " %.3g |",
-                        value);
+                decimal_print(text, sizeof text, fabs(value) >= 1000 ? "%.0f" : "%.3g", value);
+                fprintf(stream, " %s |", isnan(value) ? "–" : text);
             }
         }
         fputc('\n', stream);

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/numbers.h"
 #include "src/base/csv.h"
+#include "src/base/numbers.h"
 #include "src/base/version.h"
 
 __attribute__((format(printf, 3, 4))) static void define(definition *d, const char *key,
@@ -21,8 +21,8 @@ __attribute__((format(printf, 3, 4))) static void define(definition *d, const ch
     }
     snprintf(line->key, sizeof line->key, "%s", key);
     va_start(list, format);
-    if (vasprintf(&line->value, format, list) < 0) {
-        line->value = NULL;
+    line->value = decimal_vtext(format, list);
+    if (line->value == NULL) {
         d->out_of_memory = true;
     } else {
         d->count++;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/numbers.h"
 #include "src/study/calibrate.h"
 #include "src/study/sweep.h"
 
@@ -17,8 +18,8 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
     double most = 0.9 * s->parameters.motor.voltage_limit;
     fault f = {0};
     sweep series;
-    snprintf(standard, sizeof standard, VOLTAGE_PATH "=%.17g:%.17g:%d", most / DEFAULT_PRESSES,
-             most, DEFAULT_PRESSES);
+    decimal_print(standard, sizeof standard, VOLTAGE_PATH "=%.17g:%.17g:%d", most / DEFAULT_PRESSES,
+                  most, DEFAULT_PRESSES);
     if (a->varies.count > 0) {
         given = a->varies.items[0];
     }

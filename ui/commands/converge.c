@@ -5,9 +5,10 @@
 
 #include "render/plot/figure_file.h"
 #include "render/plot/trace_plot.h"
-#include "src/study/convergence.h"
 #include "src/base/json.h"
+#include "src/base/numbers.h"
 #include "src/base/version.h"
+#include "src/study/convergence.h"
 
 static json_t *panel_object(const scenario *s, const convergence_panel *panel)
 {
@@ -45,7 +46,7 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
     parameter_format(&s->parameters, PARAMETER_INDEX(method.name), method, sizeof method);
     printf("%s: %s\nmethod %s\n\n  %-26s", s->name, s->title, method, "step [s]");
     for (int i = 0; i < PANEL_STEPS; i++) {
-        snprintf(step[i], sizeof step[i], "%g", panel->step[i]);
+        decimal_print(step[i], sizeof step[i], "%g", panel->step[i]);
         printf(" %15s", step[i]);
     }
     printf("   %s\n", "order");
@@ -121,8 +122,8 @@ static status draw(const three_runs *r, double *work[4], const char *path, fault
     figure_series force[PANEL_STEPS], less[PANEL_STEPS - 1];
     for (int i = 0; i < PANEL_STEPS; i++) {
         const trace *t = &r->result[i].trace;
-        snprintf(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms",
-                 1e3 * r->scenario[i].parameters.method.step);
+        decimal_print(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms",
+                      1e3 * r->scenario[i].parameters.method.step);
         force[i] = (figure_series){.name = names[i],
                                    .label = label[i],
                                    .x = &t->rows[0].time,
