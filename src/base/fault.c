@@ -25,6 +25,11 @@ status fault_set(fault *f, status code, const char *format, ...)
     return code;
 }
 
+status fault_no_memory(fault *f)
+{
+    return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+}
+
 status fault_set_at(fault *f, status code, const char *path, const char *format, ...)
 {
     assert(path != NULL);

@@ -22,3 +22,6 @@ status fault_set_at(fault *f, status code, const char *path, const char *format,
 // The same for a place in a file, line and column from 1.
 status fault_set_place(fault *f, status code, int line, int column, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+
+// Fills f (may be NULL) with STATUS_NO_MEMORY and its general sentence. Returns it.
+status fault_no_memory(fault *f);

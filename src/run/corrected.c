@@ -41,7 +41,7 @@ static status travel(corrected_run *c, double until, fault *f)
     while (m->state[SLOT_TIME] < fmin(until, m->cut)) {
         motion_report report;
         if (!checkpoint_keep(r, m, last_event)) {
-            return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+            return fault_no_memory(f);
         }
 
         // one step, or less to an event

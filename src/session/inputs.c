@@ -57,7 +57,7 @@ static status add_input(session *s, const session_input *in, fault *f)
         int capacity = s->input_capacity ? 2 * s->input_capacity : 16;
         session_input *inputs = realloc(s->inputs, (size_t)capacity * sizeof *inputs);
         if (inputs == NULL) {
-            return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+            return fault_no_memory(f);
         }
         s->inputs = inputs;
         s->input_capacity = capacity;

@@ -33,7 +33,7 @@ static status build_effective(const session *s, scenario *to, fault *f)
     to->action_count = 0;
     to->actions = calloc((size_t)count_actions(s) + 1, sizeof *to->actions);
     if (to->actions == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        return fault_no_memory(f);
     }
 
     // the script's actions, then the inputs among them: an input comes after what is due with it
@@ -117,7 +117,7 @@ static status start_run(session *s, const scenario *effective, fault *f)
                                              s->has_other ? &s->other : NULL, isinf(s->patience));
     if (c == NULL) {
         run_finish(&run);
-        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        return fault_no_memory(f);
     }
 
     // wait as long as the session does, and then for the first row
@@ -138,7 +138,7 @@ static status start_run(session *s, const scenario *effective, fault *f)
     if (run.trace.row_count == 0) {
         status code = run.summary.status != STATUS_OK
                           ? summary_fault(&run.summary, f)
-                          : fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+                          : fault_no_memory(f);
         run_finish(&run);
         return code;
     }

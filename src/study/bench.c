@@ -1,5 +1,6 @@
 #include "src/study/bench.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,9 +30,11 @@ double bench_computing_time(void)
 double bench_seconds_per_call(status (*work)(void *context), void *context, double least,
                               status *failed)
 {
+    assert(work != NULL && least > 0 && failed != NULL);
     double start = bench_computing_time(), elapsed = 0;
     long calls = 0, batch = 1;
     *failed = STATUS_OK;
+
     // batches that double: looking at the clock costs as much as a short call
     for (; elapsed < least; batch *= 2) {
         for (long i = 0; i < batch && *failed == STATUS_OK; i++) {
@@ -54,14 +57,18 @@ static int compare(const void *a, const void *b)
 
 status bench_run(const benchmark *b, bench_result *result, fault *f)
 {
+    assert(b != NULL && result != NULL);
     double values[BENCH_REPETITIONS], start = bench_computing_time(), value, elapsed = 0;
     int count = 0;
+
+    // as many times as patience allows
     for (int i = 0; count < BENCH_REPETITIONS; i++) {
         status code = b->measure(&value, f);
         if (code != STATUS_OK) {
             return code;
         }
         elapsed = bench_computing_time() - start;
+
         // the first one only warms the caches, but where it is long that makes no difference
         if (i > 0 || elapsed > PATIENCE) {
             values[count++] = value;
@@ -70,6 +77,8 @@ status bench_run(const benchmark *b, bench_result *result, fault *f)
             break;
         }
     }
+
+    // median and extremes
     qsort(values, (size_t)count, sizeof values[0], compare);
     snprintf(result->name, sizeof result->name, "%s", b->name);
     snprintf(result->unit, sizeof result->unit, "%s", b->unit);
@@ -81,6 +90,7 @@ status bench_run(const benchmark *b, bench_result *result, fault *f)
 
 double bench_slowdown(const benchmark *b, const bench_result *now, const bench_result *before)
 {
+    assert(b != NULL && now != NULL && before != NULL);
     return b->more_is_better ? before->median / now->median : now->median / before->median;
 }
 
@@ -94,6 +104,7 @@ bool bench_is_slower(const benchmark *b, const bench_result *now, const bench_re
 
 json_t *bench_export(const bench_result *results, int count)
 {
+    assert(results != NULL || count == 0);
     json_t *object = json_object(), *array = json_array();
     for (int i = 0; i < count; i++) {
         json_t *entry = json_object();
@@ -125,15 +136,19 @@ static bool read_entry(json_t *entry, bench_result *result)
 
 status bench_read(const char *path, bench_result **results, int *count, fault *f)
 {
+    assert(path != NULL && results != NULL && count != NULL);
     json_error_t error;
     json_t *root = json_load_file(path, 0, &error), *array = json_object_get(root, "bench");
     *results = NULL;
     *count = (int)json_array_size(array);
+
     if (root == NULL) {
         return fault_set(f, STATUS_CANNOT_READ, "%s:%d:%d: %s, expected what bench --json writes",
                          path, error.line > 0 ? error.line : 1, error.column > 0 ? error.column : 1,
                          error.text);
     }
+
+    // its entries
     bench_result *read = calloc((size_t)*count + 1, sizeof *read);
     status code = read == NULL ? STATUS_NO_MEMORY : STATUS_OK;
     if (read == NULL) {
@@ -142,6 +157,7 @@ status bench_read(const char *path, bench_result **results, int *count, fault *f
         code = fault_set(f, STATUS_CANNOT_READ,
                          "%s: there is no list \"bench\", expected what bench --json writes", path);
     }
+
     for (int i = 0; i < *count && code == STATUS_OK; i++) {
         if (!read_entry(json_array_get(array, (size_t)i), &read[i])) {
             code = fault_set(f, STATUS_CANNOT_READ,
@@ -149,6 +165,7 @@ status bench_read(const char *path, bench_result **results, int *count, fault *f
                              path, i + 1);
         }
     }
+
     json_decref(root);
     if (code != STATUS_OK) {
         free(read);
@@ -245,6 +262,8 @@ static status time_stretch(const parameters *p, double from, double to, double *
     arm_init(&s.arm, p);
     s.motion = motion_create(&s.arm, &p->method);
     s.start = s.motion != NULL ? malloc((size_t)s.motion->size * sizeof *s.start) : NULL;
+
+    // to its beginning, and then through it again and again
     status code = STATUS_NO_MEMORY;
     if (s.start != NULL) {
         motion_start(&s.arm, s.motion, p->initial.angle, p->initial.velocity);
@@ -255,6 +274,7 @@ static status time_stretch(const parameters *p, double from, double to, double *
             *seconds /= (to - from) / CHAIN_STEP;
         }
     }
+
     free(s.start);
     motion_destroy(s.motion);
     return code == STATUS_OK ? code
@@ -282,6 +302,7 @@ static status time_chain(int links, bool contact, double *seconds, fault *f)
 
 status bench_step_cost(int links, double *free_us, double *contact_us, fault *f)
 {
+    assert(links > 0 && free_us != NULL && contact_us != NULL);
     double seconds[2];
     for (int contact = 0; contact < 2; contact++) {
         seconds[contact] = (double)INFINITY;
@@ -337,10 +358,14 @@ static status measure_predict(double *value, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
+    // a run tells the state before its first impact
     run_result result;
     code = run_scenario(&s, false, &result);
     touching t = {.q = result.before_impact,
                   .w = result.before_impact ? result.before_impact + 2 : NULL};
+
+    // the prediction there
     arm_init(&t.arm, &s.parameters);
     t.motion = motion_create(&t.arm, &s.parameters.method);
     if (t.motion == NULL || result.before_impact == NULL) {
@@ -349,6 +374,7 @@ static status measure_predict(double *value, fault *f)
     if (code == STATUS_OK) {
         *value = 1e6 * bench_seconds_per_call(predict_once, &t, LEAST_TIME, &code);
     }
+
     motion_destroy(t.motion);
     run_finish(&result);
     return code == STATUS_OK ? code
@@ -383,10 +409,14 @@ static status measure_batch(double *value, fault *f)
         free(summaries);
         return code != STATUS_OK ? code : fault_set(f, STATUS_NO_MEMORY, "no memory for a batch");
     }
+
+    // all of it, by the clock
     double start = clock_on_the_wall(), steps = 0;
     int threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     code = batch_run(make_batch_run, &s, BATCH_RUNS, threads, summaries);
     double elapsed = clock_on_the_wall() - start;
+
+    // the steps that were made
     for (int i = 0; i < BATCH_RUNS && code == STATUS_OK; i++) {
         steps += summaries[i].steps;
         code = summaries[i].status;

@@ -1,5 +1,6 @@
 #include "src/study/calibrate.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -30,6 +31,8 @@ static status pressing(const scenario *s, double command, int number, scenario *
         {"initial.velocity", 0},
         {"run.duration", fmax(p->run.duration, SHORTEST_PRESS)},
     };
+
+    // no script, and a seed of its own for each press
     under->action_count = 0;
     status code = STATUS_OK;
     for (size_t i = 0; i < sizeof changes / sizeof changes[0] && code == STATUS_OK; i++) {
@@ -72,6 +75,8 @@ static void measure(const parameters *p, const trace *t, double command, calibra
     average force[2] = {{0}}, angle[2] = {{0}}, whole_force = {0}, whole_angle = {0};
     const double wall = p->wall.angle + p->belief.wall_error, end = p->run.duration,
                  window = WINDOW_SHARE * end;
+
+    // readings of the window, and of its halves, which tell whether the arm has come to rest
     for (size_t i = 0; i + 1 < t->row_count; i++) {
         const sample *row = &t->rows[i];
         double stood = t->rows[i + 1].time - row->time;
@@ -83,6 +88,8 @@ static void measure(const parameters *p, const trace *t, double command, calibra
             average_add(&whole_angle, row->encoder - wall, stood);
         }
     }
+
+    // the stiffness that they show
     double k2[2];
     for (int half = 0; half < 2; half++) {
         k2[half] = stiffness(p, average_mean(&force[half]), average_mean(&angle[half]));
@@ -97,6 +104,7 @@ static void measure(const parameters *p, const trace *t, double command, calibra
                                  .drift = k2[1] / k2[0] - 1};
 }
 
+// One press: a run, its averages, and whether the arm pressed at all.
 static status press(const scenario *s, double command, int number, calibration_point *point,
                     fault *f)
 {
@@ -106,9 +114,11 @@ static status press(const scenario *s, double command, int number, calibration_p
     if (code != STATUS_OK) {
         return code;
     }
+
     code = run_scenario(&under, true, &result);
     if (code != STATUS_OK) {
-        fault_set(f, code, "pressing with %g V failed: %.700s", command, result.summary.message);
+        fault_set_at(f, code, result.summary.path, "pressing with %g V failed: %.700s", command,
+                     result.summary.message);
     } else {
         measure(&under.parameters, &result.trace, command, point);
         if (!(point->force > 0) || !(point->angle > 0)) {
@@ -120,12 +130,15 @@ static status press(const scenario *s, double command, int number, calibration_p
                                  motor_torque_per_volt(&s->parameters.motor));
         }
     }
+
     run_finish(&result);
     return code;
 }
 
 status calibrate(const scenario *s, const double *commands, int count, calibration *c, fault *f)
 {
+    assert(s != NULL && c != NULL && commands != NULL);
+    assert(count > 0 && count <= K2_TABLE_MOST);
     *c = (calibration){0};
     if (s->parameters.wall.kind == WALL_NONE) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -143,7 +156,10 @@ status calibrate(const scenario *s, const double *commands, int count, calibrati
 
 status calibration_table(const calibration *c, k2_table *t, fault *f)
 {
+    assert(c != NULL && t != NULL);
     *t = (k2_table){0};
+
+    // by growing force, whatever the commands' order
     for (int i = 0; i < c->count; i++) {
         const calibration_point *point = &c->points[i];
         int at = t->count++;
@@ -154,6 +170,8 @@ status calibration_table(const calibration *c, k2_table *t, fault *f)
         t->force[at] = point->force;
         t->k2[at] = point->k2;
     }
+
+    // a table gives one stiffness for a force
     for (int i = 1; i < t->count; i++) {
         // to the digits that the table is written with
         if (t->force[i] - t->force[i - 1] < 2e-3 * t->force[i]) {
@@ -190,9 +208,11 @@ static void fill_columns(const calibration_point *p, const scenario *s, double v
 
 json_t *calibration_json(const calibration *c, const scenario *s, const char *table)
 {
+    assert(c != NULL && s != NULL && table != NULL);
     json_t *object = json_object(), *points = json_array();
     json_object_set_new(object, "scenario", json_text(s->name));
     json_object_set_new(object, "k2_table", json_text(table));
+
     for (int i = 0; i < c->count; i++) {
         json_t *point = json_object();
         double values[COLUMNS];
@@ -202,12 +222,14 @@ json_t *calibration_json(const calibration *c, const scenario *s, const char *ta
         }
         json_array_append_new(points, point);
     }
+
     json_object_set_new(object, "points", points);
     return object;
 }
 
 void calibration_csv(FILE *stream, const calibration *c, const scenario *s)
 {
+    assert(stream != NULL && c != NULL && s != NULL);
     csv_writer csv = csv_begin(stream);
     for (int k = 0; k < COLUMNS; k++) {
         csv_heading(&csv, columns[k].name, columns[k].unit);

@@ -1,5 +1,6 @@
 #include "src/study/compare.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -47,10 +48,13 @@ static void find_best(const scenario *s, const run_result *result, double *peak,
     pressed_arm_model model;
     pressed_state after;
     *peak = *settling = (double)NAN;
+
+    // it is known for a plastic impact of two links without a script
     if (touch == NULL || s->action_count > 0 || p->wall.restitution > 0 ||
         !pressed_arm_model_of(p, &model)) {
         return;
     }
+
     // two bodies: hub and first link are one
     three_body_state before = {.angle = {touch[0], touch[0], touch[1]},
                                .velocity = {touch[2], touch[2], touch[3]}};
@@ -65,6 +69,7 @@ static void find_best(const scenario *s, const run_result *result, double *peak,
 
 compare_row compare_row_of(const scenario *s, const run_result *result)
 {
+    assert(s != NULL && result != NULL);
     const summary *m = &result->summary;
     double command = m->force_command_N, peak, settling;
     bool commanded = !isnan(command) && command > 0;
@@ -104,14 +109,18 @@ static bool marked(const compare_table *t, int i, int k)
 
 status compare_choose(compare_table *t, const char *keys, fault *f)
 {
+    assert(t != NULL && keys != NULL);
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
         t->hidden[k] = true;
     }
+
+    // one key after the other
     for (const char *key = keys;; key++) {
         size_t length = strcspn(key, ",");
         char word[64];
         int found = -1;
         snprintf(word, sizeof word, "%.*s", (int)length, key);
+
         nearest_word near = nearest_begin(word);
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             nearest_try(&near, compare_quantities[k].key);
@@ -122,6 +131,7 @@ status compare_choose(compare_table *t, const char *keys, fault *f)
                              near.best ? ", did you mean '" : ", expected keys of --json",
                              near.best ? near.best : "", near.best ? "'?" : "");
         }
+
         t->hidden[found] = false;
         key += length;
         if (*key == '\0') {
@@ -177,6 +187,7 @@ static int varied_width(const compare_table *t, int which)
     return width;
 }
 
+// The first line.
 static void text_heading(FILE *stream, const compare_table *t, int width, int law)
 {
     char heading[PARAMETER_TEXT_SIZE];
@@ -185,6 +196,7 @@ static void text_heading(FILE *stream, const compare_table *t, int width, int la
         format_varied_heading(t, v, false, heading, sizeof heading);
         fprintf(stream, "  %*s", varied_width(t, v), heading);
     }
+
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
         const compare_quantity *quantity = &compare_quantities[k];
         format_heading(quantity->heading, quantity->unit, false, heading, sizeof heading);
@@ -197,8 +209,11 @@ static void text_heading(FILE *stream, const compare_table *t, int width, int la
 
 void compare_text(FILE *stream, const compare_table *t)
 {
+    assert(stream != NULL && t != NULL);
     int width = longest(t, false), law = longest(t, true);
     text_heading(stream, t, width, law);
+
+    // a line each: names, what was varied, results with a mark where they differ
     for (int i = 0; i < t->count; i++) {
         const compare_row *row = &t->rows[i];
         fprintf(stream, "%-*s  %-*s", width, row->scenario, law, row->law);
@@ -207,6 +222,7 @@ void compare_text(FILE *stream, const compare_table *t)
             format_varied(t, i, v, text, sizeof text);
             fprintf(stream, "  %*s", varied_width(t, v), text);
         }
+
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             char text[32] = "-";
             if (!isnan(row->values[k])) {
@@ -222,8 +238,11 @@ void compare_text(FILE *stream, const compare_table *t)
 
 void compare_markdown(FILE *stream, const compare_table *t)
 {
+    assert(stream != NULL && t != NULL);
     char text[PARAMETER_TEXT_SIZE];
     int columns = 2 + t->varied_count;
+
+    // headings
     fputs("| scenario | law |", stream);
     for (int v = 0; v < t->varied_count; v++) {
         format_varied_heading(t, v, true, text, sizeof text);
@@ -237,17 +256,22 @@ void compare_markdown(FILE *stream, const compare_table *t)
             columns++;
         }
     }
+
+    // the line that makes it a table
     fputs("\n|", stream);
     for (int i = 0; i < columns; i++) {
         fputs("---|", stream);
     }
     fputc('\n', stream);
+
+    // rows
     for (int i = 0; i < t->count; i++) {
         fprintf(stream, "| %s | %s |", t->rows[i].scenario, t->rows[i].law);
         for (int v = 0; v < t->varied_count; v++) {
             format_varied(t, i, v, text, sizeof text);
             fprintf(stream, " %s |", text);
         }
+
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             double value = t->rows[i].values[k];
             if (!t->hidden[k]) {
@@ -281,11 +305,15 @@ static json_t *row_object(const compare_table *t, int i)
 {
     const compare_row *row = &t->rows[i];
     json_t *object = json_object(), *differs = json_array();
+
+    // which run
     json_object_set_new(object, "scenario", json_text(row->scenario));
     json_object_set_new(object, "law", json_text(row->law));
     if (t->varied_count > 0) {
         json_object_set_new(object, "varied", varied_object(t, i));
     }
+
+    // its results, and which of them differ from the reference
     json_object_set_new(object, "status", json_string(row->ok ? "ok" : "failed"));
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
         const char *key = compare_quantities[k].key;
@@ -294,6 +322,7 @@ static json_t *row_object(const compare_table *t, int i)
             json_array_append_new(differs, json_string(key));
         }
     }
+
     if (t->against != NULL) {
         json_object_set(object, "differs", differs);
     }
@@ -303,10 +332,12 @@ static json_t *row_object(const compare_table *t, int i)
 
 json_t *compare_json(const compare_table *t)
 {
+    assert(t != NULL);
     json_t *whole = json_object(), *array = json_array();
     for (int i = 0; i < t->count; i++) {
         json_array_append_new(array, row_object(t, i));
     }
+
     if (t->against != NULL) {
         json_object_set_new(whole, "against", json_text(t->against->scenario));
         json_object_set_new(whole, "tolerance", json_number(t->tolerance));
@@ -317,6 +348,7 @@ json_t *compare_json(const compare_table *t)
 
 void compare_csv(FILE *stream, const compare_table *t)
 {
+    assert(stream != NULL && t != NULL);
     csv_writer csv = csv_begin(stream);
     csv_heading(&csv, "scenario", "");
     csv_heading(&csv, "law", "");

@@ -1,5 +1,6 @@
 #include "src/study/convergence.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -43,7 +44,10 @@ static status run_with(const scenario *s, const parameters *p, summary *result, 
 
 status convergence_compute(const scenario *s, convergence_panel *panel, fault *f)
 {
+    assert(s != NULL && panel != NULL);
     summary results[PANEL_STEPS];
+
+    // three runs, each with half the step of the one before
     for (int i = 0; i < PANEL_STEPS; i++) {
         parameters p = s->parameters;
         p.method.step = panel->step[i] = ldexp(s->parameters.method.step, -i);
@@ -52,6 +56,8 @@ status convergence_compute(const scenario *s, convergence_panel *panel, fault *f
             return code;
         }
     }
+
+    // and what their results tell
     panel->row_count = PANEL_KEYS;
     for (int k = 0; k < PANEL_KEYS; k++) {
         convergence_row *row = &panel->rows[k];
@@ -99,9 +105,11 @@ static void study_one(const scenario *s, method_kind method, const double *refer
     timed_run r = {.scenario = s, .parameters = s->parameters};
     double values[STUDY_QUANTITIES];
     status code;
+
     r.parameters.method.name = (int)method;
     r.parameters.method.step = point->step;
     point->cost = bench_seconds_per_call(run_again, &r, LEAST_TIME, &code);
+
     values_of(&r.summary, values);
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         point->error[k] = code == STATUS_OK ? fabs(values[k] - reference[k]) : (double)NAN;
@@ -110,9 +118,12 @@ static void study_one(const scenario *s, method_kind method, const double *refer
 
 status method_study_compute(const scenario *s, method_study *study, fault *f)
 {
+    assert(s != NULL && study != NULL);
     static const double mantissas[] = {10, 5, 2};
     parameters p = s->parameters;
     summary reference;
+
+    // what the errors are measured against
     p.method.name = METHOD_EVENT;
     p.method.step = study->reference_step = REFERENCE_STEP;
     status code = run_with(s, &p, &reference, f);
@@ -120,6 +131,8 @@ status method_study_compute(const scenario *s, method_study *study, fault *f)
         return code;
     }
     values_of(&reference, study->reference);
+
+    // steps of 1, 0.5, 0.2 ms and so on
     for (int m = 0; m < STUDY_METHODS; m++) {
         for (int i = 0; i < STUDY_STEPS; i++) {
             study->points[m][i].step = mantissas[i % 3] / pow(10, 3 + i / 3);
@@ -131,7 +144,10 @@ status method_study_compute(const scenario *s, method_study *study, fault *f)
 
 double method_study_cost(const method_study *study, int method, int k, double error, double *step)
 {
+    assert(study != NULL && method >= 0 && method < STUDY_METHODS);
+    assert(k >= 0 && k < STUDY_QUANTITIES && step != NULL);
     double least = (double)NAN;
+
     // from the shortest step up, as long as the error stays below
     for (int i = STUDY_STEPS - 1; i >= 0; i--) {
         const study_point *point = &study->points[method][i];

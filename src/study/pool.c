@@ -35,8 +35,8 @@ typedef struct pool_thread {
     void *scratch, *result;
 } pool_thread;
 
-// Takes the next piece that is wanted; false if there is none. The mutex is held.
-static bool take_piece(pool *p, size_t *piece)
+// The next piece that is wanted; false if there is none. The mutex is held.
+static bool next_piece(pool *p, size_t *piece)
 {
     const pool_work *w = p->work;
     while (p->next < w->count && w->done != NULL && w->done[p->next]) {
@@ -49,6 +49,7 @@ static bool take_piece(pool *p, size_t *piece)
     return true;
 }
 
+// A thread: takes pieces until there are no more, and hands over their results.
 static void *work_on_pieces(void *argument)
 {
     pool_thread *self = argument;
@@ -56,7 +57,7 @@ static void *work_on_pieces(void *argument)
     const pool_work *w = p->work;
     size_t piece;
     pthread_mutex_lock(&p->mutex);
-    while (take_piece(p, &piece)) {
+    while (next_piece(p, &piece)) {
         pthread_mutex_unlock(&p->mutex);
         w->compute(w->context, piece, self->scratch, self->result);
         pthread_mutex_lock(&p->mutex);
@@ -76,9 +77,9 @@ static void *work_on_pieces(void *argument)
     return NULL;
 }
 
-// Takes what is finished into p->taken, waiting a little for it. False if all threads have ended
+// Moves what is finished to p->taken, waiting a little for it. False if all threads have ended
 // and nothing is left.
-static bool take_finished(pool *p, bool stop)
+static bool fetch_finished(pool *p, bool stop)
 {
     struct timespec until;
     clock_gettime(CLOCK_MONOTONIC, &until);
@@ -94,6 +95,8 @@ static bool take_finished(pool *p, bool stop)
     while (p->finished.count == 0 && p->working > 0 && waited == 0) {
         waited = pthread_cond_timedwait(&p->changed, &p->mutex, &until);
     }
+
+    // the threads go on with the empty queue
     bool more = p->finished.count > 0 || p->working > 0;
     finished_pieces full = p->finished;
     p->finished = p->taken;
@@ -123,11 +126,13 @@ static status collect_results(pool *p, fault *f)
     status code = STATUS_OK;
     double ticked = monotonic_seconds();
     for (bool more = true; more;) {
-        more = take_finished(p, code != STATUS_OK || asked_to_stop(w));
+        more = fetch_finished(p, code != STATUS_OK || asked_to_stop(w));
         for (int i = 0; i < p->taken.count && code == STATUS_OK; i++) {
             const char *result = p->taken.results + (size_t)i * w->result_size;
             code = w->collect(w->context, p->taken.pieces[i], result, f);
         }
+
+        // a tick now and then, and one at the end
         double now = monotonic_seconds();
         if (code == STATUS_OK && w->tick != NULL && (!more || now - ticked >= TICK_INTERVAL)) {
             code = w->tick(w->context, !more, f);
@@ -137,13 +142,13 @@ static status collect_results(pool *p, fault *f)
     return code;
 }
 
-// Does without threads.
+// Does all the work on the calling thread.
 static status work_alone(pool *p, pool_thread *self, fault *f)
 {
     const pool_work *w = p->work;
     status code = STATUS_OK;
     size_t piece;
-    while (code == STATUS_OK && !asked_to_stop(w) && take_piece(p, &piece)) {
+    while (code == STATUS_OK && !asked_to_stop(w) && next_piece(p, &piece)) {
         w->compute(w->context, piece, self->scratch, self->result);
         code = w->collect(w->context, piece, self->result, f);
         if (code == STATUS_OK && w->tick != NULL) {
@@ -153,13 +158,16 @@ static status work_alone(pool *p, pool_thread *self, fault *f)
     return code == STATUS_OK && w->tick != NULL ? w->tick(w->context, true, f) : code;
 }
 
-// Starts up to `wanted` threads. Returns how many there are.
+// Starts up to `wanted` threads, with all signals blocked, which are for the calling one. Returns
+// how many there are.
 static int start_threads(pool *p, pool_thread *threads, int wanted)
 {
     sigset_t all, before;
     int started = 0;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
+
+    // none ends before their number is known
     pthread_mutex_lock(&p->mutex);
     while (started < wanted &&
            pthread_create(&threads[started].thread, NULL, work_on_pieces, &threads[started]) == 0) {
@@ -167,6 +175,7 @@ static int start_threads(pool *p, pool_thread *threads, int wanted)
     }
     p->working = started;
     pthread_mutex_unlock(&p->mutex);
+
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return started;
 }
@@ -194,6 +203,7 @@ static bool allocate(pool *p, pool_thread *threads, int count)
     return allocated;
 }
 
+// Frees what `allocate` gave.
 static void release(pool *p, pool_thread *threads, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -206,6 +216,7 @@ static void release(pool *p, pool_thread *threads, int count)
     free(p->taken.results);
 }
 
+// Waiting is by a clock that nobody sets.
 static void init_locks(pool *p)
 {
     pthread_condattr_t monotonic;
@@ -222,8 +233,11 @@ status pool_run(const pool_work *work, int threads, fault *f)
     assert(work->result_size > 0 && threads >= 1 && threads <= POOL_MOST_THREADS);
     pool p = {.work = work};
     pool_thread each[POOL_MOST_THREADS] = {0};
+
     status code;
     init_locks(&p);
+
+    // on threads, or on this one if there are none to be had
     if (allocate(&p, each, threads)) {
         int started = start_threads(&p, each, threads);
         code = started > 0 ? collect_results(&p, f) : work_alone(&p, &each[0], f);
@@ -231,8 +245,9 @@ status pool_run(const pool_work *work, int threads, fault *f)
             pthread_join(each[i].thread, NULL);
         }
     } else {
-        code = fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        code = fault_no_memory(f);
     }
+
     release(&p, each, threads);
     pthread_cond_destroy(&p.changed);
     pthread_mutex_destroy(&p.mutex);

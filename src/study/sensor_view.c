@@ -14,9 +14,11 @@ const double sensor_constants[SENSOR_CONSTANTS] = {0.5e-3, 1e-3, 2e-3};
 
 void sensor_lag_start(sensor_lag *s, double time_constant, double time)
 {
+    assert(s != NULL && time_constant > 0);
     *s = (sensor_lag){.time_constant = time_constant, .time = time, .peak_time = time};
 }
 
+// Remembers the largest value.
 static void look(sensor_lag *s, double time, double value)
 {
     if (value > s->peak) {
@@ -27,6 +29,7 @@ static void look(sensor_lag *s, double time, double value)
 
 void sensor_lag_impulse(sensor_lag *s, double impulse)
 {
+    assert(s != NULL);
     s->value += impulse / s->time_constant;
     look(s, s->time, s->value);
 }
@@ -48,15 +51,20 @@ static double response_slope(const response *r, double t)
 
 void sensor_lag_force(sensor_lag *s, double length, double first, double last, double mean)
 {
+    assert(s != NULL);
     if (!(length > 0)) {
         return;
     }
+
+    // and its response
     // f = first + linear t + square t^2 with the given end and mean
     double square = (3 * (first + last) - 6 * mean) / (length * length);
     double linear = (last - first) / length - square * length, tau = s->time_constant;
     response r = {.c = square, .b = linear - 2 * tau * square, .rate = 1 / tau};
     r.a = first - tau * r.b;
     r.d = s->value - r.a;
+
+    // a peak within the step, where the response turns round
     if (response_slope(&r, 0) > 0 && response_slope(&r, length) < 0) {
         double low = 0, high = length;
         for (int i = 0; i < 60; i++) {
@@ -69,6 +77,7 @@ void sensor_lag_force(sensor_lag *s, double length, double first, double last, d
         }
         look(s, s->time + low, response_value(&r, low));
     }
+
     s->time += length;
     s->value = response_value(&r, length);
     look(s, s->time, s->value);
@@ -83,6 +92,7 @@ typedef struct watching {
     double touched; // first contact [s], NaN before it
 } watching;
 
+// The force over a stride, as sensors and momentum see it.
 static void watch_stride(watching *w, motion *m)
 {
     const double *start = m->trial; // where the stride left its beginning
@@ -90,26 +100,32 @@ static void watch_stride(watching *w, motion *m)
     if (isnan(w->touched) || !(length > 0)) {
         return;
     }
+
+    // its integral is exact, however it went between the stride's ends
     double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
                       state_quadratures(m, m->trial)[QUADRATURE_FORCE];
     for (int i = 0; i < SENSOR_CONSTANTS; i++) {
         sensor_lag_force(&w->lags[i], length, start[SLOT_FORCE], m->state[SLOT_FORCE],
                          integral / length);
     }
+
     // strides end at MOMENTUM_WINDOW
     if (!instant_after(to, w->touched + MOMENTUM_WINDOW)) {
         w->view->momentum += integral;
     }
 }
 
+// An impact's impulse; the first one starts the sensors.
 static void watch_impact(watching *w, const motion *m, const motion_report *report)
 {
     const double impulse = report->impulse;
     double now = m->state[SLOT_TIME];
+
     if (isnan(w->touched)) {
         w->touched = now;
         w->view->impulse = impulse;
         w->view->speed = report->speed;
+
         for (int i = 0; i < SENSOR_CONSTANTS; i++) {
             sensor_lag_start(&w->lags[i], sensor_constants[i], now);
         }
@@ -139,16 +155,21 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
     double end = duration;
     while (m->state[SLOT_TIME] < end) {
         motion_report report;
+
+        // a stride
         double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
         status code = motion_step(a, m, until, step, &report);
         if (code != STATUS_OK) {
             return fault_set(f, code, "%d links, at t = %.9g s: %s", a->links, m->failure_time,
                              status_text(code));
         }
+
         watch_stride(w, m);
         if (report.event == MOTION_REACHED) {
             continue;
         }
+
+        // an event at its end; the window opens with the first contact
         motion_apply(a, m, &report);
         if (report.event == MOTION_IMPACT || report.event == MOTION_TOUCH) {
             bool first = isnan(w->touched);
@@ -179,9 +200,12 @@ static status check_scenario(const scenario *s, fault *f)
 
 status sensor_view_compute(const scenario *s, int links, sensor_view *view, fault *f)
 {
+    assert(s != NULL && view != NULL && links > 0);
     parameters p = s->parameters;
     arm a;
     *view = (sensor_view){.links = links};
+
+    // the same scenario with another number of links
     status code = check_scenario(s, f);
     if (code == STATUS_OK) {
         code = parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, f);
@@ -192,6 +216,8 @@ status sensor_view_compute(const scenario *s, int links, sensor_view *view, faul
     if (code != STATUS_OK) {
         return code;
     }
+
+    // resolved by explicit steps, which keep every mode
     arm_init(&a, &p);
     p.method.name = METHOD_EVENT;
     p.method.step = fmin(p.method.step, RESOLVING / a.fastest_rate);
@@ -199,6 +225,8 @@ status sensor_view_compute(const scenario *s, int links, sensor_view *view, faul
     if (m == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", links);
     }
+
+    // its motion until the window is over
     watching w = {.view = view, .touched = (double)NAN};
     motion_start(&a, m, p.initial.angle, p.initial.velocity);
     code = watch_motion(&a, m, p.method.step, p.run.duration, &w, f);
@@ -207,6 +235,7 @@ status sensor_view_compute(const scenario *s, int links, sensor_view *view, faul
             fault_set(f, STATUS_BAD_SCENARIO, "%s: with %d links there is no contact within %g s",
                       s->name, links, p.run.duration);
     }
+
     view->peak = m->pulse_peak >= 0 ? m->pulse_peak : 0;
     for (int i = 0; i < SENSOR_CONSTANTS; i++) {
         view->sensed[i] = w.lags[i].peak;

@@ -10,24 +10,19 @@
 
 const char *sweep_sampling_name(sweep_sampling sampling)
 {
+    assert((unsigned)sampling <= SWEEP_LATIN);
     static const char *const names[] = {"grid", "random", "latin"};
     return names[sampling];
 }
 
-static status no_memory(fault *f)
-{
-    return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
-}
-
 // --- what is varied -------------------------------------------------------------------------
 
+// Looks up what an axis varies: a number or a word, once.
 static status find_parameter(const sweep *s, sweep_axis *axis, const char *path, fault *f)
 {
-    axis->parameter = parameter_find(path);
+    axis->parameter = parameter_look_up(path, f);
     if (axis->parameter < 0) {
-        const char *near = parameter_suggest(path);
-        return fault_set(f, STATUS_BAD_ARGUMENT, "there is no parameter '%.60s'%s%s%s", path,
-                         near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+        return STATUS_BAD_ARGUMENT;
     }
     if (sweep_axis_parameter(axis)->type == PARAMETER_TEXT) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "%s is a text, only numbers and words are varied",
@@ -50,8 +45,10 @@ static status read_axis(sweep *s, const char *given, fault *f)
     }
     char *text = strdup(given);
     if (text == NULL) {
-        return no_memory(f);
+        return fault_no_memory(f);
     }
+
+    // the parameter before the equals sign, the values behind it
     sweep_axis *axis = &s->axes[s->axis_count];
     char *values = strchr(text, '=');
     status code;
@@ -62,6 +59,7 @@ static status read_axis(sweep *s, const char *given, fault *f)
         code = find_parameter(s, axis, text, f);
         s->axis_count++;
     }
+
     if (code == STATUS_OK) {
         code = sweep_axis_parse(axis, values, s->sampling != SWEEP_GRID, f);
     }
@@ -71,6 +69,7 @@ static status read_axis(sweep *s, const char *given, fault *f)
 
 // --- which values a run has -----------------------------------------------------------------
 
+// Every value of every run on its own.
 static void draw_random(sweep *s, random_generator *g)
 {
     for (size_t run = 0; run < s->run_count; run++) {
@@ -87,7 +86,7 @@ static status draw_latin(sweep *s, random_generator *g, fault *f)
 {
     size_t *part = malloc(s->run_count * sizeof *part);
     if (part == NULL) {
-        return no_memory(f);
+        return fault_no_memory(f);
     }
     for (int i = 0; i < s->axis_count; i++) {
         random_permutation(g, part, s->run_count);
@@ -103,6 +102,7 @@ static status draw_latin(sweep *s, random_generator *g, fault *f)
     return STATUS_OK;
 }
 
+// As many as were asked for, or as the grid has.
 static status count_runs(sweep *s, size_t runs, fault *f)
 {
     if (s->sampling != SWEEP_GRID) {
@@ -114,6 +114,8 @@ static status count_runs(sweep *s, size_t runs, fault *f)
         s->run_count = runs;
         return STATUS_OK;
     }
+
+    // the product of the axes
     s->run_count = 1;
     for (int i = 0; i < s->axis_count; i++) {
         // both factors are small enough for the product to fit
@@ -123,6 +125,7 @@ static status count_runs(sweep *s, size_t runs, fault *f)
                              SWEEP_MOST_RUNS);
         }
     }
+
     if (runs != 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "--runs goes with --sample random or latin; a grid is as large as it is, "
@@ -132,6 +135,7 @@ static status count_runs(sweep *s, size_t runs, fault *f)
     return STATUS_OK;
 }
 
+// The values of random sampling, all at once, so that they do not depend on the order of the runs.
 static status draw_values(sweep *s, fault *f)
 {
     random_generator g;
@@ -140,8 +144,9 @@ static status draw_values(sweep *s, fault *f)
     }
     s->drawn = malloc(s->run_count * (size_t)s->axis_count * sizeof *s->drawn);
     if (s->drawn == NULL) {
-        return no_memory(f);
+        return fault_no_memory(f);
     }
+
     random_seed(&g, s->seed);
     if (s->sampling == SWEEP_LATIN) {
         return draw_latin(s, &g, f);
@@ -152,10 +157,13 @@ static status draw_values(sweep *s, fault *f)
 
 double sweep_value(const sweep *s, size_t run, int axis)
 {
+    assert(s != NULL);
     assert(run < s->run_count && axis >= 0 && axis < s->axis_count);
     if (s->drawn != NULL) {
         return s->drawn[run * (size_t)s->axis_count + (size_t)axis];
     }
+
+    // a grid's last axis changes fastest
     for (int i = s->axis_count - 1; i > axis; i--) {
         run /= s->axes[i].count;
     }
@@ -164,11 +172,13 @@ double sweep_value(const sweep *s, size_t run, int axis)
 
 void sweep_value_text(const sweep *s, size_t run, int axis, char *text, size_t size)
 {
+    assert(s != NULL && text != NULL && size > 0);
     sweep_axis_format(&s->axes[axis], sweep_value(s, run, axis), text, size);
 }
 
 status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
 {
+    assert(s != NULL && derived != NULL);
     *derived = *s->base;
     for (int i = 0; i < s->axis_count; i++) {
         status code = parameter_set_number(&derived->parameters, s->axes[i].parameter,
@@ -187,7 +197,7 @@ static status check_combinations(const sweep *s, fault *f)
     enum { CHECKED = 100000 };
     for (size_t run = 0; run < s->run_count && run < CHECKED; run++) {
         scenario derived;
-        fault why = {0};
+        fault why = {.path = ""};
         if (sweep_scenario(s, run, &derived, &why) != STATUS_OK) {
             char values[512] = "";
             size_t length = 0;
@@ -198,8 +208,8 @@ static status check_combinations(const sweep *s, fault *f)
                                            i > 0 ? ", " : "",
                                            sweep_axis_parameter(&s->axes[i])->path, text);
             }
-            return fault_set(f, STATUS_BAD_ARGUMENT, "run %zu (%s): %.400s", run + 1, values,
-                             why.text);
+            return fault_set_at(f, STATUS_BAD_ARGUMENT, why.path, "run %zu (%s): %.400s", run + 1,
+                                values, why.text);
         }
     }
     return STATUS_OK;
@@ -208,23 +218,29 @@ static status check_combinations(const sweep *s, fault *f)
 status sweep_init(sweep *s, const scenario *base, const sweep_request *request, fault *f)
 {
     assert(s != NULL && base != NULL && request != NULL);
+
     status code = STATUS_OK;
     memset(s, 0, sizeof *s);
     s->base = base;
     s->sampling = request->sampling;
     s->seed = request->seed;
+
     if (request->vary_count == 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "sweep needs at least one --vary PATH=a:b:n or --vary PATH=v1,v2,v3");
     }
+
+    // the axes
     for (int i = 0; i < request->vary_count && code == STATUS_OK; i++) {
-        fault why = {0};
+        fault why = {.path = ""};
         code = read_axis(s, request->vary[i], &why);
         if (code != STATUS_OK) {
-            code = fault_set(f, code == STATUS_NO_MEMORY ? code : STATUS_BAD_ARGUMENT,
-                             "--vary %.200s: %.700s", request->vary[i], why.text);
+            code = fault_set_at(f, code == STATUS_NO_MEMORY ? code : STATUS_BAD_ARGUMENT, why.path,
+                                "--vary %.200s: %.700s", request->vary[i], why.text);
         }
     }
+
+    // the runs, and whether each can be begun
     code = code == STATUS_OK ? count_runs(s, request->runs, f) : code;
     code = code == STATUS_OK ? draw_values(s, f) : code;
     code = code == STATUS_OK ? check_combinations(s, f) : code;
@@ -236,6 +252,7 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
 
 void sweep_finish(sweep *s)
 {
+    assert(s != NULL);
     for (int i = 0; i < s->axis_count; i++) {
         sweep_axis_finish(&s->axes[i]);
     }

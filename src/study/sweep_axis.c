@@ -8,13 +8,9 @@
 
 #include "src/base/numbers.h"
 
-static status no_memory(fault *f)
-{
-    return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
-}
-
 const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
 {
+    assert(axis != NULL);
     assert(axis->parameter >= 0 && axis->parameter < parameter_count);
     return &parameter_table[axis->parameter];
 }
@@ -30,6 +26,7 @@ static status read_value(const sweep_axis *axis, const char *text, double *value
 
 void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size)
 {
+    assert(axis != NULL && text != NULL && size > 0);
     parameters scratch = {0};
     parameter_set_number(&scratch, axis->parameter, value, NULL);
     parameter_format(&scratch, axis->parameter, text, size);
@@ -65,18 +62,21 @@ static double range_point(const sweep_axis *axis, size_t i, size_t n)
     } else {
         value = (axis->low * (last - x) + axis->high * x) / last;
     }
+
     // a whole number as near as there is one; an even spacing that misses them is refused instead
     return axis->logarithmic && sweep_axis_parameter(axis)->type == PARAMETER_INTEGER ? round(value)
                                                                                       : value;
 }
 
+// The values of a range; each is checked as a parameter, and none may come twice.
 static status fill_range(sweep_axis *axis, size_t n, fault *f)
 {
     axis->values = malloc(n * sizeof *axis->values);
     if (axis->values == NULL) {
-        return no_memory(f);
+        return fault_no_memory(f);
     }
     axis->count = n;
+
     for (size_t i = 0; i < n; i++) {
         parameters scratch = {0};
         axis->values[i] = range_point(axis, i, n);
@@ -84,6 +84,7 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
         if (code != STATUS_OK) {
             return code;
         }
+
         if (i > 0 && axis->values[i] == axis->values[i - 1]) {
             char text[128];
             sweep_axis_format(axis, axis->values[i], text, sizeof text);
@@ -119,7 +120,7 @@ static status describe_range(sweep_axis *axis, size_t n, fault *f)
     }
     if (asprintf(&axis->text, "%s:%s%s%s", low, high, count, axis->logarithmic ? ":log" : "") < 0) {
         axis->text = NULL;
-        return no_memory(f);
+        return fault_no_memory(f);
     }
     return STATUS_OK;
 }
@@ -129,7 +130,10 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
 {
     char *pieces[4];
     size_t count = split(text, ':', pieces, 4), n = 0;
+
     axis->is_range = true;
+
+    // only numbers have a range
     if (sweep_axis_parameter(axis)->choices != NULL ||
         sweep_axis_parameter(axis)->type == PARAMETER_BOOLEAN) {
         char words[128];
@@ -143,6 +147,8 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
                          "%s takes words, which have no range; expected a list such as %s",
                          sweep_axis_parameter(axis)->path, words);
     }
+
+    // how many pieces there may be
     axis->logarithmic = count > 2 && count <= 4 && strcmp(pieces[count - 1], "log") == 0;
     count -= axis->logarithmic;
     if (count > 3 || (count < 3 && !drawn)) {
@@ -151,18 +157,22 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
                          "spacing of the logarithm",
                          drawn ? "a:b or a:b:n" : "a:b:n");
     }
+
+    // the ends, and the number of values
     status code = read_value(axis, pieces[0], &axis->low, f);
     code = code == STATUS_OK ? read_value(axis, pieces[1], &axis->high, f) : code;
     code = code == STATUS_OK && count == 3 ? read_count(pieces[2], &n, f) : code;
     if (code != STATUS_OK) {
         return code;
     }
+
     if (axis->low == axis->high) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a range needs two different ends");
     }
     if (axis->logarithmic && !(axis->low > 0 && axis->high > 0)) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a logarithmic range needs ends above zero");
     }
+
     code = describe_range(axis, drawn ? 0 : n, f);
     return code == STATUS_OK && !drawn ? fill_range(axis, n, f) : code;
 }
@@ -174,11 +184,15 @@ static status read_list(sweep_axis *axis, char *text, fault *f)
     for (const char *c = text; *c != '\0'; c++) {
         most += *c == ',';
     }
+
+    // room for as many as there are commas, and the text as it would be written
     char **pieces = malloc(most * sizeof *pieces);
     axis->values = malloc(most * sizeof *axis->values);
     axis->text = calloc(most, 128);
-    status code = pieces && axis->values && axis->text ? STATUS_OK : no_memory(f);
+    status code = pieces && axis->values && axis->text ? STATUS_OK : fault_no_memory(f);
     axis->count = code == STATUS_OK ? split(text, ',', pieces, most) : 0;
+
+    // each value once
     char *end = axis->text;
     for (size_t i = 0; i < axis->count && code == STATUS_OK; i++) {
         code = read_value(axis, pieces[i], &axis->values[i], f);
@@ -193,6 +207,7 @@ static status read_list(sweep_axis *axis, char *text, fault *f)
             end += sprintf(end, "%s%s", i > 0 ? "," : "", value);
         }
     }
+
     free(pieces);
     return code;
 }
@@ -207,16 +222,20 @@ status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f)
 
 void sweep_axis_finish(sweep_axis *axis)
 {
+    assert(axis != NULL);
     free(axis->values);
     free(axis->text);
 }
 
 double sweep_axis_value_at(const sweep_axis *axis, double share)
 {
+    assert(axis != NULL && share >= 0 && share < 1);
     double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
+
     if (!axis->is_range) {
         return axis->values[(size_t)(share * (double)axis->count)];
     }
+
     bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
     // each whole number owns the unit interval round it
     double from = whole ? low - 0.5 : low, to = whole ? high + 0.5 : high;

@@ -1,17 +1,13 @@
 #include "src/study/sweep_database.h"
 
-status database_no_memory(fault *f)
-{
-    return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
-}
-
 status database_fault(const sweep_store *store, fault *f)
 {
     int code = sqlite3_errcode(store->database) & 0xFF;
     const char *why = sqlite3_errmsg(store->database);
     const char *path = store->path ? store->path : "the results in memory";
+
     if (code == SQLITE_NOMEM) {
-        return database_no_memory(f);
+        return fault_no_memory(f);
     }
     if (code == SQLITE_NOTADB) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path);

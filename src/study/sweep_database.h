@@ -18,9 +18,6 @@ typedef struct sweep_store {
     bool in_transaction;
 } sweep_store;
 
-// STATUS_NO_MEMORY, with its general text.
-status database_no_memory(fault *f);
-
 // What the database complains about, as a fault.
 status database_fault(const sweep_store *store, fault *f);
 

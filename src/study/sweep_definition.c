@@ -10,15 +10,18 @@
 #include "src/base/numbers.h"
 #include "src/base/version.h"
 
+// Adds a line; printf-like.
 __attribute__((format(printf, 3, 4))) static void define(definition *d, const char *key,
                                                          const char *format, ...)
 {
     va_list list;
     definition_line *line = &d->lines[d->count];
+
     if (d->count == sizeof d->lines / sizeof d->lines[0]) {
         d->out_of_memory = true;
         return;
     }
+
     snprintf(line->key, sizeof line->key, "%s", key);
     va_start(list, format);
     line->value = decimal_vtext(format, list);
@@ -50,6 +53,7 @@ static void define_parameters(definition *d, const sweep *s)
         if (is_varied(s, i)) {
             continue;
         }
+
         parameter_format(p, i, text, sizeof text);
         define(d, parameter_table[i].path, "%s", text);
         if (p->set[i]) {
@@ -61,6 +65,7 @@ static void define_parameters(definition *d, const sweep *s)
     define(d, "given", "%s", given);
 }
 
+// The script in one line.
 static void define_script(definition *d, const scenario *s)
 {
     char *text = NULL;
@@ -70,6 +75,7 @@ static void define_script(definition *d, const scenario *s)
         d->out_of_memory = true;
         return;
     }
+
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
         bool push = a->kind == ACTION_PUSH;
@@ -80,6 +86,7 @@ static void define_script(definition *d, const scenario *s)
         fprintf(stream, "%sat %s %s = %s", i > 0 ? "; " : "", time,
                 push ? "push" : parameter_table[a->parameter].path, text_valued ? a->text : value);
     }
+
     if (fclose(stream) == 0) {
         define(d, "script", "%s", text);
     } else {
@@ -92,6 +99,8 @@ void definition_init(definition *d, const sweep *s)
 {
     assert(d != NULL && s != NULL);
     memset(d, 0, sizeof *d);
+
+    // what is varied, and how
     define(d, "version", "%s", lab_version());
     define(d, "scenario", "%s", s->base->name);
     define(d, "sample", "%s", sweep_sampling_name(s->sampling));
@@ -104,12 +113,15 @@ void definition_init(definition *d, const sweep *s)
         snprintf(key, sizeof key, "vary %d", i + 1);
         define(d, key, "%s=%s", parameter_table[s->axes[i].parameter].path, s->axes[i].text);
     }
+
+    // what stays
     define_script(d, s->base);
     define_parameters(d, s);
 }
 
 void definition_finish(definition *d)
 {
+    assert(d != NULL);
     for (int i = 0; i < d->count; i++) {
         free(d->lines[i].value);
     }
@@ -127,6 +139,7 @@ static const char *value_of(const definition *d, const char *key)
 
 status definition_read(sweep_store *store, definition *d, fault *f)
 {
+    assert(store != NULL && d != NULL);
     sqlite3_stmt *rows;
     memset(d, 0, sizeof *d);
     status code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
@@ -141,6 +154,7 @@ status definition_read(sweep_store *store, definition *d, fault *f)
 
 status definition_write(sweep_store *store, const definition *d, fault *f)
 {
+    assert(store != NULL && d != NULL);
     sqlite3_stmt *insert;
     status code =
         database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
@@ -183,8 +197,11 @@ static bool is_compared(const char *key)
 
 status definition_compare(const char *path, const definition *was, const definition *now, fault *f)
 {
+    assert(path != NULL && was != NULL && now != NULL);
     char text[900] = "";
     int count = 0;
+
+    // what is new or another value
     for (int i = 0; i < now->count; i++) {
         const char *key = now->lines[i].key, *before = value_of(was, key);
         // which parameters were given is worth saying only if all values are the same
@@ -193,11 +210,14 @@ status definition_compare(const char *path, const definition *was, const definit
             add_difference(text, sizeof text, &count, key, before, now->lines[i].value);
         }
     }
+
+    // what is gone
     for (int i = 0; i < was->count; i++) {
         if (value_of(now, was->lines[i].key) == NULL) {
             add_difference(text, sizeof text, &count, was->lines[i].key, was->lines[i].value, NULL);
         }
     }
+
     if (count == 0) {
         return STATUS_OK;
     }

@@ -14,6 +14,8 @@ status sweep_store_present(sweep_store *store, unsigned char *present, size_t *c
     size_t total = store->sweep->run_count;
     memset(present, 0, total);
     *count = 0;
+
+    // a run that the sweep does not have means that the file was changed by others
     status code = database_prepare(store, &rows, "SELECT run FROM run", f);
     while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
         long long run = sqlite3_column_int64(rows, 0);
@@ -25,6 +27,7 @@ status sweep_store_present(sweep_store *store, unsigned char *present, size_t *c
             (*count)++;
         }
     }
+
     if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
         code = database_fault(store, f);
     }
@@ -45,6 +48,8 @@ static void bind_row(sweep_store *store, size_t run, const summary *result)
     const sweep *s = store->sweep;
     sqlite3_stmt *row = store->insert;
     int column = 1;
+
+    // which run, under which values
     sqlite3_bind_int64(row, column++, (sqlite3_int64)run + 1);
     for (int i = 0; i < s->axis_count; i++) {
         parameter_type type = parameter_table[s->axes[i].parameter].type;
@@ -56,6 +61,8 @@ static void bind_row(sweep_store *store, size_t run, const summary *result)
             sqlite3_bind_double(row, column++, sweep_value(s, run, i));
         }
     }
+
+    // how it ended, and with what numbers
     sqlite3_bind_text(row, column++, summary_status(result), -1, SQLITE_STATIC);
     sqlite3_bind_text(row, column++, result->message, -1, SQLITE_TRANSIENT);
     for (int i = 0; i < summary_count; i++) {
@@ -73,6 +80,7 @@ status sweep_store_put(sweep_store *store, size_t run, const summary *result, fa
         }
         store->in_transaction = true;
     }
+
     bind_row(store, run, result);
     int done = sqlite3_step(store->insert);
     status code = done == SQLITE_DONE ? STATUS_OK : database_fault(store, f);
@@ -83,13 +91,17 @@ status sweep_store_put(sweep_store *store, size_t run, const summary *result, fa
 status sweep_store_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
                             fault *f)
 {
+    assert(store != NULL && key != NULL && values != NULL);
     size_t total = store->sweep->run_count, failures = 0;
     sqlite3_stmt *rows = NULL;
+
     for (size_t i = 0; i < total; i++) {
         values[i] = (double)NAN;
     }
+
+    // a run that failed, or has no such quantity, stays missing
     char *sql = sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key);
-    status code = sql ? database_prepare(store, &rows, sql, f) : database_no_memory(f);
+    status code = sql ? database_prepare(store, &rows, sql, f) : fault_no_memory(f);
     while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
         bool ok = strcmp((const char *)sqlite3_column_text(rows, 1), "failed") != 0;
         failures += !ok;
@@ -97,6 +109,7 @@ status sweep_store_quantity(sweep_store *store, const char *key, double *values,
             values[sqlite3_column_int64(rows, 0) - 1] = sqlite3_column_double(rows, 2);
         }
     }
+
     if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
         code = database_fault(store, f);
     }
@@ -140,6 +153,7 @@ static void write_field(csv_writer *csv, sqlite3_stmt *row, int column)
 
 status sweep_store_csv(sweep_store *store, FILE *stream, fault *f)
 {
+    assert(store != NULL && stream != NULL);
     sqlite3_stmt *rows;
     int first_quantity = RUN_FIRST_VALUE + store->sweep->axis_count + RUN_OUTCOME_COLUMNS;
     status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);
@@ -149,6 +163,8 @@ status sweep_store_csv(sweep_store *store, FILE *stream, fault *f)
 
     csv_writer csv = csv_begin(stream);
     write_headings(&csv, store->sweep);
+
+    // all columns but those that depend on the machine
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
         for (int i = 0; i < first_quantity + summary_count; i++) {
             if (i < first_quantity || !summary_table[i - first_quantity].timing) {

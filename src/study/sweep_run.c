@@ -44,6 +44,7 @@ static void compute_run(void *context, size_t run, void *scratch, void *result)
     scenario derived;
     fault f = {.path = ""};
     (void)scratch;
+
     // the computing time of this thread alone
     double start = seconds(CLOCK_THREAD_CPUTIME_ID);
     if (sweep_scenario(e->sweep, run, &derived, &f) == STATUS_OK) {
@@ -108,6 +109,8 @@ static status run_missing(sweep_execution *e, const unsigned char *present, faul
                             .collect = store_run,
                             .tick = commit_and_report,
                             .stop = e->options->stop};
+
+    // no more threads than runs
     size_t missing = e->sweep->run_count - e->progress->done;
     int jobs = missing < (size_t)e->options->jobs ? (int)missing : e->options->jobs;
     return pool_run(&work, jobs > 0 ? jobs : 1, f);
@@ -121,9 +124,11 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
     double now = seconds(CLOCK_MONOTONIC);
     sweep_execution e = {s, store, options, progress, .start = now, .committed = now};
     *progress = (sweep_progress){.total = s->run_count};
+
+    // what an earlier call has computed is not computed again
     unsigned char *present = malloc(s->run_count);
     if (present == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        return fault_no_memory(f);
     }
     status code = sweep_store_present(store, present, &progress->done, f);
     if (code == STATUS_OK) {

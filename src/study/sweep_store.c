@@ -16,11 +16,13 @@
 #define APPLICATION_ID "1229738871"
 #define LAYOUT         "1"
 
+// A row a run: its number, the values of the axes, how it ended, the summary.
 static status create_run_table(sweep_store *store, fault *f)
 {
     const sweep *s = store->sweep;
     sqlite3_str *sql = sqlite3_str_new(store->database);
     sqlite3_str_appendall(sql, "CREATE TABLE run (run INTEGER PRIMARY KEY");
+
     for (int i = 0; i < s->axis_count; i++) {
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
         bool words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN;
@@ -29,13 +31,15 @@ static status create_run_table(sweep_store *store, fault *f)
                             : info->type == PARAMETER_INTEGER ? "INTEGER"
                                                               : "REAL");
     }
+
     sqlite3_str_appendall(sql, ", status TEXT NOT NULL, message TEXT NOT NULL");
     for (int i = 0; i < summary_count; i++) {
         sqlite3_str_appendf(sql, ", \"%w\" REAL", summary_table[i].key);
     }
     sqlite3_str_appendall(sql, ")");
+
     char *text = sqlite3_str_finish(sql);
-    status code = text ? database_execute(store, text, f) : database_no_memory(f);
+    status code = text ? database_execute(store, text, f) : fault_no_memory(f);
     sqlite3_free(text);
     return code;
 }
@@ -86,15 +90,16 @@ static status adopt(sweep_store *store, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
     definition_init(&now, store->sweep);
     if (now.out_of_memory) {
-        code = database_no_memory(f);
+        code = fault_no_memory(f);
     } else if (empty) {
         code = create_tables(store, &now, f);
     } else {
         code = definition_read(store, &was, f);
         if (code == STATUS_OK) {
-            code = was.out_of_memory ? database_no_memory(f)
+            code = was.out_of_memory ? fault_no_memory(f)
                                      : definition_compare(store->path, &was, &now, f);
         }
         definition_finish(&was);
@@ -112,6 +117,7 @@ static status lock_file(sweep_store *store, fault *f)
         return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", store->path,
                          strerror(errno));
     }
+
     if (flock(store->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         return fault_set(f, STATUS_CANNOT_WRITE, "another sweep is writing to '%s' just now",
                          store->path);
@@ -119,6 +125,7 @@ static status lock_file(sweep_store *store, fault *f)
     return STATUS_OK;
 }
 
+// The statement that stores a run, compiled once.
 static status prepare_insert(sweep_store *store, fault *f)
 {
     sqlite3_str *sql = sqlite3_str_new(store->database);
@@ -128,12 +135,14 @@ static status prepare_insert(sweep_store *store, fault *f)
         sqlite3_str_appendall(sql, ", ?");
     }
     sqlite3_str_appendall(sql, ")");
+
     char *text = sqlite3_str_finish(sql);
-    status code = text ? database_prepare(store, &store->insert, text, f) : database_no_memory(f);
+    status code = text ? database_prepare(store, &store->insert, text, f) : fault_no_memory(f);
     sqlite3_free(text);
     return code;
 }
 
+// Opens the file, or memory, and what the sweep needs of it.
 static status open_database(sweep_store *store, fault *f)
 {
     if (store->path != NULL) {
@@ -142,10 +151,12 @@ static status open_database(sweep_store *store, fault *f)
             return code;
         }
     }
+
     if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database,
                         SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL) != SQLITE_OK) {
-        return store->database ? database_fault(store, f) : database_no_memory(f);
+        return store->database ? database_fault(store, f) : fault_no_memory(f);
     }
+
     // somebody may be reading the results of a sweep that goes on
     sqlite3_busy_timeout(store->database, 10000);
     status code = adopt(store, f);
@@ -158,16 +169,19 @@ status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, 
     sweep_store *store = calloc(1, sizeof *store);
     *opened = NULL;
     if (store == NULL) {
-        return database_no_memory(f);
+        return fault_no_memory(f);
     }
+
     store->sweep = s;
     store->lock = -1;
     status code = STATUS_OK;
+
     // a plain name that begins with a colon would mean something else to the database
     if (path != NULL && asprintf(&store->path, "%s%s", path[0] == ':' ? "./" : "", path) < 0) {
         store->path = NULL;
-        code = database_no_memory(f);
+        code = fault_no_memory(f);
     }
+
     code = code == STATUS_OK ? open_database(store, f) : code;
     if (code != STATUS_OK) {
         sweep_store_close(store);
@@ -196,6 +210,7 @@ void sweep_store_close(sweep_store *store)
 
 status sweep_store_commit(sweep_store *store, fault *f)
 {
+    assert(store != NULL);
     if (!store->in_transaction) {
         return STATUS_OK;
     }

@@ -2,9 +2,9 @@
 //
 // Table `sweep` (key, value) holds what defines the sweep: version, scenario, sampling, seed, what
 // is varied, every other parameter and the script. Table `run` has the number of the run from 1 as
-// its primary key, the varied values under their paths, status ('ok', 'inaccurate' or 'failed'), message and all
-// quantities of the summary (NULL: did not occur). Rows come in transactions: a program that is
-// killed leaves the rows of the last commit, each of them once.
+// its primary key, the varied values under their paths, status ('ok', 'inaccurate' or 'failed'),
+// message and all quantities of the summary (NULL: did not occur). Rows come in transactions: a
+// program that is killed leaves the rows of the last commit, each of them once.
 #pragma once
 
 #include <stdio.h>

@@ -169,7 +169,7 @@ static status draw_runs(const three_runs *r, const char *path, fault *f)
         room = room && work[i] != NULL;
     }
     status code = room ? draw(r, work, path, f)
-                       : fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+                       : fault_no_memory(f);
     for (int i = 0; i < 4; i++) {
         free(work[i]);
     }
@@ -180,7 +180,7 @@ static status plot(const scenario *s, const convergence_panel *panel, const char
 {
     three_runs *r = calloc(1, sizeof *r);
     if (r == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
+        return fault_no_memory(f);
     }
     status code = run_all(s, panel, r, f);
     if (code == STATUS_OK) {
