@@ -21,7 +21,7 @@
     } while (0)
 
 // Fails unless |a - b| <= relative * |b|.
-#define check_relative(a, b, relative) check_close(a, b, (relative) * fabs(b))
+#define check_relative(a, b, relative) check_close(a, b, (relative)*fabs(b))
 
 // Fails unless a < b; prints both.
 #define check_below(a, b)                                                                          \

@@ -11,7 +11,7 @@
 #define TRAVEL_TIME 0.25 // [s]
 #define WAY         0.1  // from the start to the wall of the fixture [rad]
 
-static const double complex i_ = CMPLX(0, 1);
+static const double complex i_ = (double complex)_Complex_I;
 
 // --- the plan itself ------------------------------------------------------------------------
 

@@ -231,7 +231,7 @@ static void a_step_that_cannot_be_taken_stops_with_time_and_reason(void **state)
     (void)state;
     scenario s = {.parameters = fixture_parameters(SETTINGS(
                       "method.name=newmark", "method.step=0.5", "motor.voltage=10", "arm.k2=1e5"))};
-    s.parameters.motor.stiction = NAN; // a bad number that slipped in
+    s.parameters.motor.stiction = (double)NAN; // a bad number that slipped in
     run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
     assert_non_null(strstr(r.summary.message, "t = "));

@@ -2,8 +2,8 @@
 //
 // Coordinates. Every link has an absolute angle, measured from the reference direction and growing
 // towards the wall. With a rigid hub joint, hub and first link share one; with a spring (k1, or the
-// root k2 N of a beam) the hub has its own. Degree of freedom 0 is always the body the motor turns. The unit vector along link k is
-// r_k = (cos, sin), across it t_k = (-sin, cos).
+// root k2 N of a beam) the hub has its own. Degree of freedom 0 is always the body the motor turns.
+// The unit vector along link k is r_k = (cos, sin), across it t_k = (-sin, cos).
 //
 // Contact. g(q) is the penetration: negative in free flight, zero in contact, gap = -g. The wall
 // acts with the generalised force -J^T f, J = dg/dq, f >= 0.
@@ -13,11 +13,11 @@
 #include "src/arm/wall.h"
 
 typedef struct arm {
-    int links; // N
-    int dof;   // degrees of freedom n: N, or N + 1 with a hub spring
-    int first; // index of the first link's angle: 0, or 1 with a hub spring
-    bool hub_spring;         // the hub is a body of its own, on a spring
-    bool root_bends;         // that spring is part of the beam: its root
+    int links;                // N
+    int dof;                  // degrees of freedom n: N, or N + 1 with a hub spring
+    int first;                // index of the first link's angle: 0, or 1 with a hub spring
+    bool hub_spring;          // the hub is a body of its own, on a spring
+    bool root_bends;          // that spring is part of the beam: its root
     double link_length;       // l [m]
     double link_mass;         // m [kg]
     double link_inertia;      // about the centre of mass [kg m2]

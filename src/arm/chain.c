@@ -55,7 +55,7 @@ void chain_penetration(const arm *a, const double *q, const double *w, double *g
 {
     if (!wall_stands(&a->wall)) {
         if (g != NULL) {
-            *g = -INFINITY;
+            *g = -HUGE_VAL;
         }
         if (rate != NULL) {
             *rate = 0;

@@ -380,7 +380,8 @@ status predict_linearised(const arm *a, motion *work, const double *q, const dou
     arm touched = touching_now(a, q);
     double *after = work->scratch, *alpha = work->scratch + n;
     chain_reaction r;
-    *out = (prediction){.holds = false, .force = NAN, .delay = NAN, .impulse = NAN};
+    *out = (prediction){
+        .holds = false, .force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
     if (!wall_stands(&a->wall)) {
         return STATUS_OK;
     }
