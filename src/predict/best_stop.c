@@ -31,6 +31,7 @@
 // torque that raises xi' now raises xi at the end too, the arm's own vibration taking 0.28 s.)
 #include "src/predict/best_stop.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "src/arm/arm.h"
@@ -44,6 +45,7 @@
 
 bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
 {
+    assert(p != NULL && m != NULL);
     double l = p->arm.length / 2, quarter = p->arm.mass / 2 * l * l / 4;
     *m = (pressed_arm_model){
         .inertia = p->arm.hub_inertia + 2 * p->arm.link_inertia + 2 * quarter,
@@ -60,6 +62,7 @@ bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
 
 bool pressed_after_impact(const parameters *p, const three_body_state *before, pressed_state *after)
 {
+    assert(p != NULL && before != NULL && after != NULL);
     two_link t;
     double velocity[3], impulse;
     two_link_at(&t, p, FORM_CORRECTED, before->angle[1], before->angle[2]);
@@ -138,10 +141,12 @@ static bool stops(const pressed_arm_model *m, pressed_state s, double peak)
 
 double best_peak(const pressed_arm_model *m, pressed_state s)
 {
+    assert(m != NULL && m->mass_force > 0);
     double low = runaway(m, s), high = low;
     if (!(s.velocity > 0 && low > 0)) {
         return (double)NAN;
     }
+
     // bracket, then halve; on the edge itself the arm takes for ever to stop. However weak the
     // motor, some force stops it: the beam's own
     while (!stops(m, s, high) && isfinite(high)) {
@@ -205,6 +210,8 @@ static double time_on(const pressed_arm_model *m, const way *on, const way *band
         if (xi >= band->lowest && xi <= band->highest && stays(m, band, s)) {
             return t;
         }
+
+        // on, looking for the edge within the step
         pressed_state next = advance(m, on, s, STEP);
         pressed_state edge = crossing(m, on, s, next, near_edge(on, band), &share);
         if (share >= 0 && stays(m, band, edge)) {
@@ -223,9 +230,12 @@ static double time_on_both(const pressed_arm_model *m, const way *first, const w
     for (double t = 0; t < best; t += STEP) {
         double more = time_on(m, second, band, s, best - t), share;
         best = t + more < best ? t + more : best;
+
         if (is_lost(first, band, runaway(m, s), force_on(m, first, s))) {
             break;
         }
+
+        // and from the edge itself, which lies within a step
         pressed_state next = advance(m, first, s, STEP);
         pressed_state edge = crossing(m, first, s, next, near_edge(first, band), &share);
         if (share >= 0) {
@@ -241,13 +251,18 @@ static double time_on_both(const pressed_arm_model *m, const way *first, const w
 double best_settling(const pressed_arm_model *m, pressed_state s, double force, double band,
                      double peak)
 {
+    assert(m != NULL && m->mass_force > 0 && band > 0);
     const way settled = {PRESS_KEEP, force * (1 - band), force * (1 + band)};
     const double most = fmax(peak, settled.highest);
     const way hard = {PRESS_HARD, 0, most}, soft = {PRESS_SOFT, 0, most};
+
+    // a motor that cannot hold the force never settles there
     double holding = m->stiffness * force / m->spring_force - m->stiction;
     if (!(force > 0) || holding > m->torque_limit) {
         return (double)NAN;
     }
+
+    // the better of the two orders
     double best = time_on_both(m, &soft, &hard, &settled, s, HORIZON);
     best = time_on_both(m, &hard, &soft, &settled, s, best);
     return best < HORIZON ? best : (double)NAN;

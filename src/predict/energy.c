@@ -1,5 +1,6 @@
 #include "src/predict/predict.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "src/predict/two_link.h"
@@ -7,10 +8,13 @@
 
 void quasi_principle_deflections(int n, const double *k, double energy, double *deflection)
 {
+    assert(n > 0 && k != NULL && deflection != NULL);
     double compliance = 0;
     for (int i = 0; i < n; i++) {
         compliance += 1 / k[i];
     }
+
+    // soft springs get the larger share
     for (int i = 0; i < n; i++) {
         double share = energy / k[i] / compliance;
         deflection[i] = sqrt(2 * share / k[i]);
@@ -73,6 +77,8 @@ static bool corrected_force(const parameters *p, const three_body_state *s, doub
     bool rigid = p->arm.hub_joint == HUB_RIGID;
     quasi_principle_deflections(rigid ? 1 : 2, stiffness, whole_energy(p, s), bend);
     two_link_at(&t, p, FORM_CORRECTED, s->angle[1], s->angle[1] - bend[0]);
+
+    // what drives the links while they are stopped
     double hub_speed = s->velocity[rigid ? 1 : 0];
     double friction = p->motor.stiction * ((hub_speed > 0) - (hub_speed < 0));
     double r[3] = {rigid ? t.motor_torque - friction : p->arm.k1 * bend[1], p->arm.k2 * bend[0], 0};
@@ -83,6 +89,7 @@ static bool corrected_force(const parameters *p, const three_body_state *s, doub
 
 status predict_energy(const parameters *p, const three_body_state *s, prediction *out, fault *f)
 {
+    assert(p != NULL && s != NULL && out != NULL);
     bool printed = p->arm.model == ARM_PRINTED;
     two_link touch;
     *out = (prediction){
@@ -91,6 +98,7 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     if (result != STATUS_OK) {
         return result;
     }
+
     double force, after[3], impulse;
     if (!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
         !isfinite(force)) {
@@ -98,6 +106,8 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
                          "the energy principle has no single force for this state: its system "
                          "(4.28), (4.29), (4.34) is singular");
     }
+
+    // it holds for an arm that comes near and, corrected, stays on the wall
     two_link_at(&touch, p, printed ? FORM_LISTED_IMPACT : FORM_CORRECTED, s->angle[1], s->angle[2]);
     out->force = force;
     out->holds = force > 0 && two_link_approach_speed(&touch, s) >= 0;

@@ -1,5 +1,6 @@
 #include "src/predict/predict.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -18,6 +19,7 @@ static two_link_form form_of(const parameters *p)
 status predict_velocity_jump(const parameters *p, const three_body_state *s, double after[3],
                              double *impulse, fault *f)
 {
+    assert(p != NULL && s != NULL && after != NULL && impulse != NULL);
     two_link t;
     status result = three_body_state_check(s, f);
     if (result != STATUS_OK) {
@@ -88,9 +90,12 @@ static void equations(const integrated_motion *g, const double x[3], double e[3]
     double spring = T * g->k2 * g->bend + T * T * rate / 4;
     double hub_slope = g->k1 * g->hub_bend + T * hub_rate / 2;
     double slope = g->k2 * g->bend + T * rate / 2;
+
     e[0] = -g->hub_inertia * w1 - hub_spring - g->drive * T + g->hub_damping * T * w1 / 2;
     e[1] = hub_spring - g->twice * spring - g->momentum2 + g->both * T * f / 2;
     e[2] = spring - g->momentum3 + g->last * T * f / 2;
+
+    // by T, f and w1
     jacobian[0] = -hub_slope - g->drive + g->hub_damping * w1 / 2;
     jacobian[1] = 0;
     jacobian[2] = -g->hub_inertia + g->k1 * T * T / 4 + g->hub_damping * T / 2;
@@ -138,9 +143,12 @@ static int positive_roots(const double *c, int degree, double *roots)
     if (degree == 0) {
         return 0;
     }
+
     for (int i = 0; i < degree; i++) {
         slope[i] = (i + 1) * c[i + 1];
     }
+
+    // from end to end by way of the turning points
     int turn_count = positive_roots(slope, degree - 1, turns + 1) + 2, count = 0;
     turns[0] = SHORTEST_DELAY;
     turns[turn_count - 1] = LONGEST_DELAY;
@@ -186,10 +194,12 @@ static bool newton(const integrated_motion *g, double x[3])
     double scale = fabs(g->momentum2) + fabs(g->momentum3) + fabs(g->hub_inertia * x[2]) +
                    fabs(g->k1 * x[0] * g->hub_bend) +
                    g->k1 * x[0] * x[0] * (fabs(g->w2) + fabs(x[2])) / 4;
+
     double e[3], jacobian[9], error;
     equations(g, x, e, jacobian);
     error = hypot(hypot(e[0], e[1]), e[2]);
     for (int i = 0; i < ITERATIONS && error > 1e-13 * scale; i++) {
+        // the whole step, or as much of it as lowers the residual
         double damping = 1, trial[3], next;
         if (!dense_solve(3, jacobian, e)) {
             return false;
@@ -206,6 +216,7 @@ static bool newton(const integrated_motion *g, double x[3])
         if (!(next < error)) {
             break;
         }
+
         memcpy(x, trial, 3 * sizeof(double));
         equations(g, x, e, jacobian);
         error = next;
@@ -223,12 +234,15 @@ static status solve_with_hub_spring(const integrated_motion *g, double hub_veloc
 {
     double c[3], roots[4], best = (double)INFINITY, x[3];
     force_free_terms(g, c);
+
     // w1 = N / D; the sum of c, T k1 D1 and k1 T^2 (w2 - w1) / 4 times D, without the terms of k1
     // squared that cancel
     double d0 = -g->hub_inertia, d1 = g->hub_damping / 2, d2 = g->k1 / 4;
     double hub1 = c[1] + g->k1 * g->hub_bend, hub2 = c[2] + g->k1 * g->w2 / 4;
     double quartic[5] = {c[0] * d0, c[0] * d1 + hub1 * d0, c[0] * d2 + hub1 * d1 + hub2 * d0,
                          c[1] * d2 + hub2 * d1 - g->drive * d2, c[2] * d2};
+
+    // the root whose hub velocity is the nearest
     int count = positive_roots(quartic, 4, roots);
     *delay = *force = (double)NAN;
     for (int i = 0; i < count; i++) {
@@ -238,6 +252,7 @@ static status solve_with_hub_spring(const integrated_motion *g, double hub_veloc
             memcpy(x, (double[3]){roots[i], peak, w1}, sizeof x);
         }
     }
+
     if (!isfinite(best)) {
         return STATUS_OK;
     }
@@ -246,6 +261,7 @@ static status solve_with_hub_spring(const integrated_motion *g, double hub_veloc
                          "Newton's method found no solution of (4.20)-(4.22) near a delay of %g s",
                          x[0]);
     }
+
     *delay = x[0];
     *force = x[1];
     return STATUS_OK;
@@ -258,6 +274,7 @@ static double earliest_delay(const double c[3])
     if (discriminant < 0) {
         return earliest;
     }
+
     // the form that does not cancel
     double sum = -(c[1] + copysign(sqrt(discriminant), c[1])) / 2;
     double roots[2] = {sum / c[2], c[0] / sum};
@@ -310,6 +327,7 @@ static void solve_rigid_hub(const integrated_motion *g, prediction *out)
 status predict_impact_dynamics(const parameters *p, const three_body_state *s, prediction *out,
                                fault *f)
 {
+    assert(p != NULL && s != NULL && out != NULL);
     two_link t;
     integrated_motion g;
     double after[3];
@@ -331,6 +349,7 @@ status predict_impact_dynamics(const parameters *p, const three_body_state *s, p
 status predict_impact_quadratic(const parameters *p, const three_body_state *s, prediction *out,
                                 fault *f)
 {
+    assert(p != NULL && s != NULL && out != NULL);
     two_link t;
     integrated_motion g;
     double after[3], c[3];
@@ -338,10 +357,12 @@ status predict_impact_quadratic(const parameters *p, const three_body_state *s, 
     if (p->arm.model != ARM_PRINTED) {
         rigid.arm.hub_joint = HUB_RIGID;
     }
+
     status result = start(&rigid, s, &t, &g, out, after, f);
     if (result == STATUS_OK && t.rigid_hub) {
         solve_rigid_hub(&g, out);
     } else if (result == STATUS_OK) {
+        // w1 is known: its terms of E1 go to the constant ones
         double w1 = s->velocity[0] + after[1] - s->velocity[1];
         force_free_terms(&g, c);
         c[1] += g.k1 * g.hub_bend;

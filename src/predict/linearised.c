@@ -19,6 +19,7 @@
 // is linear in z. Sampling ends where the force falls to zero or the hub turns back.
 #include "src/predict/linearised.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,6 +35,8 @@ static arm touching_now(const arm *a, const double *q)
 {
     arm touched = *a;
     double x, y;
+
+    // a point moves across the last link onto its line, a flat wall turns to the tip
     if (a->wall.kind == WALL_POINT) {
         double t_x = -inline_sin(q[a->dof - 1]), t_y = inline_cos(q[a->dof - 1]);
         chain_node(a, q, a->links - 1, &x, &y);
@@ -80,6 +83,7 @@ static void oscillation_at(const oscillation *o, double t, double *y, double *ve
         c = cosh(o->frequency * t);
         s = sinh(o->frequency * t);
     }
+
     *y = o->rest + decay * (o->sine * s - o->rest * c);
     *velocity =
         decay * (o->sine * (o->frequency * c - o->decay * s) - o->rest * (turn * s - o->decay * c));
@@ -92,6 +96,8 @@ static double oscillation_stop(const oscillation *o)
     double p = o->sine * o->frequency + o->rest * o->decay;
     double turn = o->square >= 0 ? -o->frequency : o->frequency;
     double q = -turn * o->rest - o->sine * o->decay;
+
+    // overdamped it comes to rest once or only in the limit
     if (o->square >= 0) {
         double angle = atan2(p, -q); // tan(f t) = -p/q
         return (angle > 0 ? angle : angle + M_PI) / o->frequency;
@@ -113,6 +119,8 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     const arm *a = p->a;
     double l = a->link_length, q[2] = {x, 0}, w[2], alpha[2], cx, sx, lever, along;
     chain_reaction r;
+
+    // the constraint: angle and velocity of the second link
     inline_sincos(x, &sx, &cx);
     if (a->wall.kind == WALL_POINT) {
         // the second link points from the joint to the contact point, (3.9)
@@ -127,6 +135,8 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     }
     w[0] = v;
     w[1] = -along / lever * v; // (3.12)
+
+    // the equations of motion there
     chain_sweep(a, 2, false, true, false, p->links, q, w, p->mode, alpha, &r);
     p->force = r.force;
     p->acceleration = alpha[0];
@@ -188,15 +198,21 @@ static void predict_path(pressed_arm *p, double x, double v, double c, double k,
             pressed_evaluate(p, x, v);
             acceleration = p->acceleration;
         }
+
+        // a first guess of the piece, an even share of what is left of the way
         *o = oscillation_from(acceleration, v, c, k);
         length = oscillation_stop(o) / (PIECES - i);
         oscillation_at(o, length, &y, &velocity);
         pressed_evaluate(p, x + y, velocity);
+
+        // the stiffness that makes the acceleration exact at its far end too
         double secant = (acceleration - c * (velocity - v) - p->acceleration) / y;
         if (y > 0 && secant > 0) {
             k = secant;
             *o = oscillation_from(acceleration, v, c, k);
         }
+
+        // the piece, and the state at its end
         path->start[i] = t;
         path->angle[i] = x;
         path->stop = t + oscillation_stop(o);
@@ -216,19 +232,25 @@ static void path_peak(pressed_arm *p, const pressed_path *path, double first, pr
     for (int i = 0; i < 3; i++) {
         f[i] = path_force(p, path, path->stop - (2 - i) * h);
     }
+
     double middle = t;
     parabola_top(f, h, &t);
     f[3] = path_force(p, path, t);
+
     // Newton's form on s = (time - middle) / h with nodes -1, 0, 1 and s3
     double s3 = (t - middle) / h, d1 = f[1] - f[0], d2 = (f[2] - 2 * f[1] + f[0]) / 2;
+
     double spread = (s3 + 1) * s3 * (s3 - 1), d3 = 0, s = s3;
     if (fabs(spread) > 1e-6) {
         d3 = (f[3] - f[0] - d1 * (s3 + 1) - d2 * (s3 + 1) * s3) / spread;
     }
+
+    // Newton's iteration for the cubic's top
     for (int i = 0; i < 3; i++) {
         double slope = d1 + d2 * (2 * s + 1) + d3 * (3 * s * s - 1), bend = 2 * d2 + 6 * d3 * s;
         s = bend < 0 ? fmin(fmax(s - slope / bend, -1), 1) : s;
     }
+
     top = f[0] + (s + 1) * (d1 + s * (d2 + (s - 1) * d3));
     out->force = fmax(top, first);
     out->delay = top > first ? middle + s * h : 0;
@@ -244,17 +266,23 @@ static void linearise(const arm *a, chain_link *links, contact_state mode, const
     const int n = a->dof, size = 2 * n + 1;
     double *z = scratch, *alpha = scratch + 2 * n;
     chain_reaction r;
+
+    // d(angle)/dt = velocity
     memset(matrix, 0, (size_t)(size * size) * sizeof *matrix);
     for (int i = 0; i < n; i++) {
         matrix[i * size + n + i] = 1;
         z[i] = q[i];
         z[n + i] = w[i];
     }
+
+    // constant terms: accelerations and force at the touch
     chain_accelerations(a, links, z, z + n, mode, alpha, &r);
     output[2 * n] = r.force;
     for (int i = 0; i < n; i++) {
         matrix[(n + i) * size + 2 * n] = alpha[i];
     }
+
+    // slopes, one column of A after the other
     for (int j = 0; j < 2 * n; j++) {
         double e = 1e-6 * (1 + fabs(z[j])), value = z[j], slope = 0;
         for (int side = 1; side >= -1; side -= 2) {
@@ -268,6 +296,7 @@ static void linearise(const arm *a, chain_link *links, contact_state mode, const
         z[j] = value;
         output[j] = slope;
     }
+
     // velocities enter as they are: take the linear terms at w out of the constant ones
     for (int j = 0; j < n; j++) {
         output[2 * n] -= output[n + j] * w[j];
@@ -282,6 +311,7 @@ static void exponential(const double *matrix, int size, double h, double *result
                         double *product)
 {
     const size_t bytes = (size_t)(size * size) * sizeof(double);
+
     double norm = 0;
     for (int i = 0; i < size; i++) {
         double row = 0;
@@ -290,6 +320,8 @@ static void exponential(const double *matrix, int size, double h, double *result
         }
         norm = fmax(norm, row);
     }
+
+    // halved until the series converges fast
     int squarings = norm > 0.5 ? (int)ceil(log2(norm / 0.5)) : 0;
     double scale = h / ldexp(1, squarings);
     memset(result, 0, bytes);
@@ -297,6 +329,8 @@ static void exponential(const double *matrix, int size, double h, double *result
     for (int i = 0; i < size; i++) {
         result[i * size + i] = power[i * size + i] = 1;
     }
+
+    // first the terms of the series, then the squarings
     enum { TERMS = 14 };
     for (int term = 1; term <= TERMS + squarings; term++) {
         const double *left = term <= TERMS ? matrix : result;
@@ -333,20 +367,27 @@ static status many_link_peak(const arm *a, chain_link *links, contact_state mode
     if (block == NULL) {
         return STATUS_NO_MEMORY;
     }
+
     double *matrix = block, *step = matrix + square, *power = step + square;
     double *product = power + square, *output = product + square, *z = output + size;
     double *next = z + size, *scratch = next + size;
+
+    // the propagator over a tenth of a radian of the fastest mode
     linearise(a, links, mode, q, w, matrix, output, scratch);
     double h = 0.1 / fmax(a->highest_frequency, 1);
     exponential(matrix, size, h, step, power, product);
+
+    // from the touch, z = (0, w, 1)
     for (int i = 0; i < n; i++) {
         z[n + i] = w[i];
     }
     z[2 * n] = 1;
+
     double f[3] = {first_force, first_force, first_force};
     out->force = first_force;
     out->delay = 0;
     for (int sample = 1; sample < MOST_SAMPLES && f[2] > 0; sample++) {
+        // one sample on
         double force = 0;
         for (int i = 0; i < size; i++) {
             double sum = 0;
@@ -356,7 +397,10 @@ static status many_link_peak(const arm *a, chain_link *links, contact_state mode
             next[i] = sum;
             force += output[i] * sum;
         }
+
         memcpy(z, next, (size_t)size * sizeof *z);
+
+        // a maximum between the last three
         f[0] = f[1], f[1] = f[2], f[2] = force;
         if (sample > 1 && f[1] > f[0] && f[1] >= f[2]) {
             double t = (sample - 1) * h, top = parabola_top(f, h, &t);
@@ -376,26 +420,34 @@ static status many_link_peak(const arm *a, chain_link *links, contact_state mode
 status predict_linearised(const arm *a, motion *work, const double *q, const double *w,
                           prediction *out)
 {
+    assert(a != NULL && work != NULL && q != NULL && w != NULL && out != NULL);
     const int n = a->dof;
     arm touched = touching_now(a, q);
     double *after = work->scratch, *alpha = work->scratch + n;
     chain_reaction r;
     *out = (prediction){
         .holds = false, .force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
+
     if (!wall_stands(&a->wall)) {
         return STATUS_OK;
     }
+
+    // the impact, plastic
     impact_result jump = impact_velocity_increments(&touched, work->links, q, w, 0, after);
     out->impulse = fmax(jump.impulse, 0);
     for (int i = 0; i < n; i++) {
         after[i] = w[i] + (jump.impulse > 0 ? after[i] : 0);
     }
+
+    // what the force is just after it
     contact_state mode = {true, after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD};
     chain_accelerations(&touched, work->links, q, after, mode, alpha, &r);
     out->holds = jump.impulse >= 0 && r.force > 0;
     if (!out->holds) {
         return STATUS_OK;
     }
+
+    // its rise
     if (n == 2 && !a->hub_spring && after[0] > 0) {
         pressed_arm p = {.a = &touched, .mode = mode, .acceleration = alpha[0]};
         pressed_path path;

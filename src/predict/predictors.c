@@ -16,6 +16,7 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
     if (question->angles == NULL || question->velocities == NULL) {
         return PREDICTION_LINKS_UNKNOWN;
     }
+
     arm a;
     arm_init(&a, p);
     motion *work = motion_create(&a, &p->method);
@@ -23,6 +24,7 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
                       ? STATUS_NO_MEMORY
                       : predict_linearised(&a, work, question->angles, question->velocities, out);
     motion_destroy(work);
+
     if (code != STATUS_OK) {
         fault_set(f, code, "%s", status_text(code));
         return PREDICTION_FAILED;

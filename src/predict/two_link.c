@@ -1,5 +1,6 @@
 #include "src/predict/two_link.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -30,22 +31,29 @@ static void contact_on_the_arm(two_link *t, int wall, double bend)
 
 void two_link_at(two_link *t, const parameters *p, two_link_form form, double angle2, double angle3)
 {
+    assert(t != NULL && p != NULL);
     memset(t, 0, sizeof *t);
     double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, inertia = two_link_inertia(p);
     double bend = angle3 - angle2, c = inline_cos(bend);
+
     t->length = l;
     t->centre = e;
     t->motor_torque =
         motor_torque_per_volt(&p->motor) * motor_limited_voltage(&p->motor, p->motor.voltage);
     t->hub_damping = motor_damping(&p->motor);
+
+    // factors of the accelerations, as (2.16) and (2.17) have them
     t->m32 = m * l * e * c;
     t->m33 = m * e * e + inertia;
     t->m22 = m * e * e + m * l * l + inertia + m * l * e * c;
     t->m23 = t->m33 + t->m32;
+
+    // where the listing takes cos d = 1 and leaves I2, I3 out
     if (form == FORM_LISTED_IMPACT) {
         t->m22 = m * e * e + m * l * l + m * l * e;
         t->m23 = m * e * e + m * l * e;
     }
+
     if (form == FORM_CORRECTED) {
         contact_on_the_arm(t, p->wall.kind, bend);
         t->both = t->j2 + t->j3;
@@ -54,6 +62,8 @@ void two_link_at(two_link *t, const parameters *p, two_link_form form, double an
         t->m22 += t->rigid_hub ? p->arm.hub_inertia : 0;
         return;
     }
+
+    // printed: the force at the link's end, the constraint of (3.12)
     double a = p->arm.length * inline_cos(p->wall.angle),
            b = p->arm.length * inline_sin(p->wall.angle);
     t->both = l * (1 + c);
@@ -77,12 +87,14 @@ bool two_link_solve(const two_link *t, double r[3])
 status two_link_velocity_jump(const two_link *t, const three_body_state *s, double after[3],
                               double *impulse, fault *f)
 {
+    assert(t != NULL && s != NULL && after != NULL && impulse != NULL);
     double r[3] = {0, 0, -two_link_approach_speed(t, s)};
     if (!two_link_solve(t, r) || !isfinite(r[2])) {
         return fault_set(f, STATUS_SINGULAR,
                          "the impact at this state has no single impulse: the system (4.11), "
                          "(4.12), (4.14) is singular");
     }
+
     after[1] = s->velocity[1] + r[0];
     after[2] = s->velocity[2] + r[1];
     after[0] = t->rigid_hub ? after[1] : s->velocity[0];
@@ -95,13 +107,18 @@ status two_link_velocity_jump(const two_link *t, const three_body_state *s, doub
 double two_link_first_force(const two_link *t, const parameters *p, const three_body_state *s,
                             const double after[3])
 {
+    assert(t != NULL && p != NULL && s != NULL && after != NULL);
     double l = t->length, bend = s->angle[2] - s->angle[1], w2 = after[1], w3 = after[2];
     double coupling = p->arm.mass / 2 * l * t->centre * inline_sin(bend);
+
+    // what acts at the hub: its spring, or the motor less friction
     double hub_torque = p->arm.k1 * (s->angle[0] - s->angle[1]);
     if (t->rigid_hub) {
         double friction = p->motor.stiction * ((w2 > 0) - (w2 < 0));
         hub_torque = t->motor_torque - t->hub_damping * w2 - friction;
     }
+
+    // d2g/dt2 = 0
     double curve = p->wall.kind == WALL_PLANE ? l * inline_sin(bend / 2) * (w3 * w3 - w2 * w2)
                                               : l * inline_sin(bend) * (2 * w2 * w3 - w2 * w2);
     double r[3] = {hub_torque + coupling * (w3 * w3 - w2 * w2),
@@ -111,6 +128,7 @@ double two_link_first_force(const two_link *t, const parameters *p, const three_
 
 status three_body_state_check(const three_body_state *s, fault *f)
 {
+    assert(s != NULL);
     static const char *const names[3] = {"hub", "first link", "second link"};
     for (int i = 0; i < 3; i++) {
         if (!isfinite(s->angle[i]) || !isfinite(s->velocity[i])) {

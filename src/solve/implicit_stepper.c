@@ -62,6 +62,8 @@ static void forces_between_links(const arm *a, implicit_sweep *link, const doubl
 {
     const double l = a->link_length, m = a->link_mass;
     double ax = 0, ay = 0;
+
+    // accelerations from hub to tip, then the forces that they need from tip to hub
     for (int k = 0; k < a->links; k++) {
         double al = acceleration[a->first + k], w2 = w[a->first + k] * w[a->first + k];
         double dx = -l * (link[k].s * al + link[k].c * w2);
@@ -71,6 +73,7 @@ static void forces_between_links(const arm *a, implicit_sweep *link, const doubl
         ax += dx;
         ay += dy;
     }
+
     for (int k = a->links - 1; k >= 0; k--) {
         link[k].force_x = fx;
         link[k].force_y = fy;
@@ -121,11 +124,11 @@ static double rate_change(const arm *a, const implicit_sweep *link, contact_poin
         }
         return sum;
     }
+
     // dg/dt = s w + t'v_base with s = r'd, see wall.h
     double along = 0; // r'v_base
     for (int k = 0; k < last; k++) {
-        double sine =
-            end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l inline_sin(q_N - q_k)
+        double sine = end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l sin(q_N - q_k)
         along += l * sine * v[k];
         sum += l * (-sine * v[last] + sine * v[k]) * x[k];
     }
@@ -141,23 +144,22 @@ typedef struct iterate {
     double excess;       // out: what the balance of a stuck hub lacks, minus friction [N m]
 } iterate;
 
-// Solves the tangent system for the corrections of the angles, dq[dof], and of the force.
-static double newton_correction(const arm *a, implicit_sweep *link, iterate *it, tangent t,
-                                double *dq, double *unit)
+// How the links beyond a joint answer, see above: to the acceleration of its node and the angle of
+// the link before it, with F0, T0 for the residual and for a unit contact force.
+typedef struct joint_answer {
+    double yy;               // y [N m/rad]
+    double torque0, torque1; // T0 of the residual [N m], of a unit force [m]
+    double torque;           // that the joint itself exerts [N m]
+} joint_answer;
+
+// Elimination from tip to hub: what each link's angle depends on, into `link`. Returns the answer
+// of the chain at the hub.
+static joint_answer sweep_to_hub(const arm *a, implicit_sweep *link, iterate *it, tangent t,
+                                 contact_point point)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
     const double *q = it->q, *w = it->w, *al = it->acceleration;
     const int first = a->first, last = a->links - 1;
-    contact_point point = {0};
-    for (int k = 0; k <= last; k++) {
-        inline_sincos(q[first + k], &link[k].s, &link[k].c);
-    }
-    if (it->contact) {
-        point = contact_at(a, link);
-    }
-    forces_between_links(a, link, w, al, it->force * point.ex, it->force * point.ey);
-
-    // tip to hub
     double pxx = 0, pxy = 0, pyx = 0, pyy = 0;                 // P, no longer symmetric
     double hx = -it->force * point.angle_force * link[last].c; // p_f: the point wall's force turns
     double hy = -it->force * point.angle_force * link[last].s; // with the last link
@@ -168,9 +170,13 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
     for (int k = last; k >= 0; k--) {
         implicit_sweep *L = &link[k];
         double c = L->c, s = L->s, omega = w[first + k], alpha = al[first + k];
+
+        // how the node's acceleration changes with the link's angle
         double across = t.beta - omega * omega, along = alpha + 2 * t.gamma * omega;
         L->zx = -s * across - c * along;
         L->zy = c * across - s * along;
+
+        // the joint's torque, and what it changes with
         double kappa = 0, inner = 0;
         if (first + k > 0) {
             double stiffness = k > 0 ? a->joint_stiffness : a->hub_stiffness;
@@ -179,6 +185,8 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
             inner = stiffness * (q[first + k] - q[first + k - 1]) +
                     damping * (omega - w[first + k - 1]);
         }
+
+        // the link's balance of torques about its node: residual, and its slope by the angle
         double residual = a->link_inertia * alpha + half * m * (c * L->com_y - s * L->com_x) +
                           l * (c * L->force_y - s * L->force_x) - outer + inner;
         double lever_force = 0;
@@ -207,11 +215,15 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
                 right = right1 = 0;
             }
         }
+
+        // the angle as a function of what comes before the link
         L->vx = vx / pivot;
         L->vy = vy / pivot;
         L->to_parent = kappa / pivot;
         L->free = right / pivot;
         L->unit = right1 / pivot;
+
+        // the answer of this link and all beyond it
         double px = m * half * L->zx + l * zpx + hx, py = m * half * L->zy + l * zpy + hy;
         pxx += m - px * L->vx;
         pxy -= px * L->vy;
@@ -230,24 +242,37 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
         torque1 = kappa * L->unit;
         outer = inner;
     }
+    return (joint_answer){yy, torque0, torque1, outer};
+}
+
+// The hub on its spring: its correction, that for a unit force, and the balance of a stuck one.
+static void correct_hub(const arm *a, iterate *it, tangent t, joint_answer chain, double *dq,
+                        double *unit)
+{
     dq[0] = unit[0] = 0;
     if (a->hub_spring && it->stuck) {
-        it->excess = a->motor.torque + outer;
+        it->excess = a->motor.torque + chain.torque;
     } else if (a->hub_spring) {
-        double pivot = a->hub_inertia * t.beta + a->motor.damping * t.gamma - yy;
-        double residual = a->hub_inertia * al[0] + a->motor.damping * w[0] - a->motor.torque -
-                          it->sliding - outer;
-        dq[0] = (torque0 - residual) / pivot;
-        unit[0] = torque1 / pivot;
+        double pivot = a->hub_inertia * t.beta + a->motor.damping * t.gamma - chain.yy;
+        double residual = a->hub_inertia * it->acceleration[0] + a->motor.damping * it->w[0] -
+                          a->motor.torque - it->sliding - chain.torque;
+        dq[0] = (chain.torque0 - residual) / pivot;
+        unit[0] = chain.torque1 / pivot;
     }
+}
 
-    // hub to tip
-    double ax = 0, ay = 0, bx = 0, by = 0;
-    for (int k = 0; k <= last; k++) {
-        implicit_sweep *L = &link[k];
+// Substitution from hub to tip: dq for the residual, `unit` for a unit contact force.
+static void sweep_to_tip(const arm *a, const implicit_sweep *link, bool stuck, double *dq,
+                         double *unit)
+{
+    const double l = a->link_length;
+    const int first = a->first;
+    double ax = 0, ay = 0, bx = 0, by = 0; // change of the node's acceleration
+    for (int k = 0; k < a->links; k++) {
+        const implicit_sweep *L = &link[k];
         double parent = first + k > 0 ? dq[first + k - 1] : 0;
         double parent1 = first + k > 0 ? unit[first + k - 1] : 0;
-        bool fixed = first + k == 0 && it->stuck;
+        bool fixed = first + k == 0 && stuck;
         double d = fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
         double d1 = fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
         dq[first + k] = d;
@@ -257,14 +282,38 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
         bx += l * L->zx * d1;
         by += l * L->zy * d1;
     }
+}
+
+// Solves the tangent system for the corrections of the angles, dq[dof], and of the force, which is
+// returned; unit[dof] is scratch.
+static double newton_correction(const arm *a, implicit_sweep *link, iterate *it, tangent t,
+                                double *dq, double *unit)
+{
+    // residual quantities of the iterate
+    contact_point point = {0};
+    for (int k = 0; k < a->links; k++) {
+        inline_sincos(it->q[a->first + k], &link[k].s, &link[k].c);
+    }
+    if (it->contact) {
+        point = contact_at(a, link);
+    }
+    forces_between_links(a, link, it->w, it->acceleration, it->force * point.ex,
+                         it->force * point.ey);
+
+    // the chain without a change of the force, and what a unit force adds
+    joint_answer chain = sweep_to_hub(a, link, it, t, point);
+    correct_hub(a, it, t, chain, dq, unit);
+    sweep_to_tip(a, link, it->stuck, dq, unit);
     if (!it->contact) {
         return 0;
     }
+
+    // the force that meets the constraint
     double df;
     if (it->velocity_level) {
-        double rate = rate_along(a, link, point, w);
-        df = -(rate + rate_change(a, link, point, w, t.gamma, dq)) /
-             rate_change(a, link, point, w, t.gamma, unit);
+        double rate = rate_along(a, link, point, it->w);
+        df = -(rate + rate_change(a, link, point, it->w, t.gamma, dq)) /
+             rate_change(a, link, point, it->w, t.gamma, unit);
     } else {
         df = -(point.g + rate_along(a, link, point, dq)) / rate_along(a, link, point, unit);
     }
@@ -313,6 +362,7 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
     double *q1 = state_angles(m, m->trial), *w1 = state_velocities(m, m->trial);
     double *A1 = state_algorithmic(m, m->trial), *a1 = state_accelerations(m, m->trial);
     double *dq = m->scratch + 2 * n, *unit = m->scratch + 3 * n;
+
     // backward Euler starts from rest: a predictor from the velocities just after a jump would put
     // the shortest links' angles far off
     const double first = k->beta < 1 ? h : 0, second = 0.5 * h * first;
@@ -320,7 +370,9 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
     for (int i = 0; i < n; i++) {
         q1[i] = q0[i] + first * w0[i] + second * state_algorithmic(m, m->state)[i];
     }
+
     for (int iteration = 0; iteration < NEWTON_ITERATIONS; iteration++) {
+        // rates of the guess; a stuck hub has none
         if (it->stuck) {
             q1[0] = q0[0];
         }
@@ -328,6 +380,8 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
         if (it->stuck) {
             w1[0] = A1[0] = a1[0] = 0;
         }
+
+        // its correction
         it->force += newton_correction(a, m->sweeps, it, t, dq, unit);
         double size = 0, largest = 1;
         for (int i = 0; i < n; i++) {
@@ -338,6 +392,8 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
         if (!isfinite(size)) {
             return STATUS_NOT_FINITE;
         }
+
+        // small enough: the rates that go with the angles found
         if (size <= NEWTON_TOLERANCE * largest) {
             update_rates(m, k, h, q1, w1, A1, a1);
             if (it->stuck) {
@@ -356,16 +412,20 @@ static void keep_balance(const arm *a, motion *m, const iterate *it)
     double *trial = m->trial, *q = state_angles(m, trial), *w = state_velocities(m, trial);
     double g, rate, power = 0;
     chain_penetration(a, q, w, &g, &rate);
+
     // the impulse of an impact within the step is none of the force's
     double impulsive = m->state[SLOT_IMPULSE] / (trial[SLOT_TIME] - m->state[SLOT_TIME]);
     trial[SLOT_FORCE] = it->contact ? it->force : 0;
     if (it->contact && it->force > 0 && m->state[SLOT_IMPULSE] > 0) {
         trial[SLOT_FORCE] = fmax(it->force - impulsive, 0);
     }
+
     trial[SLOT_FRICTION_TORQUE] = it->stuck ? -it->excess : it->sliding;
     trial[SLOT_GAP] = -g;
     trial[SLOT_GAP_VELOCITY] = -rate;
     trial[SLOT_GAP_ACCELERATION] = 0; // asked for only at events, which evaluate it
+
+    // powers that the quadratures integrate
     trial[SLOT_VISCOUS_POWER] = a->motor.damping * w[0] * w[0];
     for (int k = 1; k < a->dof; k++) {
         double bend = w[k] - w[k - 1];
@@ -384,6 +444,8 @@ static void bend_to_wall(const arm *a, motion *m)
         double x = a->links > 1 ? (double)(k - a->first) / (a->links - 1) : 1;
         shape[k] = k < a->first ? 0 : x * (2 - x);
     }
+
+    // the gap depends on it almost linearly: twice is enough
     for (int i = 0; i < 2; i++) {
         chain_penetration(a, q, q, &g, NULL);
         along = chain_penetration_rate(a, q, shape);
@@ -413,6 +475,8 @@ static status step(const arm *a, motion *m, double h)
 {
     const contact_state mode = contact_state_of(m->state);
     const bool resolved = !motion_unresolved(a, m);
+
+    // the method's coefficients, or backward Euler's
     coefficients k = {m->alpha_m, m->alpha_f, m->beta, m->gamma};
     if (!resolved && (mode.contact || m->state[SLOT_JUMPED] != 0)) {
         k = (coefficients){0, 0, 1, 1};
@@ -429,6 +493,8 @@ static status step(const arm *a, motion *m, double h)
     if (s != STATUS_OK) {
         return s;
     }
+
+    // onto the constraint, with the force evaluated anew where the step resolves all modes
     if (it.contact && resolved) {
         project_velocity(a, m, state_angles(m, m->trial), state_velocities(m, m->trial), it.stuck);
     }
@@ -443,6 +509,7 @@ static status step(const arm *a, motion *m, double h)
             return STATUS_UNSTABLE;
         }
     }
+
     // quadratures by the trapezoidal rule, with the powers at both ends
     const double *x0 = state_quadratures(m, m->state);
     double *x1 = state_quadratures(m, m->trial);
