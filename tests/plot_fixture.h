@@ -286,14 +286,14 @@ static inline void write_figure(const figure *fig, const char *path)
 
 // ---- a folder for files
 
-static inline int make_folder(void **state)
+static inline int make_work_folder(void **state)
 {
     (void)state;
     snprintf(folder, sizeof folder, "/tmp/impactlab-plot-XXXXXX");
     return mkdtemp(folder) == NULL;
 }
 
-static inline int remove_folder(void **state)
+static inline int remove_work_folder(void **state)
 {
     (void)state;
     char command[128];

@@ -217,5 +217,5 @@ int main(void)
         cmocka_unit_test(a_map_without_colours_is_grey),
         cmocka_unit_test(numbers_have_names_and_units),
     };
-    return cmocka_run_group_tests_name("figure defects", tests, make_folder, remove_folder) != 0;
+    return cmocka_run_group_tests_name("figure defects", tests, make_work_folder, remove_work_folder) != 0;
 }

@@ -132,10 +132,10 @@ static void figures_fit_a_column_of_85_mm(void **state)
     static const char *const ids[] = {"2.1", "2.2", "3.4", "3.11", "4.3", "4.6",
                                       "5.2", "5.6", "5.7", "T3.1", "T4.2"};
     for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
-        artwork drawn = open_figure(ids[i], (figure_options){.width_mm = 85});
+        artwork drawn = open_figure(ids[i], (figure_options){.look.width = 85});
         check_close(drawn.width, 85 / 25.4 * 72, 1e-6);
         artwork_finish(&drawn);
-        expect_tidy(ids[i], (figure_options){.width_mm = 85});
+        expect_tidy(ids[i], (figure_options){.look.width = 85});
     }
 }
 
@@ -403,7 +403,7 @@ static void themes_change_the_page(void **state)
     fault f = {0};
     for (size_t i = 0; i < 3; i++) {
         for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
-            artwork drawn = open_figure(ids[i], (figure_options){.theme = theme});
+            artwork drawn = open_figure(ids[i], (figure_options){.look.theme = theme});
             cairo_surface_t *surface =
                 cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)drawn.width, 40);
             cairo_t *cr = cairo_create(surface);

@@ -41,11 +41,11 @@ static void indices_are_small_and_scale_with_the_letters(void **state)
     (void)state;
     PangoContext *context = text_context_create();
     double plain, lowered, twice, height, narrow;
-    text_measure(context, &(text_block){.markup = "x111", .size = 8}, &plain, &height);
-    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 8}, &lowered, &height);
-    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 16}, &twice, &height);
-    text_measure(context, &(text_block){.markup = "x", .size = 8}, &narrow, &height);
-    check_close(lowered - narrow, 0.7 * (plain - narrow), 0.1);
+    text_measure(context, &(text_block){.markup = "x111", .size = 12}, &plain, &height);
+    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 12}, &lowered, &height);
+    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 24}, &twice, &height);
+    text_measure(context, &(text_block){.markup = "x", .size = 12}, &narrow, &height);
+    check_close(lowered - narrow, 0.72 * (plain - narrow), 0.1);
     check_close(twice, 2 * lowered, 0.1);
     g_object_unref(context);
 }
@@ -469,5 +469,5 @@ int main(void)
         cmocka_unit_test(mono_has_no_colour),
         cmocka_unit_test(a_scenario_is_plotted),
     };
-    return cmocka_run_group_tests_name("plot", tests, make_folder, remove_folder) != 0;
+    return cmocka_run_group_tests_name("plot", tests, make_work_folder, remove_work_folder) != 0;
 }

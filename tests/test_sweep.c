@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "render/plot/figure_file.h"
 #include "render/plot/sweep_plot.h"
 #include "render/page/text.h"
 #include "src/run/run.h"
@@ -548,11 +549,13 @@ static void must_draw(const char *a, const char *b, sweep_sampling sampling, siz
     for (size_t run = 0; run < s.run_count; run++) {
         values[run] = run % 7 == 3 ? (double)NAN : offset + (double)(run % 11);
     }
-    sweep_picture picture = {.sweep = &s, .key = "peak_force_N", .values = values};
+    sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
     assert_int_equal(sweep_plot_check(&s, path, &f), STATUS_OK);
-    if (sweep_plot_write(&picture, path, &f) != STATUS_OK) {
+    sweep_figure *drawn = sweep_figure_create(&shown);
+    if (figure_write(sweep_figure_of(drawn), path, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
+    sweep_figure_destroy(drawn);
     struct stat about;
     assert_int_equal(stat(path, &about), 0);
     assert_true(about.st_size > 1000);
@@ -574,6 +577,38 @@ static void every_kind_of_sweep_can_be_drawn(void **state)
     must_draw("motor.voltage=1:2:9", "method.name=event,newmark", SWEEP_GRID, 0, "a.pdf", 0);
     must_draw("motor.voltage=1", "arm.k2=3", SWEEP_GRID, 0, "a.png", (double)NAN);
     must_draw("motor.voltage=1:2", "arm.k2=3,4", SWEEP_LATIN, 30, "a.png", 1e-6);
+}
+
+// Methods beside a number: a curve for each over the number, whichever was varied first.
+static void words_have_a_curve_each(void **state)
+{
+    (void)state;
+    static const char *const varied[2][2] = {{"method.name=event,newmark", "motor.voltage=1,2,4"},
+                                             {"motor.voltage=1,2,4", "method.name=event,newmark"}};
+    for (int k = 0; k < 2; k++) {
+        sweep s;
+        double values[6];
+        must_sweep(&s, SWEEP_GRID, 0, varied[k][0], varied[k][1]);
+        assert_int_equal(s.run_count, 6);
+        for (size_t run = 0; run < 6; run++) {
+            // 100 for the second method, and the voltage
+            double volts = sweep_value(&s, run, 1 - k);
+            values[run] = volts + (sweep_value(&s, run, k) == s.axes[k].values[1] ? 100 : 0);
+        }
+        sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
+        sweep_figure *drawn = sweep_figure_create(&shown);
+        const figure *fig = sweep_figure_of(drawn);
+        assert_null(fig->panels[0].map);
+        assert_int_equal(fig->panels[0].series_count, 2);
+        assert_string_equal(fig->x.name, "motor.voltage");
+        assert_string_equal(fig->panels[0].series[1].label, "newmark");
+        for (int i = 0; i < 3; i++) {
+            assert_true(fig->panels[0].series[0].y[i] == fig->panels[0].series[0].x[i]);
+            assert_true(fig->panels[0].series[1].y[i] == 100 + fig->panels[0].series[1].x[i]);
+        }
+        sweep_figure_destroy(drawn);
+        sweep_finish(&s);
+    }
 }
 
 static void a_picture_shows_two_parameters_at_most(void **state)
@@ -611,6 +646,7 @@ int main(void)
         cmocka_unit_test(two_sweeps_do_not_write_to_one_file_at_once),
         cmocka_unit_test(a_failed_run_is_a_row_with_its_message),
         cmocka_unit_test(every_kind_of_sweep_can_be_drawn),
+        cmocka_unit_test(words_have_a_curve_each),
         cmocka_unit_test(a_picture_shows_two_parameters_at_most),
     };
     return cmocka_run_group_tests(tests, prepare, clean_up) != 0;

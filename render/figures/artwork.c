@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "render/page/text.h"
 #include "render/plot/figure_file.h"
 #include "src/base/version.h"
 
@@ -42,7 +43,10 @@ picture artwork_picture(const artwork *a, const figure_options *options)
     g_snprintf(software, sizeof software, "impactlab %s", lab_version());
     return (picture){.width = a->width,
                      .height = a->height,
-                     .dpi = options->dpi,
+                     .dpi = options->look.dpi,
+                     .transparent = options->look.transparent,
+                     .command = options->command,
+                     .alternative = a->alternative != NULL ? a->alternative : a->title,
                      .title = a->title,
                      .software = software,
                      .parameters = a->parameters,
@@ -55,6 +59,7 @@ void artwork_finish(artwork *a)
     if (a->release != NULL) {
         a->release(a->what);
     }
+    g_free(a->alternative);
     memset(a, 0, sizeof *a);
 }
 
@@ -104,16 +109,61 @@ static void release_plotted(void *what)
     g_free(p);
 }
 
+// Appends a plain text that was given as markup.
+static void append_plain(GString *out, const char *before, const char *markup)
+{
+    if (markup != NULL && markup[0] != '\0') {
+        char *plain = text_plain(markup);
+        g_string_append_printf(out, "%s%s", before, plain);
+        g_free(plain);
+    }
+}
+
+static void append_axis(GString *out, const char *before, const figure_axis *a)
+{
+    append_plain(out, before, a->label != NULL ? a->label : a->name);
+    if (a->unit != NULL && a->unit[0] != '\0') {
+        char unit[64];
+        text_unit(a->unit, unit, sizeof unit);
+        g_string_append_printf(out, " in %s", unit);
+    }
+}
+
+// What a figure shows, in words: its panels, their axes and what is drawn.
+static char *describe_figure(const figure *fig)
+{
+    GString *out = g_string_new(fig->title != NULL ? fig->title : "Figure");
+    g_string_append_printf(out, ". %d panel%s", fig->panel_count, fig->panel_count == 1 ? "" : "s");
+    append_axis(out, " over ", &fig->x);
+    for (int i = 0; i < fig->panel_count; i++) {
+        const figure_panel *p = &fig->panels[i];
+        append_axis(out, i == 0 ? ": " : "; ", &p->y);
+        append_plain(out, ", ", p->heading);
+        if (p->map != NULL && p->colours != NULL) {
+            append_axis(out, ", coloured by ", &p->colours->axis);
+        }
+        const char *before = ", curves: ";
+        for (int k = 0; k < p->series_count; k++) {
+            append_plain(out, before, p->series[k].label);
+            before = p->series[k].label != NULL ? ", " : before;
+        }
+    }
+    g_string_append(out, ".");
+    return g_string_free(out, FALSE);
+}
+
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner))
 {
     plotted *p = g_new0(plotted, 1);
     *p = (plotted){fig, owner, release};
     artwork a = {.title = fig->title,
+                 .caption = fig->caption,
                  .parameters = fig->parameters,
                  .what = p,
                  .paint = paint_plotted,
                  .write_csv = write_plotted,
                  .release = release_plotted};
+    a.alternative = describe_figure(fig);
     figure_size(fig, &a.width, &a.height);
     return a;
 }

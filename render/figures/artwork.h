@@ -1,21 +1,27 @@
 // Anything the lab can put on a page: a picture, the numbers it shows, and what it was made from.
 #pragma once
 
+#include <glib.h>
+
 #include "render/page/picture_file.h"
 #include "render/plot/plot.h"
 #include "render/page/table_page.h"
 
-// How pictures are to look.
+// What is asked of pictures, whatever they show.
 typedef struct figure_options {
-    figure_theme theme;
-    double width_mm;     // of the page; 0: as designed
-    double dpi;          // of a PNG; 0: 200
-    const char *overlay; // CSV to draw over recorded signals (render/plot/overlay.h), NULL for none
+    page_look look;
+    const char *overlay; // data over recorded signals (render/plot/overlay.h), NULL for none
+    const char *signals; // recorded signals to show instead of the usual ones, NULL for those
+    double from, to;     // ends of the horizontal axis; from >= to: as it comes
+    const char *latex;   // file for the figure environment, NULL for none
+    const char *command; // that makes the picture, for its metadata; NULL if not known
 } figure_options;
 
 typedef struct artwork {
     double width, height;           // of the page [pt]
     const char *title, *parameters; // plain, for the file's metadata
+    const char *caption;            // markup, NULL for none
+    char *alternative;              // plain: what it shows, for those who cannot see it; owned
     const table_page *table;        // of a table, else NULL
     void *what;                     // owned; for the functions below
     // draws it with the page's top left corner at the origin of cr, in points; *report (may be

@@ -73,7 +73,8 @@ diagram *diagram_create(const char *title, const char *caption, double body,
     diagram *d = g_new0(diagram, 1);
     d->title = g_strdup(title);
     d->caption = g_strdup(caption);
-    d->frame = (sketch_frame){d->title, d->caption, body, o->width_mm, o->theme};
+    d->frame = (sketch_frame){
+        .title = d->title, .caption = d->caption, .body_height = body, .look = o->look};
     parameters_defaults(&d->p, ARM_CORRECTED);
     parameters_resolve(&d->p, NULL);
     return d;
@@ -82,6 +83,7 @@ diagram *diagram_create(const char *title, const char *caption, double body,
 artwork artwork_of_diagram(diagram *d)
 {
     artwork a = {.title = d->title,
+                 .caption = d->frame.caption,
                  .parameters = d->parameters,
                  .what = d,
                  .paint = paint_diagram,

@@ -88,20 +88,21 @@ static void draw_stages(sketch *s, double x, double y)
     sketch_text(s, second + 92, y + 12, 1, 1, "<i>V</i><sub>out</sub>", SKETCH_LABEL);
 }
 
-// A plot as a part of the page.
+// A plot as a part of the page, laid out in the page's own points.
 static void paint_part(sketch *s, const figure *fig, double x, double y)
 {
     figure_report *part = g_new0(figure_report, 1);
     cairo_save(s->cr);
     cairo_translate(s->cr, x, y);
+    cairo_scale(s->cr, 1 / s->scale, 1 / s->scale);
     figure_paint(s->cr, fig, part, NULL);
     cairo_restore(s->cr);
     for (int i = 0; i < part->text_count; i++) {
         figure_rect r = part->texts[i].place;
         char *text = text_escape(part->texts[i].text);
-        report_add_text(s->report, text,
-                        (figure_rect){s->scale * (x + r.x), s->scale * (y + r.y),
-                                      s->scale * r.width, s->scale * r.height});
+        r.x += s->scale * x;
+        r.y += s->scale * y;
+        report_add_text(s->report, text, part->texts[i].size, r);
         g_free(text);
     }
     g_free(part);
@@ -123,8 +124,11 @@ static void draw_sensor(sketch *s, const diagram *d)
         .x = {.name = "force", .label = "Force on the sensor <i>f</i>", .unit = "N"},
         .panels = &panel,
         .panel_count = 1,
-        .width = (s->right - s->left) * 25.4 / 72,
-        .height = 52,
+        .width = s->scale * (s->right - s->left) * 25.4 / 72,
+        .height = 52 * s->scale,
+        .letters = s->frame->look.letters,
+        .transparent = s->frame->look.transparent,
+        .font = s->frame->look.font,
         .theme = s->theme};
     paint_part(s, &plot, s->left, s->top + 186);
 }

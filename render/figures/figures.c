@@ -4,8 +4,9 @@
 #include <glib.h>
 #include <string.h>
 
+#include "render/figures/publication.h"
+#include "render/figures/run_figure.h"
 #include "render/plot/opened_run.h"
-#include "render/plot/overlay.h"
 
 // Panels that several figures have.
 #define FORCE                                                                                      \
@@ -82,20 +83,16 @@ const thesis_figure *thesis_figure_find(const char *id)
 typedef struct signal_figure {
     opened_run runs[2];
     int run_count;
-    run_result overlay; // its trace alone
-    trace_figure figure;
-    char *title;
+    run_figure figure;
 } signal_figure;
 
 static void release_signals(void *owner)
 {
     signal_figure *s = owner;
-    trace_figure_finish(&s->figure);
+    run_figure_finish(&s->figure);
     for (int i = 0; i < s->run_count; i++) {
         run_end(&s->runs[i]);
     }
-    trace_finish(&s->overlay.trace);
-    g_free(s->title);
     g_free(s);
 }
 
@@ -111,49 +108,26 @@ static status run_scenarios(signal_figure *s, const thesis_figure *which, fault 
     return code;
 }
 
-// The runs as the figure shows them, and the overlay as one more; returns their number.
-static int list_runs(const signal_figure *s, const figure_options *o, trace_run *runs)
-{
-    static const char *const names[] = {"printed", "corrected"};
-    int count = 0;
-    for (; count < s->run_count; count++) {
-        runs[count] = (trace_run){.scenario = &s->runs[count].scenario,
-                                  .result = &s->runs[count].result,
-                                  .name = names[count]};
-    }
-    if (o->overlay != NULL) {
-        const char *slash = strrchr(o->overlay, '/');
-        runs[count++] = (trace_run){.scenario = &s->runs[0].scenario,
-                                    .result = &s->overlay,
-                                    .name = slash != NULL ? slash + 1 : o->overlay,
-                                    .points = true};
-    }
-    return count;
-}
-
 static status open_signals(const thesis_figure *which, const char *title, const figure_options *o,
                            artwork *out, fault *f)
 {
+    static const char *const names[] = {"printed", "corrected"};
+    trace_run runs[2];
     signal_figure *s = g_new0(signal_figure, 1);
     status code = run_scenarios(s, which, f);
-    if (code == STATUS_OK && o->overlay != NULL) {
-        code = overlay_read(&s->overlay.trace, o->overlay, f);
+    for (int i = 0; i < s->run_count; i++) {
+        runs[i] = (trace_run){
+            .scenario = &s->runs[i].scenario, .result = &s->runs[i].result, .name = names[i]};
     }
     if (code == STATUS_OK) {
-        trace_run runs[TRACE_RUNS];
-        int run_count = list_runs(s, o, runs);
-        s->title = g_strdup(title);
-        code = trace_figure_init(&s->figure, s->title, which->panels, which->panel_count, runs,
-                                 run_count, f);
+        code = run_figure_init(&s->figure, title, which->panels, which->panel_count, runs,
+                               s->run_count, o, f);
     }
     if (code != STATUS_OK) {
         release_signals(s);
         return code;
     }
-    s->figure.figure.theme = o->theme;
-    s->figure.figure.width = o->width_mm;
-    s->figure.figure.dpi = o->dpi;
-    *out = artwork_of_figure(&s->figure.figure, s, release_signals);
+    *out = artwork_of_figure(&s->figure.traces.figure, s, release_signals);
     return STATUS_OK;
 }
 
@@ -174,10 +148,10 @@ static char *title_of(const thesis_figure *which)
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f)
 {
     assert(which != NULL && o != NULL && out != NULL);
-    if (which->open != NULL && o->overlay != NULL) {
+    if (which->open != NULL && (o->overlay != NULL || o->signals != NULL)) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%s shows no recorded signals that %s could lie over", which->id,
-                         o->overlay);
+                         "%s shows no recorded signals that %s could choose or lie over", which->id,
+                         o->overlay != NULL ? o->overlay : o->signals);
     }
     char *title = title_of(which);
     status code =
@@ -188,6 +162,12 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
 
 status figure_draw_as(const char *id, const figure_options *o, const char *folder,
                       const char *formats, fault *f)
+{
+    return figure_draw_into(id, o, folder, formats, NULL, f);
+}
+
+status figure_draw_into(const char *id, const figure_options *o, const char *folder,
+                        const char *formats, GString *tex, fault *f)
 {
     const thesis_figure *which = thesis_figure_find(id);
     if (which == NULL) {
@@ -201,7 +181,15 @@ status figure_draw_as(const char *id, const figure_options *o, const char *folde
         code = figure_open(which, o, &drawn, f);
     }
     if (code == STATUS_OK) {
+        char *first = g_strdup_printf("%s/%s.%s", folder, which->file, list[0]);
         code = artwork_write(&drawn, o, folder, which->file, list, f);
+        if (code == STATUS_OK && o->look.bare) {
+            code = caption_write(&drawn, first, f);
+        }
+        if (code == STATUS_OK && tex != NULL && o->latex != NULL) {
+            latex_add(tex, &drawn, o->latex, first);
+        }
+        g_free(first);
         artwork_finish(&drawn);
     }
     g_strfreev(list);

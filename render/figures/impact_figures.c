@@ -70,9 +70,7 @@ static impact_figure *new_impact(const char *title, const char *of, const char *
     fig->figure.parameters = own(fig, parameters_line(&fig->run.scenario));
     fig->figure.software = own(fig, g_strconcat("impactlab ", lab_version(), NULL));
     fig->figure.panels = fig->panels;
-    fig->figure.width = o->width_mm;
-    fig->figure.dpi = o->dpi;
-    fig->figure.theme = o->theme;
+    figure_take_look(&fig->figure, &o->look);
     for (int i = 0; i < PANELS; i++) {
         fig->panels[i].series = fig->series[i];
     }
@@ -327,6 +325,8 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
     fig->figure.marks = fig->marks;
     fig->figure.mark_count = 2;
     fig->interval = (figure_interval){fig->contact, fig->contact + pulse};
+    // the measure of T stands at the top of the panel
+    fig->figure.marks_above = true;
     fig->figure.intervals = &fig->interval;
     fig->figure.interval_count = 1;
     fig->figure.x.name = "time";
@@ -341,6 +341,7 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
         "the beam bends. Shaded: contact.";
     // the figure with the measure of T on top
     *out = (artwork){.title = fig->figure.title,
+                     .caption = fig->figure.caption,
                      .parameters = fig->figure.parameters,
                      .what = fig,
                      .paint = paint_profile,

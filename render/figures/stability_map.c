@@ -24,8 +24,7 @@
 #define LEAST_ERROR 0.01
 #define MOST_ERROR  100.0
 
-#define PAGE_WIDTH  170.0 // [mm]
-#define PAGE_SHAPE  0.5   // its height as a share of the width
+#define WEIGHT      1.4 // of a panel's height
 
 enum { PANELS = 3, SERIES = 4, COLUMNS = 40, ROWS = 30, CELLS = COLUMNS * ROWS, RADII = 3 };
 enum { SAMPLES = 600 };
@@ -224,15 +223,14 @@ static void describe_panel(map *m, int panel)
                                          .reversed = true,
                                          .bar = panel == PANELS - 1};
     add_layers(m, panel);
-    m->panels[panel] = (figure_panel){.heading = step_labels[panel],
-                                      .y = {.name = "gamma",
-                                            .label = panel == 0 ? "<i>γ</i>" : NULL,
-                                            .low = GAMMA_LOW,
-                                            .high = GAMMA_HIGH},
-                                      .map = &m->maps[panel],
-                                      .colours = &m->colours[panel],
-                                      .series = m->series[panel],
-                                      .series_count = SERIES};
+    m->panels[panel] = (figure_panel){
+        .heading = step_labels[panel],
+        .y = {.name = "gamma", .label = "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH},
+        .weight = WEIGHT,
+        .map = &m->maps[panel],
+        .colours = &m->colours[panel],
+        .series = m->series[panel],
+        .series_count = SERIES};
 }
 
 static void describe_map(map *m, const figure_options *o)
@@ -256,11 +254,9 @@ static void describe_map(map *m, const figure_options *o)
                          .panel_count = PANELS,
                          .columns = PANELS,
                          .common_legend = true,
-                         .width = o->width_mm,
-                         .height = (o->width_mm > 0 ? o->width_mm : PAGE_WIDTH) * PAGE_SHAPE,
-                         .dpi = o->dpi,
-                         .theme = o->theme,
+                         .shared_y = true,
                          .parameters = m->parameters};
+    figure_take_look(&m->figure, &o->look);
 }
 
 static status paint_map(cairo_t *cr, const void *what, figure_report *report, fault *f)
@@ -339,6 +335,7 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
         1e3 * WINDOW);
     describe_map(m, o);
     *out = (artwork){.title = m->title,
+                     .caption = m->caption,
                      .parameters = m->parameters,
                      .what = m,
                      .paint = paint_map,

@@ -31,14 +31,14 @@ static table_page *new_table(const char *title, const figure_options *o)
 {
     table_page *t = g_new0(table_page, 1);
     table_begin(t, title);
-    t->width_mm = o->width_mm;
-    t->theme = o->theme;
+    t->look = o->look;
     return t;
 }
 
 static artwork artwork_of_table(table_page *t)
 {
     artwork a = {.title = t->title,
+                 .caption = t->caption,
                  .parameters = t->parameters,
                  .table = t,
                  .what = t,

@@ -15,6 +15,25 @@ typedef enum figure_theme {
     THEME_DARK    // Okabe and Ito's colours on near black
 } figure_theme;
 
+// How a page is to look; what is zero is as the page itself has it.
+typedef struct page_look {
+    figure_theme theme;
+    double width, height; // of the page [mm]
+    double dpi;           // of a PNG; 0: 200
+    const char *font;     // family; NULL: the house's
+    double letters;       // size of labels [pt]; 0: 8, and all other letters go with them
+    bool bare;            // without title and caption
+    bool transparent;     // without a ground
+} page_look;
+
+// Sizes of letters [pt].
+#define LETTERS_NORMAL 8.0 // of labels
+#define LETTERS_LEAST  6.0 // of anything
+
+// Size of letters that are `size` where labels have 8 pt, for labels of `letters` (0: 8); never
+// less than can be read.
+double page_letters(double letters, double size);
+
 // A rectangle on the page [pt], y downwards.
 typedef struct figure_rect {
     double x, y, width, height;
@@ -22,6 +41,7 @@ typedef struct figure_rect {
 
 typedef struct figure_text {
     figure_rect place; // upright, also round a rotated text
+    double size;       // of its letters on the page [pt], of its smallest where it has indices
     char text[64];     // its beginning, without markup
 } figure_text;
 
@@ -36,5 +56,9 @@ typedef struct figure_report {
     int text_count;
 } figure_report;
 
-// Adds a text and its place on the page to a report (may be NULL).
-void report_add_text(figure_report *report, const char *markup, figure_rect place);
+// Size of an index in a line of letters of the given size [pt].
+double index_letters(double size);
+
+// Adds a text with letters of a size on the page [pt] and its place on the page to a report (may be
+// NULL).
+void report_add_text(figure_report *report, const char *markup, double size, figure_rect place);

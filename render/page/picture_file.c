@@ -90,14 +90,18 @@ static status write_png(FILE *stream, const picture *p, fault *f)
                          pixels_across, pixels_down, MOST_PIXELS);
     }
     cairo_surface_t *surface =
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)pixels_across, (int)pixels_down);
+        cairo_image_surface_create(p->transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24,
+                                   (int)pixels_across, (int)pixels_down);
     // the page ends exactly where the pixels do
     cairo_surface_set_device_scale(surface, pixels_across / p->width, pixels_down / p->height);
     status code = paint_surface(surface, p, false, f);
     if (code == STATUS_OK) {
-        const png_note notes[] = {
-            {"Title", p->title}, {"Software", p->software}, {"Parameters", p->parameters}};
-        code = png_file_write(stream, surface, dpi, notes, 3, f);
+        const png_note notes[] = {{"Title", p->title},
+                                  {"Software", p->software},
+                                  {"Parameters", p->parameters},
+                                  {"Command", p->command},
+                                  {"Description", p->alternative}};
+        code = png_file_write(stream, surface, dpi, notes, 5, f);
     }
     cairo_surface_destroy(surface);
     return code;
@@ -121,6 +125,7 @@ static status write_pages(FILE *stream, const picture *p, int count, fault *f)
     set_metadata(surface, CAIRO_PDF_METADATA_TITLE, p->title);
     set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, p->software);
     set_metadata(surface, CAIRO_PDF_METADATA_KEYWORDS, p->parameters);
+    set_metadata(surface, CAIRO_PDF_METADATA_SUBJECT, p->command);
     status code = STATUS_OK;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         cairo_pdf_surface_set_size(surface, p[i].width, p[i].height);
@@ -158,6 +163,7 @@ static GString *svg_metadata(const picture *p)
 {
     GString *out = g_string_new("\n");
     add_element(out, "", "title", p->title);
+    add_element(out, "", "desc", p->alternative);
     g_string_append(out, "<metadata>\n"
                          "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\" "
                          "xmlns:dc=\"http://purl.org/dc/elements/1.1/\">\n"
@@ -165,6 +171,7 @@ static GString *svg_metadata(const picture *p)
     add_element(out, "  ", "dc:title", p->title);
     add_element(out, "  ", "dc:creator", p->software);
     add_element(out, "  ", "dc:description", p->parameters);
+    add_element(out, "  ", "dc:source", p->command);
     g_string_append(out, "</rdf:Description>\n</rdf:RDF>\n</metadata>");
     return out;
 }

@@ -3,17 +3,21 @@
 #pragma once
 
 #include <cairo.h>
+#include <stdbool.h>
 
 #include "src/base/fault.h"
 
 typedef enum picture_format { FORMAT_NONE, FORMAT_PNG, FORMAT_PDF, FORMAT_SVG } picture_format;
 
 typedef struct picture {
-    double width, height;   // of the page [pt]
-    double dpi;             // of a PNG; 0: 200
-    const char *title;      // for the file's metadata, all plain and NULL for none
-    const char *software;   // "impactlab 0.1.0"
-    const char *parameters; // what the picture was made with
+    double width, height;    // of the page [pt]
+    double dpi;              // of a PNG; 0: 200
+    const char *title;       // for the file's metadata, all plain and NULL for none
+    const char *software;    // "impactlab 0.1.0"
+    const char *parameters;  // what the picture was made with
+    const char *command;     // that made it
+    const char *alternative; // what it shows, for those who cannot see it
+    bool transparent;        // it has no ground
     // draws it with the page's top left corner at the origin of cr, in points
     status (*paint)(cairo_t *cr, const void *what, fault *f);
     const void *what; // for paint

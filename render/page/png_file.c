@@ -5,6 +5,7 @@
 #include <setjmp.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { NOTES_MOST = 8 };
@@ -52,16 +53,27 @@ static void set_notes(png_structp png, png_infop info, const png_note *notes, in
     png_set_text(png, info, texts, used);
 }
 
-// cairo's native-endian 0xXXRRGGBB as bytes R, G, B.
-static void convert_row(const unsigned char *from, unsigned char *to, int width)
+// cairo's native-endian 0xAARRGGBB as bytes R, G, B and A where there is one; cairo's colours are
+// multiplied by A, those of a PNG are not.
+static void convert_row(const unsigned char *from, unsigned char *to, int width, bool alpha)
 {
     for (int i = 0; i < width; i++) {
         uint32_t pixel;
         memcpy(&pixel, from + 4 * i, sizeof pixel);
-        to[3 * i] = (unsigned char)(pixel >> 16);
-        to[3 * i + 1] = (unsigned char)(pixel >> 8);
-        to[3 * i + 2] = (unsigned char)pixel;
+        uint32_t a = alpha ? pixel >> 24 : 255;
+        for (int k = 0; k < 3; k++) {
+            uint32_t part = pixel >> (16 - 8 * k) & 255;
+            *to++ = (unsigned char)(a == 0 || a == 255 ? part : (part * 255 + a / 2) / a);
+        }
+        if (alpha) {
+            *to++ = (unsigned char)a;
+        }
     }
+}
+
+static bool has_alpha(cairo_surface_t *surface)
+{
+    return cairo_image_surface_get_format(surface) == CAIRO_FORMAT_ARGB32;
 }
 
 static void write_rows(png_structp png, cairo_surface_t *surface, unsigned char *row)
@@ -70,8 +82,9 @@ static void write_rows(png_structp png, cairo_surface_t *surface, unsigned char 
     int width = cairo_image_surface_get_width(surface);
     int height = cairo_image_surface_get_height(surface);
     int stride = cairo_image_surface_get_stride(surface);
+    bool alpha = has_alpha(surface);
     for (int y = 0; y < height; y++) {
-        convert_row(data + (ptrdiff_t)y * stride, row, width);
+        convert_row(data + (ptrdiff_t)y * stride, row, width, alpha);
         png_write_row(png, row);
     }
 }
@@ -82,7 +95,7 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
     fault own = {STATUS_OK, ""};
     cairo_surface_flush(surface);
     size_t width = (size_t)cairo_image_surface_get_width(surface);
-    unsigned char *row = malloc(3 * width + 1);
+    unsigned char *row = malloc(4 * width + 1);
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &own, fail, warn);
     png_infop info = png ? png_create_info_struct(png) : NULL;
     if (row == NULL || info == NULL) {
@@ -94,7 +107,8 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
         png_uint_32 per_metre = (png_uint_32)lround(dpi / 0.0254);
         png_set_write_fn(png, stream, write_bytes, flush_nothing);
         png_set_IHDR(png, info, (png_uint_32)width,
-                     (png_uint_32)cairo_image_surface_get_height(surface), 8, PNG_COLOR_TYPE_RGB,
+                     (png_uint_32)cairo_image_surface_get_height(surface), 8,
+                     has_alpha(surface) ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_set_pHYs(png, info, per_metre, per_metre, PNG_RESOLUTION_METER);
         set_notes(png, info, notes, note_count);

@@ -12,8 +12,8 @@ typedef struct png_note {
     const char *text;
 } png_note;
 
-// Writes an image surface (RGB24 or ARGB32 without transparency) with `dpi` dots per inch in a pHYs
-// chunk and the notes in iTXt chunks. The same picture gives the same bytes. Errors of the stream
-// stay in the stream (ferror); others are returned.
+// Writes an image surface (RGB24, or ARGB32 for a PNG with transparency) with `dpi` dots per inch
+// in a pHYs chunk and the notes in iTXt chunks. The same picture gives the same bytes. Errors of
+// the stream stay in the stream (ferror); others are returned.
 status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const png_note *notes,
                       int note_count, fault *f);

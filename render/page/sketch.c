@@ -9,27 +9,45 @@
 #define CAPTION_SIZE 6.5
 #define LINE_WIDTH   0.8
 #define HEAD_LENGTH  5.0
+#define LEAST_SHRINK 0.82 // of letters on a smaller page
 #define MM           (72 / 25.4)
 
 // ---- the page
 
-static text_block title_block(const char *markup)
-{
-    return (text_block){.markup = markup,
-                        .size = TITLE_SIZE,
-                        .bold = true,
-                        .width = SKETCH_WIDTH - 2 * SKETCH_MARGIN};
-}
-
-static text_block caption_block(const char *markup)
-{
-    return (text_block){
-        .markup = markup, .size = CAPTION_SIZE, .width = SKETCH_WIDTH - 2 * SKETCH_MARGIN};
-}
-
 static double page_scale(const sketch_frame *frame)
 {
-    return frame->width_mm > 0 ? frame->width_mm * MM / SKETCH_WIDTH : 1;
+    double design = frame->design_width > 0 ? frame->design_width : SKETCH_WIDTH;
+    return frame->look.width > 0 ? frame->look.width * MM / design : 1;
+}
+
+double sketch_letters(const sketch_frame *frame, double size)
+{
+    // a smaller page has smaller letters, though not as small as its lines; a larger one has not
+    double scale = page_scale(frame), shrunk = size * fmin(1, fmax(scale, LEAST_SHRINK));
+    return page_letters(frame->look.letters, shrunk) / scale;
+}
+
+static double inner_width(const sketch_frame *frame)
+{
+    double design = frame->design_width > 0 ? frame->design_width : SKETCH_WIDTH;
+    return design - 2 * SKETCH_MARGIN;
+}
+
+static text_block title_block(const sketch_frame *frame, const char *markup)
+{
+    return (text_block){.markup = markup,
+                        .size = sketch_letters(frame, TITLE_SIZE),
+                        .family = frame->look.font,
+                        .bold = true,
+                        .width = inner_width(frame)};
+}
+
+static text_block caption_block(const sketch_frame *frame)
+{
+    return (text_block){.markup = frame->caption,
+                        .size = sketch_letters(frame, CAPTION_SIZE),
+                        .family = frame->look.font,
+                        .width = inner_width(frame)};
 }
 
 // Heights of title and caption, with the space between them and the drawing.
@@ -37,11 +55,14 @@ static void frame_heights(PangoContext *context, const sketch_frame *frame, doub
                           double *below)
 {
     double width, height = 0;
+    *above = *below = SKETCH_MARGIN;
+    if (frame->look.bare) {
+        return;
+    }
     char *title = text_escape(frame->title);
-    text_block t = title_block(title), c = caption_block(frame->caption);
+    text_block t = title_block(frame, title), c = caption_block(frame);
     text_measure(context, &t, &width, &height);
-    *above = SKETCH_MARGIN + height + TITLE_SPACE;
-    *below = SKETCH_MARGIN;
+    *above += height + TITLE_SPACE;
     if (frame->caption != NULL) {
         text_measure(context, &c, &width, &height);
         *below += height + TITLE_SPACE;
@@ -54,7 +75,7 @@ void sketch_size(const sketch_frame *frame, double *width, double *height)
     double above, below, scale = page_scale(frame);
     PangoContext *context = text_context_create();
     frame_heights(context, frame, &above, &below);
-    *width = scale * SKETCH_WIDTH;
+    *width = scale * (inner_width(frame) + 2 * SKETCH_MARGIN);
     *height = scale * (above + frame->body_height + below);
     g_object_unref(context);
 }
@@ -69,7 +90,8 @@ static void draw_block(sketch *s, text_block t, double x, double y, double ax, d
     cairo_move_to(s->cr, x, y);
     text_draw(s->cr, s->context, &t);
     double k = s->scale;
-    report_add_text(s->report, t.markup, (figure_rect){k * x, k * y, k * width, k * height});
+    report_add_text(s->report, t.markup, k * t.size,
+                    (figure_rect){k * x, k * y, k * width, k * height});
 }
 
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
@@ -83,8 +105,9 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
     }
     *s = (sketch){.cr = cr,
                   .context = text_context_create(),
-                  .colours = palette_of(frame->theme),
-                  .theme = frame->theme,
+                  .colours = palette_of(frame->look.theme),
+                  .theme = frame->look.theme,
+                  .frame = frame,
                   .report = report,
                   .scale = page_scale(frame)};
     frame_heights(s->context, frame, &above, &below);
@@ -94,19 +117,24 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
         report->page = (figure_rect){0, 0, width, height};
     }
     cairo_save(cr);
-    set_colour(cr, s->colours->page);
-    cairo_rectangle(cr, 0, 0, width, height);
-    cairo_fill(cr);
+    if (!frame->look.transparent) {
+        set_colour(cr, s->colours->page);
+        cairo_rectangle(cr, 0, 0, width, height);
+        cairo_fill(cr);
+    }
     cairo_scale(cr, s->scale, s->scale);
     s->left = SKETCH_MARGIN;
-    s->right = SKETCH_WIDTH - SKETCH_MARGIN;
+    s->right = s->left + inner_width(frame);
     s->top = above;
     s->bottom = above + frame->body_height;
+    if (frame->look.bare) {
+        return STATUS_OK;
+    }
     char *title = text_escape(frame->title);
-    draw_block(s, title_block(title), s->left, SKETCH_MARGIN, 0, 0, s->colours->text);
+    draw_block(s, title_block(frame, title), s->left, SKETCH_MARGIN, 0, 0, s->colours->text);
     g_free(title);
     if (frame->caption != NULL) {
-        draw_block(s, caption_block(frame->caption), s->left, s->bottom + TITLE_SPACE, 0, 0,
+        draw_block(s, caption_block(frame), s->left, s->bottom + TITLE_SPACE, 0, 0,
                    s->colours->faint_text);
     }
     return STATUS_OK;
@@ -132,7 +160,7 @@ colour sketch_colour(const sketch *s, int slot)
 static void set_pen(const sketch *s, double width, int slot)
 {
     set_colour(s->cr, sketch_colour(s, slot));
-    set_line_style(s->cr, LINE_SOLID, width);
+    set_line_style(s->cr, LINE_SOLID, width / s->scale);
     cairo_new_path(s->cr);
 }
 
@@ -327,16 +355,27 @@ void sketch_wall(const sketch *s, double x0, double y0, double x1, double y1)
 
 // ---- text
 
+static text_block block_of(const sketch *s, const char *markup, double size)
+{
+    // a drawing over a plotted figure has no frame of its own
+    return (text_block){.markup = markup,
+                        .size = s->frame != NULL ? sketch_letters(s->frame, size) : size,
+                        .family = s->frame != NULL ? s->frame->look.font : NULL};
+}
+
 void sketch_text(sketch *s, double x, double y, double ax, double ay, const char *markup,
                  double size)
 {
-    draw_block(s, (text_block){.markup = markup, .size = size}, x, y, ax, ay, s->colours->text);
+    draw_block(s, block_of(s, markup, size), x, y, ax, ay, s->colours->text);
 }
 
 void sketch_wrapped(sketch *s, double x, double y, double width, text_align align,
                     const char *markup, double size, bool bold)
 {
-    text_block t = {.markup = markup, .size = size, .bold = bold, .align = align, .width = width};
+    text_block t = block_of(s, markup, size);
+    t.bold = bold;
+    t.align = align;
+    t.width = width;
     double ax = 0;
     if (align != TEXT_LEFT) {
         // short lines are placed by their own width

@@ -1,6 +1,6 @@
 // Pages drawn by hand rather than plotted: diagrams and tables, with a title above and a caption
-// below. Lengths are in points of the page as designed; a page of another width is the same page
-// scaled.
+// below. Lengths are in points of the page as designed; on a page of another width lengths are
+// scaled, while letters and lines keep their size as far as they can be read.
 #pragma once
 
 #include "render/page/palette.h"
@@ -16,8 +16,8 @@ typedef struct sketch_frame {
     const char *title;   // plain
     const char *caption; // markup, wrapped; NULL for none
     double body_height;  // of the drawing itself [pt]
-    double width_mm;     // of the page; 0: as designed
-    figure_theme theme;
+    double design_width; // of the page on which the drawing is designed [pt]; 0: SKETCH_WIDTH
+    page_look look;
 } sketch_frame;
 
 typedef struct sketch {
@@ -25,11 +25,15 @@ typedef struct sketch {
     PangoContext *context;
     const palette *colours;
     figure_theme theme;
-    figure_report *report; // may be NULL
-    double scale;          // page points to a designed point
-    double left, right;    // of the drawing
+    const sketch_frame *frame; // NULL: letters as they come
+    figure_report *report;     // may be NULL
+    double scale;              // page points to a designed point
+    double left, right;        // of the drawing
     double top, bottom;
 } sketch;
+
+// Size of letters in designed points for `size` points on the page; they shrink less than the page.
+double sketch_letters(const sketch_frame *frame, double size);
 
 // Size of the page in its own points.
 void sketch_size(const sketch_frame *frame, double *width, double *height);

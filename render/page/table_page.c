@@ -63,79 +63,143 @@ bool table_row_is_group(const table_page *t, guint row)
 
 // ---- the page
 
-static double column_width(const table_page *t, int column)
+// A table on a page of its width.
+typedef struct table_layout {
+    PangoContext *context;
+    sketch_frame frame;
+    double widths[TABLE_COLUMNS]; // [pt]
+} table_layout;
+
+// The frame of a table is laid out at its own width: nothing is scaled.
+static sketch_frame bare_frame(const table_page *t)
 {
-    double sum = 0;
-    for (int i = 0; i < t->column_count; i++) {
-        sum += t->columns[i].share;
-    }
-    return (SKETCH_WIDTH - 2 * SKETCH_MARGIN) * t->columns[column].share / sum;
+    return (sketch_frame){.title = t->title,
+                          .caption = t->caption,
+                          .design_width =
+                              t->look.width > 0 ? t->look.width * 72 / 25.4 : SKETCH_WIDTH,
+                          .look = t->look};
 }
 
-static double text_height(PangoContext *context, const char *markup, double width, bool bold)
+static text_block cell_block(const sketch_frame *frame, const char *markup, bool bold)
+{
+    return (text_block){.markup = markup,
+                        .size = sketch_letters(frame, CELL_SIZE),
+                        .family = frame->look.font,
+                        .bold = bold};
+}
+
+// Width of the widest word of a cell, which should not be broken.
+static double widest_word(PangoContext *context, const sketch_frame *frame, const char *markup,
+                          bool bold)
+{
+    double widest = 0, width, height;
+    char *plain = text_plain(markup), **words = g_strsplit_set(plain, " \n", -1);
+    for (int i = 0; words[i] != NULL; i++) {
+        char *word = text_escape(words[i]);
+        text_block t = cell_block(frame, word, bold);
+        text_measure(context, &t, &width, &height);
+        widest = fmax(widest, width);
+        g_free(word);
+    }
+    g_strfreev(words);
+    g_free(plain);
+    return widest;
+}
+
+// Widths of the columns: their shares, but none narrower than its widest word where the others can
+// spare the room.
+static void choose_columns(PangoContext *context, const table_page *t, const sketch_frame *frame,
+                           double widths[TABLE_COLUMNS])
+{
+    double room = frame->design_width - 2 * SKETCH_MARGIN, least[TABLE_COLUMNS], sum = 0, need = 0;
+    for (int i = 0; i < t->column_count; i++) {
+        least[i] = widest_word(context, frame, t->columns[i].label, true);
+        for (guint row = 0; row < t->rows->len; row++) {
+            if (!table_row_is_group(t, row)) {
+                least[i] = fmax(least[i], widest_word(context, frame, row_cells(t, row)[i], false));
+            }
+        }
+        least[i] += 2 * CELL_SPACE + 0.5;
+        sum += t->columns[i].share;
+        need += least[i];
+    }
+
+    // what is left after the least widths goes by how much the shares ask for beyond them
+    double asked = 0, spare = fmax(0, room - need);
+    for (int i = 0; i < t->column_count; i++) {
+        asked += fmax(0, room * t->columns[i].share / sum - least[i]);
+    }
+    for (int i = 0; i < t->column_count; i++) {
+        double more = fmax(0, room * t->columns[i].share / sum - least[i]);
+        widths[i] = need > room
+                        ? room * least[i] / need
+                        : least[i] + (asked > 0 ? spare * more / asked : spare / t->column_count);
+    }
+}
+
+static double text_height(const table_layout *l, const char *markup, double width, bool bold)
 {
     double across, down;
-    text_block t = {
-        .markup = markup, .size = CELL_SIZE, .bold = bold, .width = width - 2 * CELL_SPACE};
-    text_measure(context, &t, &across, &down);
+    text_block t = cell_block(&l->frame, markup, bold);
+    t.width = width - 2 * CELL_SPACE;
+    text_measure(l->context, &t, &across, &down);
     return down;
 }
 
-static double heading_height(PangoContext *context, const table_page *t)
+static double heading_height(const table_layout *l, const table_page *t)
 {
     double most = 0;
     for (int i = 0; i < t->column_count; i++) {
-        most = fmax(most, text_height(context, t->columns[i].label, column_width(t, i), true));
+        most = fmax(most, text_height(l, t->columns[i].label, l->widths[i], true));
     }
     return most + 2 * CELL_SPACE;
 }
 
-static double row_height(PangoContext *context, const table_page *t, guint row)
+static double row_height(const table_layout *l, const table_page *t, guint row)
 {
     char **cells = row_cells(t, row);
     double most = 0;
     if (table_row_is_group(t, row)) {
-        most = text_height(context, cells[0], SKETCH_WIDTH - 2 * SKETCH_MARGIN, true);
+        most = text_height(l, cells[0], l->frame.design_width - 2 * SKETCH_MARGIN, true);
         return most + 2 * CELL_SPACE;
     }
     for (int i = 0; i < t->column_count; i++) {
-        most = fmax(most, text_height(context, cells[i], column_width(t, i), false));
+        most = fmax(most, text_height(l, cells[i], l->widths[i], false));
     }
     return most + CELL_SPACE;
 }
 
-static sketch_frame frame_of(const table_page *t)
+// Lays the table out; give l->context to g_object_unref.
+static void lay_out(table_layout *l, const table_page *t)
 {
-    PangoContext *context = text_context_create();
-    double body = heading_height(context, t) + CELL_SPACE;
+    *l = (table_layout){.context = text_context_create(), .frame = bare_frame(t)};
+    choose_columns(l->context, t, &l->frame, l->widths);
+    double body = heading_height(l, t) + CELL_SPACE;
     for (guint row = 0; row < t->rows->len; row++) {
-        body += row_height(context, t, row);
+        body += row_height(l, t, row);
     }
-    g_object_unref(context);
-    return (sketch_frame){.title = t->title,
-                          .caption = t->caption,
-                          .body_height = body,
-                          .width_mm = t->width_mm,
-                          .theme = t->theme};
+    l->frame.body_height = body;
 }
 
 void table_size(const table_page *t, double *width, double *height)
 {
-    sketch_frame frame = frame_of(t);
-    sketch_size(&frame, width, height);
+    table_layout l;
+    lay_out(&l, t);
+    sketch_size(&l.frame, width, height);
+    g_object_unref(l.context);
 }
 
-static void draw_cells(sketch *s, const table_page *t, char *const *cells, double y, bool bold)
+static void draw_cells(sketch *s, const table_layout *l, const table_page *t, char *const *cells,
+                       double y, bool bold)
 {
     double x = s->left;
     for (int i = 0; i < t->column_count; i++) {
-        double width = column_width(t, i);
         const char *text = cells != NULL ? cells[i] : t->columns[i].label;
         if (text[0] != '\0') {
-            sketch_wrapped(s, x + CELL_SPACE, y, width - 2 * CELL_SPACE, t->columns[i].align, text,
-                           CELL_SIZE, bold);
+            sketch_wrapped(s, x + CELL_SPACE, y, l->widths[i] - 2 * CELL_SPACE, t->columns[i].align,
+                           text, CELL_SIZE, bold);
         }
-        x += width;
+        x += l->widths[i];
     }
 }
 
@@ -151,27 +215,32 @@ static void draw_group(sketch *s, const char *heading, double y, double height)
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f)
 {
     sketch s;
-    sketch_frame frame = frame_of(t);
-    status code = sketch_begin(&s, cr, &frame, report, f);
+    table_layout l;
+    lay_out(&l, t);
+    status code = sketch_begin(&s, cr, &l.frame, report, f);
     if (code != STATUS_OK) {
+        g_object_unref(l.context);
         return code;
     }
+
+    // a line above and below the heading, then the rows
     double y = s.top;
     sketch_line(&s, s.left, y, s.right, y, 0.9, SKETCH_INK);
-    draw_cells(&s, t, NULL, y + CELL_SPACE, true);
-    y += heading_height(s.context, t);
+    draw_cells(&s, &l, t, NULL, y + CELL_SPACE, true);
+    y += heading_height(&l, t);
     sketch_line(&s, s.left, y, s.right, y, 0.5, SKETCH_INK);
     for (guint row = 0; row < t->rows->len; row++) {
-        double height = row_height(s.context, t, row);
+        double height = row_height(&l, t, row);
         if (table_row_is_group(t, row)) {
             draw_group(&s, row_cells(t, row)[0], y, height);
         } else {
-            draw_cells(&s, t, row_cells(t, row), y + CELL_SPACE / 2, false);
+            draw_cells(&s, &l, t, row_cells(t, row), y + CELL_SPACE / 2, false);
         }
         y += height;
     }
     sketch_line(&s, s.left, y + CELL_SPACE, s.right, y + CELL_SPACE, 0.9, SKETCH_INK);
     sketch_end(&s);
+    g_object_unref(l.context);
     return STATUS_OK;
 }
 

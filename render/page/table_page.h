@@ -19,8 +19,7 @@ typedef struct table_page {
     table_column columns[TABLE_COLUMNS];
     int column_count;
     GPtrArray *rows; // of char **: column_count cells, or one cell and NULL for a group's heading
-    double width_mm; // 0: as designed
-    figure_theme theme;
+    page_look look;
 } table_page;
 
 // An empty table; the title is copied.

@@ -9,13 +9,15 @@
 #include "render/page/page.h"
 #include "src/base/numbers.h"
 
-static bool family_matches(void)
+#define INDEX_SIZE 0.72 // of its line's letters, but never too small to read
+
+static bool family_matches(const char *wanted_family)
 {
     FcPattern *wanted = FcPatternCreate();
     if (wanted == NULL) {
         return false;
     }
-    FcPatternAddString(wanted, FC_FAMILY, (const FcChar8 *)TEXT_FAMILY);
+    FcPatternAddString(wanted, FC_FAMILY, (const FcChar8 *)wanted_family);
     FcConfigSubstitute(NULL, wanted, FcMatchPattern);
     FcDefaultSubstitute(wanted);
     FcResult result;
@@ -23,7 +25,7 @@ static bool family_matches(void)
     FcChar8 *family = NULL;
     bool matches = found != NULL &&
                    FcPatternGetString(found, FC_FAMILY, 0, &family) == FcResultMatch &&
-                   strcmp((const char *)family, TEXT_FAMILY) == 0;
+                   g_ascii_strcasecmp((const char *)family, wanted_family) == 0;
     if (found != NULL) {
         FcPatternDestroy(found);
     }
@@ -37,12 +39,21 @@ status text_check_font(fault *f)
     static int known; // 0 not asked, 1 there, -1 missing
     if (known == 0) {
         FcFontSet *fonts = FcInit() ? FcConfigGetFonts(NULL, FcSetSystem) : NULL;
-        known = fonts != NULL && fonts->nfont > 0 && family_matches() ? 1 : -1;
+        known = fonts != NULL && fonts->nfont > 0 && family_matches(TEXT_FAMILY) ? 1 : -1;
     }
     if (known < 0) {
         return fault_set(f, STATUS_CANNOT_READ,
                          "the font " TEXT_FAMILY " is not installed, figures need it: install "
                          "fonts-dejavu-core");
+    }
+    return STATUS_OK;
+}
+
+status text_check_family(const char *family, fault *f)
+{
+    assert(family != NULL);
+    if (!FcInit() || !family_matches(family)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family);
     }
     return STATUS_OK;
 }
@@ -101,7 +112,8 @@ char *text_translate(const char *markup, double size)
         bool lowered = strncmp(c, "<sub>", 5) == 0, raised = strncmp(c, "<sup>", 5) == 0;
         if (lowered || raised) {
             // in 1/1024 of a point, which every version of Pango understands
-            g_string_append_printf(out, "<span size=\"%d\" rise=\"%d\">", (int)(0.7 * size * 1024),
+            double small = index_letters(size);
+            g_string_append_printf(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
                                    (int)((raised ? 0.35 : -0.2) * size * 1024));
             c += 5;
         } else if (strncmp(c, "</sub>", 6) == 0 || strncmp(c, "</sup>", 6) == 0) {
@@ -241,7 +253,18 @@ char *text_escape(const char *bytes)
     return escaped;
 }
 
-void report_add_text(figure_report *report, const char *markup, figure_rect place)
+double index_letters(double size)
+{
+    return fmax(INDEX_SIZE * size, fmin(size, LETTERS_LEAST));
+}
+
+double page_letters(double letters, double size)
+{
+    double scaled = size * (letters > 0 ? letters / LETTERS_NORMAL : 1);
+    return scaled > LETTERS_LEAST ? scaled : LETTERS_LEAST;
+}
+
+void report_add_text(figure_report *report, const char *markup, double size, figure_rect place)
 {
     if (report == NULL || report->text_count == FIGURE_TEXTS) {
         return;
@@ -249,7 +272,9 @@ void report_add_text(figure_report *report, const char *markup, figure_rect plac
     figure_text *t = &report->texts[report->text_count++];
     char *plain = text_plain(markup);
     const char *end;
+    bool indexed = strstr(markup, "<sub>") != NULL || strstr(markup, "<sup>") != NULL;
     t->place = place;
+    t->size = indexed ? index_letters(size) : size;
     g_strlcpy(t->text, plain, sizeof t->text);
     // a character that was cut in two goes altogether
     if (!g_utf8_validate(t->text, -1, &end)) {

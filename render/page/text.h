@@ -28,6 +28,9 @@ typedef struct text_block {
 // Fails with STATUS_CANNOT_READ if TEXT_FAMILY is not installed; f says what to install.
 status text_check_font(fault *f);
 
+// Fails with STATUS_BAD_ARGUMENT if no font of the family is installed.
+status text_check_family(const char *family, fault *f);
+
 // A context whose layouts do not depend on the surface: no hinting, no rounding, 72 per inch. Give
 // it to g_object_unref.
 PangoContext *text_context_create(void);

@@ -14,9 +14,19 @@ double widest_tick(const drawing *d, const axis *a, double size)
     return widest;
 }
 
-double axis_title_height(const drawing *d, const axis *a, double length)
+char *fitting_title(const drawing *d, const axis *a, double length)
 {
     char *title = axis_title(a);
+    if (a->from->symbol != NULL && width_of(d, title, d->style.label) > length) {
+        g_free(title);
+        title = axis_label(a->from->symbol, a->from->unit, a->even.exponent);
+    }
+    return title;
+}
+
+double axis_title_height(const drawing *d, const axis *a, double length)
+{
+    char *title = fitting_title(d, a, length);
     text_block t = figure_text_of(d, title, d->style.label);
     t.width = length;
     double height = title[0] == '\0' ? 0 : height_of(d, t);
@@ -95,7 +105,7 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
         }
     }
     taken = (double)INFINITY;
-    for (int i = 0; i < y->count; i++) {
+    for (int i = 0; look->y_labels && i < y->count; i++) {
         double at = plane_y(p, y->at[i]);
         if (y->even.count > 0 || at < taken - look->size) {
             draw_text(d, figure_text_of(d, y->text[i], look->size),
@@ -118,11 +128,11 @@ void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_lo
 void draw_y_title(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
-    char *title = axis_title(&l->y);
+    char *title = fitting_title(d, &l->y, box->height + PANEL_SPACE);
     text_block t = figure_text_of(d, title, d->style.label);
     t.align = TEXT_CENTRE;
     t.width = box->height + PANEL_SPACE;
-    if (title[0] != '\0') {
+    if (title[0] != '\0' && has_y_labels(d, l)) {
         draw_rotated(d, t, d->column[l->column].edge, box->y + box->height / 2,
                      d->style.colours->text);
     }
@@ -132,10 +142,11 @@ void draw_y_title(drawing *d, const panel_layout *l)
 void draw_x_titles(drawing *d)
 {
     char *title = axis_title(&d->x);
-    for (int i = 0; d->fig->x.label != NULL && i < d->columns; i++) {
+    // once below all columns
+    if (d->fig->x.label != NULL) {
         draw_text(d, figure_text_of(d, title, d->style.label),
-                  (d->column[i].left + d->column[i].right) / 2, d->x_label_y, (anchor){0.5, 0},
-                  d->style.colours->text);
+                  (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
+                  (anchor){0.5, 0}, d->style.colours->text);
     }
     g_free(title);
 }

@@ -35,7 +35,7 @@ void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c
     y -= at.y * height;
     cairo_move_to(d->cr, x, y);
     text_draw(d->cr, d->context, &t);
-    report_add_text(d->report, t.markup, (figure_rect){x, y, width, height});
+    report_add_text(d->report, t.markup, t.size, (figure_rect){x, y, width, height});
 }
 
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c)
@@ -50,7 +50,7 @@ void draw_rotated(drawing *d, text_block t, double x, double y, colour c)
     cairo_move_to(d->cr, 0, 0);
     text_draw(d->cr, d->context, &t);
     cairo_restore(d->cr);
-    report_add_text(d->report, t.markup, (figure_rect){x, y - width / 2, height, width});
+    report_add_text(d->report, t.markup, t.size, (figure_rect){x, y - width / 2, height, width});
 }
 
 // ---- strokes

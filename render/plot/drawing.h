@@ -7,10 +7,11 @@
 #include "render/plot/curve.h"
 #include "render/plot/placement.h"
 
-enum { MARKS_LABELLED = 64, MARK_ROWS = 4 };
+enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8 };
 
 // Lengths [pt].
 #define POINTS_PER_MM (72 / 25.4)
+#define NARROW_PAGE   (100 * POINTS_PER_MM) // below it legends have symbols alone
 #define PAGE_MARGIN   6.0
 #define TICK_LENGTH   3.0
 #define MINOR_LENGTH  1.7
@@ -24,6 +25,11 @@ enum { MARKS_LABELLED = 64, MARK_ROWS = 4 };
 #define SWATCH        18.0 // length of a line in a legend
 #define SWATCH_SPACE  4.0
 #define LEGEND_MARGIN 5.0
+
+// Sizes of letters where labels have 8 pt [pt].
+#define TITLE_LETTERS 9.0
+#define TICK_LETTERS  7.0
+#define SMALL_LETTERS 6.5
 
 // Line widths [pt].
 #define CURVE_WIDTH     0.95
@@ -45,13 +51,14 @@ typedef struct panel_layout {
     int row, column;
     plane plane;
     axis y;
-    axis colours;       // of the colour scale, if the panel has one
-    double strip_top;   // of the strip for impulses, if there are any
-    bool legend_row;    // the legend stands above the panel
-    bool legend_column; // it does, with its entries one above the other
-    bool legend_inside; // it stands within the panel
-    figure_rect legend; // width 0: none
-    figure_rect inset;  // with its labels; width 0: none
+    axis colours;                             // of the colour scale, if the panel has one
+    figure_rect level_place[LEVELS_LABELLED]; // of levels' labels; width 0: none
+    double strip_top;                         // of the strip for impulses, if there are any
+    bool legend_row;                          // the legend stands above the panel
+    bool legend_column;                       // it does, with its entries one above the other
+    bool legend_inside;                       // it stands within the panel
+    figure_rect legend;                       // width 0: none
+    figure_rect inset;                        // with its labels; width 0: none
     plane inset_plane;
     axis inset_x, inset_y;
     bool busy[PANEL_SERIES];          // lines that go up and down too often for dashes
@@ -77,12 +84,23 @@ typedef struct drawing {
     double title_y, legend_y, caption_y, x_label_y;
     double marks_bottom;                // of the lowest row of event labels
     int mark_row[MARKS_LABELLED];       // counted upwards; -1: no label
+    bool marks_inside;                  // labels of marks stand in the first panel
     double mark_text_x[MARKS_LABELLED]; // in the first column
+    double mark_text_y[MARKS_LABELLED]; // inside the panel
     panel_layout panels[FIGURE_PANELS];
 } drawing;
 
+// Width of title and caption, and where they begin: with the panels, on a narrow page at its edge.
+double frame_text_width(const drawing *d, double *left);
+
+// Columns of panels that the page has room for.
+int figure_columns(const figure *fig);
+
 // Places everything. STATUS_BAD_ARGUMENT if the page is too small or an axis has nothing to show.
 status layout_figure(drawing *d, fault *f);
+
+// Whether the panel's vertical axis has labels, or those in the first column stand for it.
+bool has_y_labels(const drawing *d, const panel_layout *l);
 
 // --- text: drawing.c
 
@@ -111,12 +129,15 @@ void fill_box(cairo_t *cr, const figure_rect *box, colour c);
 // --- axes: axes.c
 
 double widest_tick(const drawing *d, const axis *a, double size);
-// Height of the axis' title, wrapped beside an axis of the given length; 0 without a title.
+// The axis' title as it fits beside an axis of the given length: with the label, or with its symbol
+// alone where the label would need two lines. Give it to g_free.
+char *fitting_title(const drawing *d, const axis *a, double length);
+// Height of that title, wrapped beside the axis; 0 without a title.
 double axis_title_height(const drawing *d, const axis *a, double length);
 void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y);
 // Spines, ticks and their labels, at the left and below.
 typedef struct axes_look {
-    bool x_labels;
+    bool x_labels, y_labels;
     bool framed; // a line at the right and above, too
     double size; // of the labels
 } axes_look;
@@ -153,7 +174,10 @@ void draw_intervals(const drawing *d, const plane *p);
 void draw_marks(drawing *d);
 void draw_levels(drawing *d, const panel_layout *l);
 // Marks where levels and marks will be.
-void ink_of_marks(const drawing *d, const panel_layout *l, placement *grid);
+void ink_of_marks(const drawing *d, panel_layout *l, placement *grid);
+// Finds places for the labels of all marks where no curve of the first panel runs; false if there
+// is not one for each.
+bool place_marks_inside(drawing *d, placement *grid);
 
 // --- impulses: impulses.c
 

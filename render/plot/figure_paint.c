@@ -8,34 +8,90 @@
 
 #define DEFAULT_WIDTH 170.0 // [mm]
 #define PANEL_HEIGHT  34.0  // of a panel of weight 1 on a page without a height [mm]
+#define COLUMN_WIDTH  42.0  // least width of a column of panels [mm]
+#define SIDES         52.0  // about what stands beside the panels [pt]
+
+int figure_columns(const figure *fig)
+{
+    double width = fig->width > 0 ? fig->width : DEFAULT_WIDTH;
+    int columns = fig->columns > 0 ? fig->columns : 1, most = (int)(width / COLUMN_WIDTH);
+    return columns <= most || most < 1 ? columns : most == 2 && columns == 3 ? 1 : most;
+}
+
+void figure_take_look(figure *fig, const page_look *look)
+{
+    assert(fig != NULL && look != NULL);
+    fig->theme = look->theme;
+    fig->width = look->width > 0 ? look->width : fig->width;
+    fig->height = look->height > 0 ? look->height : look->width > 0 ? 0 : fig->height;
+    fig->dpi = look->dpi > 0 ? look->dpi : fig->dpi;
+    fig->font = look->font != NULL ? look->font : fig->font;
+    fig->letters = look->letters > 0 ? look->letters : fig->letters;
+    fig->bare = fig->bare || look->bare;
+    fig->transparent = fig->transparent || look->transparent;
+}
+
+static double sides_of(const figure *fig)
+{
+    return fig->width > 0 && fig->width * POINTS_PER_MM < NARROW_PAGE ? 2 * PAGE_MARGIN : SIDES;
+}
+
+// Height of a wrapped text above or below the panels, with its distance from them [pt].
+static double wrapped_height(const figure *fig, const char *markup, double size, bool bold)
+{
+    double width, height;
+    PangoContext *context = text_context_create();
+    text_block t = {.markup = markup,
+                    .size = page_letters(fig->letters, size),
+                    .family = fig->font,
+                    .bold = bold,
+                    .width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM -
+                             sides_of(fig)};
+    text_measure(context, &t, &width, &height);
+    g_object_unref(context);
+    return height + 4;
+}
+
+// A page that is half as wide has panels that are a fifth lower.
+static double panel_height(const figure *fig)
+{
+    double width = fig->width > 0 ? fig->width : DEFAULT_WIDTH;
+    return PANEL_HEIGHT * pow(fmin(1, width / DEFAULT_WIDTH), 0.32) * POINTS_PER_MM;
+}
 
 void figure_size(const figure *fig, double *width, double *height)
 {
     assert(fig != NULL && width != NULL && height != NULL);
     double points = 0;
-    int columns = fig->columns > 0 ? fig->columns : 1;
+    int columns = figure_columns(fig);
     for (int i = 0; i < fig->panel_count; i += columns) {
         const figure_panel *p = &fig->panels[i];
-        points += (p->weight > 0 ? p->weight : 1) * PANEL_HEIGHT * POINTS_PER_MM + PANEL_SPACE;
+        points += (p->weight > 0 ? p->weight : 1) * panel_height(fig) + PANEL_SPACE;
         points += p->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0;
         points += p->heading != NULL ? HEADING_ROW : 0;
     }
-    points += 2 * PAGE_MARGIN + 24 + (fig->title ? 14 : 0) + (fig->caption ? 12 : 0) +
-              (fig->mark_count > 0 ? 2 * MARK_ROW : 0);
+    points += 2 * PAGE_MARGIN + 24;
+    if (fig->title != NULL && !fig->bare) {
+        char *title = text_escape(fig->title);
+        points += wrapped_height(fig, title, TITLE_LETTERS, true);
+        g_free(title);
+    }
+    if (fig->caption != NULL && !fig->bare) {
+        points += wrapped_height(fig, fig->caption, SMALL_LETTERS, false);
+    }
     *width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
     *height = fig->height > 0 ? fig->height * POINTS_PER_MM : points;
 }
 
 static plot_style style_of(const figure *fig)
 {
-    double k = fig->letters > 0 ? fig->letters : 1;
     return (plot_style){.theme = fig->theme,
                         .colours = palette_of(fig->theme),
                         .font = fig->font != NULL ? fig->font : TEXT_FAMILY,
-                        .title = 9 * k,
-                        .label = 8 * k,
-                        .tick = 7 * k,
-                        .small = 6.5 * k};
+                        .title = page_letters(fig->letters, TITLE_LETTERS),
+                        .label = page_letters(fig->letters, LETTERS_NORMAL),
+                        .tick = page_letters(fig->letters, TICK_LETTERS),
+                        .small = page_letters(fig->letters, SMALL_LETTERS)};
 }
 
 // ---- the whole
@@ -58,6 +114,7 @@ static void draw_panel(drawing *d, int index)
 {
     const panel_layout *l = &d->panels[index];
     axes_look look = {.x_labels = index + d->columns >= d->fig->panel_count,
+                      .y_labels = has_y_labels(d, l),
                       .framed = l->panel->map != NULL,
                       .size = d->style.tick};
     draw_impulses(d, l);
@@ -83,26 +140,28 @@ static void draw_panel(drawing *d, int index)
 static void draw_frame_texts(drawing *d)
 {
     const figure *fig = d->fig;
-    double width = d->right - d->left;
-    if (fig->title != NULL) {
+    double left, width = frame_text_width(d, &left);
+    if (fig->title != NULL && !fig->bare) {
         char *title = text_escape(fig->title);
         text_block t = figure_text_of(d, title, d->style.title);
         t.bold = true;
         t.width = width;
-        draw_text(d, t, d->left, d->title_y, (anchor){0, 0}, d->style.colours->text);
+        draw_text(d, t, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
         g_free(title);
     }
-    if (fig->caption != NULL) {
+    if (fig->caption != NULL && !fig->bare) {
         text_block t = figure_text_of(d, fig->caption, d->style.small);
         t.width = width;
-        draw_text(d, t, d->left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
+        draw_text(d, t, left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
     }
     draw_x_titles(d);
 }
 
 static void draw_all(drawing *d)
 {
-    fill_box(d->cr, &d->page, d->style.colours->page);
+    if (!d->fig->transparent) {
+        fill_box(d->cr, &d->page, d->style.colours->page);
+    }
     for (int i = 0; i < d->fig->panel_count; i++) {
         draw_intervals(d, &d->panels[i].plane);
         draw_grid(d, &d->panels[i].plane, &d->x, &d->panels[i].y);

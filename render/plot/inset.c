@@ -64,12 +64,14 @@ void draw_inset(drawing *d, const panel_layout *l)
     if (l->inset.width <= 0) {
         return;
     }
-    fill_box(d->cr, &l->inset, d->style.colours->page);
+    if (!d->fig->transparent) {
+        fill_box(d->cr, &l->inset, d->style.colours->page);
+    }
     draw_intervals(d, p);
     draw_grid(d, p, &l->inset_x, &l->inset_y);
     draw_series(d, l, p);
     draw_axes(d, p, &l->inset_x, &l->inset_y,
-              (axes_look){.x_labels = true, .size = d->style.small});
+              (axes_look){.x_labels = true, .y_labels = true, .size = d->style.small});
 
     // the part of the panel that the inset shows
     double left = plane_x(&l->plane, scale_value(p->x.kind, p->x.low));

@@ -11,6 +11,7 @@
 #define RANGE_SPACE    0.06 // of the data's range, kept free above and below them
 #define END_LABEL_LEAD 12.0 // from the axis' end to the labels at the curves' ends
 #define RIGHT_SPACE    10.0 // of a panel without anything beside it
+#define SHARED_SPACE   6.0  // of a panel whose vertical axis is labelled in the first column
 #define BAR_TICK       16.0 // of a colour bar to a tick
 #define FIRST_LEFT     40.0 // where the panels begin before anything is known
 
@@ -88,10 +89,31 @@ static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
     return code;
 }
 
+// One vertical axis for all panels: from the lowest to the highest end.
+static void share_y_ranges(drawing *d)
+{
+    axis_scale all = d->panels[0].plane.y;
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        all.low = fmin(all.low, d->panels[i].plane.y.low);
+        all.high = fmax(all.high, d->panels[i].plane.y.high);
+    }
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        d->panels[i].plane.y = all;
+    }
+}
+
 // ---- columns
+
+bool has_y_labels(const drawing *d, const panel_layout *l)
+{
+    return !d->fig->shared_y || l->column == 0;
+}
 
 static double left_space(const drawing *d, const panel_layout *l)
 {
+    if (!has_y_labels(d, l)) {
+        return SHARED_SPACE;
+    }
     double left = axis_title_height(d, &l->y, l->plane.box.height + PANEL_SPACE) + LABEL_SPACE +
                   widest_tick(d, &l->y, d->style.tick) + TICK_SPACE + TICK_LENGTH;
     if (l->panel->impulse_count > 0 && l->panel->impulse_label != NULL) {
@@ -171,17 +193,24 @@ static void row_needs(const drawing *d, int row, double *above, double *weight)
     }
 }
 
+double frame_text_width(const drawing *d, double *left)
+{
+    bool narrow = d->page.width < NARROW_PAGE;
+    *left = narrow ? PAGE_MARGIN : d->left;
+    return (narrow ? d->page.width - PAGE_MARGIN : d->right) - *left;
+}
+
 // Places what stands above and below the panels; gives the ends of what is left.
 static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
 {
     const figure *fig = d->fig;
-    double y = PAGE_MARGIN, end = d->page.height - PAGE_MARGIN;
+    double left, y = PAGE_MARGIN, end = d->page.height - PAGE_MARGIN;
     d->title_y = y;
-    if (fig->title != NULL) {
+    if (fig->title != NULL && !fig->bare) {
         char *title = text_escape(fig->title);
         text_block t = figure_text_of(d, title, d->style.title);
         t.bold = true;
-        t.width = d->right - d->left;
+        t.width = frame_text_width(d, &left);
         y += height_of(d, t) + 3;
         g_free(title);
     }
@@ -190,9 +219,9 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
     d->marks_bottom = y += MARK_ROW * mark_rows + 2;
 
     // from the bottom: caption, title of the axis, labels of its ticks
-    if (fig->caption != NULL) {
+    if (fig->caption != NULL && !fig->bare) {
         text_block t = figure_text_of(d, fig->caption, d->style.small);
-        t.width = d->right - d->left;
+        t.width = frame_text_width(d, &left);
         end -= height_of(d, t);
         d->caption_y = end;
         end -= 3;
@@ -248,7 +277,7 @@ static void mark_ink(void *context, stroke_kind kind, double x, double y)
     s->y = y;
 }
 
-static void collect_ink(const drawing *d, const panel_layout *l, placement *grid)
+static void collect_ink(const drawing *d, panel_layout *l, placement *grid)
 {
     ink_sink sink = {.grid = grid};
     placement_init(grid, l->plane.box);
@@ -267,6 +296,10 @@ static bool fill_panels(drawing *d, placement *grid)
         collect_ink(d, l, grid);
         for (int s = 0; s < l->panel->series_count; s++) {
             l->busy[s] = series_is_busy(&l->plane, &l->panel->series[s]);
+        }
+        if (i == 0 && d->marks_inside && !place_marks_inside(d, grid)) {
+            d->marks_inside = false;
+            moved = true;
         }
         place_inset(d, l, grid);
         bool column = l->legend_column;
@@ -305,7 +338,7 @@ static void place_all(drawing *d, int *mark_rows)
         place_columns(d);
         double width = d->column[0].right - d->column[0].left;
         axis_choose_ticks(&d->x, &d->fig->x, axis_wish(width, 42, 2, 12));
-        *mark_rows = place_marks(d);
+        *mark_rows = d->marks_inside ? 0 : place_marks(d);
     }
 }
 
@@ -336,10 +369,11 @@ status layout_figure(drawing *d, fault *f)
     }
 
     // rows and columns, and what the axes show
-    d->columns = fig->columns > 0 ? fig->columns : 1;
+    d->columns = figure_columns(fig);
     d->rows = (fig->panel_count + d->columns - 1) / d->columns;
     d->x.from = &fig->x;
     d->left = FIRST_LEFT;
+    d->marks_inside = d->columns == 1 && fig->mark_count > 0 && !fig->marks_above;
     d->right = d->page.width - PAGE_MARGIN;
     status code = choose_x_range(d, f);
     for (int i = 0; i < fig->panel_count && code == STATUS_OK; i++) {
@@ -352,10 +386,13 @@ status layout_figure(drawing *d, fault *f)
             map_choose_scale(l);
         }
     }
+    if (fig->shared_y && code == STATUS_OK) {
+        share_y_ranges(d);
+    }
 
     // legends that find no room inside move out and shrink the panels: again
     bool again = true;
-    for (int pass = 0; pass < 4 && again && code == STATUS_OK; pass++) {
+    for (int pass = 0; pass < 5 && again && code == STATUS_OK; pass++) {
         place_all(d, &mark_rows);
         code = check_room(d, f);
         again = code == STATUS_OK && fill_panels(d, grid);

@@ -4,6 +4,13 @@
 
 #include "render/plot/drawing.h"
 
+// What the legend says of a series: on a narrow page its symbol.
+static const char *entry(const drawing *d, const figure_series *s)
+{
+    bool narrow = d->page.width < NARROW_PAGE;
+    return narrow && s->label != NULL && s->symbol != NULL ? s->symbol : s->label;
+}
+
 static int labelled_series(const figure_panel *panel)
 {
     int count = 0;
@@ -38,7 +45,7 @@ double widest_end_label(const drawing *d, const figure_panel *panel)
     double widest = 0;
     for (int i = 0; i < panel->series_count; i++) {
         if (panel->series[i].label != NULL) {
-            widest = fmax(widest, width_of(d, panel->series[i].label, d->style.tick));
+            widest = fmax(widest, width_of(d, entry(d, &panel->series[i]), d->style.tick));
         }
     }
     return widest;
@@ -54,7 +61,7 @@ static void legend_size(const drawing *d, const figure_panel *panel, bool row, d
             continue;
         }
         double w, h;
-        text_block t = figure_text_of(d, panel->series[i].label, d->style.tick);
+        text_block t = figure_text_of(d, entry(d, &panel->series[i]), d->style.tick);
         text_measure(d->context, &t, &w, &h);
         w += SWATCH + SWATCH_SPACE;
         if (row) {
@@ -159,13 +166,13 @@ void place_end_labels(const drawing *d, panel_layout *l)
 void draw_legend(drawing *d, const panel_layout *l)
 {
     double x = l->legend.x, y = l->legend.y;
-    if (l->legend.width > 0 && !l->legend_inside) {
+    if (l->legend.width > 0 && !l->legend_inside && !d->fig->transparent) {
         // hairlines of marks do not cross it
         fill_box(d->cr, &l->legend, d->style.colours->page);
     }
     for (int i = 0; i < l->panel->series_count && l->legend.width > 0; i++) {
         double width, height;
-        const char *label = l->panel->series[i].label;
+        const char *label = entry(d, &l->panel->series[i]);
         if (label == NULL) {
             continue;
         }
@@ -189,7 +196,7 @@ void draw_end_labels(drawing *d, const panel_layout *l)
         if (isnan(l->end_label_y[i]) || !series_end(d, &l->panel->series[i], &y)) {
             continue;
         }
-        text_block t = figure_text_of(d, l->panel->series[i].label, d->style.tick);
+        text_block t = figure_text_of(d, entry(d, &l->panel->series[i]), d->style.tick);
         text_measure(d->context, &t, &width, &height);
         double end = box->x + box->width, middle = l->end_label_y[i] + 0.55 * height;
         set_series(d, l, i);
@@ -211,7 +218,7 @@ static double common_legend(drawing *d, bool draw)
     double x = d->left, y = d->legend_y, line = 0;
     for (int i = 0; d->fig->common_legend && i < panel->series_count; i++) {
         double width, height;
-        text_block t = figure_text_of(d, panel->series[i].label, d->style.tick);
+        text_block t = figure_text_of(d, entry(d, &panel->series[i]), d->style.tick);
         if (t.markup == NULL) {
             continue;
         }

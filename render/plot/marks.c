@@ -3,7 +3,10 @@
 
 #include "render/plot/drawing.h"
 
-#define LEVEL_ROOM 10.0 // above a level, for its label [pt]
+#define LEVEL_ROOM   10.0 // above a level, for its label [pt]
+#define INSIDE_SHARE 0.75 // of the first panel's height, where labels of marks may stand
+
+enum { INSIDE_MOST = 6 }; // labels of marks inside the first panel
 
 // ---- where labels go
 
@@ -52,24 +55,113 @@ int place_marks(drawing *d)
     return rows;
 }
 
-// Whether a level's label stands above its line, or below because there is no room.
-static bool level_label_above(const panel_layout *l, int index)
+// ---- inside the first panel
+
+static bool rects_meet(const figure_rect *a, const figure_rect *b, double space)
 {
-    return plane_y(&l->plane, l->panel->levels[index].y) - l->plane.box.y > LEVEL_ROOM;
+    return a->x < b->x + b->width + space && b->x < a->x + a->width + space &&
+           a->y < b->y + b->height && b->y < a->y + a->height;
 }
 
-void ink_of_marks(const drawing *d, const panel_layout *l, placement *grid)
+// Whether the line of another mark than `index` would cross a label.
+static bool crosses_line(const drawing *d, const figure_rect *r, int index)
+{
+    for (int i = 0; i < d->fig->mark_count; i++) {
+        double x = plane_x(&d->panels[0].plane, d->fig->marks[i].x);
+        if (i != index && x > r->x - 2 && x < r->x + r->width + 2) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A place for the label of one mark, as high as can be; false if there is none.
+static bool find_inside(const drawing *d, const placement *grid, int index,
+                        const figure_rect *taken, int taken_count, figure_rect *found)
+{
+    const figure_rect *box = &d->panels[0].plane.box;
+    double x = plane_x(&d->panels[0].plane, d->fig->marks[index].x);
+    double width = width_of(d, d->fig->marks[index].label, d->style.small);
+    for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height; y += MARK_ROW) {
+        for (int side = 0; side < 2; side++) {
+            figure_rect r = {side == 0 ? x + 2 : x - 2 - width, y, width, MARK_ROW};
+            bool fits = r.x >= box->x + 1 && r.x + r.width <= box->x + box->width &&
+                        placement_ink(grid, r) < INK_CURVE && !crosses_line(d, &r, index);
+            for (int i = 0; i < taken_count && fits; i++) {
+                fits = !rects_meet(&r, &taken[i], 3);
+            }
+            if (fits) {
+                *found = r;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool place_marks_inside(drawing *d, placement *grid)
+{
+    figure_rect taken[INSIDE_MOST];
+    int index[INSIDE_MOST], count = 0;
+    for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
+        if (d->fig->marks[i].label == NULL || !scale_holds(&d->x.scale, d->fig->marks[i].x)) {
+            continue;
+        }
+        if (count == INSIDE_MOST || !find_inside(d, grid, i, taken, count, &taken[count])) {
+            return false;
+        }
+        index[count++] = i;
+    }
+
+    // all have one: the legend and the inset keep off them
+    for (int i = 0; i < MARKS_LABELLED; i++) {
+        d->mark_row[i] = -1;
+    }
+    for (int k = 0; k < count; k++) {
+        d->mark_row[index[k]] = 0;
+        d->mark_text_x[index[k]] = taken[k].x;
+        d->mark_text_y[index[k]] = taken[k].y;
+        placement_block(grid, taken[k], INK_CURVE);
+    }
+    return true;
+}
+
+// ---- levels
+
+// Where the label of a level stands: at the right or left end of its line, above or below, where no
+// curve runs.
+static figure_rect level_label(const drawing *d, const panel_layout *l, int index,
+                               const placement *grid)
 {
     const figure_rect *box = &l->plane.box;
+    double y = plane_y(&l->plane, l->panel->levels[index].y);
+    double width = width_of(d, l->panel->levels[index].label, d->style.small);
+    figure_rect best = {0};
+    for (int k = 0; k < 4; k++) {
+        bool left = k / 2, below = k % 2;
+        figure_rect r = {left ? box->x + 3 : box->x + box->width - 2 - width,
+                         below ? y : y - LEVEL_ROOM, width, LEVEL_ROOM};
+        bool fits = r.y >= box->y && r.y + r.height <= box->y + box->height;
+        if (fits && (best.width == 0 || placement_ink(grid, r) < placement_ink(grid, best))) {
+            best = r;
+        }
+    }
+    return best;
+}
+
+void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
+{
+    const figure_rect *box = &l->plane.box;
+    for (int i = 0; i < l->panel->level_count && i < LEVELS_LABELLED; i++) {
+        if (l->panel->levels[i].label != NULL) {
+            l->level_place[i] = level_label(d, l, i, grid);
+        }
+    }
     for (int i = 0; i < l->panel->level_count; i++) {
         double y = plane_y(&l->plane, l->panel->levels[i].y);
         placement_line(grid, box->x, y, box->x + box->width, y, INK_CURVE);
-        if (l->panel->levels[i].label != NULL) {
-            double width = width_of(d, l->panel->levels[i].label, d->style.small) + 4;
-            double above = level_label_above(l, i) ? LEVEL_ROOM : 0;
-            placement_block(
-                grid, (figure_rect){box->x + box->width - width, y - above, width, LEVEL_ROOM},
-                INK_CURVE);
+        if (i < LEVELS_LABELLED && l->level_place[i].width > 0) {
+            placement_block(grid, l->level_place[i], INK_CURVE);
         }
     }
     for (int i = 0; i < d->fig->mark_count; i++) {
@@ -119,6 +211,13 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
         if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
             text_block t = figure_text_of(d, m->label, d->style.small);
             top = d->marks_bottom - MARK_ROW * (d->mark_row[i] + 1);
+            if (d->marks_inside) {
+                draw_text(d, t, d->mark_text_x[i], d->mark_text_y[i], (anchor){0, 0},
+                          d->style.colours->text);
+                set_mark_line(d);
+                draw_line(d->cr, x, first->box.y, x, last->box.y + last->box.height);
+                continue;
+            }
             draw_text(d, t, d->mark_text_x[i] + shift, top, (anchor){0, 0}, d->style.colours->text);
         }
         set_mark_line(d);
@@ -150,9 +249,11 @@ void draw_levels(drawing *d, const panel_layout *l)
         }
         set_mark_line(d);
         draw_line(d->cr, box->x, y, box->x + box->width, y);
-        if (level->label != NULL) {
-            draw_text(d, figure_text_of(d, level->label, d->style.small), box->x + box->width - 2,
-                      y, (anchor){1, level_label_above(l, i) ? 1 : 0}, d->style.colours->text);
+        if (level->label != NULL && i < LEVELS_LABELLED && l->level_place[i].width > 0) {
+            const figure_rect *r = &l->level_place[i];
+            draw_text(d, figure_text_of(d, level->label, d->style.small), r->x,
+                      r->y < y - 1 ? y : y + 0.5, (anchor){0, r->y < y - 1 ? 1 : 0},
+                      d->style.colours->text);
         }
     }
 }

@@ -9,14 +9,80 @@
 
 enum { MOST_COLUMNS = 256 };
 
-// Index of the signal that a column's heading names, -1 for another column.
-static int signal_of(const char *heading)
+// What FILE.csv[:COLUMN][@SHIFT] says.
+typedef struct overlay_spec {
+    char *path;
+    char *column; // NULL: all that are signals
+    double shift; // [s]
+} overlay_spec;
+
+static status read_spec(const char *text, overlay_spec *spec, fault *f)
 {
-    char name[64];
-    g_strlcpy(name, heading, sizeof name);
+    *spec = (overlay_spec){.path = g_strdup(text)};
+    if (g_file_test(text, G_FILE_TEST_EXISTS)) {
+        return STATUS_OK;
+    }
+    char *at = strrchr(spec->path, '@');
+    const char *rest;
+    if (at != NULL) {
+        *at = '\0';
+        if (!decimal_read(at + 1, &spec->shift, &rest) || *rest != '\0') {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s': '%s' is no shift in seconds, expected FILE.csv:COLUMN@SHIFT",
+                             text, at + 1);
+        }
+    }
+    char *colon = strrchr(spec->path, ':');
+    if (colon != NULL) {
+        *colon = '\0';
+        spec->column = g_strdup(colon + 1);
+    }
+    return STATUS_OK;
+}
+
+static void spec_finish(overlay_spec *spec)
+{
+    g_free(spec->path);
+    g_free(spec->column);
+}
+
+// A heading's name and unit, "force [N]".
+static void split_heading(const char *heading, char name[64], char unit[32])
+{
+    g_strlcpy(name, heading, 64);
+    size_t length = strcspn(name, "[");
+    g_strlcpy(unit, name[length] == '[' ? name + length + 1 : "", 32);
+    unit[strcspn(unit, "]")] = '\0';
+    name[length] = '\0';
     g_strstrip(name);
-    name[strcspn(name, "[")] = '\0';
-    return signal_find(g_strstrip(name));
+}
+
+// The first signal of the panels that has a unit, -1 if none has.
+static int signal_of_unit(const char *unit, const trace_panel *panels, int count)
+{
+    for (int i = 0; i < count; i++) {
+        int index = signal_find(panels[i].signals[0]);
+        if (index > 0 && strcmp(signal_table[index].unit, unit) == 0) {
+            return index;
+        }
+    }
+    return -1;
+}
+
+// Index of the signal that a column stands for, -1 for a column that is not drawn.
+static int signal_of(const char *heading, const overlay_spec *spec, const trace_panel *panels,
+                     int count)
+{
+    char name[64], unit[32];
+    split_heading(heading, name, unit);
+    int index = signal_find(name);
+    if (index == 0 || spec->column == NULL) {
+        return index;
+    }
+    if (strcmp(name, spec->column) != 0) {
+        return -1;
+    }
+    return index > 0 ? index : signal_of_unit(unit, panels, count);
 }
 
 static void set_signal(sample *row, int signal, double value)
@@ -35,22 +101,29 @@ static sample missing_row(void)
 }
 
 // Which signal each column holds; returns how many columns there are.
-static int read_headings(const char *line, int *signals, const char *path, fault *f)
+static int read_headings(const char *line, int *signals, const overlay_spec *spec,
+                         const trace_panel *panels, int panel_count, fault *f)
 {
     int count = 0, known = 0;
     bool has_time = false;
     char **headings = g_strsplit(line, ",", MOST_COLUMNS);
     for (; headings[count] != NULL; count++) {
-        signals[count] = signal_of(headings[count]);
+        signals[count] = signal_of(headings[count], spec, panels, panel_count);
         has_time = has_time || signals[count] == 0;
         known += signals[count] > 0;
     }
     g_strfreev(headings);
+    if (has_time && known == 0 && spec->column != NULL) {
+        fault_set(f, STATUS_BAD_ARGUMENT,
+                  "%s:1: there is no column '%s' with the unit of a signal that is shown",
+                  spec->path, spec->column);
+        return 0;
+    }
     if (!has_time || known == 0) {
         fault_set(f, STATUS_BAD_ARGUMENT,
                   "%s:1: expected a heading with time[s] and at least one recorded signal, such as "
                   "force[N]",
-                  path);
+                  spec->path);
         return 0;
     }
     return count;
@@ -82,29 +155,50 @@ static status read_line(trace *t, const char *line, const int *signals, int colu
     return code;
 }
 
-status overlay_read(trace *t, const char *path, fault *f)
+// The rows of a file whose text is read.
+static status read_rows(trace *t, const char *text, const overlay_spec *spec,
+                        const trace_panel *panels, int panel_count, fault *f)
 {
-    assert(t != NULL && path != NULL);
-    gchar *text;
-    GError *error = NULL;
-    trace_init(t, 0);
-    if (!g_file_get_contents(path, &text, NULL, &error)) {
-        fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", path, error->message);
-        g_error_free(error);
-        return STATUS_CANNOT_READ;
-    }
     int signals[MOST_COLUMNS];
     char **lines = g_strsplit(text, "\n", -1);
-    int columns = lines[0] != NULL ? read_headings(lines[0], signals, path, f) : 0;
+    int columns =
+        lines[0] != NULL ? read_headings(lines[0], signals, spec, panels, panel_count, f) : 0;
     status code = columns > 0 ? STATUS_OK : STATUS_BAD_ARGUMENT;
     for (int i = 1; code == STATUS_OK && lines[i] != NULL; i++) {
-        char *where = g_strdup_printf("%s:%d", path, i + 1);
+        char *where = g_strdup_printf("%s:%d", spec->path, i + 1);
         if (g_strstrip(lines[i])[0] != '\0') {
             code = read_line(t, lines[i], signals, columns, where, f);
         }
         g_free(where);
     }
     g_strfreev(lines);
-    g_free(text);
+    for (size_t i = 0; i < t->row_count; i++) {
+        t->rows[i].time += spec->shift;
+    }
+    return code;
+}
+
+status overlay_read(trace *t, const char *text, const trace_panel *panels, int panel_count,
+                    char **name, fault *f)
+{
+    assert(t != NULL && text != NULL && name != NULL);
+    gchar *content = NULL;
+    GError *error = NULL;
+    overlay_spec spec;
+    trace_init(t, 0);
+    *name = NULL;
+    status code = read_spec(text, &spec, f);
+    if (code == STATUS_OK && !g_file_get_contents(spec.path, &content, NULL, &error)) {
+        code = fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", spec.path, error->message);
+        g_error_free(error);
+    }
+    if (code == STATUS_OK) {
+        char *file = g_path_get_basename(spec.path);
+        *name = spec.column != NULL ? g_strdup_printf("%s: %s", file, spec.column) : g_strdup(file);
+        g_free(file);
+        code = read_rows(t, content, &spec, panels, panel_count, f);
+    }
+    g_free(content);
+    spec_finish(&spec);
     return code;
 }

@@ -49,6 +49,20 @@ void placement_block(placement *g, figure_rect r, int weight)
     }
 }
 
+double placement_ink(const placement *g, figure_rect r)
+{
+    double sum = 0;
+    int last_row = row_of(g, r.y + r.height), last_column = column_of(g, r.x + r.width);
+    for (int row = row_of(g, r.y); row <= last_row; row++) {
+        for (int column = column_of(g, r.x); column <= last_column; column++) {
+            bool inside =
+                row >= 0 && row < PLACEMENT_ROWS && column >= 0 && column < PLACEMENT_COLUMNS;
+            sum += inside ? g->ink[row + 1][column + 1] : 0;
+        }
+    }
+    return sum;
+}
+
 // Turns cells into sums over everything above and left of them.
 static void sum_up(placement *g)
 {

@@ -20,6 +20,9 @@ void placement_init(placement *g, figure_rect box);
 void placement_line(placement *g, double x0, double y0, double x1, double y1, int weight);
 void placement_block(placement *g, figure_rect r, int weight);
 
+// The ink under a rectangle.
+double placement_ink(const placement *g, figure_rect r);
+
 // The place of a width x height rectangle, `margin` from the box's edges, with the least ink under
 // it; among equal ones the nearest to a corner, at the right rather than the left, above rather
 // than below. Returns the ink under it (INFINITY if the box is too small).

@@ -39,9 +39,10 @@ typedef struct figure_tick {
 
 // An axis. A value that a logarithmic axis cannot show, zero or below, counts as missing.
 typedef struct figure_axis {
-    const char *name;  // plain, for the CSV, "force"
-    const char *label; // without its unit
-    const char *unit;  // plain, as in the signal table: "rad/s2"; "" or NULL for a pure number
+    const char *name;   // plain, for the CSV, "force"
+    const char *label;  // without its unit
+    const char *symbol; // markup, stands for the label where that does not fit; NULL: none
+    const char *unit;   // plain, as in the signal table: "rad/s2"; "" or NULL for a pure number
     scale_kind scale;
     double low, high;         // its ends; low >= high: from the data
     double room;              // share of the data's range kept free at both ends
@@ -54,6 +55,7 @@ typedef struct figure_axis {
 typedef struct figure_series {
     const char *name;    // plain, for the CSV, "force"
     const char *label;   // for the legend
+    const char *symbol;  // for the legend of a narrow page; NULL: the label
     const double *x, *y; // count values each
     const double *shade; // values on the panel's colour scale for the markers; NULL: in `colour`
     size_t count;
@@ -134,16 +136,23 @@ typedef struct figure {
     bool common_legend; // the first panel's legend holds for all and stands above them
     const figure_mark *marks;
     int mark_count;
+    bool marks_above; // their labels stand above the panels even where they would fit inside
     const figure_interval *intervals;
     int interval_count;
     double width, height; // of the page [mm]; 0: 170 wide, as high as the panels want
     double dpi;           // of a PNG; 0: 200
     figure_theme theme;
     const char *font;       // family; NULL: the house's
-    double letters;         // factor on the size of all letters; 0 counts as 1
+    double letters;         // size of labels [pt]; 0: 8
+    bool bare;              // without title and caption
+    bool transparent;       // without a ground
+    bool shared_y;          // all panels have one vertical axis, labelled in the first column
     const char *software;   // plain, for the file's metadata, "impactlab 0.1.0"
     const char *parameters; // plain, for the file's metadata
 } figure;
+
+// Gives a figure the look that is asked for, where it asks for something.
+void figure_take_look(figure *fig, const page_look *look);
 
 // Page size [pt] of a figure.
 void figure_size(const figure *fig, double *width, double *height);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "render/page/text.h"
-#include "render/plot/figure_file.h"
+#include "render/page/picture_file.h"
 #include "src/base/numbers.h"
 #include "src/base/version.h"
 #include "src/quantities/summary.h"
@@ -28,7 +28,7 @@ typedef struct varied {
 } varied;
 
 // A figure with everything it borrows.
-typedef struct sweep_figure {
+struct sweep_figure {
     figure figure;
     figure_panel panel;
     figure_series series[PANEL_SERIES];
@@ -36,7 +36,7 @@ typedef struct sweep_figure {
     figure_colours colours;
     varied varied[2];
     GPtrArray *owned; // blocks
-} sweep_figure;
+};
 
 static void *own(sweep_figure *s, void *block)
 {
@@ -370,7 +370,6 @@ static void describe(sweep_figure *s, const sweep_picture *p)
     fig->title = own(s, title_of(p, quantity->label));
     fig->caption = own(s, caption_of(p, missing));
     s->panel.weight = PANEL_WEIGHT;
-    fig->theme = p->theme;
     fig->software = own(s, g_strconcat("impactlab ", lab_version(), NULL));
     fig->parameters = own(s, command_of(from));
 }
@@ -387,14 +386,24 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f)
     return code == STATUS_OK ? text_check_font(f) : code;
 }
 
-status sweep_plot_write(const sweep_picture *p, const char *path, fault *f)
+sweep_figure *sweep_figure_create(const sweep_picture *p)
 {
-    assert(p != NULL && path != NULL && p->sweep->axis_count >= 1 && p->sweep->axis_count <= 2);
+    assert(p != NULL && p->sweep->axis_count >= 1 && p->sweep->axis_count <= 2);
     sweep_figure *s = g_new0(sweep_figure, 1);
     s->owned = g_ptr_array_new_with_free_func(g_free);
     describe(s, p);
-    status code = figure_write(&s->figure, path, f);
-    g_ptr_array_free(s->owned, TRUE);
-    g_free(s);
-    return code;
+    return s;
+}
+
+const figure *sweep_figure_of(const sweep_figure *s)
+{
+    return &s->figure;
+}
+
+void sweep_figure_destroy(sweep_figure *s)
+{
+    if (s != NULL) {
+        g_ptr_array_free(s->owned, TRUE);
+        g_free(s);
+    }
 }

@@ -12,7 +12,6 @@ typedef struct sweep_picture {
     const sweep *sweep;
     const char *key;      // of the summary, "peak_force_N"
     const double *values; // of each run, NaN where there is none
-    figure_theme theme;
 } sweep_picture;
 
 // Tells before long work whether a picture of the sweep can be drawn into path: STATUS_BAD_ARGUMENT
@@ -20,6 +19,10 @@ typedef struct sweep_picture {
 // path cannot be written, STATUS_CANNOT_READ if the font is missing.
 status sweep_plot_check(const sweep *s, const char *path, fault *f);
 
-// Draws the picture, 150 by 100 mm, into a file, whole or not at all; the ending of its name says
-// which kind.
-status sweep_plot_write(const sweep_picture *p, const char *path, fault *f);
+// A picture of a sweep with everything it borrows.
+typedef struct sweep_figure sweep_figure;
+
+// Describes the picture; give it to sweep_figure_destroy. The sweep and the values are borrowed.
+sweep_figure *sweep_figure_create(const sweep_picture *p);
+const figure *sweep_figure_of(const sweep_figure *s);
+void sweep_figure_destroy(sweep_figure *s);

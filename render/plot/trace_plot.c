@@ -10,7 +10,6 @@
 #include "render/page/text.h"
 #include "render/plot/figure_file.h"
 #include "render/plot/opened_run.h"
-#include "render/plot/overlay.h"
 #include "src/base/version.h"
 #include "src/rig/rig.h"
 
@@ -80,6 +79,20 @@ static char *series_label(const scenario *s, int index, bool joined)
     }
     g_free(symbol);
     return label;
+}
+
+// The same without words.
+static char *series_symbol(const scenario *s, int index)
+{
+    int twin = hub_is_first_link(s) ? first_link_twin(index) : -1;
+    char *symbol = symbol_markup(s, &signal_table[index]);
+    if (twin >= 0) {
+        char *other = symbol_markup(s, &signal_table[twin]), *own = symbol;
+        symbol = g_strdup_printf("%s = %s", own, other);
+        g_free(other);
+        g_free(own);
+    }
+    return symbol;
 }
 
 // "Contact force f"; the body goes, since the symbol names it.
@@ -360,6 +373,9 @@ static void add_peaks(figure_series *s, const summary *m, GPtrArray *owned)
     s->stride = 0;
 }
 
+// Colours of runs that stand side by side, the most different first.
+static const int rank_colours[8] = {0, 5, 2, 4, 1, 3, 6, 7};
+
 // The series of one run; signals of the first link are left out where they equal the hub's.
 static void add_series(trace_figure *t, int panel_index, const trace_panel *from,
                        const trace_run *runs, int run, int run_count, GPtrArray *texts)
@@ -388,6 +404,12 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->name = keep(texts, g_strconcat(out->name, " ", runs[run].name, NULL));
             out->colour = alone ? 6 : out->colour;
         }
+        if (runs[run].rank > 0) {
+            out->secondary = false;
+            out->colour = rank_colours[(runs[run].rank - 1) % 8];
+            out->label = i == 0 ? keep(texts, text_escape(runs[run].name)) : NULL;
+            continue;
+        }
         if (points) {
             out->no_line = true;
             out->secondary = false;
@@ -400,6 +422,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->label = keep(texts, text_escape(runs[run].name));
         } else if (!alone && run == 0) {
             out->label = keep(texts, series_label(s, index, true));
+            out->symbol = keep(texts, series_symbol(s, index));
         }
     }
 }
@@ -423,6 +446,9 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
     panel->y.name = first->name;
     panel->y.unit = first->unit;
     panel->y.label = from->label ? from->label : keep(texts, own_label(runs[0].scenario, first));
+    if (from->signals[1] == NULL) {
+        panel->y.symbol = keep(texts, symbol_markup(runs[0].scenario, first));
+    }
     panel->weight = from->weight;
     panel->y.with_zero = from->with_zero;
     panel->series = t->series[index];
@@ -443,6 +469,69 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
     if (from->inset) {
         set_zoom(panel, &runs[0]);
     }
+}
+
+// The value of a signal at an instant of a run, straight lines between rows; NaN beyond its ends.
+static double value_at(const trace *t, int index, double time)
+{
+    size_t low = 0, high = t->row_count;
+    if (high == 0 || time < t->rows[0].time || time > t->rows[high - 1].time) {
+        return (double)NAN;
+    }
+    // the last row that is not later
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (t->rows[middle].time <= time) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    double here = signal_value(&t->rows[low], index);
+    if (high == t->row_count) {
+        return here;
+    }
+    double span = t->rows[high].time - t->rows[low].time;
+    double share = span > 0 ? (time - t->rows[low].time) / span : 0;
+    return here + share * (signal_value(&t->rows[high], index) - here);
+}
+
+// A panel of what was measured less what was computed, for the first signal that has data.
+static void add_residuals(trace_figure *t, const trace_panel *panels, const trace_run *computed,
+                          const trace_run *measured, GPtrArray *owned)
+{
+    const trace *data = &measured->result->trace;
+    int last = t->figure.panel_count, panel = 0;
+    while (panel < last && !trace_has(data, signal_index(panels[panel].signals[0]))) {
+        panel++;
+    }
+    if (panel == last || last == FIGURE_PANELS) {
+        return;
+    }
+    int index = signal_index(panels[panel].signals[0]);
+    double *x = keep(owned, g_new(double, data->row_count + 1));
+    double *y = keep(owned, g_new(double, data->row_count + 1));
+    for (size_t i = 0; i < data->row_count; i++) {
+        x[i] = data->rows[i].time;
+        y[i] =
+            signal_value(&data->rows[i], index) - value_at(&computed->result->trace, index, x[i]);
+    }
+    t->residual = (figure_series){.name = "residual",
+                                  .x = x,
+                                  .y = y,
+                                  .count = data->row_count,
+                                  .colour = 6,
+                                  .marker = MARKER_CIRCLE,
+                                  .no_line = true};
+    t->panels[last] = (figure_panel){.y = {.name = "residual",
+                                           .label = "Residual",
+                                           .symbol = "Δ",
+                                           .unit = signal_table[index].unit,
+                                           .with_zero = true},
+                                     .series = &t->residual,
+                                     .series_count = 1,
+                                     .weight = 0.6};
+    t->figure.panel_count++;
 }
 
 static status check_panels(const trace_panel *panels, int count, int run_count, fault *f)
@@ -504,6 +593,11 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     for (int i = 0; i < panel_count; i++) {
         describe_panel(t, i, &panels[i], runs, run_count, texts);
     }
+    for (int run = 1; run < run_count; run++) {
+        if (runs[run].points) {
+            add_residuals(t, panels, &runs[0], &runs[run], texts);
+        }
+    }
     mark_events(t, &runs[0], texts);
     fig->marks = t->marks;
     fig->interval_count = intervals_of(rows, shaded, t->intervals);
@@ -524,6 +618,13 @@ void trace_figure_finish(trace_figure *t)
     memset(t, 0, sizeof *t);
 }
 
+const trace_panel usual_panels[USUAL_PANELS] = {
+    {.signals = {"force"}, .with_zero = true, .impulses = true, .inset = true, .weight = 1.2},
+    {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
+    {.label = "Angular velocity", .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
+    {.label = "Voltage <i>v</i>", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
+};
+
 status plot_run(const scenario *s, const run_result *result, const char *path, fault *f)
 {
     return plot_run_beside(s, result, NULL, path, f);
@@ -533,17 +634,10 @@ status plot_run_beside(const scenario *s, const run_result *result, const run_re
                        const char *path, fault *f)
 {
     assert(s != NULL && result != NULL && path != NULL);
-    static const trace_panel panels[] = {
-        {.signals = {"force"}, .with_zero = true, .impulses = true, .inset = true, .weight = 1.2},
-        {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
-        {.label = "Angular velocity",
-         .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
-        {.label = "Voltage <i>v</i>", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
-    };
     const trace_run runs[] = {{s, result, "this run"}, {s, old, "old run"}};
     trace_figure t;
-    status code = trace_figure_init(&t, NULL, panels, (int)G_N_ELEMENTS(panels), runs,
-                                    old != NULL ? 2 : 1, f);
+    status code =
+        trace_figure_init(&t, NULL, usual_panels, USUAL_PANELS, runs, old != NULL ? 2 : 1, f);
     if (code == STATUS_OK) {
         code = figure_write(&t.figure, path, f);
         trace_figure_finish(&t);

@@ -6,7 +6,7 @@
 #include "render/plot/plot.h"
 #include "src/run/run.h"
 
-enum { TRACE_SIGNALS = 4, TRACE_RUNS = 3 };
+enum { TRACE_SIGNALS = 4, TRACE_RUNS = 8 };
 
 // A panel: signals of one unit over time.
 typedef struct trace_panel {
@@ -27,6 +27,7 @@ typedef struct trace_run {
     const run_result *result; // with its trace
     const char *name;         // "corrected"; only shown if there are several runs
     bool points;              // further runs only: reference data, points where it has a number
+    int rank;                 // 0: as said above; else a full line of its own colour, 1 to 8
 } trace_run;
 
 // A figure with everything it borrows, except for the runs.
@@ -34,6 +35,7 @@ typedef struct trace_figure {
     figure figure;
     figure_panel panels[FIGURE_PANELS];
     figure_series series[FIGURE_PANELS][TRACE_SIGNALS * TRACE_RUNS];
+    figure_series residual; // in the panel behind the last, where there are reference data
     figure_level wall;
     GPtrArray *owned; // blocks
     figure_mark *marks;
@@ -47,6 +49,10 @@ typedef struct trace_figure {
 status trace_figure_init(trace_figure *t, const char *title, const trace_panel *panels,
                          int panel_count, const trace_run *runs, int run_count, fault *f);
 void trace_figure_finish(trace_figure *t);
+
+// What is shown of a run unless something else is asked for.
+enum { USUAL_PANELS = 4 };
+extern const trace_panel usual_panels[USUAL_PANELS];
 
 // The picture of `run --plot`: contact force with the impulses, angles, angular velocities and
 // the voltage over time, written to path as figure_write does.

@@ -82,6 +82,28 @@ static int read_number(const option_row *o, const char *text, double *value)
                     space, unit);
 }
 
+// A length in millimetres; without a unit it is one already.
+static int read_length(const option_row *o, const char *text, double *value)
+{
+    static const struct {
+        const char *unit;
+        double mm;
+    } units[] = {{"", 1}, {"mm", 1}, {"cm", 10}, {"in", 25.4}, {"pt", 25.4 / 72}};
+    const char *rest;
+    double number;
+    if (decimal_read(text, &number, &rest)) {
+        for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+            double mm = number * units[i].mm;
+            if (strcmp(rest, units[i].unit) == 0 && mm >= o->low && mm <= o->high) {
+                *value = mm;
+                return EXIT_DONE;
+            }
+        }
+    }
+    return complain("--%s %s: expected a length from %gmm to %gmm, such as 85mm, 8.5cm or 3.35in",
+                    o->name, text, o->low, o->high);
+}
+
 static int read_whole(const option_row *o, const char *text, uint64_t *value)
 {
     // 2^64 and what lies beyond stand for the largest number there is
@@ -162,6 +184,8 @@ static int store_value(arguments *a, const option_row *o, char *text)
         return EXIT_DONE;
     case OPTION_NUMBER:
         return read_number(o, text, place);
+    case OPTION_LENGTH:
+        return read_length(o, text, place);
     case OPTION_WHOLE:
         return read_whole(o, text, place);
     case OPTION_SIZE:
@@ -254,6 +278,34 @@ static bool is_repeated(const option_row *o)
     return o->type == OPTION_NUMBERS || o->type == OPTION_PARAMETERS;
 }
 
+// Adds a word to the command line that pictures remember, in quotes where a shell needs them.
+static void remember(arguments *a, const char *before, const char *word)
+{
+    bool plain = word[0] != '\0' && word[strcspn(word, " \t\n'\"\\$&|;<>()*?[]{}#~`!")] == '\0';
+    const char *quote = plain ? "" : "'", *so_far = a->command_line ? a->command_line : "";
+    size_t size = strlen(so_far) + strlen(before) + strlen(word) + 4;
+    char *longer = malloc(size);
+    if (longer != NULL) {
+        snprintf(longer, size, "%s%s%s%s%s", so_far, before, quote, word, quote);
+        free(a->command_line);
+        a->command_line = longer;
+    }
+}
+
+// An option as the command line has it. Where results go makes no difference to them.
+static void remember_option(arguments *a, const option_row *o, const char *value)
+{
+    char name[64];
+    if (option_is_written(o)) {
+        return;
+    }
+    snprintf(name, sizeof name, "--%s", o->name);
+    remember(a, " ", name);
+    if (value != NULL) {
+        remember(a, " ", value);
+    }
+}
+
 // Takes every option in its turn. True if help was asked for; *exit_status says what went wrong.
 static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
 {
@@ -278,6 +330,7 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
                            ? complain("option --%s was given twice", o->name)
                            : store_value(a, o, optarg);
         given[i] = true;
+        remember_option(a, o, o->type == OPTION_FLAG ? NULL : optarg);
     }
     return false;
 }
@@ -349,6 +402,7 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
         *exit_status = EXIT_FAILED;
         return false;
     }
+    remember(a, "impactlab ", self->name != NULL ? self->name : "");
     if (take_options(a, argc, argv, exit_status)) {
         print_help(stdout, self);
         arguments_finish(a);
@@ -358,6 +412,9 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
     // getopt has moved all that is no option behind the options
     a->operands = argv + optind;
     a->operand_count = argc - optind;
+    for (int i = 0; i < a->operand_count; i++) {
+        remember(a, " ", a->operands[i]);
+    }
     if (*exit_status == EXIT_DONE) {
         *exit_status = check_operands(a);
     }
@@ -377,6 +434,7 @@ void arguments_finish(arguments *a)
             free(((number_list *)place_of(a, o))->items);
         }
     }
+    free(a->command_line);
     *a = (arguments){0};
 }
 

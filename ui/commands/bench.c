@@ -7,10 +7,10 @@
 
 #include "render/figures/figures.h"
 #include "render/page/picture_file.h"
-#include "render/plot/figure_file.h"
 #include "src/study/bench.h"
 #include "src/base/words.h"
 #include "src/base/version.h"
+#include "ui/commands/pictures.h"
 
 // --- what the programs add to the library's benchmarks --------------------------------------
 
@@ -226,7 +226,7 @@ static int plot_scaling(const arguments *a)
                         .panel_count = 1,
                         .software = software,
                         .parameters = "impactlab bench --plot"};
-    return figure_write_with_csv(&fig, a->plot, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    return publish_figure(a, &fig);
 }
 
 static int bench(const arguments *a)
@@ -287,6 +287,6 @@ const command bench_command = {
         "The first four are microseconds of computing per simulated millisecond. --baseline marks "
         "as slower\nwhat takes 15 % longer than before and did so in every measurement. --plot "
         "then draws the time of a\nstep over the number of links, 2 to 1024.\n",
-    .options = {&json_options, &options, &quiet_options},
+    .options = {&json_options, &options, &quiet_options, &page_options},
     .run = bench,
 };

@@ -36,8 +36,12 @@ typedef struct arguments {
     const char *json, *csv, *plot, *scene, *output, *db, *markdown, *format;
 
     // what pictures look like
-    bool mono, dark;
-    double width;         // of a page [mm]; 0 if not given
+    bool mono, dark, bare, transparent;
+    double width, height; // of a page [mm]; 0 if not given
+    double font_size;     // of labels [pt]; 0 if not given
+    double from, to;      // ends of the horizontal axis; NaN if not given
+    const char *font, *signals, *latex;
+    char *command_line;   // without places that are written to; owned
     double dpi;           // of a PNG; 0 if not given
     const char *overlay;  // CSV
     number_list instants; // --at [s]

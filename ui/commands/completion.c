@@ -39,6 +39,7 @@ static offer offer_of(const option_row *o)
     case OPTION_FLAG:
     case OPTION_TEXT:
     case OPTION_NUMBER:
+    case OPTION_LENGTH:
     case OPTION_WHOLE:
     case OPTION_SIZE:
     case OPTION_NUMBERS:

@@ -3,12 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "render/plot/figure_file.h"
-#include "render/plot/trace_plot.h"
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/base/version.h"
 #include "src/study/convergence.h"
+#include "ui/commands/pictures.h"
 
 static json_t *panel_object(const scenario *s, const convergence_panel *panel)
 {
@@ -113,7 +112,7 @@ static size_t difference(const trace *coarse, const trace *fine, double *x, doub
     return count;
 }
 
-static status draw(const three_runs *r, double *work[4], const char *path, fault *f)
+static int draw(const arguments *a, const three_runs *r, double *work[4])
 {
     static const int colours[PANEL_STEPS] = {5, 0, 6};
     static const char *const names[PANEL_STEPS] = {"h", "h/2", "h/4"};
@@ -156,11 +155,11 @@ static status draw(const three_runs *r, double *work[4], const char *path, fault
                         .panels = panels,
                         .panel_count = 2,
                         .software = software};
-    return figure_write(&fig, path, f);
+    return publish_figure(a, &fig);
 }
 
 // The same with the memory it takes.
-static status draw_runs(const three_runs *r, const char *path, fault *f)
+static int draw_runs(const arguments *a, const three_runs *r)
 {
     double *work[4] = {NULL};
     bool room = true;
@@ -168,24 +167,22 @@ static status draw_runs(const three_runs *r, const char *path, fault *f)
         work[i] = malloc((r->result[i / 2].trace.row_count + 1) * sizeof(double));
         room = room && work[i] != NULL;
     }
-    status code = room ? draw(r, work, path, f)
-                       : fault_no_memory(f);
+    int code = room ? draw(a, r, work) : worse(EXIT_FAILED, complain("out of memory"));
     for (int i = 0; i < 4; i++) {
         free(work[i]);
     }
     return code;
 }
 
-static status plot(const scenario *s, const convergence_panel *panel, const char *path, fault *f)
+static int plot(const arguments *a, const scenario *s, const convergence_panel *panel)
 {
+    fault f = {0};
     three_runs *r = calloc(1, sizeof *r);
     if (r == NULL) {
-        return fault_no_memory(f);
+        fault_no_memory(&f);
+        return complain_fault(&f);
     }
-    status code = run_all(s, panel, r, f);
-    if (code == STATUS_OK) {
-        code = draw_runs(r, path, f);
-    }
+    int code = run_all(s, panel, r, &f) == STATUS_OK ? draw_runs(a, r) : complain_fault(&f);
     for (int i = 0; i < PANEL_STEPS; i++) {
         run_finish(&r->result[i]);
     }
@@ -207,8 +204,8 @@ static int compute_and_report(const arguments *a, scenario *s)
     if (summary_wanted(a)) {
         print_panel(s, &panel);
     }
-    if (result == EXIT_DONE && a->plot != NULL && plot(s, &panel, a->plot, &f) != STATUS_OK) {
-        result = complain_fault(&f);
+    if (result == EXIT_DONE && a->plot != NULL) {
+        result = plot(a, s, &panel);
     }
     return result;
 }
@@ -236,6 +233,6 @@ const command converge_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &quiet_options},
+    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
     .run = converge,
 };

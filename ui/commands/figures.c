@@ -5,24 +5,10 @@
 #include "render/figures/figures.h"
 #include "src/base/words.h"
 #include "src/base/numbers.h"
-#include "ui/commands/figure_options.h"
+#include "ui/commands/pictures.h"
 
 #define DEFAULT_FOLDER  "figures"
 #define DEFAULT_FORMATS "png"
-
-int read_figure_options(const arguments *a, figure_options *o)
-{
-    *o = (figure_options){.theme = a->mono   ? THEME_MONO
-                                   : a->dark ? THEME_DARK
-                                             : THEME_COLOUR,
-                          .width_mm = a->width,
-                          .dpi = a->dpi,
-                          .overlay = a->overlay};
-    if (a->mono && a->dark) {
-        return complain("--mono and --dark cannot go together");
-    }
-    return EXIT_DONE;
-}
 
 // Whether every ID names a figure; says which does not.
 static int check_ids(const arguments *a)
@@ -49,18 +35,23 @@ static int figures(const arguments *a)
     const char *formats = a->format ? a->format : DEFAULT_FORMATS;
     int count = a->operand_count > 0 ? a->operand_count : thesis_figure_count;
     int code = check_ids(a);
-    code = code == EXIT_DONE ? read_figure_options(a, &options) : code;
+    code = code == EXIT_DONE ? read_picture_options(a, &options) : code;
+    GString *tex = g_string_new(NULL);
     for (int i = 0; i < count && code == EXIT_DONE; i++) {
         const thesis_figure *drawn =
             a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : &thesis_figures[i];
         fault f = {0};
-        if (figure_draw_as(drawn->id, &options, folder, formats, &f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
-        if (!a->quiet) {
+        if (figure_draw_into(drawn->id, &options, folder, formats, tex, &f) != STATUS_OK) {
+            code = complain_fault(&f);
+        } else if (!a->quiet) {
             printf("%-10s  %s/%s  %s\n", drawn->id, folder, drawn->file, drawn->caption);
         }
     }
+    fault f = {0};
+    if (code == EXIT_DONE && a->latex != NULL && latex_write(a->latex, tex, &f) != STATUS_OK) {
+        code = complain_fault(&f);
+    }
+    g_string_free(tex, TRUE);
     return code;
 }
 

@@ -19,6 +19,7 @@ typedef enum option_type {
     OPTION_SCENARIO,   // a scenario's name or file; const char *
     OPTION_QUANTITY,   // key of a summary's quantity; const char *
     OPTION_NUMBER,     // from `low` to `high`; double
+    OPTION_LENGTH,     // the same with a unit, "85mm", "8.5cm", "3.35in"; double [mm]
     OPTION_WHOLE,      // a whole number from `low` to `high`; uint64_t
     OPTION_SIZE,       // WIDTHxHEIGHT, each from 1 to `high`; grid_size
     OPTION_NUMBERS,    // may be repeated; number_list, in the order of the command line
@@ -70,5 +71,5 @@ extern const option_table vary_options;  // --vary
 extern const option_table json_options;  // --json
 extern const option_table quiet_options; // --quiet
 extern const option_table help_options;  // --help, which every command has
-extern const option_table page_options;  // --overlay, --mono, --dark, --width, --dpi
+extern const option_table page_options;  // --width, --theme, --font ... of every picture
 extern const option_table view_options;  // --gl, --camera, --size

@@ -1,13 +1,13 @@
 #include "ui/commands/command.h"
 
 #include "render/page/picture_file.h"
-#include "render/plot/trace_plot.h"
 #include "src/run/export.h"
 
 #include <math.h>
 
 #include "src/arm/arm.h"
 #include "src/quantities/parameters.h"
+#include "ui/commands/pictures.h"
 #include "ui/commands/run_progress.h"
 #include "ui/commands/scene_request.h"
 
@@ -125,10 +125,8 @@ static int write_results(const arguments *a, const scenario *s, const run_result
         code = worse(code, write_file(a->csv, write_signals, &signals));
     }
     if (a->plot != NULL) {
-        fault f = {0};
-        if (plot_run(s, result, a->plot, &f) != STATUS_OK) {
-            code = worse(code, complain_fault(&f));
-        }
+        const trace_run shown = {.scenario = s, .result = result, .name = s->name};
+        code = worse(code, publish_runs(a, NULL, &shown, 1));
     }
     if (a->scene != NULL) {
         code = worse(code, write_scene(a, s, result));
@@ -191,7 +189,9 @@ static int run_unless_changed(const arguments *a, scenario *s)
 
 static int run(const arguments *a)
 {
+    figure_options pictures;
     int result = check_scene(a);
+    result = result == EXIT_DONE ? read_picture_options(a, &pictures) : result;
     return result == EXIT_DONE ? with_scenario(a->operands[0], a, run_unless_changed) : result;
 }
 
@@ -234,6 +234,7 @@ const command run_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &quiet_options, &view_options},
+    .options = {&set_options, &json_options, &options, &quiet_options, &page_options,
+                &view_options},
     .run = run,
 };

@@ -1,23 +1,21 @@
 #include "ui/commands/study_topics.h"
 
+#include <stdio.h>
+
 #include <string.h>
 
 #include "src/base/version.h"
 
-status write_study_figure(figure *fig, const scenario *s, const char *what, const char *path,
-                          fault *f)
+int publish_study(const arguments *a, figure *fig)
 {
-    char software[64], command_line[256];
+    char software[64];
     snprintf(software, sizeof software, "impactlab %s", lab_version());
-    snprintf(command_line, sizeof command_line, "impactlab study %s %s --plot", what, s->name);
     fig->x.scale = SCALE_LOGARITHMIC;
     fig->x.room = 0.04;
     fig->columns = fig->panel_count;
     fig->common_legend = true;
-    fig->height = 88;
     fig->software = software;
-    fig->parameters = command_line;
-    return figure_write_with_csv(fig, path, f);
+    return publish_figure(a, fig);
 }
 
 typedef struct topic {
@@ -78,6 +76,6 @@ const command study_command = {
     .most = 2,
     .takes_scenarios = true,
     .operand_word = topic_word,
-    .options = {&set_options, &json_options, &options, &quiet_options},
+    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
     .run = study,
 };

@@ -79,7 +79,7 @@ static void print_methods(const scenario *s, const method_study *study)
     }
 }
 
-static status plot_methods(const scenario *s, const method_study *study, const char *path, fault *f)
+static int plot_methods(const arguments *a, const scenario *s, const method_study *study)
 {
     static const char *const labels[STUDY_METHODS] = {"Newmark", "generalised α", "event method"};
     static const marker_kind markers[STUDY_METHODS] = {MARKER_SQUARE, MARKER_TRIANGLE,
@@ -109,7 +109,8 @@ static status plot_methods(const scenario *s, const method_study *study, const c
                                          .unit = units[k],
                                          .scale = SCALE_LOGARITHMIC},
                                    .series = series[k],
-                                   .series_count = STUDY_METHODS};
+                                   .series_count = STUDY_METHODS,
+                                   .weight = 1.8};
     }
     snprintf(title, sizeof title, "%s: error against cost", s->name);
     figure fig = {
@@ -121,7 +122,7 @@ static status plot_methods(const scenario *s, const method_study *study, const c
         .x = {.name = "computing time", .label = "Computing time", .unit = "s"},
         .panels = panels,
         .panel_count = STUDY_QUANTITIES};
-    return write_study_figure(&fig, s, "methods", path, f);
+    return publish_study(a, &fig);
 }
 
 int study_of_methods(const arguments *a, scenario *s)
@@ -135,9 +136,8 @@ int study_of_methods(const arguments *a, scenario *s)
         print_methods(s, &study);
     }
     int result = a->json != NULL ? write_json(a->json, methods_object(s, &study)) : EXIT_DONE;
-    if (result == EXIT_DONE && a->plot != NULL &&
-        plot_methods(s, &study, a->plot, &f) != STATUS_OK) {
-        result = complain_fault(&f);
+    if (result == EXIT_DONE && a->plot != NULL) {
+        result = plot_methods(a, s, &study);
     }
     return result;
 }

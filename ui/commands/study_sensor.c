@@ -66,7 +66,7 @@ static void print_sensor(const scenario *s, const sensor_study *study)
            study->views[SENSOR_LENGTHS - 1].speed);
 }
 
-static status plot_sensor(const scenario *s, const sensor_study *study, const char *path, fault *f)
+static int plot_sensor(const arguments *a, const scenario *s, const sensor_study *study)
 {
 #define CURVE(what) .x = study->links, .y = (what), .count = SENSOR_LENGTHS
     const figure_series force[] = {
@@ -107,13 +107,15 @@ static status plot_sensor(const scenario *s, const sensor_study *study, const ch
     const figure_panel panels[] = {
         {.y = {.name = "peak", .label = "Largest force", .unit = "N", .scale = SCALE_LOGARITHMIC},
          .series = force,
-         .series_count = 7},
+         .series_count = 7,
+         .weight = 1.8},
         {.y = {.name = "momentum",
                .label = "First impulse, momentum of 2\u2009ms",
                .unit = "N s",
                .scale = SCALE_LOGARITHMIC},
          .series = momentum,
-         .series_count = 3},
+         .series_count = 3,
+         .weight = 1.8},
     };
     char title[256];
     snprintf(title, sizeof title, "%s: what a force sensor would see", s->name);
@@ -124,7 +126,7 @@ static status plot_sensor(const scenario *s, const sensor_study *study, const ch
                   .x = {.name = "links", .label = "Number of links <i>N</i>"},
                   .panels = panels,
                   .panel_count = 2};
-    return write_study_figure(&fig, s, "sensor", path, f);
+    return publish_study(a, &fig);
 }
 
 int study_of_sensor(const arguments *a, scenario *s)
@@ -138,9 +140,8 @@ int study_of_sensor(const arguments *a, scenario *s)
         print_sensor(s, &study);
     }
     int result = a->json != NULL ? write_json(a->json, sensor_object(s, &study)) : EXIT_DONE;
-    if (result == EXIT_DONE && a->plot != NULL &&
-        plot_sensor(s, &study, a->plot, &f) != STATUS_OK) {
-        result = complain_fault(&f);
+    if (result == EXIT_DONE && a->plot != NULL) {
+        result = plot_sensor(a, s, &study);
     }
     return result;
 }

@@ -257,6 +257,6 @@ const command sweep_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .options = {&set_options, &vary_options, &options, &quiet_options},
+    .options = {&set_options, &vary_options, &options, &quiet_options, &page_options},
     .run = sweep_command_run,
 };

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "render/plot/sweep_plot.h"
+#include "ui/commands/pictures.h"
 #include "src/study/sweep_rows.h"
 
 enum { ROWS_SHOWN = 40 };
@@ -26,10 +27,11 @@ static int write_csv(const sweep_order *o, sweep_store *store)
 
 static int write_plot(const sweep_order *o, const double *values)
 {
-    fault f = {0};
-    sweep_picture picture = {.sweep = &o->sweep, .key = o->quantity, .values = values};
-    return sweep_plot_write(&picture, o->arguments->plot, &f) == STATUS_OK ? EXIT_DONE
-                                                                           : complain_fault(&f);
+    sweep_picture shown = {.sweep = &o->sweep, .key = o->quantity, .values = values};
+    sweep_figure *drawn = sweep_figure_create(&shown);
+    int code = publish_figure(o->arguments, sweep_figure_of(drawn));
+    sweep_figure_destroy(drawn);
+    return code;
 }
 
 // "motor.voltage = 2 V, method.name = event" of a run.

@@ -1,0 +1,145 @@
+#include "render/figures/run_figure.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "render/figures/publication.h"
+#include "render/plot/overlay.h"
+#include "src/base/words.h"
+
+// ---- the signals asked for
+
+static status unknown_signal(const char *name, fault *f)
+{
+    nearest_word near = nearest_begin(name);
+    for (int i = 1; i < signal_count; i++) {
+        nearest_try(&near, signal_table[i].name);
+    }
+    return fault_set(f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?", name,
+                     near.best != NULL ? near.best : "force");
+}
+
+// What goes without saying for a panel of its first signal.
+static void complete_panel(trace_panel *p, bool first)
+{
+    const signal_info *signal = &signal_table[signal_index(p->signals[0])];
+    p->with_zero = strcmp(signal->unit, "N") == 0 || strcmp(signal->unit, "V") == 0;
+    p->wall = strcmp(signal->unit, "rad") == 0;
+    p->impulses = first && strcmp(signal->name, "force") == 0;
+    p->label = p->signals[1] != NULL ? signal->quantity : NULL;
+}
+
+// One panel, "hub_angle+last_angle".
+static status read_panel(const char *text, trace_panel *p, GPtrArray *names, fault *f)
+{
+    status code = STATUS_OK;
+    char **words = g_strsplit(text, "+", -1);
+    for (int i = 0; words[i] != NULL && code == STATUS_OK; i++) {
+        const char *name = g_strstrip(words[i]);
+        int index = signal_find(name);
+        if (index <= 0) {
+            code = unknown_signal(name, f);
+        } else if (i == TRACE_SIGNALS) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a panel shows at most %d signals", text,
+                             TRACE_SIGNALS);
+        } else if (i > 0 && strcmp(signal_table[index].unit,
+                                   signal_table[signal_index(p->signals[0])].unit) != 0) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s': the signals of a panel have one unit, expected a comma between "
+                             "%s and %s",
+                             text, p->signals[0], name);
+        } else {
+            g_ptr_array_add(names, g_strdup(name));
+            p->signals[i] = g_ptr_array_index(names, names->len - 1);
+        }
+    }
+    g_strfreev(words);
+    return code;
+}
+
+// All panels, "force,hub_angle+last_angle".
+static status read_signals(run_figure *r, const char *text, fault *f)
+{
+    status code = STATUS_OK;
+    GPtrArray *names = g_ptr_array_new();
+    char **words = g_strsplit(text, ",", -1);
+    for (int i = 0; words[i] != NULL && code == STATUS_OK; i++) {
+        if (i == FIGURE_PANELS - 1) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a figure has at most %d panels", text,
+                             FIGURE_PANELS - 1);
+            break;
+        }
+        r->panels[i] = (trace_panel){.weight = 1};
+        code = read_panel(words[i], &r->panels[i], names, f);
+        if (code == STATUS_OK) {
+            complete_panel(&r->panels[i], i == 0);
+            r->panel_count = i + 1;
+        }
+    }
+    g_strfreev(words);
+    g_ptr_array_add(names, NULL);
+    r->names = (char **)g_ptr_array_free(names, FALSE);
+    return code;
+}
+
+// ---- the figure
+
+static status choose_panels(run_figure *r, const trace_panel *panels, int count,
+                            const figure_options *o, fault *f)
+{
+    if (o->signals != NULL) {
+        return read_signals(r, o->signals, f);
+    }
+    r->panel_count = panels != NULL ? count : USUAL_PANELS;
+    memcpy(r->panels, panels != NULL ? panels : usual_panels,
+           (size_t)r->panel_count * sizeof *panels);
+    return STATUS_OK;
+}
+
+void run_figure_finish(run_figure *r)
+{
+    trace_figure_finish(&r->traces);
+    trace_finish(&r->overlay.trace);
+    g_free(r->overlay_name);
+    g_free(r->title);
+    g_strfreev(r->names);
+    memset(r, 0, sizeof *r);
+}
+
+status run_figure_init(run_figure *r, const char *title, const trace_panel *panels, int panel_count,
+                       const trace_run *runs, int run_count, const figure_options *o, fault *f)
+{
+    assert(r != NULL && runs != NULL && run_count >= 1 && o != NULL);
+    trace_run all[TRACE_RUNS];
+    memset(r, 0, sizeof *r);
+    r->title = g_strdup(title);
+    status code = choose_panels(r, panels, panel_count, o, f);
+    if (code == STATUS_OK && run_count + (o->overlay != NULL) > TRACE_RUNS) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data",
+                         TRACE_RUNS);
+    }
+
+    // measured data are one more run, of points
+    if (code == STATUS_OK) {
+        memcpy(all, runs, (size_t)run_count * sizeof *runs);
+    }
+    if (code == STATUS_OK && o->overlay != NULL) {
+        code = overlay_read(&r->overlay.trace, o->overlay, r->panels, r->panel_count,
+                            &r->overlay_name, f);
+        all[run_count++] = (trace_run){.scenario = runs[0].scenario,
+                                       .result = &r->overlay,
+                                       .name = r->overlay_name,
+                                       .points = true};
+    }
+    if (code == STATUS_OK) {
+        code =
+            trace_figure_init(&r->traces, r->title, r->panels, r->panel_count, all, run_count, f);
+    }
+    if (code != STATUS_OK) {
+        run_figure_finish(r);
+        return code;
+    }
+    figure_take_look(&r->traces.figure, &o->look);
+    figure_take_range(&r->traces.figure, o);
+    return STATUS_OK;
+}

@@ -1,0 +1,240 @@
+// Pictures for other people's pages: sizes of letters, what stands beside a bare picture, LaTeX.
+#include "tests/plot_fixture.h"
+
+#include "render/figures/figures.h"
+#include "render/figures/publication.h"
+#include "render/figures/run_figure.h"
+
+// fontconfig keeps its cache until the process ends
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig\n";
+}
+
+static artwork open_figure(const char *id, const figure_options *o)
+{
+    fault f = {0};
+    artwork drawn;
+    if (figure_open(thesis_figure_find(id), o, &drawn, &f) != STATUS_OK) {
+        fail_msg("%s: %s", id, f.text);
+    }
+    return drawn;
+}
+
+static void report_of(const artwork *a, figure_report *r)
+{
+    fault f = {0};
+    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
+    cairo_t *cr = cairo_create(surface);
+    assert_int_equal(a->paint(cr, a->what, r, &f), STATUS_OK);
+    cairo_destroy(cr);
+    cairo_surface_destroy(surface);
+}
+
+static const char *const kinds[] = {"2.1",  "2.2",  "2.3",  "3.4",       "3.8", "3.11",
+                                    "4.1",  "4.2",  "4.3",  "4.6",       "5.2", "5.7",
+                                    "T2.1", "T3.1", "T4.2", "beta-gamma"};
+
+// Everything is laid out at its width: letters keep their size and nothing is below 6 pt.
+static void letters_can_be_read_at_every_width(void **state)
+{
+    (void)state;
+    static const double widths[] = {85, 180};
+    static figure_report r;
+    for (size_t k = 0; k < G_N_ELEMENTS(kinds); k++) {
+        for (int i = 0; i < 2; i++) {
+            figure_options o = {.look.width = widths[i]};
+            artwork drawn = open_figure(kinds[k], &o);
+            report_of(&drawn, &r);
+            check_close(drawn.width, widths[i] / 25.4 * 72, 1e-6);
+            for (int t = 0; t < r.text_count; t++) {
+                if (r.texts[t].size < 6 - 1e-9 || r.texts[t].size > 12) {
+                    fail_msg("%s at %g mm: '%s' has letters of %.2f pt", kinds[k], widths[i],
+                             r.texts[t].text, r.texts[t].size);
+                }
+            }
+            artwork_finish(&drawn);
+        }
+    }
+}
+
+static void bare_pages_have_no_title_and_no_caption(void **state)
+{
+    (void)state;
+    static figure_report r;
+    static const char *const some[] = {"2.2", "3.4", "4.3", "T3.1", "beta-gamma"};
+    for (size_t k = 0; k < G_N_ELEMENTS(some); k++) {
+        figure_options dressed = {.look.width = 120}, bare = {.look = {.width = 120, .bare = true}};
+        artwork a = open_figure(some[k], &dressed), b = open_figure(some[k], &bare);
+        check_below(b.height, a.height - 12);
+        report_of(&b, &r);
+        char *start = g_strndup(b.title, 12);
+        for (int t = 0; t < r.text_count; t++) {
+            assert_null(strstr(r.texts[t].text, start));
+        }
+        g_free(start);
+        artwork_finish(&a);
+        artwork_finish(&b);
+    }
+}
+
+// A figure of one curve, written as the options ask.
+static void publish(const figure_options *o, const char *path)
+{
+    static const double x[] = {0, 1, 2}, y[] = {1, 3, 2};
+    fault f = {0};
+    const figure_series series = {.name = "run", .x = x, .y = y, .count = 3};
+    const figure_panel panel = {.y = {.name = "force", .label = "Force <i>f</i>", .unit = "N"},
+                                .series = &series,
+                                .series_count = 1};
+    const figure fig = {.title = "A title & more",
+                        .caption = "With <i>β</i> = 0.4, 5 % off, <i>θ</i><sub>1</sub>",
+                        .x = {.name = "time", .label = "Time", .unit = "s"},
+                        .panels = &panel,
+                        .panel_count = 1};
+    if (figure_publish(&fig, o, path, true, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+static void a_bare_picture_has_its_caption_beside_it(void **state)
+{
+    (void)state;
+    size_t length;
+    publish(&(figure_options){.look.bare = true}, path_of("bare.svg"));
+    char *text = read_file(path_of("bare.txt"), &length);
+    assert_string_equal(text, "A title & more\n\nWith β = 0.4, 5 % off, θ1\n");
+    free(text);
+    publish(&(figure_options){0}, path_of("dressed.svg"));
+    assert_int_not_equal(access(path_of("dressed.txt"), F_OK), 0);
+}
+
+static void latex_sets_the_figure(void **state)
+{
+    (void)state;
+    size_t length;
+    char *tex = g_strdup(path_of("paper.tex"));
+    publish(&(figure_options){.look.width = 85, .latex = tex}, path_of("force.pdf"));
+    char *text = read_file(tex, &length);
+    assert_non_null(strstr(text, "\\begin{figure}\n"));
+    assert_non_null(strstr(text, "width=85mm,alt={A title \\& more. 1 panel over Time in s: Force "
+                                 "f in N.}]{force.pdf}"));
+    assert_non_null(strstr(text, "\\caption{A title \\& more. With \\textit{$\\beta$} = 0.4, 5 \\% "
+                                 "off, \\textit{$\\theta$}\\textsubscript{1}}"));
+    assert_non_null(strstr(text, "\\label{fig:force}"));
+    // every brace that opens closes
+    int depth = 0;
+    for (const char *c = text; *c != '\0'; c++) {
+        bool escaped = c > text && c[-1] == '\\';
+        depth += escaped ? 0 : *c == '{' ? 1 : *c == '}' ? -1 : 0;
+        assert_true(depth >= 0);
+    }
+    assert_int_equal(depth, 0);
+    free(text);
+    g_free(tex);
+}
+
+static void files_know_the_command_and_tell_what_they_show(void **state)
+{
+    (void)state;
+    size_t length;
+    const figure_options o = {.command = "impactlab run x --set arm.k2=3"};
+    publish(&o, path_of("m.svg"));
+    char *svg = read_file(path_of("m.svg"), &length);
+    assert_non_null(strstr(svg, "<dc:source>impactlab run x --set arm.k2=3</dc:source>"));
+    assert_non_null(strstr(svg, "<desc>A title &amp; more. 1 panel over Time in s"));
+    free(svg);
+    publish(&o, path_of("m.png"));
+    char *png = read_file(path_of("m.png"), &length);
+    assert_non_null(memmem(png, length, "impactlab run x --set arm.k2=3", 30));
+    free(png);
+}
+
+static void a_transparent_picture_has_no_ground(void **state)
+{
+    (void)state;
+    publish(&(figure_options){.look.transparent = true}, path_of("clear.png"));
+    cairo_surface_t *surface = cairo_image_surface_create_from_png(path_of("clear.png"));
+    assert_int_equal(cairo_image_surface_get_format(surface), CAIRO_FORMAT_ARGB32);
+    assert_int_equal(cairo_image_surface_get_data(surface)[3], 0);
+    cairo_surface_destroy(surface);
+}
+
+static void serif_pictures_have_serif_letters(void **state)
+{
+    (void)state;
+    size_t length;
+    fault f = {0};
+    publish(&(figure_options){.look.font = "DejaVu Serif"}, path_of("serif.pdf"));
+    char *pdf = read_file(path_of("serif.pdf"), &length);
+    assert_non_null(memmem(pdf, length, "DejaVuSerif", 11));
+    assert_null(memmem(pdf, length, "DejaVuSans", 10));
+    free(pdf);
+    assert_int_equal(text_check_family("No Such Font", &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "No Such Font"));
+}
+
+// ---- measured data over runs
+
+static void write_measured(const char *name, const char *text)
+{
+    FILE *stream = fopen(path_of(name), "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+}
+
+static void measured_data_have_a_panel_of_residuals(void **state)
+{
+    (void)state;
+    static figure_report r;
+    fault f = {0};
+    synthetic s;
+    run_figure drawn;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    write_measured("bench.csv", "time[s],cell[N]\n0.30,0\n0.325,2\n0.345,1.6\n");
+    char *spec = g_strconcat(path_of("bench.csv"), ":cell@0.02", NULL);
+    const trace_run run = {&s.scenario, &s.result, "run"};
+    const figure_options o = {.overlay = spec, .signals = "force,hub_angle+last_angle"};
+    if (run_figure_init(&drawn, "t", NULL, 0, &run, 1, &o, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    const figure *fig = &drawn.traces.figure;
+    record(fig, &r);
+    expect_text(&r, "bench.csv: cell");
+    expect_text(&r, "Residual (N)");
+    // three panels: force with points, angles, residuals at the shifted times
+    assert_int_equal(fig->panel_count, 3);
+    const figure_series *residual = &fig->panels[2].series[0];
+    assert_int_equal(residual->count, 3);
+    check_close(residual->x[1], 0.345, 1e-12);
+    check_close(residual->y[1], 2 - force_at(0.345), 1e-6);
+    check_close(residual->y[2], 1.6 - force_at(0.365), 1e-6);
+    run_figure_finish(&drawn);
+
+    // what does not fit is said
+    const figure_options unknown = {.signals = "forse"}, mixed = {.signals = "force+hub_angle"};
+    assert_int_equal(run_figure_init(&drawn, "t", NULL, 0, &run, 1, &unknown, &f),
+                     STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "did you mean 'force'"));
+    assert_int_equal(run_figure_init(&drawn, "t", NULL, 0, &run, 1, &mixed, &f),
+                     STATUS_BAD_ARGUMENT);
+    g_free(spec);
+    synthetic_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(letters_can_be_read_at_every_width),
+        cmocka_unit_test(bare_pages_have_no_title_and_no_caption),
+        cmocka_unit_test(a_bare_picture_has_its_caption_beside_it),
+        cmocka_unit_test(latex_sets_the_figure),
+        cmocka_unit_test(files_know_the_command_and_tell_what_they_show),
+        cmocka_unit_test(a_transparent_picture_has_no_ground),
+        cmocka_unit_test(serif_pictures_have_serif_letters),
+        cmocka_unit_test(measured_data_have_a_panel_of_residuals),
+    };
+    return cmocka_run_group_tests_name("publication", tests, make_work_folder, remove_work_folder) != 0;
+}
