@@ -1,0 +1,172 @@
+// Transitions of the contact machine on one rod, taken one by one: what each event does to the
+// state, and what the state is found to be afterwards. Whole runs are in test_motion.c.
+#include "tests/arm_fixture.h"
+
+#include "src/solve/contact_machine.h"
+
+// A rod on its hub with its motion.
+typedef struct moving_rod {
+    arm arm;
+    motion *motion;
+    double inertia; // about the hub [kg m2]
+} moving_rod;
+
+static moving_rod start_rod(const char *const *settings)
+{
+    parameters p = fixture_parameters(settings);
+    moving_rod r = {.inertia = p.arm.mass * p.arm.length * p.arm.length / 3 + p.arm.hub_inertia};
+    arm_init(&r.arm, &p);
+    r.motion = motion_create(&r.arm, &p.method);
+    assert_non_null(r.motion);
+    motion_start(&r.arm, r.motion, p.initial.angle, p.initial.velocity);
+    return r;
+}
+
+static double speed_of(const moving_rod *r)
+{
+    return state_velocities(r->motion, r->motion->state)[0];
+}
+
+static bool touches(const moving_rod *r)
+{
+    return r->motion->state[SLOT_CONTACT] != 0;
+}
+
+// Steps to the next event before `until` and applies it.
+static motion_report next_event(moving_rod *r, double until)
+{
+    motion_report report = {.event = MOTION_REACHED};
+    while (r->motion->state[SLOT_TIME] < until && report.event == MOTION_REACHED) {
+        assert_int_equal(motion_step(&r->arm, r->motion, until, 1e-3, &report), STATUS_OK);
+    }
+    if (report.event != MOTION_REACHED) {
+        motion_apply(&r->arm, r->motion, &report);
+    }
+    return report;
+}
+
+static void the_state_at_the_start_follows_from_where_the_arm_is(void **state)
+{
+    (void)state;
+    // pressed at the wall, the wall answers with all of the motor's torque
+    moving_rod pressed = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    assert_true(touches(&pressed));
+    check_relative(pressed.motion->state[SLOT_FORCE], pressed.arm.motor.torque, 1e-12);
+    motion_destroy(pressed.motion);
+
+    // less torque than stiction away from the wall: the hub sticks
+    moving_rod stuck = start_rod(SETTINGS("arm.links=1", "motor.voltage=0.05"));
+    assert_false(touches(&stuck));
+    assert_true(stuck.motion->state[SLOT_FRICTION] == HUB_STICK);
+    check_close(stuck.motion->state[SLOT_FRICTION_TORQUE], -stuck.arm.motor.torque, 1e-15);
+    motion_destroy(stuck.motion);
+
+    // more, and it slides
+    moving_rod driven = start_rod(SETTINGS("arm.links=1", "motor.voltage=1"));
+    assert_true(driven.motion->state[SLOT_FRICTION] == HUB_FORWARD);
+    motion_destroy(driven.motion);
+}
+
+static void a_plastic_impact_stops_the_rod_and_holds_it(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1"));
+    motion_report impact = next_event(&r, 1);
+    assert_int_equal(impact.event, MOTION_IMPACT);
+    assert_true(impact.holds && touches(&r));
+    check_relative(impact.impulse, r.inertia * impact.speed, 1e-12);
+    check_relative(impact.loss, r.inertia * impact.speed * impact.speed / 2, 1e-12);
+    check_close(speed_of(&r), 0, 1e-15);
+    motion_destroy(r.motion);
+}
+
+static void an_elastic_impact_turns_the_rod_back(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.restitution=0.8"));
+    motion_report impact = next_event(&r, 1);
+    assert_int_equal(impact.event, MOTION_IMPACT);
+    assert_false(impact.holds || touches(&r));
+    check_relative(speed_of(&r), -0.8 * impact.speed, 1e-12);
+    check_close(r.motion->state[SLOT_FORCE], 0, 0);
+    motion_destroy(r.motion);
+}
+
+static void a_push_in_flight_adds_its_impulse(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.kind=none", "initial.velocity=1"));
+    motion_report report = {0};
+    motion_push(&r.arm, r.motion, 0.03, &report);
+    assert_int_equal(report.event, MOTION_REACHED);
+    check_relative(speed_of(&r), 1 + 0.03 / r.inertia, 1e-13);
+    // its work is that of the mean velocity
+    check_relative(r.motion->state[SLOT_EXTERNAL_WORK], 0.03 * (1 + speed_of(&r)) / 2, 1e-12);
+    motion_destroy(r.motion);
+}
+
+static void a_push_into_the_wall_is_answered_by_it(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    motion_report report = {0};
+    motion_push(&r.arm, r.motion, 0.03, &report);
+    assert_int_equal(report.event, MOTION_IMPACT);
+    check_relative(report.impulse, 0.03, 1e-12);
+    check_close(speed_of(&r), 0, 1e-14);
+    assert_true(touches(&r));
+    motion_destroy(r.motion);
+}
+
+static void a_push_away_ends_the_contact(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    motion_report report = {0};
+    motion_push(&r.arm, r.motion, -0.03, &report);
+    assert_false(touches(&r));
+    check_relative(speed_of(&r), -0.03 / r.inertia, 1e-12);
+    motion_destroy(r.motion);
+}
+
+static void a_torque_away_from_the_wall_ends_the_contact(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    double before = r.arm.motor.torque;
+    arm_set_voltage(&r.arm, -1);
+    motion_retorque(&r.arm, r.motion, before);
+    assert_false(touches(&r));
+    double torque = r.arm.motor.torque + r.arm.motor.stiction;
+    check_relative(state_accelerations(r.motion, r.motion->state)[0], torque / r.inertia, 1e-12);
+    motion_destroy(r.motion);
+}
+
+static void a_cut_changes_nothing_before_it(void **state)
+{
+    (void)state;
+    moving_rod free = start_rod(SETTINGS("arm.links=1")), cut = start_rod(SETTINGS("arm.links=1"));
+    cut.motion->cut = 0.35; // after the impact
+    motion_report a = next_event(&free, 1), b = next_event(&cut, 1);
+    assert_int_equal(a.event, MOTION_IMPACT);
+    assert_int_equal(b.event, MOTION_IMPACT);
+    assert_memory_equal(free.motion->state, cut.motion->state,
+                        (size_t)free.motion->size * sizeof(double));
+    motion_destroy(free.motion);
+    motion_destroy(cut.motion);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_state_at_the_start_follows_from_where_the_arm_is),
+        cmocka_unit_test(a_plastic_impact_stops_the_rod_and_holds_it),
+        cmocka_unit_test(an_elastic_impact_turns_the_rod_back),
+        cmocka_unit_test(a_push_in_flight_adds_its_impulse),
+        cmocka_unit_test(a_push_into_the_wall_is_answered_by_it),
+        cmocka_unit_test(a_push_away_ends_the_contact),
+        cmocka_unit_test(a_torque_away_from_the_wall_ends_the_contact),
+        cmocka_unit_test(a_cut_changes_nothing_before_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,126 @@
+// When a force has settled, and the largest mean over a window, on forces known in closed form.
+#include "tests/check.h"
+
+#include "src/run/largest_mean.h"
+#include "src/run/run_result.h"
+
+#define STEP 1e-2 // [s]
+
+typedef double (*force_curve)(double t);
+
+static double parabola(double t)
+{
+    return 4 * t * (1 - t);
+}
+
+static double rising(double t)
+{
+    return 2 * t;
+}
+
+static double flat(double t)
+{
+    (void)t;
+    return 3;
+}
+
+// The history of a curve over [0, 1] s; each step has its mean by Simpson's rule, exact for cubics.
+static force_history history_of(force_curve f)
+{
+    force_history h;
+    force_history_init(&h);
+    for (int i = 0; i < 100; i++) {
+        double start = i * STEP, end = (i + 1) * STEP;
+        double mean = (f(start) + 4 * f((start + end) / 2) + f(end)) / 6;
+        force_step step = {start, end, f(start), f(end), mean};
+        assert_int_equal(force_history_add(&h, step), STATUS_OK);
+    }
+    return h;
+}
+
+static double largest_mean(force_curve f, double from, double window)
+{
+    run_result r = {.history = {.forces = history_of(f)}};
+    double mean = force_largest_mean(&r, from, window);
+    force_history_finish(&r.history.forces);
+    return mean;
+}
+
+static void a_constant_force_has_settled_from_the_start(void **state)
+{
+    (void)state;
+    force_history h = history_of(flat);
+    check_close(force_settled_since(&h, 3), 0, 0);
+    // a run that ends outside the band has not settled
+    assert_true(isnan(force_settled_since(&h, 4)));
+    force_history_finish(&h);
+}
+
+static void a_rising_force_settles_where_it_enters_the_band(void **state)
+{
+    (void)state;
+    force_history h = history_of(rising);
+    check_close(force_settled_since(&h, 2), 0.95, 1e-12);
+    force_history_finish(&h);
+}
+
+static void the_band_is_entered_within_a_step(void **state)
+{
+    (void)state;
+    // up and down again to nothing: 4 t (1 - t) = 0.05 f where the band round f ends from below
+    force_history h = history_of(parabola);
+    assert_true(isnan(force_settled_since(&h, 0.5)));
+    force_history_finish(&h);
+    force_step bump = {0, 1, 1, 1, 1 + 2.0 / 3 * 0.2}; // rises by 0.2 to its middle
+    force_history_init(&h);
+    assert_int_equal(force_history_add(&h, bump), STATUS_OK);
+    // 1 + 0.8 s (1 - s) = 1.05 at the later root
+    check_close(force_settled_since(&h, 1), 0.5 + sqrt(0.25 - 0.05 / 0.8), 1e-12);
+    force_history_finish(&h);
+}
+
+static void an_empty_history_has_no_answer(void **state)
+{
+    (void)state;
+    force_history h = {0};
+    assert_true(isnan(force_settled_since(&h, 1)));
+    force_history_finish(&h);
+}
+
+static void the_largest_mean_is_where_the_curve_is_highest(void **state)
+{
+    (void)state;
+    // a window of w round the top of 4 t (1 - t) has the mean 1 - w^2/3
+    check_close(largest_mean(parabola, 0, 0.1), 1 - 0.01 / 3, 1e-12);
+    check_close(largest_mean(parabola, 0, 0.237), 1 - 0.237 * 0.237 / 3, 1e-12);
+    // from 0.6 s on it is the first window
+    check_close(largest_mean(parabola, 0.6, 0.1), 4 * (0.65 - 0.65 * 0.65) - 0.01 / 3, 1e-12);
+    // the whole curve, and a window longer than what is left
+    check_close(largest_mean(parabola, 0, 1), 2.0 / 3, 1e-12);
+    assert_true(isnan(largest_mean(parabola, 0.95, 0.1)));
+    check_close(largest_mean(rising, 0, 0.1), 2 * 0.95, 1e-12);
+}
+
+static void an_impulse_counts_as_long_as_the_window_holds_it(void **state)
+{
+    (void)state;
+    event impact = {.time = 0.503, .kind = EVENT_IMPACT, .impulse = 0.2, .index = -1};
+    run_result r = {.history = {.forces = history_of(flat)},
+                    .trace = {.events = &impact, .event_count = 1}};
+    check_close(force_largest_mean(&r, 0, 0.1), 3 + 0.2 / 0.1, 1e-12);
+    check_close(force_largest_mean(&r, 0.6, 0.1), 3, 1e-12);
+    force_history_finish(&r.history.forces);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_constant_force_has_settled_from_the_start),
+        cmocka_unit_test(a_rising_force_settles_where_it_enters_the_band),
+        cmocka_unit_test(the_band_is_entered_within_a_step),
+        cmocka_unit_test(an_empty_history_has_no_answer),
+        cmocka_unit_test(the_largest_mean_is_where_the_curve_is_highest),
+        cmocka_unit_test(an_impulse_counts_as_long_as_the_window_holds_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,134 @@
+// Pieces of work on several threads: each once, whatever finishes first.
+#include "tests/check.h"
+
+#include <stdatomic.h>
+
+#include "src/study/pool.h"
+
+enum { PIECES = 1000 };
+
+typedef struct tally {
+    double results[PIECES];
+    int collected[PIECES], total;
+    atomic_int computed;
+    int fail_at; // pieces after which collecting fails, 0: never
+    int ticks, last_ticks;
+    volatile sig_atomic_t stop;
+} tally;
+
+static void compute(void *context, size_t i, void *scratch, void *result)
+{
+    tally *t = context;
+    int *calls = scratch;
+    t->computed++;
+    (*calls)++;
+    *(double *)result = sqrt((double)i);
+}
+
+static status collect(void *context, size_t i, const void *result, fault *f)
+{
+    tally *t = context;
+    t->results[i] = *(const double *)result;
+    t->collected[i]++;
+    t->total++;
+    return t->fail_at > 0 && t->total == t->fail_at
+               ? fault_set(f, STATUS_CANNOT_WRITE, "piece %zu", i)
+               : STATUS_OK;
+}
+
+static status tick(void *context, bool over, fault *f)
+{
+    tally *t = context;
+    (void)f;
+    t->ticks++;
+    t->last_ticks += over;
+    return STATUS_OK;
+}
+
+static pool_work work_on(tally *t)
+{
+    return (pool_work){.context = t,
+                       .count = PIECES,
+                       .scratch_size = sizeof(int),
+                       .result_size = sizeof(double),
+                       .compute = compute,
+                       .collect = collect,
+                       .tick = tick,
+                       .stop = &t->stop};
+}
+
+static void every_piece_is_computed_and_collected_once(void **state)
+{
+    (void)state;
+    for (int threads = 1; threads <= 8; threads *= 2) {
+        tally t = {.fail_at = 0};
+        pool_work w = work_on(&t);
+        assert_int_equal(pool_run(&w, threads, NULL), STATUS_OK);
+        assert_int_equal(t.computed, PIECES);
+        assert_int_equal(t.last_ticks, 1);
+        for (int i = 0; i < PIECES; i++) {
+            assert_int_equal(t.collected[i], 1);
+            check_close(t.results[i], sqrt(i), 0);
+        }
+    }
+}
+
+static void pieces_that_are_done_are_left_out(void **state)
+{
+    (void)state;
+    unsigned char done[PIECES] = {0};
+    tally t = {.fail_at = 0};
+    pool_work w = work_on(&t);
+    for (int i = 0; i < PIECES; i += 3) {
+        done[i] = 1;
+    }
+    w.done = done;
+    assert_int_equal(pool_run(&w, 3, NULL), STATUS_OK);
+    for (int i = 0; i < PIECES; i++) {
+        assert_int_equal(t.collected[i], i % 3 != 0);
+    }
+}
+
+static void a_failure_ends_the_work_and_is_returned(void **state)
+{
+    (void)state;
+    fault f = {.text = ""};
+    tally t = {.fail_at = 10};
+    pool_work w = work_on(&t);
+    assert_int_equal(pool_run(&w, 4, &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(f.code, STATUS_CANNOT_WRITE);
+    assert_int_equal(t.total, 10);
+}
+
+static void a_stop_ends_it_early_without_a_fault(void **state)
+{
+    (void)state;
+    tally t = {.stop = 1};
+    pool_work w = work_on(&t);
+    assert_int_equal(pool_run(&w, 2, NULL), STATUS_OK);
+    // what was in hand is collected, all the rest is left
+    assert_int_equal(t.total, t.computed);
+}
+
+static void no_pieces_are_no_work(void **state)
+{
+    (void)state;
+    tally t = {.fail_at = 0};
+    pool_work w = work_on(&t);
+    w.count = 0;
+    assert_int_equal(pool_run(&w, 2, NULL), STATUS_OK);
+    assert_int_equal(t.total, 0);
+    assert_int_equal(t.last_ticks, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_piece_is_computed_and_collected_once),
+        cmocka_unit_test(pieces_that_are_done_are_left_out),
+        cmocka_unit_test(a_failure_ends_the_work_and_is_returned),
+        cmocka_unit_test(a_stop_ends_it_early_without_a_fault),
+        cmocka_unit_test(no_pieces_are_no_work),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

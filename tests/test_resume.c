@@ -1,0 +1,145 @@
+// A run that is resumed at a checkpoint is the run from the start, to the last bit.
+#include "tests/arm_fixture.h"
+
+#include "src/run/resume.h"
+#include "src/run/run.h"
+
+enum { ROWS = 20000 };
+
+static run_result run_keeping_history(const scenario *s)
+{
+    const run_options options = {.keep_trace = true, .rows_expected = ROWS};
+    run_result result;
+    assert_int_equal(run_scenario_with(s, &options, &result), STATUS_OK);
+    return result;
+}
+
+// The run of s, resumed from that of `old`; false if nothing of it could be used.
+static bool resumed(const run_result *from, const scenario *old, const scenario *s,
+                    run_result *result)
+{
+    const run_options options = {.keep_trace = true, .rows_expected = ROWS, .resume = true};
+    if (!run_resume(from, old, s, ROWS, result)) {
+        return false;
+    }
+    assert_int_equal(run_scenario_with(s, &options, result), STATUS_OK);
+    return true;
+}
+
+static void check_same_run(const run_result *a, const run_result *b)
+{
+    assert_int_equal(a->trace.row_count, b->trace.row_count);
+    assert_memory_equal(a->trace.rows, b->trace.rows, a->trace.row_count * sizeof(sample));
+    assert_int_equal(a->trace.event_count, b->trace.event_count);
+    assert_int_equal(a->history.forces.count, b->history.forces.count);
+    assert_memory_equal(force_steps(&a->history.forces), force_steps(&b->history.forces),
+                        a->history.forces.count * sizeof(force_step));
+    for (int i = 0; i < summary_count; i++) {
+        double x = summary_value(&a->summary, i), y = summary_value(&b->summary, i);
+        assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
+    }
+}
+
+// A change at 2.5 s of the arm that presses on the wall.
+static scenario changed_late(const scenario *s, action *change)
+{
+    scenario changed = *s;
+    *change = (action){
+        .time = 2.5, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(motor.voltage), .value = 0.5};
+    changed.actions = change;
+    changed.action_count = 1;
+    return changed;
+}
+
+static void a_resumed_run_is_the_run_from_the_start(void **state)
+{
+    (void)state;
+    action change;
+    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=4", "motor.stiction=0"))};
+    scenario later = changed_late(&s, &change);
+    run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
+    assert_true(old.history.checkpoint_count > 2);
+    assert_true(resumed(&old, &s, &later, &result));
+    check_same_run(&result, &whole);
+    // and the impact before it is still known
+    assert_int_equal(result.before_impact_size, whole.before_impact_size);
+    assert_memory_equal(result.before_impact, whole.before_impact, whole.before_impact_size);
+    run_finish(&old);
+    check_same_run(&result, &whole);
+    run_finish(&result);
+    run_finish(&whole);
+}
+
+static void a_longer_run_goes_on_from_a_shorter_one(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
+    scenario longer = {.parameters = fixture_parameters(SETTINGS("run.duration=5"))};
+    run_result old = run_keeping_history(&s), whole = run_keeping_history(&longer), result;
+    assert_true(resumed(&old, &s, &longer, &result));
+    check_same_run(&result, &whole);
+    run_finish(&old);
+    run_finish(&result);
+    run_finish(&whole);
+}
+
+static void another_arm_has_nothing_in_common(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
+    scenario other = {.parameters = fixture_parameters(SETTINGS("run.duration=3", "arm.k2=5"))};
+    run_result old = run_keeping_history(&s), result;
+    assert_false(run_resume(&old, &s, &other, ROWS, &result));
+    run_finish(&old);
+}
+
+static void a_run_without_history_cannot_be_resumed(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
+    run_result old, result;
+    assert_int_equal(run_scenario(&s, true, &old), STATUS_OK);
+    assert_false(run_resume(&old, &s, &s, ROWS, &result));
+    run_finish(&old);
+}
+
+static void a_shared_result_outlives_the_first(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
+    run_result old = run_keeping_history(&s), again = run_keeping_history(&s), shared;
+    assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
+    check_same_run(&shared, &old);
+    run_finish(&old);
+    check_same_run(&shared, &again);
+    run_finish(&shared);
+    run_finish(&again);
+}
+
+static void equal_rows_are_kept_once(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
+    run_result a = run_keeping_history(&s), b = run_keeping_history(&s);
+    size_t before = shared_array_memory();
+    shared_chunks same = run_compare_rows(&a, &b);
+    assert_true(same.rows > 0);
+    run_merge(&a, &b, &same);
+    assert_true(before - shared_array_memory() >= same.rows * ARRAY_CHUNK);
+    check_same_run(&a, &b);
+    run_finish(&a);
+    run_finish(&b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_resumed_run_is_the_run_from_the_start),
+        cmocka_unit_test(a_longer_run_goes_on_from_a_shorter_one),
+        cmocka_unit_test(another_arm_has_nothing_in_common),
+        cmocka_unit_test(a_run_without_history_cannot_be_resumed),
+        cmocka_unit_test(a_shared_result_outlives_the_first),
+        cmocka_unit_test(equal_rows_are_kept_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,111 @@
+// The wall's geometry against differences of the penetration, and its law of restitution.
+#include "tests/arm_fixture.h"
+
+#include "src/arm/wall.h"
+
+static wall_model wall_of(const char *const *settings)
+{
+    wall_model w;
+    parameters p = fixture_parameters(settings);
+    wall_init(&w, &p);
+    return w;
+}
+
+static void the_contact_point_lies_the_arms_length_from_the_hub(void **state)
+{
+    (void)state;
+    wall_model w = wall_of(SETTINGS("wall.angle=0.7", "arm.length=1.5"));
+    check_close(hypot(w.x, w.y), 1.5, 1e-15);
+    check_close(atan2(w.y, w.x), 0.7, 1e-15);
+    check_close(wall_along(&w, cos(0.7), sin(0.7)), 1.5, 1e-15);
+    check_close(wall_right_of(&w, cos(0.7), sin(0.7)), 0, 1e-15);
+}
+
+// The last link of a moving arm: base, direction, and their rates.
+typedef struct link_motion {
+    double x, y, vx, vy, ax, ay; // base [m], [m/s], [m/s2]
+    double angle, omega, alpha;  // [rad], [rad/s], [rad/s2]
+} link_motion;
+
+// After a time, with constant accelerations.
+static link_motion after(link_motion l, double t)
+{
+    l.x += t * (l.vx + t * l.ax / 2);
+    l.y += t * (l.vy + t * l.ay / 2);
+    l.vx += t * l.ax;
+    l.vy += t * l.ay;
+    l.angle += t * (l.omega + t * l.alpha / 2);
+    l.omega += t * l.alpha;
+    return l;
+}
+
+static wall_contact contact_of(const wall_model *w, link_motion l)
+{
+    return wall_contact_at(w, 0.5, l.x, l.y, l.vx, l.vy, cos(l.angle), sin(l.angle), l.omega);
+}
+
+static double rate_of(const wall_model *w, link_motion l)
+{
+    wall_contact at = contact_of(w, l);
+    double lever = wall_last_lever(&at, 0.5, cos(l.angle), sin(l.angle));
+    return wall_penetration_rate(&at, l.vx, l.vy, lever, l.omega);
+}
+
+static void rates_are_the_derivatives_of_the_penetration(void **state)
+{
+    (void)state;
+    const link_motion now = {0.49, 0.08, -0.3, 0.7, 2, -1.5, 0.25, -1.1, 4};
+    const char *const kinds[] = {"wall.kind=point", "wall.kind=plane"};
+    for (int k = 0; k < 2; k++) {
+        wall_model w = wall_of(SETTINGS(kinds[k], "wall.angle=0.2"));
+        const double h = 1e-5;
+        link_motion before = after(now, -h), later = after(now, h);
+        wall_contact at = contact_of(&w, now);
+        double slope = (contact_of(&w, later).penetration - contact_of(&w, before).penetration);
+        check_close(rate_of(&w, now), slope / (2 * h), 1e-8);
+
+        // d2g/dt2 = J alpha + (base acceleration)'e + the velocity terms
+        double lever = wall_last_lever(&at, 0.5, cos(now.angle), sin(now.angle));
+        double second = lever * now.alpha + at.ex * now.ax + at.ey * now.ay + at.convective;
+        check_close(second, (rate_of(&w, later) - rate_of(&w, before)) / (2 * h), 1e-7);
+    }
+}
+
+static void a_straight_arm_at_the_walls_angle_touches_it(void **state)
+{
+    (void)state;
+    const char *const kinds[] = {"wall.kind=point", "wall.kind=plane"};
+    for (int k = 0; k < 2; k++) {
+        wall_model w = wall_of(SETTINGS(kinds[k], "wall.angle=0.3"));
+        link_motion l = {.x = 0.5 * cos(0.3), .y = 0.5 * sin(0.3), .angle = 0.3};
+        assert_true(wall_stands(&w));
+        check_close(contact_of(&w, l).penetration, 0, 1e-15);
+        check_close(contact_of(&w, l).lever, 0, 1e-15);
+        // turned on about its base it is behind the wall, turned back before it
+        l.angle = 0.3 + 1e-3;
+        check_close(contact_of(&w, l).penetration, 0.5 * sin(1e-3), 1e-15);
+        l.angle = 0.3 - 1e-3;
+        check_close(contact_of(&w, l).penetration, -0.5 * sin(1e-3), 1e-15);
+    }
+    wall_model none = wall_of(SETTINGS("wall.kind=none"));
+    assert_false(wall_stands(&none));
+}
+
+static void slow_impacts_are_plastic(void **state)
+{
+    (void)state;
+    wall_model w = wall_of(SETTINGS("wall.restitution=0.6", "method.rest_speed=0.01"));
+    check_close(wall_restitution(&w, 0.5), 0.6, 0);
+    check_close(wall_restitution(&w, 0.0099), 0, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_contact_point_lies_the_arms_length_from_the_hub),
+        cmocka_unit_test(rates_are_the_derivatives_of_the_penetration),
+        cmocka_unit_test(a_straight_arm_at_the_walls_angle_touches_it),
+        cmocka_unit_test(slow_impacts_are_plastic),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
