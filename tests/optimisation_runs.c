@@ -73,7 +73,7 @@ static int print_run(const char *settings)
         code = fail(settings, f.text);
     } else {
         run_scenario(&s, true, &result);
-        result.summary.wall_time_s = 0;
+        result.summary.cpu_time_s = result.summary.wall_time_s = 0;
         json_t *object = export_run(&s, &result);
         json_write(stdout, object);
         json_decref(object);

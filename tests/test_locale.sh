@@ -28,7 +28,7 @@ write_all() {
         host run "$name" "${changed[@]}" --csv "$name/run.csv" --json "$name/all.json" \
             --plot "$name/run.svg"
         # but for the time the computing took
-        grep -v wall_time_s "$name/all.json" >"$name/run.json"
+        grep -vE '(wall|cpu)_time_s' "$name/all.json" >"$name/run.json"
         rm "$name/all.json"
     done
     host run corrected/first-impact --scene scene.png --gl cairo --size 320x180

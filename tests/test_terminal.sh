@@ -124,7 +124,7 @@ mux send-keys q
 await "status 0"
 check_given_back q
 
-for name in TERM HUP SEGV ABRT FPE BUS ILL; do
+for name in TERM HUP SEGV ABRT FPE BUS ILL TRAP XCPU SYS USR1 USR2 ALRM VTALRM PROF IO PWR STKFLT; do
     start
     kill -s "$name" "$(cat "$folder/pid")"
     await "status $((128 + $(kill -l "$name")))"

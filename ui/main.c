@@ -3,9 +3,11 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <locale.h>
 #include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "src/base/whole_file.h"
 #include "src/base/version.h"
@@ -126,8 +128,23 @@ static void catch_endings(void)
     }
 }
 
+// Standard descriptors that whoever started the program left closed become /dev/null, or else the
+// first file opened would take their number and what is printed would end in it.
+static bool open_missing_descriptors(void)
+{
+    int opened;
+    do {
+        opened = open("/dev/null", O_RDWR);
+    } while (opened >= 0 && opened <= STDERR_FILENO);
+    return opened >= 0 && close(opened) == 0;
+}
+
 int main(int argc, char **argv)
 {
+    if (!open_missing_descriptors()) {
+        return EXIT_FAILED;
+    }
+
     // numbers keep their decimal point: only the character set follows the locale
     setlocale(LC_CTYPE, "");
     // a write that fails is reported where it is made, not by a signal

@@ -49,7 +49,8 @@ const summary_info summary_table[] = {
     NUMBER(electrical_energy_J, "electrical_energy", "electrical energy", "J",
            "energy that the amplifier fed into the motor"),
     NUMBER(steps, "steps", "steps", "", "time steps taken"),
-    NUMBER(wall_time_s, "wall_time", "wall time", "s", "computing time", TIMING),
+    NUMBER(cpu_time_s, "cpu_time", "cpu time", "s", "processor time of the run", TIMING),
+    NUMBER(wall_time_s, "wall_time", "wall time", "s", "time that passed during the run", TIMING),
 };
 
 const int summary_count = (int)(sizeof summary_table / sizeof summary_table[0]);

@@ -38,7 +38,8 @@ typedef struct summary {
     double largest_command_V;       // in magnitude, as the D/A put it out
     double electrical_energy_J;     // that the amplifier fed into the motor
     double steps;                   // time steps taken
-    double wall_time_s;             // computing time
+    double cpu_time_s;              // processor time of the run's own thread
+    double wall_time_s;             // time that passed meanwhile
 } summary;
 
 typedef struct summary_info {

@@ -19,10 +19,10 @@ static void summary_start(summary *s)
     s->motor_work_J = s->energy_residual_J = 0;
 }
 
-static double computing_time(void)
+static double seconds_of(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
@@ -37,7 +37,8 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
     assert(s != NULL && options != NULL && result != NULL);
     recording r = {.scenario = s, .result = result, .options = options, .now = s->parameters};
     fault f = {.text = "", .path = ""};
-    const double start = computing_time();
+    const double start = seconds_of(CLOCK_MONOTONIC);
+    const double start_cpu = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     if (!options->resume) {
         memset(result, 0, sizeof *result);
         summary_start(&result->summary);
@@ -58,7 +59,8 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
         result->summary.path = f.path;
     }
 
-    result->summary.wall_time_s = computing_time() - start;
+    result->summary.cpu_time_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
+    result->summary.wall_time_s = seconds_of(CLOCK_MONOTONIC) - start;
     if (result->history.forces.array.reserved == 0) {
         force_history_finish(&result->history.forces); // needed until here only
     }

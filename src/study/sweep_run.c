@@ -45,8 +45,8 @@ static void compute_run(void *context, size_t run, void *scratch, void *result)
     fault f = {.path = ""};
     (void)scratch;
 
-    // the computing time of this thread alone
-    double start = seconds(CLOCK_THREAD_CPUTIME_ID);
+    // the times of this thread, deriving the scenario included
+    const double start = seconds(CLOCK_MONOTONIC), start_cpu = seconds(CLOCK_THREAD_CPUTIME_ID);
     if (sweep_scenario(e->sweep, run, &derived, &f) == STATUS_OK) {
         run_result computed;
         run_scenario(&derived, false, &computed);
@@ -55,7 +55,8 @@ static void compute_run(void *context, size_t run, void *scratch, void *result)
     } else {
         summarise_refusal(s, &f);
     }
-    s->wall_time_s = seconds(CLOCK_THREAD_CPUTIME_ID) - start;
+    s->cpu_time_s = seconds(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
+    s->wall_time_s = seconds(CLOCK_MONOTONIC) - start;
 }
 
 static status store_run(void *context, size_t run, const void *result, fault *f)

@@ -43,7 +43,9 @@ static struct {
 static volatile sig_atomic_t leaving; // the signal that asks to leave
 
 static const int polite_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH, SIGCONT};
-static const int fatal_signals[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL};
+static const int fatal_signals[] = {SIGSEGV, SIGABRT, SIGFPE,  SIGBUS,   SIGILL,  SIGTRAP,
+                                    SIGXCPU, SIGSYS,  SIGUSR1, SIGUSR2,  SIGALRM, SIGVTALRM,
+                                    SIGPROF, SIGIO,   SIGPWR,  SIGSTKFLT};
 enum {
     POLITE = sizeof polite_signals / sizeof polite_signals[0],
     FATAL = sizeof fatal_signals / sizeof fatal_signals[0],
@@ -89,8 +91,12 @@ static void take_signals(void)
         sigaction(polite_signals[i], &act, &polite_before[i]);
     }
     for (int i = 0; i < FATAL; i++) {
+        // one that is ignored ends nothing and stays ignored
         struct sigaction act = {.sa_handler = on_fatal, .sa_flags = SA_ONSTACK};
-        sigaction(fatal_signals[i], &act, &fatal_before[i]);
+        sigaction(fatal_signals[i], NULL, &fatal_before[i]);
+        if (fatal_before[i].sa_handler != SIG_IGN) {
+            sigaction(fatal_signals[i], &act, NULL);
+        }
     }
 }
 

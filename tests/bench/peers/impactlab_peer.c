@@ -88,7 +88,7 @@ static bool run(void *instance, peer_answer *answer)
     answer->release = s->first_contact_s + s->first_pulse_s;
     answer->final_force = isnan(s->first_contact_s) ? (double)NAN : s->steady_force_N;
     answer->steps = s->steps;
-    answer->computing_time = s->wall_time_s;
+    answer->computing_time = s->cpu_time_s;
     int impacts = 0;
     for (size_t i = 0; i < result.trace.event_count; i++) {
         const event *e = &result.trace.events[i];
