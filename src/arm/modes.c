@@ -10,8 +10,7 @@ extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const i
                    const int *lda, double *b, const int *ldb, double *w, double *work,
                    const int *lwork, int *info);
 
-// M and K of the straight chain in absolute angles: M_ij = A_ij of chain.h, K tridiagonal.
-static void fill_matrices(const arm *a, double *mass, double *stiffness)
+void modes_matrices(const arm *a, double *mass, double *stiffness)
 {
     const int n = a->dof, N = a->links;
     const double l = a->link_length, m = a->link_mass;
@@ -95,7 +94,7 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
     double *values = product + n, *work = values + n;
 
     // K x = omega^2 M x on the angles that hub and tip allow
-    fill_matrices(a, mass, stiffness);
+    modes_matrices(a, mass, stiffness);
     int columns = allowed_basis(a, hub, tip, basis), info = 0;
     reduce(stiffness, basis, n, columns, product, k);
     reduce(mass, basis, n, columns, product, m);

@@ -18,3 +18,7 @@ typedef enum tip_end { TIP_FREE, TIP_PINNED } tip_end; // in the air, or touchin
 // STATUS_NO_MEMORY.
 status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double *frequencies,
                      double *shapes);
+
+// M and K themselves, in absolute angles, added to mass[dof * dof] and stiffness[dof * dof] of
+// zeroes: M_ij = A_ij of chain.h, K tridiagonal [kg m2], [N m/rad].
+void modes_matrices(const arm *a, double *mass, double *stiffness);

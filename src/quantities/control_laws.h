@@ -25,7 +25,9 @@
     LAW(PREDICTIVE, predictive, "predictive",                                                      \
         "optimal behind an approach that keeps to a limit on the force")                           \
     LAW(INVERSE_DYNAMICS, inverse_dynamics, "inverse-dynamics",                                    \
-        "computed torque through the inverse of the flexible arm, played back open-loop")
+        "computed torque through the inverse of the flexible arm, played back open-loop")          \
+    LAW(OBSERVER, observer, "observer",                                                            \
+        "observer of arm, wall and unknown torque, feedback by synthesis, contact found again")
 
 // Values of control.law.
 typedef enum control_law {

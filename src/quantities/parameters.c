@@ -175,14 +175,14 @@ const parameter_info parameter_table[] = {
      MEANING("reverse-torque: how long the motor pulls back after contact")},
     {PATH(control.switch_share), REAL("", 0, 1), DEFAULT(0.5),
      MEANING("bang-bang: share of the way to the wall at which the command is reversed")},
-    {PATH(control.force_limit), REAL("N", 0, 1000), DEFAULT(2),
-     MEANING("predictive: force that an impact may not exceed wherever it happens")},
+    {PATH(control.force_limit), REAL("N", 0, 1000), DEFAULT(0),
+     MEANING("predictive and observer: force that is not to be exceeded, 0 for none")},
     {PATH(control.travel_time), REAL("s", 1e-3, 100), DEFAULT(0.35),
      MEANING("inverse-dynamics: how long the tip moves to the wall")},
     {PATH(control.arrival_speed), REAL("m/s", 0, 1000), DEFAULT(0),
      MEANING("inverse-dynamics: speed with which the tip is to meet the wall")},
 
-    {PATH(belief.links), INTEGER(1, 64), DEFAULT(2),
+    {PATH(belief.links), INTEGER(2, 64), DEFAULT(2),
      MEANING("number of links of the beam in the controller's model, where it can have several")},
     {PATH(belief.mass_factor), REAL("", 0.01, 100), DEFAULT(1),
      MEANING("beam's mass, with its moments of inertia, that the controller believes in, divided "

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-enum { ESTIMATOR_STATES = 4 };
+enum { ESTIMATOR_STATES = 12 };
 
 // z' = a z + b u over one period.
 typedef struct sampled_model {

@@ -34,13 +34,13 @@ static void model_flight(optimal_memory *m)
 
     // accelerations M^-1 (torque e1 - D q1' e1 - K q)
     double bend_first = r->k2 * (m22 + m12) / det, bend_last = -r->k2 * (m12 + m11) / det;
-    double rate[4][4] = {
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {
         [FREE_FIRST] = {[FREE_FIRST_RATE] = 1},
         [FREE_LAST] = {[FREE_LAST_RATE] = 1},
         [FREE_FIRST_RATE] = {-bend_first, bend_first, -m22 / det * r->hub_damping},
         [FREE_LAST_RATE] = {-bend_last, bend_last, m12 / det * r->hub_damping},
     };
-    double input[4] = {0, 0, m22 / det, -m12 / det};
+    double input[ESTIMATOR_STATES] = {0, 0, m22 / det, -m12 / det};
     sampled_model_init(&m->flight, 4, rate, input, r->period);
 }
 
@@ -49,9 +49,9 @@ static void model_flight(optimal_memory *m)
 static void model_contact(optimal_memory *m, double h, sampled_model *model)
 {
     double k = m->stiffness / m->inertia, d = m->rig.hub_damping / m->inertia;
-    double rate[4][4] = {
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {
         [PRESSED_ANGLE] = {[PRESSED_RATE] = 1}, [PRESSED_RATE] = {-k, -d, k, 1 / m->inertia}};
-    double input[4] = {[PRESSED_RATE] = 1 / m->inertia};
+    double input[ESTIMATOR_STATES] = {[PRESSED_RATE] = 1 / m->inertia};
     sampled_model_init(model, 4, rate, input, h);
 }
 
@@ -101,7 +101,7 @@ const char *state_feedback_start_with_limit(void *memory, const controller_setup
 {
     optimal_memory *m = memory;
     const char *refusal = state_feedback_start(memory, setup);
-    m->force_limit = setup->parameters[OWN];
+    m->force_limit = setup->parameters[OWN] > 0 ? setup->parameters[OWN] : HUGE_VAL;
     return refusal;
 }
 

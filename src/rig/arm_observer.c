@@ -1,0 +1,426 @@
+#include "src/rig/arm_observer.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum { N = ESTIMATOR_STATES };
+_Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all modes have room");
+
+// What readings and models are worth: standard deviations.
+#define ANGLE_NOISE  4.5e-4 // of the encoder, and of angles that no mode shows [rad]
+#define RATE_NOISE   0.014  // of the tachometer [rad/s]
+#define RATE_RIPPLE  0.01   // of the tachometer, as a share of the reading
+#define FORCE_NOISE  0.02   // of the force sensor [N]
+#define FORCE_SHARE  0.02   // of the force sensor, as a share of the reading
+#define FILM_NOISE   0.01   // of the film [rad]
+#define FILM_LEAK    0.1    // that its charge loses [rad/s]
+#define ACCELERATION 1.0    // of the accelerometer [rad/s2]
+#define TORQUE_NOISE 0.1    // of the torque, from sample to sample [N m]
+#define TORQUE_DRIFT 0.1    // of the unknown torque, in a second [N m]
+#define WALL_DRIFT   1e-3   // of the wall, in a second [rad]
+#define STIFFNESS    0.25   // share by which the stiffness may be wrong
+#define TIP_IMPULSE  0.03   // that the wall may give where contact ends [N s]
+#define OUTLIER      4.0    // readings further off, in standard deviations, are worth less
+#define REST         0.01   // a slower hub counts as at rest [rad/s]
+
+static int count_of(const arm_observer *o)
+{
+    return arm_observer_modes(o)->count;
+}
+
+const mode_set *arm_observer_modes(const arm_observer *o)
+{
+    return o->touches ? &o->arm.contact : &o->arm.free;
+}
+
+int arm_observer_torque_index(const arm_observer *o)
+{
+    return 2 * count_of(o) + o->touches;
+}
+
+static int wall_index(const arm_observer *o)
+{
+    return 2 * o->arm.contact.count;
+}
+
+static int state_count(const arm_observer *o)
+{
+    return arm_observer_torque_index(o) + 1;
+}
+
+// --- the model --------------------------------------------------------------------------------
+
+// a_i'' = -w_i^2 a_i - c_i a_i' + h_i (drive + unknown torque - damping hub rate), over h.
+static void sample_model(const arm_observer *o, const mode_set *set, int torque, double h,
+                         sampled_model *model)
+{
+    const int n = set->count;
+    double rate[N][N] = {{0}}, input[N] = {0};
+    for (int i = 0; i < n; i++) {
+        rate[i][n + i] = 1;
+        rate[n + i][i] = -set->square[i];
+        rate[n + i][n + i] = -set->damping[i];
+        for (int j = 0; j < n; j++) {
+            rate[n + i][n + j] -= o->hub_damping * set->hub[i] * set->hub[j];
+        }
+        rate[n + i][torque] = input[n + i] = set->hub[i];
+    }
+    sampled_model_init(model, torque + 1, rate, input, h);
+}
+
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup)
+{
+    assert(o != NULL && setup != NULL);
+    memset(o, 0, sizeof *o);
+    const char *refusal = reduced_arm_init(&o->arm, setup);
+    if (refusal != NULL) {
+        return refusal;
+    }
+
+    o->torque_per_volt = setup->torque_per_volt;
+    o->hub_damping = setup->hub_damping;
+    o->stiction = setup->stiction;
+    o->period = setup->period;
+    o->delay = fmin(setup->delay, setup->period);
+    for (int k = 0; k < 2; k++) {
+        double h = k == 0 ? o->delay : o->period - o->delay;
+        sample_model(o, &o->arm.free, 2 * o->arm.free.count, h, &o->free_model[k]);
+        sample_model(o, &o->arm.contact, 2 * o->arm.contact.count + 1, h, &o->contact_model[k]);
+    }
+    return NULL;
+}
+
+void arm_observer_start(arm_observer *o, const controller_input *in)
+{
+    // rotation of all bodies: a_i = p_i angle
+    const mode_set *set = &o->arm.free;
+    memset(&o->e, 0, sizeof o->e);
+    for (int i = 0; i < set->count; i++) {
+        o->e.z[i] = set->momentum[i] * in->encoder;
+        o->e.p[i][i] = ANGLE_NOISE * ANGLE_NOISE * o->arm.inertia;
+        o->e.p[set->count + i][set->count + i] = 1e-6;
+    }
+    int torque = 2 * set->count;
+    o->e.p[torque][torque] = o->stiction * o->stiction;
+    o->touches = false;
+    o->since = in->time;
+    o->wall_variance = HUGE_VAL;
+    o->last_voltage = in->voltage;
+    o->tip_before = o->tip_now = in->encoder;
+}
+
+// --- what an estimate says --------------------------------------------------------------------
+
+double arm_observer_hub(const arm_observer *o, const estimator *e)
+{
+    const mode_set *set = arm_observer_modes(o);
+    double angle = o->touches ? e->z[wall_index(o)] : 0;
+    for (int i = 0; i < set->count; i++) {
+        angle += set->hub[i] * e->z[i];
+    }
+    return angle;
+}
+
+double arm_observer_tip(const arm_observer *o, const estimator *e)
+{
+    const mode_set *set = arm_observer_modes(o);
+    double angle = o->touches ? e->z[wall_index(o)] : 0;
+    for (int i = 0; i < set->count; i++) {
+        angle += set->tip[i] * e->z[i];
+    }
+    return angle;
+}
+
+double arm_observer_rate(const arm_observer *o, const estimator *e)
+{
+    const mode_set *set = arm_observer_modes(o);
+    double rate = 0;
+    for (int i = 0; i < set->count; i++) {
+        rate += set->hub[i] * e->z[set->count + i];
+    }
+    return rate;
+}
+
+// Inverse of the hub's inertia as the modes show it, sum h_i^2 [1/(kg m2)].
+static double hub_mobility(const mode_set *set)
+{
+    double sum = 0;
+    for (int i = 0; i < set->count; i++) {
+        sum += set->hub[i] * set->hub[i];
+    }
+    return sum;
+}
+
+// Torque on the hub under which it keeps its velocity [N m].
+static double balancing_torque(const arm_observer *o, const estimator *e)
+{
+    const mode_set *set = arm_observer_modes(o);
+    double sum = 0;
+    for (int i = 0; i < set->count; i++) {
+        sum += set->hub[i] * (set->square[i] * e->z[i] + set->damping[i] * e->z[set->count + i]);
+    }
+    return sum / hub_mobility(set);
+}
+
+double arm_observer_holding_torque(const arm_observer *o, const estimator *e)
+{
+    return balancing_torque(o, e) - e->z[arm_observer_torque_index(o)];
+}
+
+double arm_observer_friction(const arm_observer *o, const estimator *e, double drive)
+{
+    double rate = arm_observer_rate(o, e), limit = o->stiction;
+    if (fabs(rate) > REST) {
+        return rate > 0 ? limit : -limit;
+    }
+    // what brings it to rest and holds it there
+    double net =
+        drive + e->z[arm_observer_torque_index(o)] - o->hub_damping * rate - balancing_torque(o, e);
+    double stop = rate / (hub_mobility(arm_observer_modes(o)) * o->period);
+    return fmax(-limit, fmin(net + stop, limit));
+}
+
+double arm_observer_force_per_torque(const arm_observer *o)
+{
+    const mode_set *set = &o->arm.contact;
+    double share = 1;
+    for (int i = 0; i < set->count; i++) {
+        share -= set->momentum[i] * set->hub[i];
+    }
+    return share / o->arm.length;
+}
+
+// The force is row times state plus that of drive and friction.
+static void force_row(const arm_observer *o, double *row)
+{
+    const mode_set *set = &o->arm.contact;
+    const int n = set->count;
+    double at_once = arm_observer_force_per_torque(o), length = o->arm.length;
+    memset(row, 0, N * sizeof *row);
+    for (int i = 0; i < n; i++) {
+        row[i] = set->momentum[i] * set->square[i] / length;
+        row[n + i] =
+            set->momentum[i] * set->damping[i] / length - at_once * o->hub_damping * set->hub[i];
+    }
+    row[arm_observer_torque_index(o)] = at_once;
+}
+
+double arm_observer_force(const arm_observer *o, const estimator *e, double drive)
+{
+    double row[N];
+    force_row(o, row);
+    double force = arm_observer_force_per_torque(o) * (drive - arm_observer_friction(o, e, drive));
+    for (int i = 0; i < state_count(o); i++) {
+        force += row[i] * e->z[i];
+    }
+    return force;
+}
+
+// --- one sample -------------------------------------------------------------------------------
+
+static void predict(const arm_observer *o, estimator *e, const sampled_model *model, double h,
+                    double voltage)
+{
+    const mode_set *set = arm_observer_modes(o);
+    const int n = set->count;
+    double noise[N] = {0}, drive = o->torque_per_volt * voltage, share = h / o->period;
+    for (int i = 0; i < n; i++) {
+        double kick = set->hub[i] * TORQUE_NOISE * o->period;
+        noise[n + i] = share * kick * kick;
+    }
+    noise[arm_observer_torque_index(o)] = TORQUE_DRIFT * TORQUE_DRIFT * h;
+    if (o->touches) {
+        // a stiffness believed wrongly shows as a wall that moves with the hub
+        double bend = arm_observer_hub(o, e) - e->z[wall_index(o)];
+        double wandering = 2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
+        noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
+    }
+    estimator_predict(e, model, drive - arm_observer_friction(o, e, drive), noise);
+}
+
+// A reading that is far off is worth less: an impact is no noise.
+static void take_reading(arm_observer *o, const double *row, double offset, double reading,
+                         double deviation)
+{
+    const int n = state_count(o);
+    double expected = offset, variance = deviation * deviation;
+    for (int i = 0; i < n; i++) {
+        expected += row[i] * o->e.z[i];
+        for (int j = 0; j < n; j++) {
+            variance += row[i] * o->e.p[i][j] * row[j];
+        }
+    }
+    double off = fabs(reading - expected) / sqrt(variance);
+    double worth = off > OUTLIER ? off / OUTLIER : 1;
+    estimator_correct(&o->e, n, row, offset, reading, deviation * deviation * worth * worth);
+}
+
+// Hub and beam: encoder, tachometer, and film and accelerometer where they are fitted.
+static void take_motion(arm_observer *o, const controller_input *in)
+{
+    const mode_set *set = arm_observer_modes(o);
+    const int n = set->count;
+    double angle[N] = {0}, rate[N] = {0}, bending[N] = {0};
+    for (int i = 0; i < n; i++) {
+        angle[i] = rate[n + i] = set->hub[i];
+        bending[i] = set->bending[i];
+    }
+    angle[wall_index(o)] += o->touches;
+    double ripple = RATE_RIPPLE * in->tachometer;
+    take_reading(o, angle, 0, in->encoder, ANGLE_NOISE);
+    take_reading(o, rate, 0, in->tachometer, sqrt(RATE_NOISE * RATE_NOISE + ripple * ripple));
+
+    if (!isnan(in->film)) {
+        double leaked = FILM_LEAK * (in->time - o->since);
+        take_reading(o, bending, 0, in->film, FILM_NOISE + fmin(leaked, 1));
+    }
+    if (!isnan(in->accelerometer)) {
+        // a'' at the hub: row times state, and what drive and friction give
+        double row[N] = {0}, mobility = hub_mobility(set);
+        double drive = o->torque_per_volt * in->voltage;
+        for (int i = 0; i < n; i++) {
+            row[i] = -set->hub[i] * set->square[i];
+            row[n + i] = -set->hub[i] * set->damping[i] - mobility * o->hub_damping * set->hub[i];
+        }
+        row[arm_observer_torque_index(o)] = mobility;
+        double offset = mobility * (drive - arm_observer_friction(o, &o->e, drive));
+        take_reading(o, row, offset, in->accelerometer, ACCELERATION);
+    }
+}
+
+static void take_force(arm_observer *o, const controller_input *in)
+{
+    double row[N], linear = 0, drive = o->torque_per_volt * in->voltage;
+    force_row(o, row);
+    for (int i = 0; i < state_count(o); i++) {
+        linear += row[i] * o->e.z[i];
+    }
+    double offset = arm_observer_force(o, &o->e, drive) - linear;
+    take_reading(o, row, offset, in->force, FORCE_NOISE + FORCE_SHARE * fabs(in->force));
+}
+
+void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force)
+{
+    const sampled_model *models = o->touches ? o->contact_model : o->free_model;
+    if (o->delay > 0) {
+        predict(o, &o->e, &models[0], o->delay, o->last_voltage);
+    }
+    if (o->delay < o->period) {
+        predict(o, &o->e, &models[1], o->period - o->delay, in->voltage);
+    }
+    o->last_voltage = in->voltage;
+
+    take_motion(o, in);
+    if (o->touches && takes_force) {
+        take_force(o, in);
+    }
+    if (o->touches) {
+        o->wall = o->e.z[wall_index(o)];
+        o->wall_variance = o->e.p[wall_index(o)][wall_index(o)];
+    }
+    o->tip_before = o->tip_now;
+    o->tip_now = arm_observer_tip(o, &o->e);
+}
+
+estimator arm_observer_ahead(const arm_observer *o, double voltage)
+{
+    estimator ahead = o->e;
+    if (o->delay > 0) {
+        predict(o, &ahead, o->touches ? &o->contact_model[0] : &o->free_model[0], o->delay,
+                voltage);
+    }
+    return ahead;
+}
+
+// --- contact begins and ends ------------------------------------------------------------------
+
+// The estimate t z and its covariance t p t'.
+static void transform(estimator *e, int from, int to, double t[N][N])
+{
+    estimator before = *e;
+    double product[N][N];
+    memset(e, 0, sizeof *e);
+    for (int i = 0; i < to; i++) {
+        for (int j = 0; j < from; j++) {
+            e->z[i] += t[i][j] * before.z[j];
+            product[i][j] = 0;
+            for (int k = 0; k < from; k++) {
+                product[i][j] += t[i][k] * before.p[k][j];
+            }
+        }
+    }
+    for (int i = 0; i < to; i++) {
+        for (int j = 0; j < to; j++) {
+            for (int k = 0; k < from; k++) {
+                e->p[i][j] += product[i][k] * t[j][k];
+            }
+        }
+    }
+}
+
+void arm_observer_touch(arm_observer *o, double time)
+{
+    assert(!o->touches);
+    const mode_set *contact = &o->arm.contact;
+    const int m = contact->count, n = o->arm.free.count, wall = 2 * m;
+
+    // the wall is where the tip came between the two samples; or where it was known to be
+    double way = o->tip_now - o->tip_before;
+    double met = (o->tip_now + o->tip_before) / 2, variance = way * way / 12 + 1e-6;
+    if (o->wall_variance < HUGE_VAL) {
+        double known = o->wall_variance + 1e-6;
+        met = (met * known + o->wall * variance) / (known + variance);
+        variance = known * variance / (known + variance);
+    }
+
+    // what the touch keeps of the motion, seen from there
+    double t[N][N] = {{0}};
+    for (int i = 0; i < m; i++) {
+        for (int j = 0; j < n; j++) {
+            t[i][j] = t[m + i][n + j] = o->arm.touch[i][j];
+        }
+    }
+    t[wall + 1][2 * n] = 1;
+    transform(&o->e, 2 * n + 1, 2 * m + 2, t);
+    o->e.z[wall] = met;
+    for (int i = 0; i < m; i++) {
+        o->e.z[i] -= contact->momentum[i] * met;
+        o->e.p[wall][i] = o->e.p[i][wall] = -contact->momentum[i] * variance;
+        for (int j = 0; j < m; j++) {
+            o->e.p[i][j] += contact->momentum[i] * contact->momentum[j] * variance;
+        }
+        double kick = contact->hub[i] * TORQUE_NOISE * o->period;
+        o->e.p[m + i][m + i] += kick * kick;
+    }
+    o->e.p[wall][wall] = variance;
+    o->touches = true;
+    o->since = time;
+}
+
+void arm_observer_leave(arm_observer *o, double time)
+{
+    assert(o->touches);
+    const mode_set *free = &o->arm.free;
+    const int m = o->arm.contact.count, n = free->count, wall = 2 * m;
+    double t[N][N] = {{0}};
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < m; j++) {
+            t[i][j] = t[n + i][m + j] = o->arm.touch[j][i];
+        }
+        t[i][wall] = free->momentum[i];
+    }
+    t[2 * n][wall + 1] = 1;
+    transform(&o->e, 2 * m + 2, 2 * n + 1, t);
+
+    // an impulse at the tip that no sensor saw
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            double l = o->arm.length * TIP_IMPULSE;
+            o->e.p[n + i][n + j] += l * l * free->tip[i] * free->tip[j];
+        }
+    }
+    o->touches = false;
+    o->since = time;
+    o->tip_before = o->tip_now = o->wall;
+}

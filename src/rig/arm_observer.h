@@ -1,0 +1,65 @@
+// An observer of the arm for controllers: a Kalman filter on the reduced arm, free or with its tip
+// at the wall, with a constant torque and the wall's angle among its states, and the estimate
+// carried over where contact begins and ends.
+#pragma once
+
+#include "src/rig/estimator.h"
+#include "src/rig/reduced_arm.h"
+
+// States: modal coordinates, their rates, in contact the wall's angle, and last the torque that the
+// model does not know of.
+typedef struct arm_observer {
+    reduced_arm arm;
+    double torque_per_volt; // [N m/V]
+    double hub_damping;     // [N m s/rad]
+    double stiction;        // [N m]
+    double period, delay;   // [s]
+    // either state over the delay of a command, with the one before in effect, and over the rest
+    sampled_model free_model[2], contact_model[2];
+    bool touches;
+    estimator e;
+    double last_voltage;        // in effect at the sample before [V]
+    double since;               // when the contact or the flight began [s]
+    double wall, wall_variance; // as last known [rad], [rad2]
+    double tip_before, tip_now; // tip angle in flight at the last two samples [rad]
+} arm_observer;
+
+// Models the arm that the setup describes, at rest at an angle still to be read. NULL, or a
+// sentence that says why it cannot.
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup);
+
+// Starts at rest where the encoder is.
+void arm_observer_start(arm_observer *o, const controller_input *in);
+
+// One sample: the estimate follows the arm over the period before it and takes in all readings.
+// takes_force: the force reading too, which shows more than the force just after an impact.
+void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force);
+
+// The tip met the wall, plastically, or left it, after the last sample and before now.
+void arm_observer_touch(arm_observer *o, double time);
+void arm_observer_leave(arm_observer *o, double time);
+
+// The estimate when a command given now takes effect.
+estimator arm_observer_ahead(const arm_observer *o, double voltage);
+
+// The modes of the present state, and the index of the torque among the states.
+const mode_set *arm_observer_modes(const arm_observer *o);
+int arm_observer_torque_index(const arm_observer *o);
+
+// Of an estimate: hub angle and tip angle [rad], hub velocity [rad/s].
+double arm_observer_hub(const arm_observer *o, const estimator *e);
+double arm_observer_tip(const arm_observer *o, const estimator *e);
+double arm_observer_rate(const arm_observer *o, const estimator *e);
+
+// Torque that holds the hub where the estimate has it, without friction, that of the unknown torque
+// included [N m].
+double arm_observer_holding_torque(const arm_observer *o, const estimator *e);
+
+// Friction on the hub under a motor torque [N m], against the motion, or what holds at rest.
+double arm_observer_friction(const arm_observer *o, const estimator *e, double drive);
+
+// Contact force of an estimate in contact under a motor torque on the hub [N].
+double arm_observer_force(const arm_observer *o, const estimator *e, double drive);
+
+// Change of that force with the torque, at once [1/m].
+double arm_observer_force_per_torque(const arm_observer *o);

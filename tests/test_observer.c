@@ -1,0 +1,271 @@
+// The law `observer`: its gain, its reduced arm, and what it has to show on the rig; and that laws
+// see sensors only.
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/rig/controller_values.h"
+#include "src/rig/laws/hybrid_modes.h"
+#include "src/rig/reduced_arm.h"
+#include "src/rig/riccati.h"
+#include "src/rig/rig.h"
+#include "tests/rig_fixture.h"
+
+#define N ESTIMATOR_STATES
+
+// --- synthesis --------------------------------------------------------------------------------
+
+static void doubling_finds_the_gain_of_the_schur_form(void **state)
+{
+    (void)state;
+    // the arm in contact at 200 Hz, by both solvers
+    double rate[N][N] = {{0, 1}, {-510, -4.7}}, input[N] = {0, 11.3}, one[2], other[N];
+    const double output[N] = {28.2, 0.08}, direct = -0.19, effort = 2e-3, growth = 1.05;
+    sampled_model m;
+    sampled_model_init(&m, 2, rate, input, 0.005);
+    assert_true(optimal_gain(&m, output, direct, effort, growth, one));
+    quadratic_cost cost = {.effort = effort, .growth = growth};
+    quadratic_cost_add(&cost, 2, output, direct, 1);
+    assert_true(quadratic_gain(&m, &cost, other));
+    check_relative(other[0], one[0], 1e-9);
+    check_relative(other[1], one[1], 1e-9);
+}
+
+// A scalar: p = a^2 p/(1 + p b^2/r) + q has a root in closed form.
+static void doubling_solves_the_scalar_equation(void **state)
+{
+    (void)state;
+    sampled_model m = {.n = 1, .a = {{1.2}}, .b = {0.5}};
+    quadratic_cost cost = {.state = {{2}}, .effort = 3, .growth = 1};
+    double gain[N], a = 1.2, b = 0.5, q = 2, r = 3;
+    assert_true(quadratic_gain(&m, &cost, gain));
+    double half = (r * (1 - a * a) - b * b * q) / (2 * b * b);
+    double p = -half + sqrt(half * half + q * r / (b * b));
+    check_relative(gain[0], a * b * p / (r + b * b * p), 1e-12);
+
+    // what no command reaches and is unstable has no gain
+    sampled_model lost = {.n = 1, .a = {{1.2}}, .b = {0}};
+    assert_false(quadratic_gain(&lost, &cost, gain));
+}
+
+static controller_setup two_links(void)
+{
+    return (controller_setup){.period = 0.005,
+                              .voltage_limit = 10,
+                              .torque_per_volt = 0.44,
+                              .hub_inertia = 5.2e-3,
+                              .link_mass = 0.2,
+                              .link_length = 0.5,
+                              .link_inertia = 0.2 * 0.25 / 12,
+                              .k2 = 4.92,
+                              .links = 2,
+                              .hub_spring = HUGE_VAL};
+}
+
+// Two links have one degree of freedom in contact: M x'' = T - 4 k2 x, f = 4 k2 x - mu x''.
+static void two_links_reduce_to_themselves(void **state)
+{
+    (void)state;
+    controller_setup s = two_links();
+    reduced_arm reduced;
+    assert_null(reduced_arm_init(&reduced, &s));
+    double quarter = s.link_mass * 0.25 / 4, inertia = s.hub_inertia + 2 * s.link_inertia;
+    double mass = inertia + 2 * quarter, mu = (quarter - s.link_inertia) / 0.5;
+    assert_int_equal(reduced.contact.count, 1);
+    check_relative(reduced.contact.square[0], 4 * s.k2 / mass, 1e-9);
+    check_relative(reduced.contact.hub[0] * reduced.contact.hub[0], 1 / mass, 1e-9);
+
+    // the torque's immediate part of the force
+    double at_once = 1 - reduced.contact.momentum[0] * reduced.contact.hub[0];
+    check_relative(at_once, -mu / mass, 1e-9);
+
+    // a rotation of all bodies has p of the free modes and bends nothing
+    check_relative(reduced.free.momentum[0] * reduced.free.momentum[0], reduced.inertia, 1e-9);
+    check_close(reduced.free.momentum[1], 0, 1e-9);
+    check_close(reduced.free.square[0], 0, 1e-6);
+}
+
+// A plastic touch keeps what M projects: it loses energy, and nothing of a motion that the contact
+// allows.
+static void a_touch_loses_energy(void **state)
+{
+    (void)state;
+    controller_setup s = two_links();
+    s.links = 8;
+    s.period = 1e-3;
+    reduced_arm reduced;
+    assert_null(reduced_arm_init(&reduced, &s));
+    assert_true(reduced.contact.count >= 3);
+    double before = 0, after = 0;
+    for (int i = 0; i < reduced.contact.count; i++) {
+        double rate = 0;
+        for (int k = 0; k < reduced.free.count; k++) {
+            rate += reduced.touch[i][k] * reduced.free.momentum[k];
+        }
+        after += rate * rate;
+        // uniform rotation is the rigid mode alone
+        check_close(rate, reduced.contact.momentum[i], 1e-6);
+    }
+    before = reduced.free.momentum[0] * reduced.free.momentum[0];
+    check_below(after, before);
+}
+
+// --- on the rig -------------------------------------------------------------------------------
+
+static void overshoot_is_small_when_told_the_truth(void **state)
+{
+    (void)state;
+    const char *const forces[] = {"control.force=0.5", "control.force=1", "control.force=2",
+                                  "control.force=4"};
+    for (int i = 0; i < 4; i++) {
+        summary hybrid = rig_summary(SETTINGS("control.law=hybrid", forces[i]));
+        summary s = rig_summary(SETTINGS("control.law=observer", forces[i]));
+        check_below(s.force_over_command_N, 0.1 * s.force_command_N);
+        check_below(s.settling_time_s, 0.3);
+        check_below(s.first_contact_s + s.settling_time_s,
+                    1.2 * (hybrid.first_contact_s + hybrid.settling_time_s));
+        check_close(s.steady_error_N, 0, 0.05 * s.force_command_N);
+    }
+}
+
+// What no table covered: each within 30 %, settled, steady within 5 %.
+static void wrong_beliefs_do_no_harm(void **state)
+{
+    (void)state;
+    const char *const beliefs[] = {
+        "belief.mass_factor=0.85",    "belief.mass_factor=1.15",     "belief.friction_factor=0.7",
+        "belief.friction_factor=1.3", "belief.wall_error=0.03",      "belief.wall_error=-0.03",
+        "belief.k2_factor=0.75",      "belief.k2_factor=1.25",       "belief.torque_factor=0.85",
+        "belief.torque_factor=1.15",  "initial.angle=-0.6",          "wall.kind=plane",
+        "wall.restitution=0.3",       "belief.hub_spring_factor=10", "sensor.fsr_noise=0.06"};
+    for (size_t i = 0; i < sizeof beliefs / sizeof beliefs[0]; i++) {
+        summary s = rig_summary(SETTINGS("control.law=observer", "run.duration=2", beliefs[i]));
+        check_below(s.force_over_command_N, 0.3);
+        assert_false(isnan(s.settling_time_s));
+        check_close(s.steady_error_N, 0, 0.05);
+    }
+}
+
+static void a_delay_untold_does_no_harm(void **state)
+{
+    (void)state;
+    summary s = rig_summary(
+        SETTINGS("control.law=observer", "control.delay=5e-3", "belief.delay_error=-5e-3"));
+    check_below(s.force_over_command_N, 0.3);
+    check_below(s.settling_time_s, 0.3);
+    check_close(s.steady_error_N, 0, 0.05);
+}
+
+// An arm of more links than it believes in, and one that it believes in.
+static void it_settles_on_three_links(void **state)
+{
+    (void)state;
+    for (int told = 0; told < 2; told++) {
+        summary s =
+            rig_summary(SETTINGS("control.law=observer", "arm.links=3", "arm.damping_ratio=0.01",
+                                 told ? "belief.links=3" : "belief.links=2"));
+        check_below(s.smoothed_over_command_N, 0.3);
+        check_below(s.settling_time_s, 0.3);
+        check_close(s.steady_error_N, 0, 0.05);
+    }
+}
+
+// Pushed off the wall it finds back: the force is there again at the end.
+static void it_finds_the_wall_again(void **state)
+{
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const char *const settings[] = {"control.law=observer", "run.duration=2", NULL};
+        action push = {.time = 1, .kind = ACTION_PUSH, .parameter = -1, .value = sign * 0.05};
+        scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
+        run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        check_close(r.summary.steady_error_N, 0, 0.05);
+        check_below(r.summary.force_over_command_N, 0.3);
+        check_below(r.summary.first_contact_s + r.summary.settling_time_s, 1.6);
+        run_finish(&r);
+    }
+}
+
+// --- laws see sensors only --------------------------------------------------------------------
+
+// The setup that a law gets of these parameters.
+static controller_setup setup_of(const parameters *p)
+{
+    rig *r = NULL;
+    fault f;
+    parameters as_hybrid = *p;
+    as_hybrid.control.law = LAW_HYBRID;
+    assert_int_equal(rig_create(&r, &as_hybrid, &f), STATUS_OK);
+    controller_setup setup = ((const hybrid_memory *)r->memory)->rig;
+    rig_destroy(r);
+    return setup;
+}
+
+// The plant is replaced by a recording of what its sensors read: the commands are the same.
+static void the_same_readings_give_the_same_commands(void **state)
+{
+    (void)state;
+    for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
+        const char *const settings[] = {"sensor.film=true", "sensor.accelerometer=true",
+                                        "run.duration=0.8", NULL};
+        scenario s = {.parameters = rig_parameters(settings)};
+        s.parameters.control.law = law;
+        run_result r;
+        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+
+        // the law alone, with what it was told
+        const controller *c = controller_of(law);
+        double values[32];
+        fault f;
+        controller_setup setup = setup_of(&s.parameters);
+        assert_true(c->parameter_count <= 32);
+        assert_int_equal(controller_values(c, &s.parameters, values, &f), STATUS_OK);
+        setup.parameters = values;
+        void *memory = calloc(1, c->memory_size + 1);
+        assert_non_null(memory);
+        assert_null(c->start != NULL ? c->start(memory, &setup) : NULL);
+
+        // sample k is what a row between it and the next one shows
+        double voltage = 0;
+        size_t row = 0;
+        for (int k = 0; k < 159; k++) {
+            while (r.trace.rows[row].time < (k + 0.5) * setup.period) {
+                row++;
+            }
+            const sample *read = &r.trace.rows[row];
+            controller_input in = {.time = k * setup.period,
+                                   .encoder = read->encoder,
+                                   .tachometer = read->tachometer,
+                                   .force = read->force_reading,
+                                   .voltage = voltage,
+                                   .piezo_force = read->piezo_force,
+                                   .film = read->film,
+                                   .accelerometer = read->accelerometer,
+                                   .wanted_mode = -1};
+            controller_output out = {0};
+            c->sample(memory, &in, &out);
+            check_close(out.command, read->command, 0);
+            voltage =
+                converter_value(out.command, s.parameters.sensor.dac_bits, setup.voltage_limit);
+        }
+        free(memory);
+        run_finish(&r);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(doubling_finds_the_gain_of_the_schur_form),
+        cmocka_unit_test(doubling_solves_the_scalar_equation),
+        cmocka_unit_test(two_links_reduce_to_themselves),
+        cmocka_unit_test(a_touch_loses_energy),
+        cmocka_unit_test(overshoot_is_small_when_told_the_truth),
+        cmocka_unit_test(wrong_beliefs_do_no_harm),
+        cmocka_unit_test(a_delay_untold_does_no_harm),
+        cmocka_unit_test(it_settles_on_three_links),
+        cmocka_unit_test(it_finds_the_wall_again),
+        cmocka_unit_test(the_same_readings_give_the_same_commands),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
