@@ -57,6 +57,22 @@ static void test_stepping_back_and_forth_gives_the_same_states(void **state)
     session_finish(&s);
 }
 
+static void test_a_run_that_cannot_start_names_its_parameter(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {.path = ""};
+    open_session(&s, "corrected/first-impact");
+    change(&s, "control.law", "hybrid");
+    unsigned version = s.version;
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(control.lock), "nowhere", &f),
+                     STATUS_BAD_SCENARIO);
+    assert_string_equal(f.path, "control.lock");
+    // the run there was stays
+    assert_int_equal(s.version, version);
+    session_finish(&s);
+}
+
 static void test_the_cursor_stays_within_the_run(void **state)
 {
     (void)state;
@@ -288,6 +304,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_stepping_back_and_forth_gives_the_same_states),
+        cmocka_unit_test(test_a_run_that_cannot_start_names_its_parameter),
         cmocka_unit_test(test_the_cursor_stays_within_the_run),
         cmocka_unit_test(test_events_are_found_in_both_directions),
         cmocka_unit_test(test_a_lower_voltage_before_contact_hits_less_hard),

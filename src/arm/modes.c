@@ -46,6 +46,8 @@ static int allowed_basis(const arm *a, hub_end hub, tip_end tip, double *basis)
         if (tip == TIP_PINNED && link && k == n - 1) {
             break; // the last angle follows from the others
         }
+
+        // a pinned tip moves the last link against each of the others
         basis[columns * n + k] = 1;
         if (tip == TIP_PINNED && link) {
             basis[columns * n + n - 1] = -1;
@@ -67,6 +69,7 @@ static void reduce(const double *matrix, const double *basis, int n, int columns
             }
             product[i] = sum;
         }
+
         for (int r = 0; r < columns; r++) {
             double sum = 0;
             for (int i = 0; i < n; i++) {

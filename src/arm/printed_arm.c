@@ -93,8 +93,11 @@ static void add_force_derivatives(const printed_arm *a, const double q[3], const
 {
     double l = a->link_length, both, last;
     force_levers(a, q, &both, &last);
+
     jacobian[1][3] = both;
     jacobian[2][3] = last;
+
+    // and how the levers change with the angles
     if (a->switches.force_at_link_end) {
         jacobian[1][1] += force * l * t->s;
         jacobian[1][2] -= force * l * t->s;

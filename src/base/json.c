@@ -82,10 +82,12 @@ static void write_array(FILE *stream, const json_t *array, int depth)
 {
     size_t length = json_array_size(array);
     bool nested = false;
+
     fputc('[', stream);
     for (size_t i = 0; i < length; i++) {
         const json_t *element = json_array_get(array, i);
         nested = json_is_object(element) || json_is_array(element);
+
         if (i > 0) {
             fputs(nested ? "," : ", ", stream);
         }

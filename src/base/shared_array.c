@@ -235,6 +235,8 @@ size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, si
     assert(a != NULL && b != NULL);
     size_t most = a->size == b->size && b->reserved > 0 ? count * a->size / ARRAY_CHUNK : 0;
     size_t same = 0;
+
+    // the same chunk needs no look
     while (same < most && same < a->chunk_count && same < b->chunk_count) {
         size_t at = same * ARRAY_CHUNK;
         bool equal =

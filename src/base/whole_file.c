@@ -83,11 +83,13 @@ static char *target_of(const char *path)
             break;
         }
         link[length] = '\0';
+
         char *next;
         int folder = link[0] == '/' ? 0 : (int)folder_length(target);
         if (asprintf(&next, "%.*s%s", folder, target, link) < 0) {
             next = NULL;
         }
+
         free(target);
         target = next;
     }

@@ -60,8 +60,10 @@ static void integrate_motion(integrated_motion *g, const parameters *p, const tw
 {
     bool printed = p->arm.model == ARM_PRINTED;
     double speed = s->velocity[t->rigid_hub ? 1 : 0];
+
     // the listing takes the hub to turn forwards
     double turning = printed ? 1 : (speed > 0) - (speed < 0);
+
     *g = (integrated_motion){
         .hub_inertia = p->arm.hub_inertia,
         .hub_damping = t->hub_damping,
@@ -332,6 +334,8 @@ status predict_impact_dynamics(const parameters *p, const three_body_state *s, p
     integrated_motion g;
     double after[3];
     status result = start(p, s, &t, &g, out, after, f);
+
+    // a hub without a spring makes the system quadratic
     if (result == STATUS_OK && t.rigid_hub) {
         solve_rigid_hub(&g, out);
     } else if (result == STATUS_OK) {

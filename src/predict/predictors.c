@@ -38,6 +38,7 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     const parameters *p = question->parameters;
     const three_body_state *s = &question->bodies;
     status code = STATUS_OK;
+
     switch (which) {
     case PREDICTOR_ENERGY:
         code = predict_energy(p, s, out, f);

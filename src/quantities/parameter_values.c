@@ -48,6 +48,8 @@ double parameter_get(const parameters *p, int index)
     double real;
     bool truth;
     int whole;
+
+    // copied, since the type of what lies there is known to the table only
     switch (info->type) {
     case PARAMETER_REAL:
         memcpy(&real, at, sizeof real);
@@ -237,6 +239,7 @@ void parameter_format(const parameters *p, int index, char *text, size_t size)
     const double value = parameter_get(p, index);
     const char *choice = info->choices;
     char number[NUMBER_TEXT];
+
     switch (info->type) {
     case PARAMETER_TEXT:
         snprintf(text, size, "%s", (const char *)p + info->offset);

@@ -179,11 +179,13 @@ static status check_printed(const parameters *p, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.links),
                             "the printed model has two links, but arm.links = %d", p->arm.links);
     }
+
     if (p->arm.hub_joint != HUB_SPRING) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.hub_joint),
                             "the printed model has a hub spring, but arm.hub_joint = %s",
                             p->arm.hub_joint == HUB_BEAM ? "beam" : "rigid");
     }
+
     if (p->method.name != METHOD_NEWMARK) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.name),
                             "the printed model runs with method.name = newmark only");

@@ -33,12 +33,14 @@ static json_t *parameters_object(const parameters *p)
     return object;
 }
 
+// What the scenario expects, what came, and whether that is met.
 static json_t *expectations_array(const scenario *s, const run_result *result)
 {
     json_t *array = json_array();
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
         double value = summary_value(&result->summary, e->quantity);
+
         json_t *object = json_object();
         json_object_set_new(object, "quantity", json_string(summary_table[e->quantity].key));
         json_object_set_new(object, "expected", e->is_null ? json_null() : json_number(e->value));
@@ -46,16 +48,19 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
                             e->is_null ? json_null() : json_number(e->tolerance));
         json_object_set_new(object, "value", json_number(value));
         json_object_set_new(object, "met", json_boolean(expectation_is_met(e, value)));
+
         json_array_append_new(array, object);
     }
     return array;
 }
 
+// An event with what its kind has.
 static json_t *event_object(const scenario *s, const event *e)
 {
     json_t *object = json_object();
     json_object_set_new(object, "t_s", json_number(e->time));
     json_object_set_new(object, "kind", json_string(event_name(e->kind)));
+
     if (e->kind == EVENT_IMPACT || e->kind == EVENT_PUSH) {
         json_object_set_new(object, "impulse_Ns", json_number(e->impulse));
     }
@@ -63,6 +68,7 @@ static json_t *event_object(const scenario *s, const event *e)
         json_object_set_new(object, "speed_m_s", json_number(e->speed));
         json_object_set_new(object, "loss_J", json_number(e->loss));
     }
+
     if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
         const action *a = &s->actions[e->index];
         json_object_set_new(object, "parameter", json_string(parameter_table[a->parameter].path));

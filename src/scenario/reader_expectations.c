@@ -13,6 +13,8 @@ static int parse_quantity(reader *r, const tree_node *key)
     if (index >= 0 && !summary_table[index].timing) {
         return index;
     }
+
+    // one that the computer decides, or none of the summary
     if (index >= 0) {
         report_node(r, key, "%s depends on the computer, expected a quantity of the arm",
                     key->text);

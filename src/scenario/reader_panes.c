@@ -10,6 +10,7 @@ void reader_panes(reader *r, const tree_node *list)
                     node_kind_name(list));
         return;
     }
+
     for (const tree_node *child = list->first; child != NULL; child = child->next) {
         const int signal = node_is_scalar(child) ? signal_find(child->text) : -1;
         if (signal < 0) {

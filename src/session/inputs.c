@@ -39,6 +39,8 @@ static double effect_time(const session *s)
         t->rows[s->row + 1].time != now) {
         return now;
     }
+
+    // two rows at one instant: an event, and the one before it is shown
     for (size_t i = 0; i < t->event_count && t->events[i].time <= now; i++) {
         const event_kind kind = t->events[i].kind;
         if (t->events[i].time == now && kind != EVENT_CHANGE && kind != EVENT_PUSH) {
@@ -148,6 +150,7 @@ status session_push(session *s, double impulse, fault *f)
                         .value = impulse,
                         .before = (double)NAN};
     remember_cursor(s, &in);
+
     if (!isfinite(impulse)) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s");
     }
@@ -179,12 +182,15 @@ status session_redo(session *s, fault *f)
     if (s->input_count == s->input_total) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo");
     }
+
     s->input_count++;
     status code = session_compute(s, f);
     if (code != STATUS_OK) {
         s->input_count--;
         return code;
     }
+
+    // to where it takes effect
     const session_input *in = &s->inputs[s->input_count - 1];
     if (in->kind != SESSION_INPUT_START) {
         session_seek(s, in->time);

@@ -273,10 +273,13 @@ static void sweep_to_tip(const arm *a, const implicit_sweep *link, bool stuck, d
         double parent = first + k > 0 ? dq[first + k - 1] : 0;
         double parent1 = first + k > 0 ? unit[first + k - 1] : 0;
         bool fixed = first + k == 0 && stuck;
+
+        // a stuck hub stays
         double d = fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
         double d1 = fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
         dq[first + k] = d;
         unit[first + k] = d1;
+
         ax += l * L->zx * d;
         ay += l * L->zy * d;
         bx += l * L->zx * d1;

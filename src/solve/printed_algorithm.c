@@ -110,11 +110,13 @@ static status reevaluate(printed_motion *m, step_result *r)
     if (m->arm.switches.force_after_release) {
         wanted = m->force > 0 || m->contact_steps == 1;
     }
+
     memcpy(r->acceleration, r->newmark_acceleration, sizeof r->acceleration);
     if (!wanted) {
         m->force = 0;
         return STATUS_OK;
     }
+
     if (!printed_reevaluate(&m->arm, r->angle, r->velocity, r->acceleration, &m->force)) {
         return STATUS_SINGULAR;
     }
@@ -154,6 +156,7 @@ static const char *not_finite(const step_result *r, double force)
         {"the hub's velocity", "the first link's velocity", "the second link's velocity"},
         {"the hub's acceleration", "the first link's acceleration",
          "the second link's acceleration"}};
+
     const double *values[3] = {r->angle, r->velocity, r->acceleration};
     for (int kind = 0; kind < 3; kind++) {
         for (int i = 0; i < 3; i++) {

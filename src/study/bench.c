@@ -306,6 +306,7 @@ status bench_step_cost(int links, double *free_us, double *contact_us, fault *f)
     double seconds[2];
     for (int contact = 0; contact < 2; contact++) {
         seconds[contact] = (double)INFINITY;
+
         // the best of three: what a passing disturbance adds is no cost of the step
         for (int i = 0; i < 3; i++) {
             double one;
@@ -316,6 +317,7 @@ status bench_step_cost(int links, double *free_us, double *contact_us, fault *f)
             seconds[contact] = fmin(seconds[contact], one);
         }
     }
+
     *free_us = 1e6 * seconds[0];
     *contact_us = 1e6 * seconds[1];
     return STATUS_OK;

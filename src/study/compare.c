@@ -74,6 +74,8 @@ compare_row compare_row_of(const scenario *s, const run_result *result)
     double command = m->force_command_N, peak, settling;
     bool commanded = !isnan(command) && command > 0;
     find_best(s, result, &peak, &settling);
+
+    // on the rig what is over is over the command, else over the steady force
     return (compare_row){
         .scenario = s->name,
         .law = control_law_table[s->parameters.control.law].word,

@@ -24,6 +24,7 @@ static status find_parameter(const sweep *s, sweep_axis *axis, const char *path,
     if (axis->parameter < 0) {
         return STATUS_BAD_ARGUMENT;
     }
+
     if (sweep_axis_parameter(axis)->type == PARAMETER_TEXT) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "%s is a text, only numbers and words are varied",
                          path);
@@ -88,6 +89,7 @@ static status draw_latin(sweep *s, random_generator *g, fault *f)
     if (part == NULL) {
         return fault_no_memory(f);
     }
+
     for (int i = 0; i < s->axis_count; i++) {
         random_permutation(g, part, s->run_count);
         for (size_t run = 0; run < s->run_count; run++) {
@@ -199,6 +201,7 @@ static status check_combinations(const sweep *s, fault *f)
         scenario derived;
         fault why = {.path = ""};
         if (sweep_scenario(s, run, &derived, &why) != STATUS_OK) {
+            // told with the values of the run
             char values[512] = "";
             size_t length = 0;
             for (int i = 0; i < s->axis_count && length < sizeof values; i++) {

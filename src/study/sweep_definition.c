@@ -158,9 +158,11 @@ status definition_write(sweep_store *store, const definition *d, fault *f)
     sqlite3_stmt *insert;
     status code =
         database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
+
     for (int i = 0; i < d->count && code == STATUS_OK; i++) {
         sqlite3_bind_text(insert, 1, d->lines[i].key, -1, SQLITE_STATIC);
         sqlite3_bind_text(insert, 2, d->lines[i].value, -1, SQLITE_STATIC);
+
         if (sqlite3_step(insert) != SQLITE_DONE) {
             code = database_fault(store, f);
         }

@@ -54,9 +54,11 @@ static status create_tables(sweep_store *store, const definition *d, fault *f)
                          "PRAGMA user_version = " LAYOUT ";"
                          "CREATE TABLE sweep (key TEXT UNIQUE NOT NULL, value TEXT NOT NULL)",
                          f);
+
     code = code == STATUS_OK ? create_run_table(store, f) : code;
     code = code == STATUS_OK ? definition_write(store, d, f) : code;
     code = code == STATUS_OK ? database_execute(store, "COMMIT", f) : code;
+
     if (code != STATUS_OK) {
         sqlite3_exec(store->database, "ROLLBACK", NULL, NULL, NULL);
     }

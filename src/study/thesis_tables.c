@@ -109,6 +109,7 @@ static const sample *row_before_impact(const trace *t)
         if (t->events[i].kind != EVENT_IMPACT) {
             continue;
         }
+
         // rows of the same instant stand on both sides of the jump, the first is the one before
         for (size_t r = 0; r < t->row_count && t->rows[r].time <= t->events[i].time; r++) {
             if (before == NULL || t->rows[r].time > before->time) {
@@ -120,12 +121,14 @@ static const sample *row_before_impact(const trace *t)
     return before;
 }
 
+// Runs the corrected model: the state just before the first impact, and the first pulse.
 static status simulate_corrected(const parameters *p, cell *c, fault *f)
 {
     char name[] = "tables";
     scenario s = {.name = name, .file = name, .title = name, .description = name, .parameters = *p};
     run_result result;
     status outcome = run_scenario(&s, true, &result);
+
     if (outcome == STATUS_OK) {
         const sample *before = row_before_impact(&result.trace);
         if (before != NULL) {
@@ -139,6 +142,7 @@ static status simulate_corrected(const parameters *p, cell *c, fault *f)
     } else {
         summary_fault(&result.summary, f);
     }
+
     run_finish(&result);
     return outcome;
 }
@@ -246,6 +250,7 @@ double tables_mean_error(const thesis_tables *t, const char *model, const char *
         if (strcmp(row->model, model) != 0 || strcmp(row->quantity, quantity) != 0) {
             continue;
         }
+
         for (int v = 0; v < TABLE_VOLTAGES; v++) {
             if (isfinite(row->computed[v])) {
                 sum += fabs(row->computed[v] / row->printed[v] - 1);
