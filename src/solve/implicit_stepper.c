@@ -144,22 +144,26 @@ typedef struct iterate {
     double excess;       // out: what the balance of a stuck hub lacks, minus friction [N m]
 } iterate;
 
-// How the links beyond a joint answer, see above: to the acceleration of its node and the angle of
-// the link before it, with F0, T0 for the residual and for a unit contact force.
-typedef struct joint_answer {
-    double yy;               // y [N m/rad]
-    double torque0, torque1; // T0 of the residual [N m], of a unit force [m]
-    double torque;           // that the joint itself exerts [N m]
-} joint_answer;
-
-// Elimination from tip to hub: what each link's angle depends on, into `link`. Returns the answer
-// of the chain at the hub.
-static joint_answer sweep_to_hub(const arm *a, implicit_sweep *link, iterate *it, tangent t,
-                                 contact_point point)
+// Solves the tangent system for the corrections of the angles, dq[dof], and of the force. One
+// function, since its sweeps share what they keep in registers.
+static double newton_correction(const arm *a, implicit_sweep *link, iterate *it, tangent t,
+                                double *dq, double *unit)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
     const double *q = it->q, *w = it->w, *al = it->acceleration;
     const int first = a->first, last = a->links - 1;
+    contact_point point = {0};
+
+    // residual quantities of the iterate
+    for (int k = 0; k <= last; k++) {
+        inline_sincos(q[first + k], &link[k].s, &link[k].c);
+    }
+    if (it->contact) {
+        point = contact_at(a, link);
+    }
+    forces_between_links(a, link, w, al, it->force * point.ex, it->force * point.ey);
+
+    // elimination from tip to hub
     double pxx = 0, pxy = 0, pyx = 0, pyy = 0;                 // P, no longer symmetric
     double hx = -it->force * point.angle_force * link[last].c; // p_f: the point wall's force turns
     double hy = -it->force * point.angle_force * link[last].s; // with the last link
@@ -242,71 +246,37 @@ static joint_answer sweep_to_hub(const arm *a, implicit_sweep *link, iterate *it
         torque1 = kappa * L->unit;
         outer = inner;
     }
-    return (joint_answer){yy, torque0, torque1, outer};
-}
 
-// The hub on its spring: its correction, that for a unit force, and the balance of a stuck one.
-static void correct_hub(const arm *a, iterate *it, tangent t, joint_answer chain, double *dq,
-                        double *unit)
-{
+    // the hub on its spring
     dq[0] = unit[0] = 0;
     if (a->hub_spring && it->stuck) {
-        it->excess = a->motor.torque + chain.torque;
+        it->excess = a->motor.torque + outer;
     } else if (a->hub_spring) {
-        double pivot = a->hub_inertia * t.beta + a->motor.damping * t.gamma - chain.yy;
-        double residual = a->hub_inertia * it->acceleration[0] + a->motor.damping * it->w[0] -
-                          a->motor.torque - it->sliding - chain.torque;
-        dq[0] = (chain.torque0 - residual) / pivot;
-        unit[0] = chain.torque1 / pivot;
+        double pivot = a->hub_inertia * t.beta + a->motor.damping * t.gamma - yy;
+        double residual = a->hub_inertia * al[0] + a->motor.damping * w[0] - a->motor.torque -
+                          it->sliding - outer;
+        dq[0] = (torque0 - residual) / pivot;
+        unit[0] = torque1 / pivot;
     }
-}
 
-// Substitution from hub to tip: dq for the residual, `unit` for a unit contact force.
-static void sweep_to_tip(const arm *a, const implicit_sweep *link, bool stuck, double *dq,
-                         double *unit)
-{
-    const double l = a->link_length;
-    const int first = a->first;
-    double ax = 0, ay = 0, bx = 0, by = 0; // change of the node's acceleration
-    for (int k = 0; k < a->links; k++) {
-        const implicit_sweep *L = &link[k];
+    // substitution from hub to tip: dq for the residual, `unit` for a unit contact force
+    double ax = 0, ay = 0, bx = 0, by = 0;
+    for (int k = 0; k <= last; k++) {
+        implicit_sweep *L = &link[k];
         double parent = first + k > 0 ? dq[first + k - 1] : 0;
         double parent1 = first + k > 0 ? unit[first + k - 1] : 0;
-        bool fixed = first + k == 0 && stuck;
+        bool fixed = first + k == 0 && it->stuck;
 
         // a stuck hub stays
         double d = fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
         double d1 = fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
         dq[first + k] = d;
         unit[first + k] = d1;
-
         ax += l * L->zx * d;
         ay += l * L->zy * d;
         bx += l * L->zx * d1;
         by += l * L->zy * d1;
     }
-}
-
-// Solves the tangent system for the corrections of the angles, dq[dof], and of the force, which is
-// returned; unit[dof] is scratch.
-static double newton_correction(const arm *a, implicit_sweep *link, iterate *it, tangent t,
-                                double *dq, double *unit)
-{
-    // residual quantities of the iterate
-    contact_point point = {0};
-    for (int k = 0; k < a->links; k++) {
-        inline_sincos(it->q[a->first + k], &link[k].s, &link[k].c);
-    }
-    if (it->contact) {
-        point = contact_at(a, link);
-    }
-    forces_between_links(a, link, it->w, it->acceleration, it->force * point.ex,
-                         it->force * point.ey);
-
-    // the chain without a change of the force, and what a unit force adds
-    joint_answer chain = sweep_to_hub(a, link, it, t, point);
-    correct_hub(a, it, t, chain, dq, unit);
-    sweep_to_tip(a, link, it->stuck, dq, unit);
     if (!it->contact) {
         return 0;
     }
@@ -314,9 +284,9 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
     // the force that meets the constraint
     double df;
     if (it->velocity_level) {
-        double rate = rate_along(a, link, point, it->w);
-        df = -(rate + rate_change(a, link, point, it->w, t.gamma, dq)) /
-             rate_change(a, link, point, it->w, t.gamma, unit);
+        double rate = rate_along(a, link, point, w);
+        df = -(rate + rate_change(a, link, point, w, t.gamma, dq)) /
+             rate_change(a, link, point, w, t.gamma, unit);
     } else {
         df = -(point.g + rate_along(a, link, point, dq)) / rate_along(a, link, point, unit);
     }
