@@ -147,6 +147,29 @@ expect 2 figures 9.9 -o pictures
 says err "no figure '9.9'"
 expect 1 figures 3.4 -o /proc/pictures
 
+# one set of options for every picture
+expect 0 run hit.yaml --quiet --plot look.svg --width 85mm --theme mono --font serif --bare \
+    --signals force,hub_angle+last_angle --from 0 --to 0.1 --latex look.tex
+grep -q 'includegraphics\[width=85mm' look.tex || fail "look.tex has no figure of 85 mm"
+grep -q 'impactlab run --quiet --width 85mm' look.svg || fail "look.svg does not know its command"
+[ -s look.txt ] || fail "a bare picture has no caption beside it"
+expect 2 run hit.yaml --plot look.svg --width 5mm
+says err "expected a length from 60mm to 400mm"
+expect 2 run hit.yaml --plot look.svg --theme blue
+expect 2 run hit.yaml --plot look.svg --theme dark --mono
+expect 2 run hit.yaml --plot look.svg --signals forse
+says err "did you mean 'force'"
+expect 2 run hit.yaml --plot look.svg --font "No Such Font"
+expect 2 run hit.yaml --plot look.svg --from 1
+
+# recipes
+expect 0 plot "$IMPACTLAB_SCENARIOS/recipes/measured.yaml" -o recipe.svg --width 85mm
+[ -s recipe.csv ] || fail "no numbers beside a recipe's figure"
+printf 'runs:\n  - scenario: hit.yaml\npanels:\n  - signals: [forse]\n' >bad-recipe.yaml
+expect 2 plot bad-recipe.yaml -o recipe.svg
+says err "bad-recipe.yaml:4:15: there is no signal 'forse', did you mean 'force'?"
+expect 2 plot nowhere.yaml -o recipe.svg
+
 # the arm in space
 expect 0 run hit.yaml --quiet --scene arm.png --gl cairo --size 320x180
 expect 0 run hit.yaml --quiet --scene again-arm.png --gl cairo --size 320x180
@@ -171,7 +194,7 @@ expect 2 animate hit.yaml -o more --fps 0
 # --- list, show, check
 expect 0 list
 says out "thesis/fig-3-4"
-[ "$(wc -l <out)" = "$(find "$IMPACTLAB_SCENARIOS" -name '*.yaml' | wc -l)" ] ||
+[ "$(wc -l <out)" = "$(find "$IMPACTLAB_SCENARIOS" -name '*.yaml' -not -path '*/recipes/*' | wc -l)" ] ||
     fail "list does not have a line for every scenario"
 expect 0 show hit.yaml --set arm.k2=6
 grep -q '^arm.k2 *= *6 N m/rad' out || fail "show does not mark what was set"
@@ -186,7 +209,7 @@ printf 'script: [{at: 99 s, set: {motor.voltage: 1}}]\nrun: {duration: -1}\nwall
 expect 2 check order.yaml
 sed 's/^[^:]*:\([0-9]*\):.*/\1/' err | sort -nc || fail "faults are not told line by line"
 # every scenario that ships is sound
-mapfile -t shipped < <(find "$IMPACTLAB_SCENARIOS" -name '*.yaml')
+mapfile -t shipped < <(find "$IMPACTLAB_SCENARIOS" -name '*.yaml' -not -path '*/recipes/*')
 expect 0 check "${shipped[@]}"
 
 # --- run

@@ -3,6 +3,7 @@
 
 #include "render/figures/figures.h"
 #include "render/figures/publication.h"
+#include "render/figures/recipe.h"
 #include "render/figures/run_figure.h"
 
 // fontconfig keeps its cache until the process ends
@@ -224,6 +225,127 @@ static void measured_data_have_a_panel_of_residuals(void **state)
     synthetic_finish(&s);
 }
 
+// ---- recipes
+
+static GString *heard;
+
+static void listen(void *context, const char *sentence)
+{
+    (void)context;
+    g_string_append_printf(heard, "%s\n", sentence);
+}
+
+static status open_recipe(const char *name, artwork *drawn, fault *f)
+{
+    const figure_options o = {0};
+    heard = heard != NULL ? g_string_truncate(heard, 0) : g_string_new(NULL);
+    return recipe_open(name, &o, listen, NULL, drawn, f);
+}
+
+// Every recipe that ships is drawn and tidy at a column's width.
+static void shipped_recipes_are_drawn(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"fig-3-4", "fig-3-8", "measured", "voltages"};
+    static figure_report r;
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        fault f = {0};
+        artwork drawn;
+        const figure_options o = {.look.width = 85};
+        char *path = g_strdup_printf("%s/recipes/%s.yaml", getenv("IMPACTLAB_SCENARIOS"), names[i]);
+        heard = heard != NULL ? g_string_truncate(heard, 0) : g_string_new(NULL);
+        if (recipe_open(path, &o, listen, NULL, &drawn, &f) != STATUS_OK) {
+            fail_msg("%s: %s%s", path, heard->str, f.text);
+        }
+        report_of(&drawn, &r);
+        for (int k = 0; k < r.text_count; k++) {
+            expect_inside(&r.texts[k].place, &r.page, r.texts[k].text);
+            for (int n = 0; n < k; n++) {
+                if (overlap(&r.texts[k].place, &r.texts[n].place)) {
+                    fail_msg("%s: '%s' covers '%s'", names[i], r.texts[k].text, r.texts[n].text);
+                }
+            }
+        }
+        artwork_finish(&drawn);
+        g_free(path);
+    }
+}
+
+// A recipe of figure 3.4 shows the numbers that figure 3.4 does, and their difference.
+static void a_recipe_shows_what_its_runs_give(void **state)
+{
+    (void)state;
+    fault f = {0};
+    artwork drawn;
+    size_t length;
+    char *path = g_strdup_printf("%s/recipes/fig-3-4.yaml", getenv("IMPACTLAB_SCENARIOS"));
+    assert_int_equal(open_recipe(path, &drawn, &f), STATUS_OK);
+    assert_int_equal(drawn.write_csv(drawn.what, path_of("recipe.csv"), &f), STATUS_OK);
+    artwork_finish(&drawn);
+    g_free(path);
+    assert_int_equal(figure_draw("3.4", path_of("thesis"), "svg", &f), STATUS_OK);
+    char *recipe = read_file(path_of("recipe.csv"), &length);
+    char *thesis = read_file(path_of("thesis/fig-3-4.csv"), &length);
+    const char *const rows[][2] = {{"printed force,0.4,", ",force,0.4,"},
+                                   {"corrected force,0.4,", ",force corrected,0.4,"}};
+    double values[2];
+    for (int i = 0; i < 2; i++) {
+        const char *a = strstr(recipe, rows[i][0]), *b = strstr(thesis, rows[i][1]);
+        assert_non_null(a);
+        assert_non_null(b);
+        values[i] = atof(a + strlen(rows[i][0]));
+        check_close(values[i], atof(b + strlen(rows[i][1])), 0);
+    }
+    const char *difference = strstr(recipe, ",difference,0.4,");
+    assert_non_null(difference);
+    check_close(atof(difference + strlen(",difference,0.4,")), values[1] - values[0], 1e-12);
+    free(recipe);
+    free(thesis);
+}
+
+static void faults_of_recipes_have_their_places(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *said;
+    } cases[] = {
+        {"panels: [{signals: [force]}]\n", ":1:1: there are no runs"},
+        {"runs:\n  - scenario: thesis/fig-3-4\n", ":1:1: there are no panels"},
+        {"runs: [{scenario: a}]\npanels: [{signals: [forse]}]\n",
+         ":2:21: there is no signal 'forse', did you mean 'force'?"},
+        {"runs: [{scenario: a, set: {arm.modle: x}}]\n",
+         ":1:28: there is no parameter 'arm.modle', did you mean 'arm.model'?"},
+        {"runs: [{scenario: a}]\npanels: [{signals: [force], form: [a]}]\n",
+         ":2:29: unknown key 'form' in a panel, did you mean 'from'?"},
+        {"runs: [{scenario: a}]\npanels: [{signals: [force], from: [b]}]\n",
+         ":2:36: no run, data or table is named 'b'"},
+        {"runs: [{scenario: a}]\npanels: [{signals: [force, hub_angle]}]\n",
+         ":2:28: 'hub_angle' has another unit than 'force'"},
+        {"runs: [{scenario: a}, {scenario: a}]\n", ":1:23: the name 'a' is there twice"},
+        {"runs: [{scenario: a}]\nx: {range: [1]}\n", ":2:12: range is a list, expected two"},
+        {"runs: 3\n", ":1:7: runs is a single value, expected a list"},
+        {"runs: [\n", ":2:1: "},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        fault f = {0};
+        artwork drawn;
+        write_measured("bad.yaml", cases[i].text);
+        assert_int_equal(open_recipe(path_of("bad.yaml"), &drawn, &f), STATUS_BAD_SCENARIO);
+        char *expected = g_strconcat(path_of("bad.yaml"), cases[i].said, NULL);
+        if (strstr(heard->str, expected) == NULL) {
+            fail_msg("expected '%s', heard '%s'", expected, heard->str);
+        }
+        g_free(expected);
+    }
+
+    // what is found out only when a run is opened has a place, too
+    fault f = {0};
+    artwork drawn;
+    write_measured("bad.yaml", "runs:\n  - scenario: no/such\npanels: [{signals: [force]}]\n");
+    assert_true(open_recipe(path_of("bad.yaml"), &drawn, &f) != STATUS_OK);
+    assert_non_null(strstr(f.text, "bad.yaml:2:5: "));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -235,6 +357,10 @@ int main(void)
         cmocka_unit_test(a_transparent_picture_has_no_ground),
         cmocka_unit_test(serif_pictures_have_serif_letters),
         cmocka_unit_test(measured_data_have_a_panel_of_residuals),
+        cmocka_unit_test(shipped_recipes_are_drawn),
+        cmocka_unit_test(a_recipe_shows_what_its_runs_give),
+        cmocka_unit_test(faults_of_recipes_have_their_places),
     };
-    return cmocka_run_group_tests_name("publication", tests, make_work_folder, remove_work_folder) != 0;
+    return cmocka_run_group_tests_name("publication", tests, make_work_folder,
+                                       remove_work_folder) != 0;
 }

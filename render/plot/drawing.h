@@ -173,6 +173,7 @@ int place_marks(drawing *d);
 void draw_intervals(const drawing *d, const plane *p);
 void draw_marks(drawing *d);
 void draw_levels(drawing *d, const panel_layout *l);
+void draw_notes(drawing *d, const panel_layout *l);
 // Marks where levels and marks will be.
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid);
 // Finds places for the labels of all marks where no curve of the first panel runs; false if there

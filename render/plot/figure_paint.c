@@ -125,6 +125,7 @@ static void draw_panel(drawing *d, int index)
     draw_y_title(d, l);
     draw_panel_texts(d, l);
     draw_colour_bar(d, l);
+    draw_notes(d, l);
     draw_inset(d, l);
     draw_legend(d, l);
     if (has_end_labels(l->panel)) {

@@ -4,6 +4,7 @@
 #include "render/plot/drawing.h"
 
 #define LEVEL_ROOM   10.0 // above a level, for its label [pt]
+#define NOTE_SPACE   4.0  // from a note to its point [pt]
 #define INSIDE_SHARE 0.75 // of the first panel's height, where labels of marks may stand
 
 enum { INSIDE_MOST = 6 }; // labels of marks inside the first panel
@@ -149,6 +150,27 @@ static figure_rect level_label(const drawing *d, const panel_layout *l, int inde
     return best;
 }
 
+// Where a note stands: at the right of its point, at the left where the panel ends, or below.
+static figure_rect note_place(const drawing *d, const panel_layout *l, const figure_note *n)
+{
+    const figure_rect *box = &l->plane.box;
+    double x = plane_x(&l->plane, n->x), y = plane_y(&l->plane, n->y);
+    double width = width_of(d, n->text, d->style.tick);
+    double height = height_of(d, figure_text_of(d, n->text, d->style.tick));
+    double left = x + NOTE_SPACE, top = y - height / 2;
+    if (left + width > box->x + box->width) {
+        left = x - NOTE_SPACE - width;
+    }
+
+    // where neither side has room it goes below its point, inside the panel
+    if (left < box->x) {
+        left = fmax(box->x + 2, box->x + box->width - width - 2);
+        top = y + NOTE_SPACE;
+    }
+    return (figure_rect){left, fmax(box->y, fmin(box->y + box->height - height, top)), width,
+                         height};
+}
+
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
 {
     const figure_rect *box = &l->plane.box;
@@ -163,6 +185,9 @@ void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
         if (i < LEVELS_LABELLED && l->level_place[i].width > 0) {
             placement_block(grid, l->level_place[i], INK_CURVE);
         }
+    }
+    for (int i = 0; i < l->panel->note_count; i++) {
+        placement_block(grid, note_place(d, l, &l->panel->notes[i]), INK_CURVE);
     }
     for (int i = 0; i < d->fig->mark_count; i++) {
         double x = plane_x(&l->plane, d->fig->marks[i].x);
@@ -255,5 +280,22 @@ void draw_levels(drawing *d, const panel_layout *l)
                       r->y < y - 1 ? y : y + 0.5, (anchor){0, r->y < y - 1 ? 1 : 0},
                       d->style.colours->text);
         }
+    }
+}
+
+void draw_notes(drawing *d, const panel_layout *l)
+{
+    for (int i = 0; i < l->panel->note_count; i++) {
+        const figure_note *n = &l->panel->notes[i];
+        if (!scale_holds(&l->plane.x, n->x) || !scale_holds(&l->plane.y, n->y)) {
+            continue;
+        }
+        figure_rect place = note_place(d, l, n);
+        set_colour(d->cr, d->style.colours->text);
+        cairo_new_path(d->cr);
+        cairo_arc(d->cr, plane_x(&l->plane, n->x), plane_y(&l->plane, n->y), 1.3, 0, 2 * G_PI);
+        cairo_fill(d->cr);
+        draw_text(d, figure_text_of(d, n->text, d->style.tick), place.x, place.y, (anchor){0, 0},
+                  d->style.colours->text);
     }
 }

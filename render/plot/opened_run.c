@@ -20,14 +20,22 @@ void run_end(opened_run *r)
 
 status run_begin(opened_run *r, const char *name, const char *change, fault *f)
 {
+    return run_begin_changed(r, name, &change, change != NULL ? 1 : 0, f);
+}
+
+status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
+                         fault *f)
+{
     assert(r != NULL && name != NULL);
     fault first = {STATUS_OK, ""};
     status code = scenario_open(&r->scenario, name, keep_first, &first);
     if (code != STATUS_OK) {
         return fault_set(f, code, "%s", first.text);
     }
-    if (change != NULL) {
-        code = scenario_override(&r->scenario, change, f);
+    if (count > 0) {
+        code =
+            scenario_override_all(&r->scenario, (char *const *)changes, count, keep_first, &first);
+        fault_set(f, code, "%s", first.text);
     }
     if (code == STATUS_OK) {
         code = run_scenario(&r->scenario, true, &r->result);

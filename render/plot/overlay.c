@@ -178,27 +178,47 @@ static status read_rows(trace *t, const char *text, const overlay_spec *spec,
     return code;
 }
 
+static status read_file(trace *t, const overlay_spec *spec, const trace_panel *panels,
+                        int panel_count, char **name, fault *f)
+{
+    gchar *content = NULL;
+    GError *error = NULL;
+    if (!g_file_get_contents(spec->path, &content, NULL, &error)) {
+        fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", spec->path, error->message);
+        g_error_free(error);
+        return STATUS_CANNOT_READ;
+    }
+    char *file = g_path_get_basename(spec->path);
+    *name = spec->column != NULL ? g_strdup_printf("%s: %s", file, spec->column) : g_strdup(file);
+    status code = read_rows(t, content, spec, panels, panel_count, f);
+    g_free(file);
+    g_free(content);
+    return code;
+}
+
+status overlay_read_column(trace *t, const char *path, const char *column, double shift,
+                           const trace_panel *panels, int panel_count, char **name, fault *f)
+{
+    assert(t != NULL && path != NULL && name != NULL);
+    overlay_spec spec = {g_strdup(path), g_strdup(column), shift};
+    trace_init(t, 0);
+    *name = NULL;
+    status code = read_file(t, &spec, panels, panel_count, name, f);
+    spec_finish(&spec);
+    return code;
+}
+
 status overlay_read(trace *t, const char *text, const trace_panel *panels, int panel_count,
                     char **name, fault *f)
 {
     assert(t != NULL && text != NULL && name != NULL);
-    gchar *content = NULL;
-    GError *error = NULL;
     overlay_spec spec;
     trace_init(t, 0);
     *name = NULL;
     status code = read_spec(text, &spec, f);
-    if (code == STATUS_OK && !g_file_get_contents(spec.path, &content, NULL, &error)) {
-        code = fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", spec.path, error->message);
-        g_error_free(error);
-    }
     if (code == STATUS_OK) {
-        char *file = g_path_get_basename(spec.path);
-        *name = spec.column != NULL ? g_strdup_printf("%s: %s", file, spec.column) : g_strdup(file);
-        g_free(file);
-        code = read_rows(t, content, &spec, panels, panel_count, f);
+        code = read_file(t, &spec, panels, panel_count, name, f);
     }
-    g_free(content);
     spec_finish(&spec);
     return code;
 }

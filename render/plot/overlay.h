@@ -15,3 +15,7 @@
 // it.
 status overlay_read(trace *t, const char *spec, const trace_panel *panels, int panel_count,
                     char **name, fault *f);
+
+// The same with path, column (NULL: all that are signals) and shift apart.
+status overlay_read_column(trace *t, const char *path, const char *column, double shift,
+                           const trace_panel *panels, int panel_count, char **name, fault *f);

@@ -101,6 +101,12 @@ typedef struct figure_interval {
     double from, to;
 } figure_interval;
 
+// A text at a point of a panel.
+typedef struct figure_note {
+    double x, y;
+    const char *text;
+} figure_note;
+
 // An impulse: something that has no place on the panel's own axis. It is drawn as an arrow in a
 // strip above the panel.
 typedef struct figure_impulse {
@@ -117,6 +123,8 @@ typedef struct figure_panel {
     int series_count;
     const figure_level *levels;
     int level_count;
+    const figure_note *notes;
+    int note_count;
     const figure_impulse *impulses;
     int impulse_count;
     const char *impulse_label; // of the strip, without its unit

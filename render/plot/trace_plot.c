@@ -373,6 +373,28 @@ static void add_peaks(figure_series *s, const summary *m, GPtrArray *owned)
     s->stride = 0;
 }
 
+char *trace_symbol(const scenario *s, int index)
+{
+    return symbol_markup(s, &signal_table[index]);
+}
+
+figure_series trace_series(const trace_run *run, int index, GPtrArray *owned)
+{
+    figure_series s = series_of(run, index);
+    if (index == SIGNAL_INDEX(force) && !run->points && s.count > 0 && !on_the_rig(run->scenario)) {
+        add_peaks(&s, &run->result->summary, owned);
+    }
+    return s;
+}
+
+figure_interval *trace_contact(const trace *rows, int *count, GPtrArray *owned)
+{
+    *count = intervals_of(rows, in_contact, NULL);
+    figure_interval *intervals = keep(owned, g_new0(figure_interval, *count + 1));
+    intervals_of(rows, in_contact, intervals);
+    return intervals;
+}
+
 // Colours of runs that stand side by side, the most different first.
 static const int rank_colours[8] = {0, 5, 2, 4, 1, 3, 6, 7};
 
@@ -391,10 +413,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             continue;
         }
         figure_series *out = &t->series[panel_index][panel->series_count++];
-        *out = series_of(&runs[run], index);
-        if (index == SIGNAL_INDEX(force) && !points && out->count > 0 && !on_the_rig(s)) {
-            add_peaks(out, &runs[run].result->summary, texts);
-        }
+        *out = trace_series(&runs[run], index, texts);
         for (int k = 0; k + 1 < panel->series_count && run == 0; k++) {
             // two readings of one quantity: the second in grey
             out->colour = t->series[panel_index][k].colour == out->colour ? 7 : out->colour;
@@ -471,8 +490,7 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
     }
 }
 
-// The value of a signal at an instant of a run, straight lines between rows; NaN beyond its ends.
-static double value_at(const trace *t, int index, double time)
+double trace_value_at(const trace *t, int index, double time)
 {
     size_t low = 0, high = t->row_count;
     if (high == 0 || time < t->rows[0].time || time > t->rows[high - 1].time) {
@@ -513,8 +531,8 @@ static void add_residuals(trace_figure *t, const trace_panel *panels, const trac
     double *y = keep(owned, g_new(double, data->row_count + 1));
     for (size_t i = 0; i < data->row_count; i++) {
         x[i] = data->rows[i].time;
-        y[i] =
-            signal_value(&data->rows[i], index) - value_at(&computed->result->trace, index, x[i]);
+        y[i] = signal_value(&data->rows[i], index) -
+               trace_value_at(&computed->result->trace, index, x[i]);
     }
     t->residual = (figure_series){.name = "residual",
                                   .x = x,

@@ -50,6 +50,20 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
                          int panel_count, const trace_run *runs, int run_count, fault *f);
 void trace_figure_finish(trace_figure *t);
 
+// A signal's symbol as markup, with the index of the body it has in the scenario. Free it with
+// g_free.
+char *trace_symbol(const scenario *s, int index);
+
+// A signal of a run over time, the force with its peaks among the rows. What is made for it goes to
+// `owned`.
+figure_series trace_series(const trace_run *run, int index, GPtrArray *owned);
+
+// The value of a signal at an instant of a run, straight lines between rows; NaN beyond its ends.
+double trace_value_at(const trace *t, int index, double time);
+
+// The stretches in contact; the array goes to `owned`.
+figure_interval *trace_contact(const trace *rows, int *count, GPtrArray *owned);
+
 // What is shown of a run unless something else is asked for.
 enum { USUAL_PANELS = 4 };
 extern const trace_panel usual_panels[USUAL_PANELS];

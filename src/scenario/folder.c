@@ -154,7 +154,9 @@ static bool walk(name_list *list, const char *folder, const char *prefix, int de
         return true;
     }
     for (struct dirent *entry; good && (entry = readdir(directory)) != NULL;) {
-        if (entry->d_name[0] != '.') {
+        // recipes of figures are no scenarios
+        bool recipes = depth == 0 && strcmp(entry->d_name, "recipes") == 0;
+        if (entry->d_name[0] != '.' && !recipes) {
             good = add_entry(list, folder, prefix, entry->d_name, depth);
         }
     }

@@ -21,6 +21,7 @@
     X(study)                                                                                       \
     X(calibrate)                                                                                   \
     X(animate)                                                                                     \
+    X(plot)                                                                                        \
     X(tables)                                                                                      \
     X(figures)                                                                                     \
     X(report)                                                                                      \
