@@ -43,6 +43,7 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
     // the state's parts, and the links that the signals name
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
+    const double kinetic = chain_kinetic_energy(a, q, w), strain = chain_strain_energy(a, q);
     int first = a->first, last = a->dof - 1;
     sample row = {
         .time = state[SLOT_TIME],
@@ -64,15 +65,15 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
         .voltage = a->motor.voltage,
         .motor_torque = a->motor.torque,
         .friction_torque = state[SLOT_FRICTION_TORQUE],
-        .kinetic_energy = chain_kinetic_energy(a, q, w),
-        .strain_energy = chain_strain_energy(a, q),
+        .kinetic_energy = kinetic,
+        .strain_energy = strain,
         .motor_work = state[SLOT_MOTOR_WORK],
         .external_work = state[SLOT_EXTERNAL_WORK],
         .viscous_loss = quadrature[QUADRATURE_VISCOUS],
         .friction_loss = state[SLOT_FRICTION_LOSS],
         .damping_loss = quadrature[QUADRATURE_DAMPING],
         .impact_loss = state[SLOT_IMPACT_LOSS],
-        .energy_residual = motion_energy_residual(a, m, state),
+        .energy_residual = motion_unaccounted(m, state, kinetic + strain),
     };
 
     recording_add_rig_signals(r, &row);

@@ -108,8 +108,13 @@ void motion_watch(motion *m)
 double motion_energy_residual(const arm *a, const motion *m, double *state)
 {
     const double *q = state_angles(m, state), *w = state_velocities(m, state);
+    return motion_unaccounted(m, state, chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q));
+}
+
+double motion_unaccounted(const motion *m, double *state, double energy)
+{
     const double *quadrature = state_quadratures(m, state);
-    double stored = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q) - m->start_energy;
+    double stored = energy - m->start_energy;
     double work = state[SLOT_MOTOR_WORK] + state[SLOT_EXTERNAL_WORK];
     double lost = state[SLOT_FRICTION_LOSS] + state[SLOT_IMPACT_LOSS] +
                   quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING];

@@ -155,3 +155,6 @@ static inline bool motion_unresolved(const arm *a, const motion *m)
 
 // Energy that the ledger does not account for at a state of this motion [J].
 double motion_energy_residual(const arm *a, const motion *m, double *state);
+
+// The same where the state's kinetic and strain energy together are known [J].
+double motion_unaccounted(const motion *m, double *state, double energy);

@@ -25,8 +25,9 @@
 enum { MOST_TERMS = TAYLOR_MOST + 2, ANGLES = 3 };
 
 typedef struct polynomial {
-    double terms[MOST_TERMS];
-    int degree;
+    double terms[MOST_TERMS]; // zeros behind the last one
+    int count;                // of terms, even
+    bool divided;             // by a power of the time
 } polynomial;
 
 typedef struct taylor_stride {
@@ -44,58 +45,86 @@ bool taylor_engine_suits(const arm *a)
 }
 
 // --- polynomials --------------------------------------------------------------------------------
+//
+// With u = t^2 a polynomial is E(u) + t O(u), its even and its odd terms, which Horner's rule takes
+// side by side. So the number of terms is even, the last one zero if need be.
 
-static double value_at(const double *terms, int degree, double t)
+typedef double pair __attribute__((vector_size(16)));
+
+static inline pair terms_at(const double *terms, int n)
 {
-    double value = terms[degree];
-    for (int n = degree - 1; n >= 0; n--) {
-        value = value * t + terms[n];
-    }
-    return value;
+    pair p;
+    memcpy(&p, terms + n, sizeof p);
+    return p;
 }
 
-static glance glance_at(const double *terms, int degree, double t)
+static inline double value_at(const double *terms, int count, double t)
 {
-    double value = terms[degree], slope = 0;
-    for (int n = degree - 1; n >= 0; n--) {
-        slope = slope * t + value;
-        value = value * t + terms[n];
+    const double u = t * t;
+    pair value = terms_at(terms, count - 2);
+    for (int n = count - 4; n >= 0; n -= 2) {
+        value = value * u + terms_at(terms, n);
     }
-    return (glance){value, slope};
+    return value[0] + t * value[1];
 }
 
-// Value, first and second derivative.
-static void derivatives_at(const double *terms, int degree, double t, double result[3])
+// p' = O + 2 t (E' + t O'), the dashes on the right by u.
+static inline glance glance_at(const double *terms, int count, double t)
 {
-    double value = terms[degree], slope = 0, half = 0;
-    for (int n = degree - 1; n >= 0; n--) {
-        half = half * t + slope;
-        slope = slope * t + value;
-        value = value * t + terms[n];
+    const double u = t * t;
+    pair value = terms_at(terms, count - 2), slope = {0, 0};
+    for (int n = count - 4; n >= 0; n -= 2) {
+        slope = slope * u + value;
+        value = value * u + terms_at(terms, n);
     }
-    result[0] = value;
-    result[1] = slope;
-    result[2] = 2 * half;
+    return (glance){value[0] + t * value[1], value[1] + 2 * t * (slope[0] + t * slope[1])};
 }
 
-// Integral from 0 to t; degree is below TAYLOR_MOST.
-static double integral_to(const double *terms, int degree, double t)
+// Value, first and second derivative, p'' = 2 E' + 6 t O' + 4 u (E'' + t O'').
+static inline void derivatives_at(const double *terms, int count, double t, double result[3])
 {
-    double value = 0;
-    for (int n = degree; n >= 0; n--) {
-        value = value * t + terms[n] * (1.0 / (n + 1));
+    const double u = t * t;
+    pair value = terms_at(terms, count - 2), slope = {0, 0}, half = {0, 0};
+    for (int n = count - 4; n >= 0; n -= 2) {
+        half = half * u + slope;
+        slope = slope * u + value;
+        value = value * u + terms_at(terms, n);
     }
-    return value * t;
+    result[0] = value[0] + t * value[1];
+    result[1] = value[1] + 2 * t * (slope[0] + t * slope[1]);
+    result[2] = 2 * slope[0] + 6 * t * slope[1] + 8 * u * (half[0] + t * half[1]);
 }
+
+// 1/1, 1/2, ...
+static const double share[TAYLOR_MOST] = {1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,
+                                          1. / 7,  1. / 8,  1. / 9,  1. / 10, 1. / 11, 1. / 12,
+                                          1. / 13, 1. / 14, 1. / 15, 1. / 16};
+
+// Integral from 0 to t.
+static inline double integral_to(const double *terms, int count, double t)
+{
+    const double u = t * t;
+    pair value = terms_at(terms, count - 2) * terms_at(share, count - 2);
+    for (int n = count - 4; n >= 0; n -= 2) {
+        value = value * u + terms_at(terms, n) * terms_at(share, n);
+    }
+    return t * (value[0] + t * value[1]);
+}
+
+// n (n - 1)
+static const double falling[MOST_TERMS] = {0,  0,  2,   6,   12,  20,  30,  42,  56,
+                                           72, 90, 110, 132, 156, 182, 210, 240, 272};
 
 // The largest second derivative for times from 0 to t, from the magnitudes of the terms.
 static double bend_of(const polynomial *p, double t)
 {
-    double bound = 0;
-    for (int n = p->degree; n >= 2; n--) {
-        bound = bound * t + fabs(p->terms[n]) * (double)(n * (n - 1));
+    const double u = t * t;
+    pair bound = {0, 0};
+    for (int n = p->count - 2; n >= 2; n -= 2) {
+        const pair size = {fabs(p->terms[n]), fabs(p->terms[n + 1])};
+        bound = bound * u + size * terms_at(falling, n);
     }
-    return bound;
+    return bound[0] + t * bound[1];
 }
 
 // Divides the function by the time as often as its first coefficients are nothing but rounding.
@@ -112,8 +141,9 @@ static void leave_edge(polynomial *p, double value)
         return;
     }
     if (edge > 0) {
-        p->degree -= edge;
-        memmove(p->terms, p->terms + edge, (size_t)(p->degree + 1) * sizeof(double));
+        memmove(p->terms, p->terms + edge, (size_t)(p->count - edge) * sizeof(double));
+        memset(p->terms + p->count - edge, 0, (size_t)edge * sizeof(double));
+        p->divided = true;
     }
 }
 
@@ -178,10 +208,12 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
     return wanted;
 }
 
-static void set_polynomial(polynomial *p, const double *terms, int degree, double factor)
+static void set_polynomial(polynomial *p, const double *terms, int count, double factor)
 {
-    p->degree = degree;
-    for (int n = 0; n <= degree; n++) {
+    p->count = count + count % 2;
+    p->divided = false;
+    p->terms[p->count - 1] = 0;
+    for (int n = 0; n < count; n++) {
         p->terms[n] = factor * terms[n];
     }
 }
@@ -196,19 +228,19 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
 
     // the wall
     if (now.contact) {
-        set_polynomial(&s->watched[WATCH_FORCE], s->block + AT_FORCE, order - 1, 1);
+        set_polynomial(&s->watched[WATCH_FORCE], s->block + AT_FORCE, order, 1);
     } else {
-        set_polynomial(&s->watched[WATCH_GAP], s->block + AT_GAP, order + 1, 1);
+        set_polynomial(&s->watched[WATCH_GAP], s->block + AT_GAP, order + 2, 1);
     }
 
     // the hub
     if (now.friction != HUB_STICK) {
         const double *rate = s->block + (a->hub_spring ? AT_RATE_0 : AT_RATE_1);
-        set_polynomial(&s->watched[WATCH_HUB], rate, order, now.friction);
+        set_polynomial(&s->watched[WATCH_HUB], rate, order + 1, now.friction);
     } else {
         const double sign = s->block[AT_HOLD] < 0 ? -1 : 1;
-        set_polynomial(&s->watched[WATCH_STICTION], s->block + AT_HOLD, order - 1, -sign);
-        set_polynomial(&s->far_limit, s->block + AT_HOLD, order - 1, sign);
+        set_polynomial(&s->watched[WATCH_STICTION], s->block + AT_HOLD, order, -sign);
+        set_polynomial(&s->far_limit, s->block + AT_HOLD, order, sign);
         s->watched[WATCH_STICTION].terms[0] += stiction;
         s->far_limit.terms[0] += stiction;
     }
@@ -275,7 +307,7 @@ static status state_at(const arm *a, motion *m, double h)
     // the motion
     for (int i = 0; i < m->dof; i++) {
         double d[3];
-        derivatives_at(block + AT_ANGLE_0 + (i + 1 - a->first) * MOST_TERMS, order + 1, h, d);
+        derivatives_at(block + AT_ANGLE_0 + (i + 1 - a->first) * MOST_TERMS, order + 2, h, d);
         q[i] = d[0];
         w[i] = d[1];
         acceleration[i] = state_algorithmic(m, state)[i] = d[2];
@@ -287,22 +319,22 @@ static status state_at(const arm *a, motion *m, double h)
     // what it has lost and pressed
     quadrature[QUADRATURE_VISCOUS] =
         before[QUADRATURE_VISCOUS] +
-        a->motor.damping * integral_to(block + AT_HUB_SQUARE, order - 1, h);
+        a->motor.damping * integral_to(block + AT_HUB_SQUARE, order, h);
     quadrature[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
     if (s->form.damped) {
-        quadrature[QUADRATURE_DAMPING] += integral_to(block + AT_DISSIPATION, order - 1, h);
-        state[SLOT_DAMPING_POWER] = value_at(block + AT_DISSIPATION, order - 1, h);
+        quadrature[QUADRATURE_DAMPING] += integral_to(block + AT_DISSIPATION, order, h);
+        state[SLOT_DAMPING_POWER] = value_at(block + AT_DISSIPATION, order, h);
     }
     quadrature[QUADRATURE_FORCE] = before[QUADRATURE_FORCE];
     state[SLOT_VISCOUS_POWER] = a->motor.damping * w[0] * w[0];
 
     // friction and wall
     state[SLOT_FRICTION_TORQUE] = state[SLOT_FRICTION] == HUB_STICK
-                                      ? value_at(block + AT_HOLD, order - 1, h)
+                                      ? value_at(block + AT_HOLD, order, h)
                                       : -state[SLOT_FRICTION] * a->motor.stiction;
     if (s->form.contact) {
-        state[SLOT_FORCE] = value_at(block + AT_FORCE, order - 1, h);
-        quadrature[QUADRATURE_FORCE] += integral_to(block + AT_FORCE, order - 1, h);
+        state[SLOT_FORCE] = value_at(block + AT_FORCE, order, h);
+        quadrature[QUADRATURE_FORCE] += integral_to(block + AT_FORCE, order, h);
         measure_gap(a, m, state);
         motion_project(a, m, state);
     } else if (wall_stands(&a->wall)) {
@@ -318,11 +350,11 @@ static glance look(const arm *a, const motion *m, watch w, double h)
     const taylor_stride *s = m->memory;
     const polynomial *p = &s->watched[w];
     (void)a;
-    glance near = glance_at(p->terms, p->degree, h);
+    glance near = glance_at(p->terms, p->count, h);
     if (w != WATCH_STICTION) {
         return near;
     }
-    glance far = glance_at(s->far_limit.terms, s->far_limit.degree, h);
+    glance far = glance_at(s->far_limit.terms, s->far_limit.count, h);
     return near.value < far.value ? near : far;
 }
 
@@ -331,10 +363,10 @@ static double bend(const arm *a, const motion *m, watch w, double from, double t
     const taylor_stride *s = m->memory;
     (void)a, (void)from;
     double near = bend_of(&s->watched[w], to);
-    if (w == WATCH_FORCE && s->watched[w].degree < s->form.order - 1) {
+    if (w == WATCH_FORCE && s->watched[w].divided) {
         // divided by the time: the force itself may bend more
         polynomial force;
-        set_polynomial(&force, s->block + AT_FORCE, s->form.order - 1, 1);
+        set_polynomial(&force, s->block + AT_FORCE, s->form.order, 1);
         return fmax(near, bend_of(&force, to));
     }
     return w == WATCH_STICTION ? fmax(near, bend_of(&s->far_limit, to)) : near;
@@ -344,7 +376,7 @@ static glance force_at(const arm *a, const motion *m, double h)
 {
     const taylor_stride *s = m->memory;
     (void)a;
-    return glance_at(s->block + AT_FORCE, s->form.order - 1, h);
+    return glance_at(s->block + AT_FORCE, s->form.order, h);
 }
 
 const engine taylor_engine = {.name = "Taylor series",
