@@ -1,6 +1,8 @@
 // Many runs at once give what single runs give.
 #include <stdlib.h>
 
+#include "src/base/random.h"
+#include "src/solve/taylor_engine.h"
 #include "src/study/batch.h"
 #include "tests/arm_fixture.h"
 
@@ -64,11 +66,72 @@ static void a_failing_run_does_not_touch_the_others(void **state)
     free(batch);
 }
 
+// Motor, arm, wall and restitution at random: number i of them, whoever asks.
+static void make_random(void *context, size_t i, scenario *made)
+{
+    random_generator g;
+    double u[8];
+    random_seed(&g, i + 1);
+    for (int k = 0; k < 8; k++) {
+        u[k] = random_uniform(&g);
+    }
+    *made = *(const scenario *)context;
+    parameters *p = &made->parameters;
+    p->motor.voltage = -1 + 6 * u[0];
+    p->motor.stiction = u[1] < 0.2 ? 0 : 0.1 * u[1];
+    p->arm.k2 = 2 + 20 * u[2];
+    p->arm.damping_ratio = u[3] < 0.5 ? 0 : 0.2 * (u[3] - 0.5);
+    p->wall.angle = 0.02 + 0.4 * u[4];
+    p->wall.restitution = u[5] < 0.4 ? 0 : u[5];
+    p->wall.kind = u[6] < 0.5 ? WALL_POINT : u[6] < 0.95 ? WALL_PLANE : WALL_NONE;
+    p->arm.hub_joint = u[7] < 0.03 ? HUB_SPRING : HUB_RIGID;
+    p->arm.k1 = 200;
+}
+
+// As many runs as the environment's IMPACTLAB_RANDOM_RUNS says; 100 000 take a minute.
+static void every_width_of_vectors_gives_the_same_bits(void **state)
+{
+    (void)state;
+    const char *asked = getenv("IMPACTLAB_RANDOM_RUNS");
+    const size_t runs = asked != NULL ? (size_t)atol(asked) : 10000;
+    char name[] = "random", none[] = "";
+    scenario base = {.name = name, .file = none, .title = none, .description = none};
+    base.parameters = fixture_parameters(NULL);
+    summary *scalar = calloc(runs, sizeof *scalar), *wide = calloc(runs, sizeof *wide);
+    assert_int_equal(taylor_limit_width(1), 1);
+    assert_int_equal(batch_run(make_random, &base, runs, 2, scalar), STATUS_OK);
+    for (int width = 2; width <= TAYLOR_WIDEST; width *= 2) {
+        if (taylor_limit_width(width) != width) {
+            print_message("no vectors of %d on this processor\n", width);
+            continue;
+        }
+        assert_int_equal(batch_run(make_random, &base, runs, 2, wide), STATUS_OK);
+        for (size_t i = 0; i < runs; i++) {
+            assert_int_equal(wide[i].status, scalar[i].status);
+            check_same(&wide[i], &scalar[i]);
+        }
+    }
+    taylor_limit_width(0);
+
+    // and they are runs that mean something
+    double impacts = 0;
+    size_t failed = 0;
+    for (size_t i = 0; i < runs; i++) {
+        impacts += scalar[i].impacts;
+        failed += scalar[i].status != STATUS_OK;
+    }
+    assert_true(impacts > (double)runs);
+    assert_int_equal(failed, 0);
+    free(scalar);
+    free(wide);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(batches_equal_single_runs_to_the_last_bit),
         cmocka_unit_test(a_failing_run_does_not_touch_the_others),
+        cmocka_unit_test(every_width_of_vectors_gives_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -31,49 +31,48 @@ static status explain(const corrected_run *c, status s, fault *f)
     return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
 }
 
-// Advances to `until` or the cut, passing all events on the way and recording rows on the grid.
-static status travel(corrected_run *c, double until, fault *f)
+// Whether the stretch between two stops is through.
+static bool stretch_is_over(const corrected_run *c)
+{
+    const motion *m = c->motion;
+    return !(m->state[SLOT_TIME] < fmin(c->stop, m->cut));
+}
+
+status corrected_stride(corrected_run *c, fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    double last_event = -1;
-    int at_once = 0;
-    while (m->state[SLOT_TIME] < fmin(until, m->cut)) {
-        motion_report report;
-        if (!checkpoint_keep(r, m, last_event)) {
-            return fault_no_memory(f);
-        }
-
-        // one step, or less to an event
-        status s = motion_step(&c->arm, m, until, r->now.method.step, &report);
-        if (s != STATUS_OK) {
-            return fault_set(f, s,
-                             "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
-                             m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
-        }
-
-        // what came of it
-        bool at_event = report.event != MOTION_REACHED;
-        s = corrected_record_step(c, at_event);
-        if (s == STATUS_OK && at_event) {
-            s = corrected_pass_event(c, &report);
-            at_once = m->state[SLOT_TIME] - last_event < SAME_EVENT_TIME ? at_once + 1 : 0;
-            last_event = m->state[SLOT_TIME];
-        }
-
-        // reasons to end here
-        if (s == STATUS_OK && at_once > MOST_EVENTS_AT_ONCE) {
-            s = STATUS_NO_PROGRESS;
-        }
-        if (s == STATUS_OK && recording_asked_to_stop(r)) {
-            s = STATUS_STOPPED;
-        }
-        recording_publish(r, m->state[SLOT_TIME]);
-        if (s != STATUS_OK) {
-            return explain(c, s, f);
-        }
+    motion_report report;
+    if (!checkpoint_keep(r, m, c->last_event)) {
+        return fault_no_memory(f);
     }
-    return STATUS_OK;
+
+    // one step, or less to an event
+    status s = motion_step(&c->arm, m, c->stop, r->now.method.step, &report);
+    if (s != STATUS_OK) {
+        return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
+                         m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
+    }
+
+    // what came of it
+    bool at_event = report.event != MOTION_REACHED;
+    s = corrected_record_step(c, at_event);
+    if (s == STATUS_OK && at_event) {
+        s = corrected_pass_event(c, &report);
+        bool same = m->state[SLOT_TIME] - c->last_event < SAME_EVENT_TIME;
+        c->at_once = same ? c->at_once + 1 : 0;
+        c->last_event = m->state[SLOT_TIME];
+    }
+
+    // reasons to end here
+    if (s == STATUS_OK && c->at_once > MOST_EVENTS_AT_ONCE) {
+        s = STATUS_NO_PROGRESS;
+    }
+    if (s == STATUS_OK && recording_asked_to_stop(r)) {
+        s = STATUS_STOPPED;
+    }
+    recording_publish(r, m->state[SLOT_TIME]);
+    return s == STATUS_OK ? s : explain(c, s, f);
 }
 
 // The next instant that steps end at: the rig's, or the end.
@@ -122,17 +121,21 @@ static status begin(corrected_run *c, fault *f)
     return failed == STATUS_OK ? corrected_record_row(c, m->state, 0) : failed;
 }
 
-// From the present state to the end of the run.
-static status advance_to_end(corrected_run *c, fault *f)
+status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
     const parameters *p = &r->scenario->parameters;
     const double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
     status failed = STATUS_OK;
+    *ended = false;
 
     // script and rig act between stretches of motion, each ending where one of them is due
-    while (failed == STATUS_OK && m->state[SLOT_TIME] < duration) {
+    while (failed == STATUS_OK && stretch_is_over(c)) {
+        *ended = !(m->state[SLOT_TIME] < duration);
+        if (*ended) {
+            break;
+        }
         if (same_instant(m->state[SLOT_TIME], window)) {
             r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         }
@@ -140,15 +143,15 @@ static status advance_to_end(corrected_run *c, fault *f)
         if (failed == STATUS_OK) {
             failed = corrected_run_rig(c, f);
         }
-        if (failed == STATUS_OK) {
-            m->cut = next_cut(r, window, m->state[SLOT_TIME]);
-            failed = travel(c, next_stop(r), f);
-        }
+        m->cut = next_cut(r, window, m->state[SLOT_TIME]);
+        c->stop = next_stop(r);
+        c->last_event = -1;
+        c->at_once = 0;
     }
 
     // the end may lie between rows of the grid
     double last_row = (double)(r->state.grid_row - 1) * p->method.step;
-    if (failed == STATUS_OK && last_row < duration - GRID_TOLERANCE * p->method.step) {
+    if (*ended && last_row < duration - GRID_TOLERANCE * p->method.step) {
         failed = corrected_record_row(c, m->state, 0);
     }
     return failed;
@@ -225,27 +228,45 @@ static void sum_up(corrected_run *c, status failed)
     }
 }
 
-status run_corrected(recording *r, fault *f)
+status corrected_open(corrected_run *c, recording *r, fault *f)
 {
-    assert(r != NULL && r->scenario->parameters.arm.model != ARM_PRINTED);
+    assert(c != NULL && r != NULL && r->scenario->parameters.arm.model != ARM_PRINTED);
     const parameters *p = &r->scenario->parameters;
-    corrected_run c = {.recording = r};
-    corrected_bind_arm(&c);
-    c.motion = motion_create(&c.arm, &p->method);
-    if (c.motion == NULL) {
+    *c = (corrected_run){.recording = r, .last_event = -1};
+    corrected_bind_arm(c);
+    c->motion = motion_create(&c->arm, &p->method);
+    if (c->motion == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links);
     }
 
-    status failed = checkpoint_open_history(r, c.motion, f);
+    status failed = checkpoint_open_history(r, c->motion, f);
     if (failed == STATUS_OK && r->options->resume) {
-        checkpoint_restore(r, &c.arm, c.motion);
+        checkpoint_restore(r, &c->arm, c->motion);
     } else if (failed == STATUS_OK) {
-        failed = begin(&c, f);
+        failed = begin(c, f);
     }
-    if (failed == STATUS_OK) {
-        failed = advance_to_end(&c, f);
+    return failed;
+}
+
+void corrected_close(corrected_run *c, status failed)
+{
+    if (c->motion != NULL) {
+        sum_up(c, failed);
+        motion_destroy(c->motion);
     }
-    sum_up(&c, failed);
-    motion_destroy(c.motion);
+}
+
+status run_corrected(recording *r, fault *f)
+{
+    corrected_run c;
+    bool ended = false;
+    status failed = corrected_open(&c, r, f);
+    while (failed == STATUS_OK && !ended) {
+        failed = corrected_approach_stride(&c, &ended, f);
+        if (failed == STATUS_OK && !ended) {
+            failed = corrected_stride(&c, f);
+        }
+    }
+    corrected_close(&c, failed);
     return failed;
 }

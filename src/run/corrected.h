@@ -1,7 +1,24 @@
 // A run of the corrected arm.
 #pragma once
 
-#include "src/run/recording.h"
+#include "src/run/corrected_rows.h"
 
 // Runs to the end, or as far as possible; f says why it ended early.
 status run_corrected(recording *r, fault *f);
+
+// The same stride by stride, so that several runs can go side by side (src/run/together.h):
+//
+//     open -> (approach_stride -> stride) until it has ended or fails -> close
+
+// Begins a run, or takes one up. Whatever it returns, corrected_close is due.
+status corrected_open(corrected_run *c, recording *r, fault *f);
+
+// Lets script and rig act where they are due, until a stride is next, to c->stop at most; *ended if
+// the run is through instead.
+status corrected_approach_stride(corrected_run *c, bool *ended, fault *f);
+
+// One stride and the event at its end, recorded.
+status corrected_stride(corrected_run *c, fault *f);
+
+// Sums the run up and frees it; `failed` is what ended it.
+void corrected_close(corrected_run *c, status failed);

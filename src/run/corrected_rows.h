@@ -8,6 +8,11 @@ typedef struct corrected_run {
     recording *recording;
     arm arm; // with the command in force
     motion *motion;
+
+    // the stretch between two stops of script, rig or window that the motion is in
+    double stop;       // where it ends at the latest, 0 before the first [s]
+    double last_event; // in it, -1 if none [s]
+    int at_once;       // events in a row without time passing
 } corrected_run;
 
 // Takes note of the energy that the ledger does not account for. STATUS_UNSTABLE if the run makes

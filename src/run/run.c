@@ -10,6 +10,7 @@
 #include "src/run/corrected.h"
 #include "src/run/printed.h"
 #include "src/run/rig_recording.h"
+#include "src/solve/taylor_engine.h"
 
 // What a run counts and adds up begins with nothing.
 static void summary_start(summary *s)
@@ -32,39 +33,233 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
     return run_scenario_with(s, &options, result);
 }
 
-status run_scenario_with(const scenario *s, const run_options *options, run_result *result)
+// Computing time of the thread and time by the clock [s].
+typedef struct time_used {
+    double cpu, wall;
+} time_used;
+
+static time_used clocks(void)
 {
-    assert(s != NULL && options != NULL && result != NULL);
-    recording r = {.scenario = s, .result = result, .options = options, .now = s->parameters};
-    fault f = {.text = "", .path = ""};
-    const double start = seconds_of(CLOCK_MONOTONIC);
-    const double start_cpu = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    return (time_used){seconds_of(CLOCK_THREAD_CPUTIME_ID), seconds_of(CLOCK_MONOTONIC)};
+}
+
+static time_used since(time_used start)
+{
+    time_used now = clocks();
+    return (time_used){now.cpu - start.cpu, now.wall - start.wall};
+}
+
+// What begins every run, whatever the model: its result, and the rig if a law is chosen.
+static status open_recording(recording *r, const scenario *s, const run_options *options,
+                             run_result *result, fault *f)
+{
+    *r = (recording){.scenario = s, .result = result, .options = options, .now = s->parameters};
+    *f = (fault){.text = "", .path = ""};
     if (!options->resume) {
         memset(result, 0, sizeof *result);
         summary_start(&result->summary);
     }
+    return recording_start_rig(r, f);
+}
 
-    // the model's run, with the rig if a law is chosen
-    status code = recording_start_rig(&r, &f);
-    if (code == STATUS_OK) {
-        code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
-    }
-    rig_destroy(r.rig);
+// What ends it.
+static void close_recording(recording *r, status code, const fault *f, time_used used)
+{
+    run_result *result = r->result;
+    rig_destroy(r->rig);
 
     // what stopped it
     result->summary.status = code;
     if (code != STATUS_OK) {
-        const char *why = f.code != STATUS_OK ? f.text : status_text(code);
+        const char *why = f->code != STATUS_OK ? f->text : status_text(code);
         snprintf(result->summary.message, sizeof result->summary.message, "%s", why);
-        result->summary.path = f.path;
+        result->summary.path = f->path;
     }
 
-    result->summary.cpu_time_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
-    result->summary.wall_time_s = seconds_of(CLOCK_MONOTONIC) - start;
+    result->summary.cpu_time_s = used.cpu;
+    result->summary.wall_time_s = used.wall;
     if (result->history.forces.array.reserved == 0) {
         force_history_finish(&result->history.forces); // needed until here only
     }
+}
+
+status run_scenario_with(const scenario *s, const run_options *options, run_result *result)
+{
+    assert(s != NULL && options != NULL && result != NULL);
+    const time_used start = clocks();
+    recording r;
+    fault f;
+    status code = open_recording(&r, s, options, result, &f);
+    if (code == STATUS_OK) {
+        code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
+    }
+    close_recording(&r, code, &f, since(start));
     return code;
+}
+
+// --- several at once --------------------------------------------------------------------------
+
+// So many runs are in hand at once: enough to fill the vectors with strides of one form, few enough
+// to stay in the nearest cache.
+enum { IN_HAND = 16 };
+
+// One of the runs that go side by side.
+typedef struct side_run {
+    recording recording;
+    corrected_run run;
+    fault fault;
+    taylor_request request; // of the stride it is to make
+} side_run;
+
+typedef struct side_by_side {
+    const scenario *scenarios;
+    run_result *results;
+    int count, next;      // of them, and the next one to begin
+    int waiting[IN_HAND]; // places of those in hand, all of which wait for their series
+    int waiting_count;
+    side_run in_hand[IN_HAND];
+} side_by_side;
+
+static const run_options summary_only = {.keep_trace = false};
+
+// Goes on with a run until it waits for series that can be computed together with others'. False
+// if it is over: it is closed then.
+static bool go_on(side_by_side *group, int place)
+{
+    side_run *one = &group->in_hand[place];
+    status failed = STATUS_OK;
+    bool ended = false;
+    while (failed == STATUS_OK && !ended) {
+        failed = corrected_approach_stride(&one->run, &ended, &one->fault);
+        if (failed == STATUS_OK && !ended) {
+            double remaining = one->run.stop - one->run.motion->state[SLOT_TIME];
+            if (taylor_prepare(&one->run.arm, one->run.motion, remaining, &one->request)) {
+                group->waiting[group->waiting_count++] = place;
+                return true;
+            }
+            failed = corrected_stride(&one->run, &one->fault);
+        }
+    }
+    corrected_close(&one->run, failed);
+    close_recording(&one->recording, failed, &one->fault, (time_used){0});
+    return false;
+}
+
+// Makes the stride whose series are computed, and goes on.
+static bool stride_and_go_on(side_by_side *group, int place)
+{
+    side_run *one = &group->in_hand[place];
+    status failed = corrected_stride(&one->run, &one->fault);
+    if (failed == STATUS_OK) {
+        return go_on(group, place);
+    }
+    corrected_close(&one->run, failed);
+    close_recording(&one->recording, failed, &one->fault, (time_used){0});
+    return false;
+}
+
+// Begins runs in a free place until one waits there for its series, or none is left.
+static void begin_next(side_by_side *group, int place)
+{
+    side_run *one = &group->in_hand[place];
+    bool waits = false;
+    while (!waits && group->next < group->count) {
+        const scenario *s = &group->scenarios[group->next];
+        run_result *result = &group->results[group->next++];
+        if (s->parameters.arm.model == ARM_PRINTED) {
+            run_scenario_with(s, &summary_only, result);
+            continue;
+        }
+        *one = (side_run){0};
+        status failed = open_recording(&one->recording, s, &summary_only, result, &one->fault);
+        if (failed == STATUS_OK) {
+            failed = corrected_open(&one->run, &one->recording, &one->fault);
+        }
+        if (failed == STATUS_OK) {
+            waits = go_on(group, place);
+        } else {
+            corrected_close(&one->run, failed);
+            close_recording(&one->recording, failed, &one->fault, (time_used){0});
+        }
+    }
+}
+
+static bool same_form(taylor_form a, taylor_form b)
+{
+    return a.contact == b.contact && a.point == b.point && a.hub_spring == b.hub_spring &&
+           a.damped == b.damped && a.order == b.order;
+}
+
+// Takes as many of those that wait as fit into the vectors and are of the form that most of the
+// first few have, computes their series, and lets them make their strides.
+static void serve(side_by_side *group)
+{
+    enum { LOOKED_AT = 4 };
+    const int width = taylor_width();
+    int best = 0, most = 0, chosen[TAYLOR_WIDEST], count = 0;
+    for (int i = 0; i < group->waiting_count && i < LOOKED_AT && most < width; i++) {
+        int alike = 0;
+        for (int j = 0; j < group->waiting_count && alike < width; j++) {
+            alike += same_form(group->in_hand[group->waiting[i]].request.form,
+                               group->in_hand[group->waiting[j]].request.form);
+        }
+        best = alike > most ? i : best;
+        most = alike > most ? alike : most;
+    }
+
+    // out of the queue, whose order stays
+    const taylor_form form = group->in_hand[group->waiting[best]].request.form;
+    taylor_request requests[TAYLOR_WIDEST];
+    int left = 0;
+    for (int i = 0; i < group->waiting_count; i++) {
+        const int place = group->waiting[i];
+        if (count < width && same_form(group->in_hand[place].request.form, form)) {
+            requests[count] = group->in_hand[place].request;
+            chosen[count++] = place;
+        } else {
+            group->waiting[left++] = place;
+        }
+    }
+    group->waiting_count = left;
+
+    taylor_compute(requests, count);
+    for (int i = 0; i < count; i++) {
+        if (!stride_and_go_on(group, chosen[i])) {
+            begin_next(group, chosen[i]);
+        }
+    }
+}
+
+void run_together(const scenario *scenarios, int count, run_result *results)
+{
+    assert(scenarios != NULL && results != NULL && count >= 0);
+    side_by_side *group = calloc(1, sizeof *group);
+    const time_used start = clocks();
+    if (group == NULL || taylor_width() == 1) {
+        for (int i = 0; i < count; i++) {
+            run_scenario_with(&scenarios[i], &summary_only, &results[i]);
+        }
+        free(group);
+        return;
+    }
+
+    group->scenarios = scenarios;
+    group->results = results;
+    group->count = count;
+    for (int place = 0; place < IN_HAND; place++) {
+        begin_next(group, place);
+    }
+    while (group->waiting_count > 0) {
+        serve(group);
+    }
+    free(group);
+
+    // nobody can say whose time it was
+    const time_used all = since(start);
+    for (int i = 0; i < count; i++) {
+        results[i].summary.cpu_time_s = all.cpu / count;
+        results[i].summary.wall_time_s = all.wall / count;
+    }
 }
 
 int run_check_expectations(const scenario *s, const run_result *result, fault_handler report,

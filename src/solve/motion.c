@@ -62,6 +62,9 @@ motion *motion_create(const arm *a, const method_parameters *method)
     m->memory = memory > 0
                     ? aligned_alloc(CACHE_LINE, (memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE)
                     : NULL;
+    if (m->memory != NULL) {
+        memset(m->memory, 0, memory);
+    }
     if (!m->state || !m->trial || !m->between || !m->stages || !m->scratch || !m->links ||
         (sweeps > 0 && !m->sweeps) || (memory > 0 && !m->memory)) {
         motion_destroy(m);

@@ -3,12 +3,13 @@
 // The stride goes as far as the fastest mode and the rotation let a series of the highest order
 // reach, and is shortened until its last terms are small; where something else ends it sooner a
 // lower order does. Everything within it (events, rows, peaks, quadratures) is a polynomial.
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "src/base/sincos.h"
 #include "src/solve/motion.h"
-#include "src/solve/taylor_series.h"
+#include "src/solve/taylor_engine.h"
 
 // Strides stay below this over the fastest rate and the angular velocities.
 #define LONGEST_REACH 1.8
@@ -35,6 +36,7 @@ typedef struct taylor_stride {
     taylor_form form;
     polynomial watched[WATCH_STICTION + 1]; // those of the contact state; stiction: nearer limit
     polynomial far_limit;                   // of stiction
+    bool ready;                             // the series of the next stride were computed apart
 } taylor_stride;
 
 bool taylor_engine_suits(const arm *a)
@@ -254,10 +256,9 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
     }
 }
 
-static double begin(const arm *a, motion *m, double remaining, double step)
+static void prepare(const arm *a, motion *m, double remaining)
 {
     taylor_stride *s = m->memory;
-    (void)step;
     int order;
     double wanted = wanted_stride(a, m, remaining, &order);
     put_inputs(a, m, wanted, s->block);
@@ -266,9 +267,32 @@ static double begin(const arm *a, motion *m, double remaining, double step)
                             .hub_spring = a->hub_spring,
                             .damped = a->joint_damping > 0 || a->hub_joint_damping > 0,
                             .order = order};
-    taylor_series_1(s->block, s->form);
+}
+
+static double begin(const arm *a, motion *m, double remaining, double step)
+{
+    taylor_stride *s = m->memory;
+    (void)step;
+    if (!s->ready) {
+        prepare(a, m, remaining);
+        taylor_series_1(s->block, s->form);
+    }
+    s->ready = false;
     prepare_watched(a, m, s);
     return s->block[AT_ALLOWED];
+}
+
+bool taylor_prepare(const arm *a, motion *m, double remaining, taylor_request *request)
+{
+    assert(a != NULL && m != NULL && request != NULL);
+    taylor_stride *s = m->memory;
+    if (m->engine != &taylor_engine || motion_held_still(m)) {
+        return false;
+    }
+    prepare(a, m, remaining);
+    s->ready = true;
+    *request = (taylor_request){.form = s->form, .block = s->block};
+    return true;
 }
 
 // Gap, velocity and acceleration of it from angles, velocities and accelerations; in contact all

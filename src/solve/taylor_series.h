@@ -57,5 +57,9 @@ typedef struct taylor_form {
     int order;       // of the velocities' series, up to TAYLOR_MOST
 } taylor_form;
 
-// Computes the series of one arm, of several. block: TAYLOR_PLACES times the width, aligned to it.
+// Computes the series of as many arms as the name says; block: TAYLOR_PLACES times so many, aligned
+// to their vectors. The widest two are for processors with AVX2 and AVX-512.
 void taylor_series_1(double *block, taylor_form form);
+void taylor_series_2(double *block, taylor_form form);
+void taylor_series_4(double *block, taylor_form form);
+void taylor_series_8(double *block, taylor_form form);

@@ -1,6 +1,7 @@
 #include "src/study/batch.h"
 
 #include <assert.h>
+#include <string.h>
 
 #include "src/study/pool.h"
 
@@ -8,35 +9,51 @@ typedef struct batch {
     batch_maker make;
     void *context;
     summary *summaries;
+    size_t count;
 } batch;
 
-static void compute(void *context, size_t i, void *scratch, void *result)
+// A piece of work: RUN_TOGETHER runs, or what is left of them.
+static size_t piece_length(const batch *b, size_t piece)
+{
+    size_t left = b->count - piece * RUN_TOGETHER;
+    return left < RUN_TOGETHER ? left : RUN_TOGETHER;
+}
+
+static void compute(void *context, size_t piece, void *scratch, void *result)
 {
     const batch *b = context;
     scenario *made = scratch;
-    run_result run;
-    b->make(b->context, i, made);
-    run_scenario(made, false, &run);
-    *(summary *)result = run.summary;
-    run_finish(&run);
+    summary *summaries = result;
+    run_result runs[RUN_TOGETHER];
+    const size_t length = piece_length(b, piece);
+    for (size_t i = 0; i < length; i++) {
+        // filled with that of the call before: the last one of a piece is, as pieces are full
+        made[i] = made[i > 0 ? i - 1 : RUN_TOGETHER - 1];
+        b->make(b->context, piece * RUN_TOGETHER + i, &made[i]);
+    }
+    run_together(made, (int)length, runs);
+    for (size_t i = 0; i < length; i++) {
+        summaries[i] = runs[i].summary;
+        run_finish(&runs[i]);
+    }
 }
 
-static status collect(void *context, size_t i, const void *result, fault *f)
+static status collect(void *context, size_t piece, const void *result, fault *f)
 {
     const batch *b = context;
     (void)f;
-    b->summaries[i] = *(const summary *)result;
+    memcpy(b->summaries + piece * RUN_TOGETHER, result, piece_length(b, piece) * sizeof(summary));
     return STATUS_OK;
 }
 
 status batch_run(batch_maker make, void *context, size_t count, int jobs, summary *summaries)
 {
     assert(make != NULL && (summaries != NULL || count == 0));
-    batch b = {.make = make, .context = context, .summaries = summaries};
+    batch b = {.make = make, .context = context, .summaries = summaries, .count = count};
     const pool_work work = {.context = &b,
-                            .count = count,
-                            .scratch_size = sizeof(scenario),
-                            .result_size = sizeof(summary),
+                            .count = (count + RUN_TOGETHER - 1) / RUN_TOGETHER,
+                            .scratch_size = RUN_TOGETHER * sizeof(scenario),
+                            .result_size = RUN_TOGETHER * sizeof(summary),
                             .compute = compute,
                             .collect = collect};
     jobs = jobs < 1 ? 1 : jobs > POOL_MOST_THREADS ? POOL_MOST_THREADS : jobs;

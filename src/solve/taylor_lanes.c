@@ -1,0 +1,99 @@
+#include <assert.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "src/solve/taylor_engine.h"
+
+static atomic_int limit; // 0: none
+
+static int widest(void)
+{
+#if defined __x86_64__
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl")) {
+        return 8;
+    }
+    return __builtin_cpu_supports("avx2") ? 4 : 2;
+#else
+    return 1;
+#endif
+}
+
+int taylor_width(void)
+{
+    const int most = widest(), wanted = atomic_load_explicit(&limit, memory_order_relaxed);
+    return wanted > 0 && wanted < most ? wanted : most;
+}
+
+int taylor_limit_width(int width)
+{
+    assert(width == 0 || width == 1 || width == 2 || width == 4 || width == 8);
+    atomic_store(&limit, width);
+    return taylor_width();
+}
+
+static void compute_block(double *block, int width, taylor_form form)
+{
+    switch (width) {
+#if defined __x86_64__
+    case 8:
+        taylor_series_8(block, form);
+        break;
+    case 4:
+        taylor_series_4(block, form);
+        break;
+    case 2:
+        taylor_series_2(block, form);
+        break;
+#endif
+    default:
+        taylor_series_1(block, form);
+        break;
+    }
+}
+
+void taylor_compute(const taylor_request *requests, int count)
+{
+    const int width = count == 1 ? 1 : taylor_width();
+    const taylor_form form = requests[0].form;
+    assert(count >= 1 && count <= taylor_width());
+    if (width == 1) {
+        taylor_series_1(requests[0].block, form);
+        return;
+    }
+
+    // arms into lanes; those left over repeat the first
+    _Alignas(64) double block[TAYLOR_PLACES * TAYLOR_WIDEST];
+    for (int lane = 0; lane < width; lane++) {
+        const double *from = requests[lane < count ? lane : 0].block;
+        for (int place = 0; place < AT_INPUTS; place++) {
+            block[place * width + lane] = from[place];
+        }
+    }
+    compute_block(block, width, form);
+
+    // and back, as far as the order goes
+    const struct {
+        int place, count;
+        bool wanted;
+    } results[] = {{AT_ALLOWED, 1, true},
+                   {AT_ANGLE_0, form.order + 2, form.hub_spring},
+                   {AT_ANGLE_1, form.order + 2, true},
+                   {AT_ANGLE_2, form.order + 2, true},
+                   {AT_RATE_0, form.order + 1, form.hub_spring},
+                   {AT_RATE_1, form.order + 1, !form.hub_spring},
+                   {AT_GAP, form.order + 2, !form.contact},
+                   {AT_FORCE, form.order, form.contact},
+                   {AT_HOLD, form.order, true},
+                   {AT_HUB_SQUARE, form.order, true},
+                   {AT_DISSIPATION, form.order, form.damped}};
+    for (size_t i = 0; i < sizeof results / sizeof results[0]; i++) {
+        for (int n = 0; results[i].wanted && n < results[i].count; n++) {
+            const double *row = block + (results[i].place + n) * width;
+            for (int lane = 0; lane < count; lane++) {
+                requests[lane].block[results[i].place + n] = row[lane];
+            }
+        }
+    }
+}
