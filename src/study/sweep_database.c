@@ -1,5 +1,15 @@
 #include "src/study/sweep_database.h"
 
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/quantities/summary.h"
+
+// Marks a database as ours (PRAGMA application_id): "ILSw". The layout's version is user_version.
+#define APPLICATION_ID "1229738871"
+#define LAYOUT         "1"
+
 status database_fault(const sweep_store *store, fault *f)
 {
     int code = sqlite3_errcode(store->database) & 0xFF;
@@ -41,4 +51,130 @@ status database_query_number(sweep_store *store, const char *sql, long long *num
         code = database_fault(store, f);
     }
     return code;
+}
+
+status database_recognise(sweep_store *store, bool *empty, fault *f)
+{
+    assert(store != NULL && empty != NULL);
+    long long tables, mark = 0, layout = 0;
+    status code = database_query_number(store, "SELECT count(*) FROM sqlite_master", &tables, f);
+    *empty = tables == 0;
+    if (code == STATUS_OK && !*empty) {
+        code = database_query_number(store, "PRAGMA application_id", &mark, f);
+        code = code == STATUS_OK ? database_query_number(store, "PRAGMA user_version", &layout, f)
+                                 : code;
+        if (code == STATUS_OK && (mark != atoll(APPLICATION_ID) || layout != atoll(LAYOUT))) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s' is a database that holds no sweep of this program", store->path);
+        }
+    }
+    return code;
+}
+
+// A row a run: its number, the values of the axes, how it ended, the summary.
+static status create_run_table(sweep_store *store, fault *f)
+{
+    const sweep *s = store->sweep;
+    sqlite3_str *sql = sqlite3_str_new(store->database);
+    sqlite3_str_appendall(sql, "CREATE TABLE run (run INTEGER PRIMARY KEY");
+
+    for (int i = 0; i < s->axis_count; i++) {
+        const parameter_info *info = &parameter_table[s->axes[i].parameter];
+        bool words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN;
+        sqlite3_str_appendf(sql, ", \"%w\" %s NOT NULL", info->path,
+                            words                             ? "TEXT"
+                            : info->type == PARAMETER_INTEGER ? "INTEGER"
+                                                              : "REAL");
+    }
+
+    sqlite3_str_appendall(sql, ", status TEXT NOT NULL, message TEXT NOT NULL");
+    for (int i = 0; i < summary_count; i++) {
+        sqlite3_str_appendf(sql, ", \"%w\" REAL", summary_table[i].key);
+    }
+    sqlite3_str_appendall(sql, ")");
+
+    char *text = sqlite3_str_finish(sql);
+    status code = text ? database_execute(store, text, f) : fault_no_memory(f);
+    sqlite3_free(text);
+    return code;
+}
+
+status database_create_tables(sweep_store *store, fault *f)
+{
+    assert(store != NULL && store->sweep != NULL);
+    status code =
+        database_execute(store,
+                         "PRAGMA application_id = " APPLICATION_ID ";"
+                         "PRAGMA user_version = " LAYOUT ";"
+                         "CREATE TABLE sweep (key TEXT UNIQUE NOT NULL, value TEXT NOT NULL)",
+                         f);
+    return code == STATUS_OK ? create_run_table(store, f) : code;
+}
+
+status database_prepare_insert(sweep_store *store, sqlite3_stmt **insert, fault *f)
+{
+    assert(store != NULL && store->sweep != NULL && insert != NULL);
+    sqlite3_str *sql = sqlite3_str_new(store->database);
+    int columns = RUN_FIRST_VALUE + store->sweep->axis_count + RUN_OUTCOME_COLUMNS + summary_count;
+    sqlite3_str_appendall(sql, "INSERT INTO run VALUES (?");
+    for (int i = 1; i < columns; i++) {
+        sqlite3_str_appendall(sql, ", ?");
+    }
+    sqlite3_str_appendall(sql, ")");
+
+    char *text = sqlite3_str_finish(sql);
+    status code = text ? database_prepare(store, insert, text, f) : fault_no_memory(f);
+    sqlite3_free(text);
+    return code;
+}
+
+// The name of a column of the table `run`.
+static const char *column_name(const sweep *s, int column)
+{
+    static const char *const outcome[RUN_OUTCOME_COLUMNS] = {"status", "message"};
+    int value = column - RUN_FIRST_VALUE, word = value - s->axis_count;
+    return column < RUN_FIRST_VALUE     ? "run"
+           : value < s->axis_count      ? parameter_table[s->axes[value].parameter].path
+           : word < RUN_OUTCOME_COLUMNS ? outcome[word]
+                                        : summary_table[word - RUN_OUTCOME_COLUMNS].key;
+}
+
+status database_check_columns(sweep_store *store, fault *f)
+{
+    assert(store != NULL && store->sweep != NULL);
+    const sweep *s = store->sweep;
+    const int columns = RUN_FIRST_VALUE + s->axis_count + RUN_OUTCOME_COLUMNS + summary_count;
+    sqlite3_stmt *rows;
+    status code = database_prepare(store, &rows, "SELECT * FROM run", f);
+    int found = code == STATUS_OK ? sqlite3_column_count(rows) : 0;
+
+    for (int i = 0; i < columns && code == STATUS_OK; i++) {
+        const char *name = i < found ? sqlite3_column_name(rows, i) : NULL;
+        if (name == NULL || strcmp(name, column_name(s, i)) != 0) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s' has %s%.60s in column %d of its runs, expected %s", store->path,
+                             name != NULL ? "" : "nothing", name != NULL ? name : "", i + 1,
+                             column_name(s, i));
+        }
+    }
+    if (code == STATUS_OK && found != columns) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' has %d columns of runs, expected %d",
+                         store->path, found, columns);
+    }
+    sqlite3_finalize(rows);
+    return code;
+}
+
+status database_open(sweep_store *store, int flags, fault *f)
+{
+    assert(store != NULL);
+    if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database, flags, NULL) !=
+        SQLITE_OK) {
+        return store->database ? database_fault(store, f) : fault_no_memory(f);
+    }
+    sqlite3_db_config(store->database, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+    sqlite3_db_config(store->database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+    sqlite3_db_config(store->database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
+    sqlite3_db_config(store->database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL);
+    return STATUS_OK;
 }

@@ -18,6 +18,25 @@ typedef struct sweep_store {
     bool in_transaction;
 } sweep_store;
 
+// Opens the database file store->path, or memory where it is NULL, with SQLite's open flags. What a
+// file from elsewhere could bring along to be carried out (triggers, views, functions in a schema)
+// is off.
+status database_open(sweep_store *store, int flags, fault *f);
+
+// True in *empty if the database holds nothing; STATUS_BAD_ARGUMENT if what it holds is no sweep of
+// this program.
+status database_recognise(sweep_store *store, bool *empty, fault *f);
+
+// STATUS_BAD_ARGUMENT unless the table `run` has the columns of store->sweep, in their order.
+status database_check_columns(sweep_store *store, fault *f);
+
+// Creates the tables `sweep` and `run` and marks the database as a sweep; in a transaction of the
+// caller's.
+status database_create_tables(sweep_store *store, fault *f);
+
+// The statement that adds a row to `run`; the caller finalizes it.
+status database_prepare_insert(sweep_store *store, sqlite3_stmt **insert, fault *f);
+
 // What the database complains about, as a fault.
 status database_fault(const sweep_store *store, fault *f);
 

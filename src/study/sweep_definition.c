@@ -127,8 +127,9 @@ void definition_finish(definition *d)
     }
 }
 
-static const char *value_of(const definition *d, const char *key)
+const char *definition_value(const definition *d, const char *key)
 {
+    assert(d != NULL && key != NULL);
     for (int i = 0; i < d->count; i++) {
         if (strcmp(d->lines[i].key, key) == 0) {
             return d->lines[i].value;
@@ -144,7 +145,14 @@ status definition_read(sweep_store *store, definition *d, fault *f)
     memset(d, 0, sizeof *d);
     status code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
     while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
-        define(d, (const char *)sqlite3_column_text(rows, 0), "%s", sqlite3_column_text(rows, 1));
+        const char *key = (const char *)sqlite3_column_text(rows, 0);
+        const char *value = (const char *)sqlite3_column_text(rows, 1);
+        if (key == NULL || value == NULL) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s' has a line without text in what defines its sweep", store->path);
+            break;
+        }
+        define(d, key, "%s", value);
     }
     if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
         code = database_fault(store, f);
@@ -205,7 +213,7 @@ status definition_compare(const char *path, const definition *was, const definit
 
     // what is new or another value
     for (int i = 0; i < now->count; i++) {
-        const char *key = now->lines[i].key, *before = value_of(was, key);
+        const char *key = now->lines[i].key, *before = definition_value(was, key);
         // which parameters were given is worth saying only if all values are the same
         bool aside = !is_compared(key) || (count > 0 && strcmp(key, "given") == 0);
         if (!aside && (before == NULL || strcmp(before, now->lines[i].value) != 0)) {
@@ -215,7 +223,7 @@ status definition_compare(const char *path, const definition *was, const definit
 
     // what is gone
     for (int i = 0; i < was->count; i++) {
-        if (value_of(now, was->lines[i].key) == NULL) {
+        if (definition_value(now, was->lines[i].key) == NULL) {
             add_difference(text, sizeof text, &count, was->lines[i].key, was->lines[i].value, NULL);
         }
     }

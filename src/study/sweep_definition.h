@@ -23,6 +23,9 @@ void definition_finish(definition *d);
 // Reads the definition that the database holds, with the same remarks.
 status definition_read(sweep_store *store, definition *d, fault *f);
 
+// The value of a key, NULL if the definition has none.
+const char *definition_value(const definition *d, const char *key);
+
 // Writes the definition into the table `sweep`.
 status definition_write(sweep_store *store, const definition *d, fault *f);
 

@@ -103,10 +103,17 @@ status sweep_store_quantity(sweep_store *store, const char *key, double *values,
     char *sql = sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key);
     status code = sql ? database_prepare(store, &rows, sql, f) : fault_no_memory(f);
     while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
-        bool ok = strcmp((const char *)sqlite3_column_text(rows, 1), "failed") != 0;
+        long long run = sqlite3_column_int64(rows, 0);
+        const char *ended = (const char *)sqlite3_column_text(rows, 1);
+        if (run < 1 || (unsigned long long)run > total || ended == NULL) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds a row that is no run of the sweep",
+                             store->path ? store->path : "memory");
+            break;
+        }
+        bool ok = strcmp(ended, "failed") != 0;
         failures += !ok;
         if (ok && sqlite3_column_type(rows, 2) != SQLITE_NULL) {
-            values[sqlite3_column_int64(rows, 0) - 1] = sqlite3_column_double(rows, 2);
+            values[run - 1] = sqlite3_column_double(rows, 2);
         }
     }
 

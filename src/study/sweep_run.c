@@ -99,6 +99,20 @@ static status commit_and_report(void *context, bool over, fault *f)
     return code;
 }
 
+// Counts the runs of the share, in all and those present, and marks those of other shares so that
+// they are not computed here.
+static void keep_to_share(const sweep_execution *e, unsigned char *present)
+{
+    const sweep_share share = e->options->share;
+    *e->progress = (sweep_progress){0};
+    for (size_t run = 0; run < e->sweep->run_count; run++) {
+        bool own = share.parts == 0 || run % (size_t)share.parts == (size_t)(share.part - 1);
+        e->progress->total += own;
+        e->progress->done += own && present[run];
+        present[run] |= !own;
+    }
+}
+
 // Computes what is not present.
 static status run_missing(sweep_execution *e, const unsigned char *present, fault *f)
 {
@@ -112,7 +126,7 @@ static status run_missing(sweep_execution *e, const unsigned char *present, faul
                             .stop = e->options->stop};
 
     // no more threads than runs
-    size_t missing = e->sweep->run_count - e->progress->done;
+    size_t missing = e->progress->total - e->progress->done;
     int jobs = missing < (size_t)e->options->jobs ? (int)missing : e->options->jobs;
     return pool_run(&work, jobs > 0 ? jobs : 1, f);
 }
@@ -122,6 +136,8 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
 {
     assert(s != NULL && store != NULL && progress != NULL);
     assert(options != NULL && options->jobs >= 1 && options->jobs <= SWEEP_MOST_JOBS);
+    assert(options->share.part >= (options->share.parts > 0) &&
+           options->share.part <= options->share.parts);
     double now = seconds(CLOCK_MONOTONIC);
     sweep_execution e = {s, store, options, progress, .start = now, .committed = now};
     *progress = (sweep_progress){.total = s->run_count};
@@ -131,8 +147,10 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
     if (present == NULL) {
         return fault_no_memory(f);
     }
-    status code = sweep_store_present(store, present, &progress->done, f);
+    size_t stored;
+    status code = sweep_store_present(store, present, &stored, f);
     if (code == STATUS_OK) {
+        keep_to_share(&e, present);
         code = run_missing(&e, present, f);
         report(&e);
     }

@@ -9,13 +9,19 @@ enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
 
 // How far a sweep has come.
 typedef struct sweep_progress {
-    size_t done, total; // runs in the store, and of the sweep
+    size_t done, total; // runs in the store, and in all, of this share of the sweep
     size_t failed;      // of those done now: runs that failed
     size_t done_now;    // since sweep_run began
     double elapsed_s;   // since sweep_run began
 } sweep_progress;
 
+// Every parts-th run, beginning with number `part` (from 1): what one of several machines computes.
+typedef struct sweep_share {
+    int part, parts; // 0, 0: all runs
+} sweep_share;
+
 typedef struct sweep_options {
+    sweep_share share;
     int jobs;                          // threads that compute, 1 ... SWEEP_MOST_JOBS
     const volatile sig_atomic_t *stop; // becomes true to end early; NULL if nothing does
     void (*report)(void *context, const sweep_progress *p); // about ten times a second, or NULL

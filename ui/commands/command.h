@@ -27,6 +27,7 @@ typedef struct arguments {
     const char *sampling;          // --sample, NULL: grid
     uint64_t runs, seed;           // --runs (0 if not given), --seed
     uint64_t jobs;                 // runs at a time, 0 if not given
+    const char *part;              // --part, "K/N"
     const char *quantity;          // --quantity, a key
     const char *only, *baseline;   // of bench
     const char *against, *columns; // of compare

@@ -16,6 +16,7 @@
     X(predict)                                                                                     \
     X(modes)                                                                                       \
     X(sweep)                                                                                       \
+    X(merge)                                                                                       \
     X(compare)                                                                                     \
     X(converge)                                                                                    \
     X(study)                                                                                       \

@@ -70,12 +70,37 @@ static sweep_order order_of(const arguments *a)
                                      .seed = a->seed}};
 }
 
+// Reads --part K/N, which needs a database: what a part computes is good for being merged.
+static int read_share(const arguments *a, sweep_share *share)
+{
+    char rest;
+    *share = (sweep_share){0, 0};
+    if (a->part == NULL) {
+        return EXIT_DONE;
+    }
+    if (sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 || share->part < 1 ||
+        share->parts < share->part) {
+        return complain("--part '%.40s' is no part, expected K/N with K from 1 to N", a->part);
+    }
+    if (a->db == NULL) {
+        return complain("--part %s keeps its runs in a database, expected --db FILE.sqlite",
+                        a->part);
+    }
+    if (a->csv != NULL || a->plot != NULL) {
+        return complain("--part %s is not the whole sweep: --csv and --plot come after impactlab "
+                        "merge",
+                        a->part);
+    }
+    return EXIT_DONE;
+}
+
 // Reads the scenario and what is varied, and looks at everything that can be wrong beforehand.
 static int prepare(sweep_order *o, const arguments *a)
 {
     fault f = {0};
     *o = order_of(a);
-    int code = open_scenario(&o->scenario, a->operands[0], a);
+    int code = read_share(a, &o->share);
+    code = code == EXIT_DONE ? open_scenario(&o->scenario, a->operands[0], a) : code;
     if (code != EXIT_DONE) {
         return code;
     }
@@ -156,8 +181,10 @@ static int compute(const sweep_order *o, sweep_store *store)
     fault f = {0};
     sweep_progress progress;
     bool bar = isatty(STDERR_FILENO) && !o->arguments->quiet;
-    sweep_options options = {
-        .jobs = o->jobs, .stop = &signal_caught, .report = bar ? show_progress : NULL};
+    sweep_options options = {.share = o->share,
+                             .jobs = o->jobs,
+                             .stop = &signal_caught,
+                             .report = bar ? show_progress : NULL};
     catch_signals();
     status code = sweep_run(&o->sweep, store, &options, &progress, &f);
     if (bar) {
@@ -169,7 +196,14 @@ static int compute(const sweep_order *o, sweep_store *store)
     if (progress.done < progress.total) {
         return report_stop(o, &progress);
     }
-    return report_sweep(o, store, &progress);
+    if (o->share.parts == 0) {
+        return report_sweep(o, store, &progress);
+    }
+    if (!o->arguments->quiet) {
+        printf("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario.name, o->share.part,
+               o->share.parts, progress.done, o->sweep.run_count, o->arguments->db);
+    }
+    return progress.failed > 0 && progress.failed == progress.total ? EXIT_FAILED : EXIT_DONE;
 }
 
 static int sweep_command_run(const arguments *a)
@@ -223,6 +257,11 @@ static const option_row rows[] = {
      .value = "FILE.sqlite",
      .help = "keep every run in a database; go on where it ends",
      PLACE(db)},
+    {.name = "part",
+     .type = OPTION_TEXT,
+     .value = "K/N",
+     .help = "compute every N-th run from the K-th on; impactlab merge joins the parts",
+     PLACE(part)},
     {.name = "csv",
      .type = OPTION_RESULT,
      .value = "FILE|-",

@@ -9,6 +9,7 @@ typedef struct sweep_order {
     const arguments *arguments;
     const char *quantity; // key of what is drawn and summed up
     int jobs;             // runs at a time
+    sweep_share share;    // of all runs
     sweep_request request;
     scenario scenario;
     sweep sweep;

@@ -1,0 +1,179 @@
+#include "src/study/sweep_merge.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/whole_file.h"
+#include "src/quantities/summary.h"
+#include "src/study/sweep_definition.h"
+
+// The merged sweep while it grows, in memory.
+typedef struct merging {
+    sweep shape;           // as far as the columns depend on it: axes and number of runs
+    definition definition; // of the first part; all others are compared with it
+    sweep_store store;     // in memory
+    sweep_merged *merged;
+} merging;
+
+// Opens a part for reading and reads what defines it.
+static status open_part(sweep_store *part, char *path, definition *d, fault *f)
+{
+    bool empty;
+    *part = (sweep_store){.path = path, .lock = -1};
+    status code = database_open(part, SQLITE_OPEN_READONLY, f);
+    code = code == STATUS_OK ? database_recognise(part, &empty, f) : code;
+    if (code == STATUS_OK && empty) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is empty, expected a part of a sweep", path);
+    }
+    code = code == STATUS_OK ? definition_read(part, d, f) : code;
+    return code == STATUS_OK && d->out_of_memory ? fault_no_memory(f) : code;
+}
+
+// Which columns the runs have follows from what is varied: lines "vary 1" = "PATH=...".
+static status shape_of(const char *path, const definition *d, sweep *shape, fault *f)
+{
+    const char *runs = definition_value(d, "runs"), *varied;
+    char key[16];
+    *shape = (sweep){.run_count = runs != NULL ? strtoull(runs, NULL, 10) : 0};
+
+    for (int i = 0; i < SWEEP_MOST_AXES; i++) {
+        char name[64] = "";
+        snprintf(key, sizeof key, "vary %d", i + 1);
+        if ((varied = definition_value(d, key)) == NULL) {
+            break;
+        }
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(varied, "="), varied);
+        shape->axes[i].parameter = parameter_find(name);
+        if (shape->axes[i].parameter < 0) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s' varies '%s', which is no parameter of this version", path, name);
+        }
+        shape->axis_count++;
+    }
+    return shape->run_count > 0 ? STATUS_OK
+                                : fault_set(f, STATUS_BAD_ARGUMENT,
+                                            "'%s' does not say how many runs its sweep has", path);
+}
+
+// Begins the merged sweep with the definition of its first part, which it takes over.
+static status begin(merging *m, const char *path, fault *f)
+{
+    status code = shape_of(path, &m->definition, &m->shape, f);
+    m->merged->total = m->shape.run_count;
+    m->store = (sweep_store){.sweep = &m->shape, .lock = -1};
+    code = code == STATUS_OK
+               ? database_open(&m->store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f)
+               : code;
+    code = code == STATUS_OK ? database_execute(&m->store, "BEGIN", f) : code;
+    code = code == STATUS_OK ? database_create_tables(&m->store, f) : code;
+    code = code == STATUS_OK ? definition_write(&m->store, &m->definition, f) : code;
+    return code == STATUS_OK ? database_prepare_insert(&m->store, &m->store.insert, f) : code;
+}
+
+// Adds the row that a statement stands on.
+static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
+{
+    long long run = sqlite3_column_int64(row, 0);
+    if (run < 1 || (unsigned long long)run > m->shape.run_count) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu", path, run,
+                         m->shape.run_count);
+    }
+
+    for (int i = 0; i < sqlite3_column_count(row); i++) {
+        sqlite3_bind_value(m->store.insert, i + 1, sqlite3_column_value(row, i));
+    }
+    int done = sqlite3_step(m->store.insert);
+    sqlite3_reset(m->store.insert);
+    m->merged->runs += done == SQLITE_DONE;
+
+    // the number of a run is its key: the only constraint but that nothing is NULL
+    return done == SQLITE_DONE ? STATUS_OK
+           : done == SQLITE_CONSTRAINT
+               ? fault_set(f, STATUS_BAD_ARGUMENT,
+                           "run %lld of '%s' is in another part too, or incomplete", run, path)
+               : database_fault(&m->store, f);
+}
+
+// Adds all rows of a part.
+static status add_rows(merging *m, sweep_store *part, fault *f)
+{
+    sqlite3_stmt *rows;
+    part->sweep = &m->shape;
+    status code = database_check_columns(part, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    int step = SQLITE_DONE;
+    code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
+    while (code == STATUS_OK && (step = sqlite3_step(rows)) == SQLITE_ROW) {
+        code = add_row(m, part->path, rows, f);
+    }
+    if (code == STATUS_OK && step != SQLITE_DONE) {
+        code = database_fault(part, f);
+    }
+    sqlite3_finalize(rows);
+    return code;
+}
+
+// Adds a part: the first one begins the merged sweep, the others must be of the same.
+static status add_part(merging *m, char *path, bool first, fault *f)
+{
+    definition own = {.count = 0};
+    sweep_store part;
+    definition *d = first ? &m->definition : &own;
+
+    status code = open_part(&part, path, d, f);
+    if (code == STATUS_OK) {
+        code = first ? begin(m, path, f) : definition_compare(path, d, &m->definition, f);
+    }
+    code = code == STATUS_OK ? add_rows(m, &part, f) : code;
+
+    definition_finish(&own);
+    sqlite3_close(part.database);
+    return code;
+}
+
+// The database as it would stand in a file, written whole or not at all.
+static status write_database(merging *m, const char *output, fault *f)
+{
+    status code = database_execute(&m->store, "COMMIT", f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    sqlite3_int64 size = 0;
+    unsigned char *bytes = sqlite3_serialize(m->store.database, "main", &size, 0);
+    if (bytes == NULL) {
+        return fault_no_memory(f);
+    }
+
+    whole_file file;
+    code = whole_file_open(&file, output, f);
+    if (code == STATUS_OK) {
+        fwrite(bytes, 1, (size_t)size, file.stream); // errors stay in the stream
+        code = whole_file_commit(&file, f);
+    }
+    sqlite3_free(bytes);
+    return code;
+}
+
+status sweep_merge(char *const *files, int count, const char *output, sweep_merged *merged,
+                   fault *f)
+{
+    assert(files != NULL && count > 0 && output != NULL && merged != NULL);
+    merging m = {.merged = merged};
+    status code = STATUS_OK;
+    *merged = (sweep_merged){0};
+
+    for (int i = 0; i < count && code == STATUS_OK; i++) {
+        code = add_part(&m, files[i], i == 0, f);
+    }
+    code = code == STATUS_OK ? write_database(&m, output, f) : code;
+
+    definition_finish(&m.definition);
+    sqlite3_finalize(m.store.insert);
+    sqlite3_close(m.store.database);
+    return code;
+}

@@ -1,0 +1,174 @@
+// Parts of a sweep computed apart and merged: the rows of one sweep, and nothing else gets in.
+#include <sqlite3.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/study/sweep_merge.h"
+#include "src/study/sweep_rows.h"
+#include "src/study/sweep_run.h"
+#include "tests/check.h"
+
+static char folder[] = "/tmp/sweep-merge-XXXXXX";
+static scenario base;
+
+static void report_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fprintf(stderr, "%s\n", sentence);
+}
+
+static int prepare(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) == NULL || chdir(folder) != 0 ||
+           scenario_open(&base, "corrected/first-impact", report_fault, NULL) != STATUS_OK;
+}
+
+static int clean_up(void **state)
+{
+    (void)state;
+    scenario_finish(&base);
+    return chdir("/") != 0 || rmdir(folder) != 0;
+}
+
+static void must_sweep(sweep *s, char *vary)
+{
+    sweep_request request = {.vary = &vary, .vary_count = 1};
+    fault f = {0};
+    if (sweep_init(s, &base, &request, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+// Computes a share of a sweep into a file; returns all rows of the store as CSV, to be freed.
+static char *compute(const sweep *s, const char *path, sweep_share share)
+{
+    sweep_store *store;
+    sweep_progress progress;
+    fault f = {0};
+    const sweep_options options = {.share = share, .jobs = 2};
+    if (sweep_store_open(&store, path, s, &f) != STATUS_OK ||
+        sweep_run(s, store, &options, &progress, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    assert_int_equal(progress.done, progress.total);
+
+    char *text;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    assert_int_equal(sweep_store_csv(store, stream, &f), STATUS_OK);
+    fclose(stream);
+    sweep_store_close(store);
+    return text;
+}
+
+// Merges and expects to be refused with a sentence that says `says`; no file is made.
+static void check_refused(char **files, int count, const char *says)
+{
+    sweep_merged merged;
+    fault f = {0};
+    assert_int_equal(sweep_merge(files, count, "refused", &merged, &f), STATUS_BAD_ARGUMENT);
+    if (strstr(f.text, says) == NULL) {
+        fail_msg("'%s' does not say '%s'", f.text, says);
+    }
+    assert_int_not_equal(access("refused", F_OK), 0);
+}
+
+static void parts_in_any_order_give_the_rows_of_one_sweep(void **state)
+{
+    (void)state;
+    sweep s;
+    must_sweep(&s, "motor.voltage=0.5:2:11");
+    char *whole = compute(&s, "whole", (sweep_share){0, 0});
+    char *parts[] = {"3", "1", "2"};
+    for (int i = 0; i < 3; i++) {
+        free(compute(&s, parts[i], (sweep_share){atoi(parts[i]), 3}));
+    }
+
+    sweep_merged merged;
+    fault f = {0};
+    assert_int_equal(sweep_merge(parts, 3, "merged", &merged, &f), STATUS_OK);
+    assert_int_equal(merged.runs, 11);
+    assert_int_equal(merged.total, 11);
+
+    // nothing is left to compute, and the rows are the same to the last byte
+    char *rows = compute(&s, "merged", (sweep_share){0, 0});
+    assert_string_equal(rows, whole);
+    free(rows);
+
+    // a sweep with a part missing goes on where it ends
+    assert_int_equal(sweep_merge(parts, 2, "some", &merged, &f), STATUS_OK);
+    assert_int_equal(merged.runs, 7);
+    rows = compute(&s, "some", (sweep_share){0, 0});
+    assert_string_equal(rows, whole);
+    free(rows);
+    free(whole);
+
+    char *twice[] = {"1", "2", "1"};
+    check_refused(twice, 3, "run 1 of '1' is in another part too");
+    sweep_finish(&s);
+    for (int i = 0; i < 3; i++) {
+        unlink(parts[i]);
+    }
+    unlink("whole");
+    unlink("merged");
+    unlink("some");
+}
+
+// Carries out SQL on a file, as somebody else's program might.
+static void tamper(const char *path, const char *sql)
+{
+    sqlite3 *database;
+    assert_int_equal(sqlite3_open(path, &database), SQLITE_OK);
+    if (sqlite3_exec(database, sql, NULL, NULL, NULL) != SQLITE_OK) {
+        fail_msg("%s", sqlite3_errmsg(database));
+    }
+    sqlite3_close(database);
+}
+
+static void foreign_parts_are_refused(void **state)
+{
+    (void)state;
+    sweep s, other;
+    must_sweep(&s, "motor.voltage=1:2:3");
+    must_sweep(&other, "motor.voltage=1:2:4");
+    free(compute(&s, "own", (sweep_share){1, 3}));
+    free(compute(&other, "other", (sweep_share){2, 4}));
+    char *pair[] = {"own", "other"};
+    check_refused(pair, 2, "'other' holds another sweep");
+
+    // what is no sweep, and what was changed by others
+    free(compute(&s, "changed", (sweep_share){2, 3}));
+    pair[1] = "changed";
+    tamper("changed", "UPDATE run SET run = 12");
+    check_refused(pair, 2, "holds run 12 of a sweep of 3");
+    tamper("changed", "ALTER TABLE run RENAME COLUMN peak_force_N TO peak");
+    check_refused(pair, 2, "expected peak_force_N");
+    tamper("changed", "PRAGMA application_id = 1");
+    check_refused(pair, 2, "holds no sweep of this program");
+
+    // a database of somebody else's with what this program never writes
+    tamper("own", "DROP TABLE sweep; CREATE TABLE sweep (key, value);"
+                  "INSERT INTO sweep VALUES (NULL, 'x'), ('runs', NULL)");
+    check_refused(pair, 1, "without text");
+    sweep_store *store;
+    fault f = {0};
+    assert_int_equal(sweep_store_open(&store, "own", &s, &f), STATUS_BAD_ARGUMENT);
+
+    sweep_finish(&s);
+    sweep_finish(&other);
+    unlink("own");
+    unlink("other");
+    unlink("changed");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parts_in_any_order_give_the_rows_of_one_sweep),
+        cmocka_unit_test(foreign_parts_are_refused),
+    };
+    return cmocka_run_group_tests(tests, prepare, clean_up) != 0;
+}
