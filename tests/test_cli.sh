@@ -161,6 +161,11 @@ expect 2 run hit.yaml --plot look.svg --signals forse
 says err "did you mean 'force'"
 expect 2 run hit.yaml --plot look.svg --font "No Such Font"
 expect 2 run hit.yaml --plot look.svg --from 1
+expect 0 modes hit.yaml --quiet --plot modes.svg --width 85mm
+[ -s modes.csv ] || fail "no numbers beside the picture of modes"
+expect 0 predict hit.yaml --quiet --plot predict.svg
+expect 0 compare hit.yaml corrected/first-impact --quiet --plot compared.svg --signals force
+expect 2 compare hit.yaml --vary motor.voltage=1,2 --quiet --plot compared.svg
 
 # recipes
 expect 0 plot "$IMPACTLAB_SCENARIOS/recipes/measured.yaml" -o recipe.svg --width 85mm

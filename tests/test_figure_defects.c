@@ -205,6 +205,34 @@ static void numbers_have_names_and_units(void **state)
     free(csv);
 }
 
+// A legend that found no room inside stands above the panel's heading, not over it.
+static void a_legend_keeps_off_the_heading(void **state)
+{
+    (void)state;
+    static figure_report r;
+    enum { POINTS = 60, CURVES = 3 };
+    double x[POINTS], y[CURVES][POINTS];
+    figure_series series[CURVES];
+    for (int k = 0; k < CURVES; k++) {
+        for (int i = 0; i < POINTS; i++) {
+            x[i] = i;
+            y[k][i] = (i + k) % 2 ? 1 : -1;
+        }
+        series[k] = (figure_series){.label = "a curve", .x = x, .y = y[k], .count = POINTS};
+    }
+    figure_panel panel = {.heading = "heading", .series = series, .series_count = CURVES};
+    figure fig = {.panels = &panel, .panel_count = 1, .width = 60};
+    record(&fig, &r);
+    for (int i = 0; i < r.text_count; i++) {
+        for (int k = 0; k < i; k++) {
+            assert_false(overlap(&r.texts[i].place, &r.texts[k].place));
+        }
+        if (strcmp(r.texts[i].text, "heading") == 0) {
+            check_below(r.legends[0].y + r.legends[0].height, r.texts[i].place.y + 2);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -216,6 +244,8 @@ int main(void)
         cmocka_unit_test(a_busy_line_has_no_dashes),
         cmocka_unit_test(a_map_without_colours_is_grey),
         cmocka_unit_test(numbers_have_names_and_units),
+        cmocka_unit_test(a_legend_keeps_off_the_heading),
     };
-    return cmocka_run_group_tests_name("figure defects", tests, make_work_folder, remove_work_folder) != 0;
+    return cmocka_run_group_tests_name("figure defects", tests, make_work_folder,
+                                       remove_work_folder) != 0;
 }

@@ -94,6 +94,9 @@ bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
     if (l->legend_row) {
         l->legend = (figure_rect){d->column[l->column].right - width, l->plane.box.y - height - 1,
                                   width, height};
+        if (l->panel->heading != NULL) {
+            l->legend.y -= HEADING_ROW;
+        }
         if (l->panel->impulse_count > 0) {
             l->legend.y = l->strip_top - height;
         }

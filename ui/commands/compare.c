@@ -1,5 +1,7 @@
 #include "ui/commands/command.h"
 
+#include "ui/commands/pictures.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -163,6 +165,33 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     return result;
 }
 
+// The recorded signals of all scenarios in one figure, a colour each.
+static int plot_runs(const arguments *a, const comparison *c)
+{
+    trace_run shown[TRACE_RUNS] = {{.scenario = NULL}};
+    run_result results[TRACE_RUNS];
+    int count = 0, code = EXIT_DONE;
+    if (c->swept > 0) {
+        return complain("--plot shows the scenarios themselves, not --vary's combinations");
+    }
+    if (c->opened > TRACE_RUNS) {
+        return complain("--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened);
+    }
+    for (; count < c->opened; count++) {
+        // one that fails shows what it has
+        run_scenario(&c->scenarios[count], true, &results[count]);
+        shown[count] = (trace_run){.scenario = &c->scenarios[count],
+                                   .result = &results[count],
+                                   .name = c->scenarios[count].name,
+                                   .rank = count + 1};
+    }
+    code = publish_runs(a, "Runs compared", shown, count);
+    for (int i = 0; i < count; i++) {
+        run_finish(&results[i]);
+    }
+    return code;
+}
+
 static int compare(const arguments *a)
 {
     comparison c = {0};
@@ -176,12 +205,14 @@ static int compare(const arguments *a)
     if (result == EXIT_DONE) {
         run_all(&c);
         result = write_results(a, &c, &table);
+        result = a->plot != NULL ? worse(result, plot_runs(a, &c)) : result;
     }
     finish(&c);
     return result;
 }
 
 static const option_row rows[] = {
+    PLOT_OPTION("draw the recorded signals of all scenarios"),
     {.name = "csv",
      .type = OPTION_RESULT,
      .value = "FILE|-",
@@ -226,6 +257,7 @@ const command compare_command = {
     .least = 1,
     .most = MOST_SCENARIOS,
     .takes_scenarios = true,
-    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options},
+    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
+                &page_options},
     .run = compare,
 };

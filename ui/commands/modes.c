@@ -5,6 +5,7 @@
 
 #include "src/arm/modes.h"
 #include "src/base/json.h"
+#include "ui/commands/pictures.h"
 
 #define TWO_PI (2 * 3.14159265358979323846)
 
@@ -80,11 +81,88 @@ static void print_set(const arm *a, const mode_set *set, const char *hub, const 
     }
 }
 
+// ---- the picture
+
+enum { MODES_DRAWN = 3 };
+
+// Deflection at the joints of a mode's shape, from the hub to the tip, largest 1.
+static void deflections(const arm *a, const double *shape, double *x, double *y)
+{
+    // the hub's own angle moves nothing
+    const double *links = shape + (a->dof - a->links);
+    double length = a->link_length, largest = 0;
+    x[0] = y[0] = 0;
+    for (int i = 0; i < a->links; i++) {
+        x[i + 1] = length * (i + 1);
+        y[i + 1] = y[i] + length * links[i];
+        largest = fmax(largest, fabs(y[i + 1]));
+    }
+    for (int i = 0; i <= a->links && largest > 0; i++) {
+        y[i] /= largest;
+    }
+}
+
+static int plot_modes(const arguments *args, const scenario *s, const arm *a, const mode_set *sets)
+{
+    static const int colours[MODES_DRAWN] = {0, 5, 2};
+    figure_series series[HOLDS][MODES_DRAWN] = {{{0}}};
+    figure_panel panels[HOLDS] = {{0}};
+    char headings[HOLDS][64], labels[HOLDS][MODES_DRAWN][48], title[256];
+    size_t points = (size_t)a->links + 1;
+    double *numbers = calloc((size_t)HOLDS * MODES_DRAWN * 2 * points, sizeof *numbers);
+    if (numbers == NULL) {
+        return worse(EXIT_FAILED, complain("out of memory"));
+    }
+
+    // a panel for each way of holding the arm, a curve for each of its first modes
+    for (int i = 0; i < HOLDS; i++) {
+        int shown = sets[i].count < MODES_DRAWN ? sets[i].count : MODES_DRAWN;
+        for (int m = 0; m < shown; m++) {
+            double *x = numbers + (size_t)(i * MODES_DRAWN + m) * 2 * points, *y = x + points;
+            deflections(a, sets[i].shapes + m * a->dof, x, y);
+            snprintf(labels[i][m], sizeof labels[i][m], "%.3g\u2009Hz",
+                     sets[i].frequencies[m] / TWO_PI);
+            series[i][m] = (figure_series){.name = labels[i][m],
+                                           .label = labels[i][m],
+                                           .x = x,
+                                           .y = y,
+                                           .count = points,
+                                           .colour = colours[m],
+                                           .marker = a->links <= 40 ? MARKER_CIRCLE : MARKER_NONE};
+        }
+        snprintf(headings[i], sizeof headings[i], "hub %s, tip %s", holds[i].hub_name,
+                 holds[i].tip_name);
+        panels[i] = (figure_panel){.heading = headings[i],
+                                   .remark = shown == 0 ? "nothing can move" : NULL,
+                                   .y = {.name = "deflection",
+                                         .label = "Deflection, largest 1",
+                                         .symbol = "Deflection",
+                                         .low = -1.15,
+                                         .high = 1.15},
+                                   .series = series[i],
+                                   .series_count = shown};
+    }
+    snprintf(title, sizeof title, "%s: first modes of the arm", s->name);
+    const figure fig = {
+        .title = title,
+        .x = {.name = "position", .label = "Position along the arm", .unit = "m", .room = 0.02},
+        .panels = panels,
+        .panel_count = HOLDS,
+        .columns = 2,
+        .shared_y = true};
+    int code = publish_figure(args, &fig);
+    free(numbers);
+    return code;
+}
+
 static int report(const arguments *args, const scenario *s, const arm *a, const mode_set *sets)
 {
     int result = EXIT_DONE;
     if (args->json != NULL) {
         result = write_json(args->json, modes_object(s, a, sets));
+    }
+    if (args->plot != NULL) {
+        result = worse(result, plot_modes(args, s, a, sets));
     }
     if (summary_wanted(args)) {
         printf("%s: %s\nsmall vibrations of the straight arm, %d link%s, without damping\n",
@@ -140,6 +218,9 @@ static int modes(const arguments *a)
     return with_scenario(a->operands[0], a, check_and_compute);
 }
 
+static const option_row rows[] = {PLOT_OPTION("draw the first modes' shapes")};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command modes_command = {
     .name = "modes",
     .group = GROUP_ONE_RUN,
@@ -151,6 +232,6 @@ const command modes_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .options = {&set_options, &json_options, &quiet_options},
+    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
     .run = modes,
 };

@@ -4,6 +4,7 @@
 
 #include "src/base/json.h"
 #include "src/predict/predictors.h"
+#include "ui/commands/pictures.h"
 
 // The last row in free flight before the first contact, or NULL if there was no contact.
 static const sample *last_free_row(const trace *t)
@@ -113,6 +114,56 @@ static void print_predictions(const scenario *s, const sample *row,
     }
 }
 
+// The peak that each predictor says, one below the other, with that of the simulation as a line.
+static int plot_predictions(const arguments *a, const scenario *s, const prediction_answer *answers,
+                            const summary *m)
+{
+    double peak[PREDICTOR_COUNT], place[PREDICTOR_COUNT], line_y[2], line_x[2];
+    figure_tick ticks[PREDICTOR_COUNT];
+    char title[256];
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        bool holds = answers[i].outcome == PREDICTION_HOLDS;
+        peak[i] = holds ? answers[i].prediction.force : (double)NAN;
+        place[i] = PREDICTOR_COUNT - i; // the first one uppermost
+        ticks[PREDICTOR_COUNT - 1 - i] = (figure_tick){place[i], answers[i].label};
+    }
+    line_x[0] = line_x[1] = m->first_pulse_peak_N;
+    line_y[0] = 0.4;
+    line_y[1] = PREDICTOR_COUNT + 0.6;
+    const figure_series series[] = {{.name = "predicted",
+                                     .label = "predicted",
+                                     .x = peak,
+                                     .y = place,
+                                     .count = PREDICTOR_COUNT,
+                                     .colour = 0,
+                                     .marker = MARKER_CIRCLE,
+                                     .radius = 2.6,
+                                     .no_line = true},
+                                    {.name = "simulation",
+                                     .label = "simulation",
+                                     .x = line_x,
+                                     .y = line_y,
+                                     .count = 2,
+                                     .colour = 5,
+                                     .style = LINE_DASHED}};
+    const figure_panel panel = {.y = {.name = "predictor",
+                                      .ticks = ticks,
+                                      .tick_count = PREDICTOR_COUNT,
+                                      .low = line_y[0],
+                                      .high = line_y[1]},
+                                .series = series,
+                                .series_count = 2,
+                                .weight = 1.6};
+    snprintf(title, sizeof title, "%s: peak of the first pulse, predicted and simulated", s->name);
+    const figure fig = {
+        .title = title,
+        .x = {.name = "peak", .label = "Peak force", .unit = "N", .room = 0.06, .with_zero = true},
+        .panels = &panel,
+        .panel_count = 1,
+        .common_legend = true};
+    return publish_figure(a, &fig);
+}
+
 static int report(const arguments *a, const scenario *s, const run_result *result)
 {
     prediction_answer answers[PREDICTOR_COUNT];
@@ -126,6 +177,9 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
     int code = EXIT_DONE;
     if (a->json != NULL) {
         code = write_json(a->json, predict_object(s, row, answers, &result->summary));
+    }
+    if (a->plot != NULL) {
+        code = worse(code, plot_predictions(a, s, answers, &result->summary));
     }
     if (summary_wanted(a)) {
         print_predictions(s, row, answers, &result->summary);
@@ -151,6 +205,9 @@ static int predict(const arguments *a)
     return with_scenario(a->operands[0], a, predict_and_report);
 }
 
+static const option_row rows[] = {PLOT_OPTION("draw the predicted peaks beside the simulated one")};
+static const option_table options = OPTION_TABLE("Options", rows);
+
 const command predict_command = {
     .name = "predict",
     .group = GROUP_ONE_RUN,
@@ -160,6 +217,6 @@ const command predict_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .options = {&set_options, &json_options, &quiet_options},
+    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
     .run = predict,
 };
