@@ -57,7 +57,7 @@ says out corrected/first-impact
 expect 0 --version
 says out "impactlab "
 expect 0 --help
-for command in list show check run tables figures animate predict modes sweep compare calibrate bench converge study; do
+for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge study; do
     grep -q "^  $command " out || fail "--help does not name $command"
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
@@ -351,6 +351,16 @@ expect 2 calibrate press.yaml --vary control.approach_voltage=0.01,2
 says err "does not press"
 expect 2 calibrate press.yaml --set wall.kind=none
 expect 1 calibrate press.yaml -o no/such/folder/table.yaml
+
+# laws over a set, the same bytes for the same seed, and on from a database
+expect 0 robust compare/observer --laws hybrid,observer --runs 6 --json one.json --csv robust.csv --db robust.sqlite
+expect 0 robust compare/observer --laws hybrid,observer --runs 6 --json two.json --db robust.sqlite --jobs 1
+cmp one.json two.json || fail "robust gives other bytes the second time"
+[ "$(wc -l <robust.csv)" = 3 ] || fail "robust --csv has not a row for each law"
+[ -s robust-hybrid.sqlite ] && [ -s robust-observer.sqlite ] || fail "robust --db keeps no runs"
+expect 2 robust compare/observer --laws nonsense
+expect 2 robust compare/observer --over press.yaml
+expect 2 robust corrected/first-impact
 expect 2 run press.yaml --set "control.k2_table=1:0"
 says err "expected FORCE:K2"
 expect 0 compare press.yaml table.yaml --against press.yaml --vary control.force=1,2 \

@@ -104,6 +104,12 @@ static const char *scenario_folder(void)
                                                  : IMPACTLAB_DATA_SCENARIOS;
 }
 
+char *scenario_folder_file(const char *name)
+{
+    assert(name != NULL);
+    return text_of("%s/%s", scenario_folder(), name);
+}
+
 static bool add_name(name_list *list, const char *name, size_t length)
 {
     char **grown = realloc(list->names, (size_t)(list->count + 1) * sizeof *grown);

@@ -6,7 +6,7 @@
 
 #include "src/run/run.h"
 
-enum { COMPARE_QUANTITIES = 10, COMPARE_MOST_VARIED = 8 };
+enum { COMPARE_QUANTITIES = 10, COMPARE_MOST_VARIED = 32 };
 
 typedef struct compare_quantity {
     const char *key;     // in JSON, its unit at the end

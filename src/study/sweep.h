@@ -9,7 +9,7 @@
 #include "src/scenario/scenario.h"
 #include "src/study/sweep_axis.h"
 
-enum { SWEEP_MOST_AXES = 8 };
+enum { SWEEP_MOST_AXES = 32 };
 
 // How the values are chosen: every combination, independently at random, or so that each of as many
 // equal parts of every range as there are runs is met exactly once (Latin hypercube).

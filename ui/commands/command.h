@@ -32,6 +32,7 @@ typedef struct arguments {
     const char *only, *baseline;   // of bench
     const char *against, *columns; // of compare
     double tolerance;              // of compare [%]
+    const char *laws, *over;       // of robust
 
     // where results go
     const char *json, *csv, *plot, *scene, *output, *db, *markdown, *format;

@@ -21,6 +21,7 @@
     X(converge)                                                                                    \
     X(study)                                                                                       \
     X(calibrate)                                                                                   \
+    X(robust)                                                                                      \
     X(animate)                                                                                     \
     X(plot)                                                                                        \
     X(tables)                                                                                      \

@@ -9,6 +9,7 @@
 #include "src/study/sweep.h"
 
 enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
+_Static_assert((int)SWEEP_MOST_AXES <= (int)COMPARE_MOST_VARIED, "a row has room for every axis");
 
 // The scenarios named on the command line, and then the one that they are held against. Each runs
 // once for each combination of varied values; rows lie by combination, in it by scenario.

@@ -1,0 +1,62 @@
+// How a control law stands what it was not told: many runs over a set of beliefs, sensors, walls
+// and starts, and their distribution.
+#pragma once
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "src/study/sweep_store.h"
+
+// What is drawn from: the lines of a set file, each PATH=a:b or PATH=v1,v2 as a sweep takes them;
+// empty lines and those that begin with # say nothing.
+typedef struct robust_set {
+    char *text;   // owned; the lines point into it
+    char **lines; // owned
+    int count;
+} robust_set;
+
+// Reads a set file. STATUS_CANNOT_READ, STATUS_BAD_ARGUMENT (no line, or too long) or
+// STATUS_NO_MEMORY, with a sentence in f that names it; then nothing is to be freed.
+status robust_set_read(robust_set *set, const char *path, fault *f);
+void robust_set_finish(robust_set *set);
+
+// The quantiles that tables show: half of all runs, nine tenths, and the worst.
+enum { ROBUST_MEDIAN, ROBUST_NINE_TENTHS, ROBUST_WORST, ROBUST_QUANTILES };
+extern const double robust_levels[ROBUST_QUANTILES];
+
+// A run without a commanded force cannot be judged. A run exceeds its limit with a peak above
+// control.force_limit, or above ROBUST_EXCESS times the command where there is none.
+#define ROBUST_EXCESS 1.3
+
+// What the runs of one law come to. A run that failed, or never settled, has the worst of all
+// values: NaN in a quantile that reaches so far.
+typedef struct robust_law {
+    const char *law; // its word, borrowed
+    size_t runs, failed;
+    double settled, separated, exceeded; // shares of the runs
+    double overshoot[ROBUST_QUANTILES];  // peak over the command (more than two links: of its mean
+                                         // over 5 ms, smoothed_over_command_N) [%]
+    double settling[ROBUST_QUANTILES];   // [s]
+    double error[ROBUST_QUANTILES];      // steady error either way, of the command [%]
+    double *overshoots;                  // of all runs, ascending, NaN last; owned [%]
+} robust_law;
+
+// Judges the runs of a law in a store of its sweep, all of which are there. STATUS_NO_MEMORY or
+// what the store says. robust_law_finish in any case.
+status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_store *store,
+                     fault *f);
+void robust_law_finish(robust_law *law);
+
+// Laws to be shown together.
+typedef struct robust_table {
+    const char *scenario; // its name
+    const robust_law *laws;
+    int count;
+} robust_table;
+
+// A line a law: for people, of a Markdown page, as CSV, and {"scenario": ..., "laws": [...]}, NULL
+// without memory.
+void robust_text(FILE *stream, const robust_table *t);
+void robust_markdown(FILE *stream, const robust_table *t);
+void robust_csv(FILE *stream, const robust_table *t);
+json_t *robust_json(const robust_table *t);

@@ -1,0 +1,144 @@
+// Control laws over many beliefs: the set, the judgement, and that it depends on the seed alone.
+#include "src/study/robust.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/study/sweep_run.h"
+#include "tests/rig_fixture.h"
+
+// A file with the text; the name is in `path`.
+static void write_set(char *path, const char *text)
+{
+    strcpy(path, "/tmp/robust_test_XXXXXX");
+    int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    assert_int_equal(write(descriptor, text, strlen(text)), (ssize_t)strlen(text));
+    close(descriptor);
+}
+
+static void a_set_is_its_lines(void **state)
+{
+    (void)state;
+    char path[32];
+    robust_set set;
+    fault f;
+    write_set(path, "# beliefs\n\n  belief.k2_factor=0.75:1.25 \r\nwall.kind=point,plane");
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(set.count, 2);
+    assert_string_equal(set.lines[0], "belief.k2_factor=0.75:1.25");
+    assert_string_equal(set.lines[1], "wall.kind=point,plane");
+    robust_set_finish(&set);
+    unlink(path);
+
+    // a file without a line, and none
+    write_set(path, "# nothing\n");
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+    unlink(path);
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_CANNOT_READ);
+}
+
+// Judges a law over a set, on so many threads; the table as JSON on the heap.
+static char *judged(int law, char *const *lines, int count, size_t runs, int jobs,
+                    robust_law *found)
+{
+    sweep s;
+    sweep_store *store;
+    sweep_progress progress;
+    fault f;
+    scenario base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))};
+    base.parameters.control.law = law;
+    base.parameters.set[PARAMETER_INDEX(control.law)] = 1; // a default would come back
+    sweep_request request = {
+        .vary = lines, .vary_count = count, .sampling = SWEEP_LATIN, .runs = runs, .seed = 3};
+    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
+    assert_int_equal(sweep_store_open(&store, NULL, &s, &f), STATUS_OK);
+    sweep_options options = {.jobs = jobs};
+    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_OK);
+    assert_int_equal(robust_law_of(found, "law", &s, store, &f), STATUS_OK);
+
+    robust_table table = {"test", found, 1};
+    json_t *json = robust_json(&table);
+    char *text = json_dumps(json, JSON_INDENT(2));
+    json_decref(json);
+    sweep_store_close(store);
+    sweep_finish(&s);
+    return text;
+}
+
+static void threads_change_nothing(void **state)
+{
+    (void)state;
+    char *const lines[] = {"belief.k2_factor=0.75:1.25", "control.seed=1:1000"};
+    robust_law one, two;
+    char *alone = judged(LAW_HYBRID, lines, 2, 12, 1, &one);
+    char *shared = judged(LAW_HYBRID, lines, 2, 12, 3, &two);
+    assert_string_equal(alone, shared);
+    assert_memory_equal(one.overshoots, two.overshoots, 12 * sizeof(double));
+    free(alone);
+    free(shared);
+    robust_law_finish(&one);
+    robust_law_finish(&two);
+}
+
+// One run: every quantile is its value.
+static void one_run_is_all_its_quantiles(void **state)
+{
+    (void)state;
+    char *const lines[] = {"wall.kind=point"};
+    robust_law found;
+    free(judged(LAW_HYBRID, lines, 1, 1, 1, &found));
+    summary s = rig_summary(SETTINGS("control.law=hybrid", "run.duration=1"));
+    for (int i = 0; i < ROBUST_QUANTILES; i++) {
+        check_relative(found.overshoot[i], 100 * s.force_over_command_N / s.force_command_N, 1e-12);
+        check_relative(found.settling[i], s.settling_time_s, 1e-12);
+        check_relative(found.error[i], 100 * fabs(s.steady_error_N) / s.force_command_N, 1e-12);
+    }
+    check_close(found.settled, 1, 0);
+    check_close(found.exceeded, 1, 0); // by 77 % of the command
+    robust_law_finish(&found);
+}
+
+static void quantiles_rise_and_the_observer_law_stands_the_set(void **state)
+{
+    (void)state;
+    char *const lines[] = {"belief.mass_factor=0.85:1.15", "belief.torque_factor=0.85:1.15",
+                           "belief.friction_factor=0.7:1.3", "belief.wall_error=-0.03:0.03",
+                           "control.seed=1:1000"};
+    robust_law hybrid, observer;
+    free(judged(LAW_HYBRID, lines, 5, 24, 2, &hybrid));
+    free(judged(LAW_OBSERVER, lines, 5, 24, 2, &observer));
+    check_below(hybrid.overshoot[ROBUST_MEDIAN], hybrid.overshoot[ROBUST_WORST]);
+    check_close(hybrid.overshoot[ROBUST_WORST], hybrid.overshoots[23], 0);
+    check_below(observer.overshoot[ROBUST_WORST], 30);
+    check_below(observer.error[ROBUST_WORST], 5);
+    check_below(observer.overshoot[ROBUST_WORST], hybrid.overshoot[ROBUST_MEDIAN]);
+    check_close(observer.settled, 1, 0);
+    robust_law_finish(&hybrid);
+    robust_law_finish(&observer);
+}
+
+// A run that never settles counts as the worst.
+static void what_never_settles_is_in_no_quantile(void **state)
+{
+    (void)state;
+    char *const lines[] = {"initial.angle=-2.9,-0.1"};
+    robust_law found;
+    free(judged(LAW_HYBRID, lines, 1, 4, 1, &found));
+    check_close(found.settled, 0.5, 0);
+    assert_true(isnan(found.settling[ROBUST_WORST]));
+    robust_law_finish(&found);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_set_is_its_lines),
+        cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(one_run_is_all_its_quantiles),
+        cmocka_unit_test(quantiles_rise_and_the_observer_law_stands_the_set),
+        cmocka_unit_test(what_never_settles_is_in_no_quantile),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
