@@ -133,6 +133,35 @@ static void first_mode_has_the_damping_asked_for(void **state)
     check_relative(a.hub_joint_damping / a.hub_stiffness, 2 * wanted / frequencies[0], 1e-6);
 }
 
+// A mass at the tip: 1 + cos cosh + mu x (cos sinh - sin cosh) = 0 for x = beta L, mu its share of
+// the beam's mass.
+static void a_mass_at_the_tip_lowers_the_frequencies(void **state)
+{
+    (void)state;
+    const double mass = 0.1, mu = mass / 0.40108;
+    double lo = 1, hi = 1.8751, error[2];
+    for (int i = 0; i < 100; i++) {
+        double x = (lo + hi) / 2;
+        double left = 1 + cos(x) * cosh(x) + mu * x * (cos(x) * sinh(x) - sin(x) * cosh(x));
+        *(left > 0 ? &lo : &hi) = x;
+    }
+    for (int i = 0; i < 2; i++) {
+        char n[32];
+        snprintf(n, sizeof n, "arm.links=%d", 8 << i);
+        parameters p = fixture_parameters(
+            SETTINGS(n, "arm.hub_joint=beam", "arm.tip_mass=0.1", "arm.damping_ratio=0.02"));
+        arm a;
+        arm_init(&a, &p);
+        int count;
+        double frequencies[17], shapes[17 * 17];
+        assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
+                         STATUS_OK);
+        error[i] = frequencies[0] / (lo * lo * sqrt(p.arm.EI / p.arm.mass)) - 1;
+        check_relative(a.joint_damping / a.joint_stiffness, 2 * 0.02 / frequencies[0], 1e-6);
+    }
+    check_close(log2(error[0] / error[1]), 2, 0.1);
+}
+
 static void stiffness_may_be_given_as_the_beams(void **state)
 {
     (void)state;
@@ -159,6 +188,7 @@ int main(void)
         cmocka_unit_test(joints_bent_by_the_moment_balance_the_load),
         cmocka_unit_test(frequencies_converge_at_second_order),
         cmocka_unit_test(first_mode_has_the_damping_asked_for),
+        cmocka_unit_test(a_mass_at_the_tip_lowers_the_frequencies),
         cmocka_unit_test(stiffness_may_be_given_as_the_beams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

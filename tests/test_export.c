@@ -98,7 +98,9 @@ static char *csv_of(int links, double film)
                       .force = 2.5,
                       .piezo_force = (double)NAN,
                       .film = film,
-                      .accelerometer = (double)NAN};
+                      .accelerometer = (double)NAN,
+                      .wall_energy = (double)NAN,
+                      .wall_loss = (double)NAN};
         double angles[] = {0.1, 0.2, 0.3};
         assert_int_equal(trace_add_row(&t, &row, angles, angles), STATUS_OK);
     }

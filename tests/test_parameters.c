@@ -108,7 +108,9 @@ static void defaults_are_in_range(void **state)
                          info->maximum);
             }
             assert_true(!derived || strcmp(info->path, "arm.link_inertia") == 0 ||
-                        strcmp(info->path, "arm.EI") == 0);
+                        strcmp(info->path, "arm.EI") == 0 ||
+                        strcmp(info->path, "wall.stiffness") == 0 ||
+                        strcmp(info->path, "wall.damping") == 0);
         }
     }
 }
@@ -331,6 +333,9 @@ static void impossible_combinations_are_refused(void **state)
     check_conflict("arm.hub_joint", "beam", "arm.k1", "90", "k2 N = 9.84");
     check_conflict("arm.model", "printed", "method.name", "event", "newmark");
     check_conflict("arm.model", "printed", "wall.kind", "plane", "point or none");
+    check_conflict("arm.model", "printed", "arm.tip_mass", "0.02", "carries nothing");
+    check_conflict("wall.contact", "hunt-crossley", "wall.restitution", "0.5", "rigid");
+    check_conflict("wall.contact", "kelvin-voigt", "method.name", "newmark", "event only");
 }
 
 static void resolving_twice_changes_nothing(void **state)

@@ -22,6 +22,7 @@ typedef struct arm {
     double link_mass;         // m [kg]
     double link_inertia;      // about the centre of mass [kg m2]
     double hub_inertia;       // I1 [kg m2]
+    double tip_mass;          // that the tip carries [kg]
     double hub_stiffness;     // k1 or k2 N, zero with a rigid hub joint [N m/rad]
     double joint_stiffness;   // of each inner joint, k2 N/2 [N m/rad]
     double hub_joint_damping; // structural damping of the hub spring [N m s/rad]

@@ -33,13 +33,14 @@ static double first_clamped_frequency(const arm *a)
     }
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         // deflections of the links' ends
-        double y = 0, force = 0, moment_beyond = 0;
+        double y = 0, moment_beyond = 0;
         double tip_y[LONGEST];
         for (int k = 0; k < a->links; k++) {
             y += l * shape[k];
             tip_y[k] = y;
         }
         // M x as the moment on each joint, from the tip inwards
+        double force = a->tip_mass * y;
         for (int k = a->links - 1; k >= (a->root_bends ? 0 : 1); k--) {
             double base = tip_y[k] - l * shape[k];
             double own_force = m * (base + l * shape[k] / 2);
@@ -132,6 +133,7 @@ void arm_init(arm *a, const parameters *p)
     a->link_mass = p->arm.mass / a->links;
     a->link_inertia = p->arm.link_inertia;
     a->hub_inertia = p->arm.hub_inertia;
+    a->tip_mass = p->arm.tip_mass;
     a->hub_stiffness = a->hub_spring ? p->arm.k1 : 0;
     a->joint_stiffness = p->arm.k2 * a->links / 2;
     motor_init(&a->motor, &p->motor);

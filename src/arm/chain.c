@@ -7,7 +7,10 @@
 void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
                          contact_state mode, double *alpha, chain_reaction *reaction)
 {
-    if (a->links == 2 && !a->hub_spring) {
+    if (chain_is_loaded(a)) {
+        chain_sweep_loaded(a, a->links, a->hub_spring, mode.contact, true, true, work, q, w, mode,
+                           alpha, reaction);
+    } else if (a->links == 2 && !a->hub_spring) {
         chain_sweep(a, 2, false, mode.contact, true, work, q, w, mode, alpha, reaction);
     } else {
         chain_sweep(a, a->links, a->hub_spring, mode.contact, true, work, q, w, mode, alpha,
@@ -77,7 +80,7 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
                           double lever, bool hub_locked, double *response)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
-    double pxx = 0, pxy = 0, pyy = 0, fx = ex, fy = ey;
+    double pxx = a->tip_mass, pxy = 0, pyy = a->tip_mass, fx = ex, fy = ey;
     for (int k = a->links - 1; k >= 0; k--) {
         double c = inline_cos(q[a->first + k]), s = inline_sin(q[a->first + k]);
         double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c;
@@ -135,6 +138,7 @@ double chain_kinetic_energy(const arm *a, const double *q, const double *w)
         vx += across_x;
         vy += across_y;
     }
+    twice += a->tip_mass * (vx * vx + vy * vy);
     return twice / 2;
 }
 

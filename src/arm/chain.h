@@ -23,10 +23,10 @@
 #include "src/arm/chain_link.h"
 
 // Accelerations alpha[dof] at angles q[dof] and velocities w[dof] under the given mode, and the
-// reactions. work: links elements of scratch. In contact, f follows from d2g/dt2 = 0, the
-// derivative of the wall's constraint, (3.13) for N = 2; a stuck hub has no acceleration and
-// friction is what that takes. With one link on a rigid hub a touched wall already holds the hub:
-// friction is then taken as zero.
+// reactions. work: links elements of scratch. In contact with a rigid wall, f follows from d2g/dt2
+// = 0, the derivative of the wall's constraint, (3.13) for N = 2; a wall that gives has its law; a
+// stuck hub has no acceleration and friction is what that takes. With one link on a rigid hub a
+// touched wall already holds the hub: friction is then taken as zero.
 void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
                          contact_state mode, double *alpha, chain_reaction *reaction);
 

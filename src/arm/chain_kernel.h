@@ -9,19 +9,28 @@
 
 #define KERNEL static inline __attribute__((always_inline))
 
-// Accelerations under `mode`; N, hub_spring and contact (which is mode.contact) are passed apart so
-// that they can be compile-time constants. Without `gap` the reaction's gap and its derivatives are
-// left out in free flight. The derivation stands in chain.h.
-KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool gap,
-                        chain_link *link, const double *q, const double *w, contact_state mode,
-                        double *alpha, chain_reaction *reaction)
+// Whether the node beyond the last link carries a mass, or may feel a force that its place and
+// velocity say before any acceleration is known.
+static inline bool chain_is_loaded(const arm *a)
+{
+    return a->tip_mass > 0 || wall_gives(&a->wall);
+}
+
+// Accelerations under `mode`; N, hub_spring, contact (which is mode.contact) and loaded
+// (chain_is_loaded) are passed apart so that they can be compile-time constants. Without `gap` the
+// reaction's gap and its derivatives are left out in free flight. The derivation stands in chain.h.
+KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contact, bool loaded,
+                               bool gap, chain_link *link, const double *q, const double *w,
+                               contact_state mode, double *alpha, chain_reaction *reaction)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
     const double own = a->link_inertia + m * half * half;
     const double kj = a->joint_stiffness, cj = a->joint_damping;
     const int first = hub_spring ? 1 : 0;
     const double *theta = q + first, *omega = w + first;
-    const bool wanted = contact || gap; // the wall's geometry
+    const bool gives = loaded && wall_gives(&a->wall) && wall_stands(&a->wall);
+    const bool constrained = contact && !gives;
+    const bool wanted = contact || gap || gives; // the wall's geometry
 
     // directions of the links, and place and velocity of the last one's base
     double x = 0, y = 0, vx = 0, vy = 0;
@@ -41,8 +50,18 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     }
 
     // a single link on a rigid hub is held by the wall alone; friction then has no say
-    const bool held = contact && N == 1 && !hub_spring;
+    const bool held = constrained && N == 1 && !hub_spring;
     const bool stuck = mode.friction == HUB_STICK && !held;
+
+    // a wall that gives answers to place and velocity alone
+    double pressed = 0, wall_power = 0;
+    if (gives && (mode.contact || mode.parted)) {
+        double lever = wall_last_lever(&wall, l, link[N - 1].c, link[N - 1].s);
+        double depth = wall.penetration;
+        double rate = wall_penetration_rate(&wall, vx, vy, lever, omega[N - 1]);
+        pressed = mode.contact ? wall_force(&a->wall, depth, rate) : 0;
+        wall_power = (pressed - wall_spring_force(&a->wall, depth)) * rate;
+    }
 
     // motor, damping and sliding friction at the hub
     const double sliding = held ? 0 : -mode.friction * a->motor.stiction;
@@ -56,16 +75,21 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     }
 
     // tip to hub: eliminate each link's acceleration
-    double pxx = 0, pxy = 0, pyy = 0;    // P: mass shown by the links beyond
-    double qx = 0, qy = 0;               // Q of velocity and springs
+    double pxx = 0, pxy = 0, pyy = 0; // P: mass shown by the links beyond
+    double qx = 0, qy = 0;            // Q of velocity and springs
+    if (loaded) {
+        pxx = pyy = a->tip_mass;
+        qx = pressed * wall.ex;
+        qy = pressed * wall.ey;
+    }
     double ux2 = wall.ex, uy2 = wall.ey; // Q of a unit contact force
     double outer = 0;                    // torque of the joint beyond
     double root_free = 0, root_unit = 0; // moments on the first link before division
     for (int k = N - 1; k >= 0; k--) {
-        const bool tip = k == N - 1;
+        const bool tip = k == N - 1, bare = tip && !loaded;
         double c = link[k].c, s = link[k].s, w2 = omega[k] * omega[k];
         double ux = -m * half * s, uy = m * half * c, d = own, fx = 0, fy = 0;
-        if (!tip) {
+        if (!bare) {
             double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c; // P t
             double prx = pxx * c + pxy * s, pry = pxy * c + pyy * s;   // P r
             ux += l * ptx;
@@ -86,9 +110,12 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
             torque += hub;
             d += a->hub_inertia;
         }
-        double moment = tip ? torque : torque - l * (c * fy - s * fx);
+        double moment = bare ? torque : torque - l * (c * fy - s * fx);
         double moment2 = 0;
-        if (contact) {
+        if (loaded && tip) {
+            moment -= pressed * wall.lever;
+        }
+        if (constrained) {
             moment2 = -l * (c * uy2 - s * ux2) - (tip ? wall.lever : 0);
         }
         if (k == 0) {
@@ -103,19 +130,19 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
         link[k].ux = ux;
         link[k].uy = uy;
         link[k].free = moment * inv_d;
-        if (contact) {
+        if (constrained) {
             link[k].unit = moment2 * inv_d;
         }
         if (k > 0) {
             qx = fx - m * half * w2 * c + ux * link[k].free;
             qy = fy - m * half * w2 * s + uy * link[k].free;
-            if (contact) {
+            if (constrained) {
                 ux2 += ux * link[k].unit;
                 uy2 += uy * link[k].unit;
             }
-            pxx = (tip ? m : pxx + m) - ux * ux * inv_d;
-            pxy = (tip ? 0 : pxy) - ux * uy * inv_d;
-            pyy = (tip ? m : pyy + m) - uy * uy * inv_d;
+            pxx = (bare ? m : pxx + m) - ux * ux * inv_d;
+            pxy = (bare ? 0 : pxy) - ux * uy * inv_d;
+            pyy = (bare ? m : pyy + m) - uy * uy * inv_d;
         }
     }
 
@@ -128,14 +155,14 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
         if (k > 0) { // the first link's base rests
             out[k] -= (link[k].ux * ax + link[k].uy * ay) * link[k].inv_d;
         }
-        if (contact && k > 0) {
+        if (constrained && k > 0) {
             link[k].unit -= (link[k].ux * bx + link[k].uy * by) * link[k].inv_d;
         }
         if (k < N - 1) {
             double w2 = omega[k] * omega[k];
             ax -= l * (s * out[k] + c * w2);
             ay += l * (c * out[k] - s * w2);
-            if (contact) {
+            if (constrained) {
                 bx -= l * s * link[k].unit;
                 by += l * c * link[k].unit;
             }
@@ -143,12 +170,12 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     }
 
     // d2g/dt2 = 0 gives the force
-    double last = 0, rate2 = 0, force = 0; // J_N, d2g/dt2
+    double last = 0, rate2 = 0, force = pressed; // J_N, d2g/dt2
     if (wanted) {
         last = wall_last_lever(&wall, l, link[N - 1].c, link[N - 1].s);
         rate2 = wall.ex * ax + wall.ey * ay + last * out[N - 1] + wall.convective;
     }
-    if (contact) {
+    if (constrained) {
         force = -rate2 / (wall.ex * bx + wall.ey * by + last * link[N - 1].unit);
         for (int k = 0; k < N; k++) {
             out[k] += force * link[k].unit;
@@ -173,4 +200,13 @@ KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool
     }
     reaction->viscous_power = a->motor.damping * w[0] * w[0];
     reaction->damping_power = damping_power;
+    reaction->wall_power = wall_power;
+}
+
+// The same for an arm whose tip carries nothing, on a rigid wall.
+KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool gap,
+                        chain_link *link, const double *q, const double *w, contact_state mode,
+                        double *alpha, chain_reaction *reaction)
+{
+    chain_sweep_loaded(a, N, hub_spring, contact, false, gap, link, q, w, mode, alpha, reaction);
 }

@@ -18,13 +18,15 @@ typedef enum hub_friction { HUB_STICK = 0, HUB_FORWARD = 1, HUB_BACKWARD = -1 } 
 typedef struct contact_state {
     bool contact;
     hub_friction friction;
+    bool parted; // the arm is still within a wall that gives, whose face no longer follows
 } contact_state;
 
 typedef struct chain_reaction {
     double force;             // f, zero without contact [N]
     double friction;          // Coulomb friction torque on the hub [N m]
     double gap, gap_velocity; // of the contact point, infinite and zero without a wall [m], [m/s]
-    double gap_acceleration;  // second derivative of the gap, zero in contact [m/s2]
+    double gap_acceleration;  // second derivative of the gap, zero on a rigid wall [m/s2]
     double viscous_power;     // lost to back EMF and viscous friction [W]
     double damping_power;     // lost in the springs' structural damping [W]
+    double wall_power;        // lost in a wall that gives [W]
 } chain_reaction;

@@ -13,14 +13,14 @@ extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const i
 void modes_matrices(const arm *a, double *mass, double *stiffness)
 {
     const int n = a->dof, N = a->links;
-    const double l = a->link_length, m = a->link_mass;
+    const double l = a->link_length, m = a->link_mass, tip = a->tip_mass * l * l;
 
     // straight, all cosines are 1: every link beyond the outer one counts whole, that one half
     for (int i = 0; i < N; i++) {
         for (int j = 0; j < N; j++) {
             int outer = i > j ? i : j;
-            double coupling = m * l * l * (N - 1 - outer + 0.5);
-            double own = m * l * l * (N - 1 - i + 0.25) + a->link_inertia;
+            double coupling = m * l * l * (N - 1 - outer + 0.5) + tip;
+            double own = m * l * l * (N - 1 - i + 0.25) + a->link_inertia + tip;
             mass[(a->first + i) * n + a->first + j] = i == j ? own : coupling;
         }
     }

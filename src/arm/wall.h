@@ -11,11 +11,18 @@
 //
 // Both give dg/dt = J w with J_k = l t_k'e for the inner links and J_N = l t'e + lever.
 //
-// Law. The wall is rigid: gap >= 0, f >= 0, gap f = 0, and an impact returns the share e of the
-// approach speed (wall_restitution). f is then the constraint's, from d2g/dt2 = 0. All that differs
-// from wall to wall is asked for here, so that another wall is another case of these functions.
+// Law. A rigid wall keeps gap >= 0, f >= 0, gap f = 0, and an impact returns the share e of the
+// approach speed (wall_restitution). f is then the constraint's, from d2g/dt2 = 0. A wall that
+// gives has no constraint and no impact. At the depth x = g > 0 and its rate v it answers with
+//
+//   Kelvin-Voigt:    f = k x + c v
+//   Hunt-Crossley:   f = x^n (k + c v)
+//
+// as long as that pushes, and with nothing where it would pull: its face then comes back on its
+// own. It stores k x^(n+1)/(n+1) (n = 1 for Kelvin-Voigt) and turns the rest of f v into heat.
 #pragma once
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "src/quantities/parameters.h"
@@ -26,6 +33,10 @@ typedef struct wall_model {
     double x, y;         // contact point (a, b) [m]
     double restitution;  // e [-]
     double rest_speed;   // impacts slower than this are plastic [m/s]
+    wall_law law;
+    double stiffness; // k [N/m^n]
+    double damping;   // c [N s/m], Hunt-Crossley [N s/m^(n+1)]
+    double exponent;  // n, 1 for Kelvin-Voigt [-]
 } wall_model;
 
 // Where and how the wall acts on the last link.
@@ -48,6 +59,47 @@ static inline bool wall_stands(const wall_model *w)
 {
     return w->kind != WALL_NONE;
 }
+
+// Whether it gives; else it is rigid.
+static inline bool wall_gives(const wall_model *w)
+{
+    return w->law != WALL_RIGID;
+}
+
+// depth^n for a depth [m], zero in front of the wall; Hertz's exponent needs no logarithm.
+static inline double wall_power(const wall_model *w, double depth)
+{
+    return depth <= 0           ? 0
+           : w->exponent == 1.0 ? depth
+           : w->exponent == 1.5 ? depth * sqrt(depth)
+                                : pow(depth, w->exponent);
+}
+
+// Force of the wall's spring at a depth [N]; none in front of it.
+static inline double wall_spring_force(const wall_model *w, double depth)
+{
+    return w->stiffness * wall_power(w, depth);
+}
+
+// Force of the law [N] at a depth [m] and its rate [m/s], negative where it would pull. Smooth also
+// where a step tries it in front of the wall.
+static inline double wall_force(const wall_model *w, double depth, double rate)
+{
+    if (w->law == WALL_KELVIN_VOIGT) {
+        return w->stiffness * depth + w->damping * rate;
+    }
+    return wall_power(w, depth) * (w->stiffness + w->damping * rate);
+}
+
+// Derivative of that force by time [N/s], the rate growing by `acceleration` [m/s2].
+double wall_force_slope(const wall_model *w, double depth, double rate, double acceleration);
+
+// Energy that the wall's spring holds at a depth [J].
+double wall_stored_energy(const wall_model *w, double depth);
+
+// How fast the wall and a mass of 1/compliance [kg] behind it can move, until they part, from a
+// depth [m] and its rate [m/s] on: frequency or decay [1/s].
+double wall_rate(const wall_model *w, double compliance, double depth, double rate);
 
 // Place of the contact point in a frame with direction (c, s) through the hub's axis: along it, and
 // how far it lies to its right [m].

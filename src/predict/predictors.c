@@ -38,6 +38,12 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     const parameters *p = question->parameters;
     const three_body_state *s = &question->bodies;
     status code = STATUS_OK;
+    if (p->wall.contact != WALL_RIGID) {
+        return PREDICTION_RIGID_WALL_ONLY; // all of them begin with an impact
+    }
+    if (p->arm.tip_mass > 0) {
+        return PREDICTION_BARE_TIP_ONLY;
+    }
 
     switch (which) {
     case PREDICTOR_ENERGY:

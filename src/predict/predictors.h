@@ -25,6 +25,8 @@ typedef enum predictor {
     X(PREDICTION_HOLDS, "the touch would hold")                                                    \
     X(PREDICTION_LOST, "the touch would not hold")                                                 \
     X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                                   \
+    X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                                         \
+    X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                             \
     X(PREDICTION_LINKS_UNKNOWN, "the state of all links is not known")                             \
     X(PREDICTION_FAILED, "there is no prediction")
 

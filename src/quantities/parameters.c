@@ -58,6 +58,8 @@ const parameter_info parameter_table[] = {
      MEANING("bending stiffness of the beam, in place of arm.k2 = 2 EI/length")},
     {PATH(arm.damping_ratio), REAL("", 0, 1), DEFAULT(0),
      MEANING("structural damping ratio of the first clamped-free mode")},
+    {PATH(arm.tip_mass), REAL("kg", 0, 1000), DEFAULT(0),
+     MEANING("mass that the tip carries, such as a sensor")},
 
     {PATH(motor.voltage), REAL("V", -1000, 1000), DEFAULT(1), TIMED,
      MEANING("command to the amplifier, held constant")},
@@ -82,7 +84,17 @@ const parameter_info parameter_table[] = {
     {PATH(wall.angle), REAL("rad", -3, 3), DEFAULT(0.1),
      MEANING("direction of contact point or flat wall as seen from the hub axis")},
     {PATH(wall.restitution), REAL("", 0, 1), DEFAULT(0), TIMED,
-     MEANING("coefficient of restitution e of an impact (0: plastic)")},
+     MEANING("coefficient of restitution e of an impact on a rigid wall (0: plastic)")},
+    {PATH(wall.contact), CHOICE(2, "rigid|kelvin-voigt|hunt-crossley"), DEFAULT(WALL_RIGID),
+     MEANING(
+         "how the wall answers: it does not give, or it is a spring and a damper with the force "
+         "k x + c v or x^n (k + c v) at the depth x")},
+    {PATH(wall.stiffness), REAL("N/m", 1, 1e15), DEFAULT(DERIVED),
+     MEANING("stiffness k of a wall that gives, in N/m^n for hunt-crossley")},
+    {PATH(wall.damping), REAL("N s/m", 0, 1e15), DEFAULT(DERIVED),
+     MEANING("damping c of a wall that gives, in N s/m^(n+1) for hunt-crossley")},
+    {PATH(wall.exponent), REAL("", 1, 5), DEFAULT(1.5),
+     MEANING("exponent n of hunt-crossley; 1.5 is Hertz's for a ball on a plane")},
 
     {PATH(method.name), CHOICE(2, "event|newmark|generalized-alpha"),
      DEFAULTS(METHOD_EVENT, METHOD_NEWMARK), MEANING("time integration")},

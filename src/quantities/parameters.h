@@ -14,6 +14,7 @@
 typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
 typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING, HUB_BEAM } hub_joint_kind;
 typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
+typedef enum wall_law { WALL_RIGID, WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY } wall_law;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
 typedef enum listing_reevaluation { REEVALUATE_RHS, REEVALUATE_LISTING } listing_reevaluation;
 
@@ -29,6 +30,7 @@ typedef struct arm_parameters {
     double k2;            // joint spring of the two-link beam [N m/rad]; N links: k2 N/2 each
     double EI;            // bending stiffness of the beam, k2 length/2 [N m2]
     double damping_ratio; // structural damping ratio of the first clamped-free mode [-]
+    double tip_mass;      // of what the tip carries, a sensor [kg]
 } arm_parameters;
 
 typedef struct motor_parameters {
@@ -45,7 +47,11 @@ typedef struct motor_parameters {
 typedef struct wall_parameters {
     int kind;           // wall_kind
     double angle;       // direction of the contact point (or the flat wall) from the hub [rad]
-    double restitution; // coefficient of restitution e [-]
+    double restitution; // coefficient of restitution e, rigid wall only [-]
+    int contact;        // wall_law
+    double stiffness;   // k of the wall that gives [N/m], Hunt-Crossley [N/m^n]
+    double damping;     // its c [N s/m], Hunt-Crossley [N s/m^(n+1)]
+    double exponent;    // n, Hunt-Crossley [-]
 } wall_parameters;
 
 typedef struct method_parameters {

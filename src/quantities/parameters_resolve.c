@@ -78,6 +78,39 @@ static status resolve_stiffness(parameters *p, fault *f)
 }
 
 // The shape of the arm, and where it starts.
+// Walls nobody has measured: docs/physics.md says where these come from.
+#define SOFT_STIFFNESS  75e3 // Kelvin-Voigt [N/m]
+#define SOFT_DAMPING    20.0 // [N s/m]
+#define HERTZ_STIFFNESS 1e6  // Hunt-Crossley [N/m^1.5]
+#define RESTITUTION_LOSS                                                                           \
+    0.2 // by which restitution falls per approach speed, Hunt-Crossley's alpha [s/m]
+
+static status resolve_wall(parameters *p, fault *f)
+{
+    wall_parameters *w = &p->wall;
+    const bool hertz = w->contact == WALL_HUNT_CROSSLEY;
+    if (isnan(w->stiffness)) {
+        w->stiffness = hertz ? HERTZ_STIFFNESS : SOFT_STIFFNESS;
+    }
+    if (isnan(w->damping)) {
+        w->damping = hertz ? 1.5 * RESTITUTION_LOSS * w->stiffness : SOFT_DAMPING;
+    }
+    if (w->contact == WALL_RIGID) {
+        return STATUS_OK;
+    }
+    if (IS_SET(p, wall.restitution)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.restitution),
+                            "wall.restitution is for wall.contact = rigid; a wall that gives takes "
+                            "its share by wall.damping");
+    }
+    if (p->method.name != METHOD_EVENT) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.contact, method.name),
+                            "wall.contact = %s runs with method.name = event only",
+                            hertz ? "hunt-crossley" : "kelvin-voigt");
+    }
+    return STATUS_OK;
+}
+
 static status resolve_arm(parameters *p, fault *f)
 {
     if (IS_SET(p, arm.link_inertia) && p->arm.links != 2) {
@@ -194,6 +227,11 @@ static status check_printed(const parameters *p, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.kind),
                             "the printed model knows wall.kind = point or none, not plane");
     }
+    if (p->arm.tip_mass != 0) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.tip_mass),
+                            "the printed model carries nothing, but arm.tip_mass = %g kg",
+                            p->arm.tip_mass);
+    }
     return STATUS_OK;
 }
 
@@ -202,6 +240,7 @@ status parameters_resolve(parameters *p, fault *f)
     assert(p != NULL);
     resolve_defaults(p);
     status code = resolve_arm(p, f);
+    code = code == STATUS_OK ? resolve_wall(p, f) : code;
     code = code == STATUS_OK ? check_control(p, f) : code;
     code = code == STATUS_OK ? resolve_piezo(p, f) : code;
     return code == STATUS_OK && p->arm.model == ARM_PRINTED ? check_printed(p, f) : code;

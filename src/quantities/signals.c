@@ -91,6 +91,10 @@ const signal_info signal_table[] = {
     {"calculated_force", "f<sub>calc</sub>", "fcalc", "N",
      "contact force that the controller calculates", BODY_NONE, "Contact force", 2, LINE_DASHED,
      AT(calculated_force)},
+    {"wall_energy", "V<sub>w</sub>", "Vw", "J", "energy that a wall that gives holds", BODY_NONE,
+     "Strain energy", 5, LINE_DASHED, AT(wall_energy), OPTIONAL},
+    {"wall_loss", "D<sub>w</sub>", "Dw", "J", "lost in a wall that gives", BODY_NONE, "Energy lost",
+     5, LINE_DASH_DOT, AT(wall_loss), OPTIONAL},
 };
 
 const int signal_count = (int)(sizeof signal_table / sizeof signal_table[0]);

@@ -47,6 +47,9 @@ typedef struct sample {
     double desired_angle;    // of the hub [rad]
     double desired_velocity; // of the hub [rad/s]
     double calculated_force; // what the controller takes the contact force to be [N]
+    // of a wall that gives; NaN at a rigid one
+    double wall_energy; // that its spring holds [J]
+    double wall_loss;   // lost in it [J]
 } sample;
 
 typedef enum line_style { LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT } line_style;

@@ -35,6 +35,7 @@ const summary_info summary_table[] = {
     NUMBER(motor_work_J, "motor_work", "motor work", "J", "work done by the motor torque"),
     NUMBER(energy_residual_J, "energy_residual", "energy residual", "J",
            "largest energy that the ledger does not account for"),
+    NUMBER(wall_loss_J, "wall_loss", "wall loss", "J", "energy lost in a wall that gives"),
     NUMBER(force_command_N, "force_command", "force command", "N",
            "force that the controller is to hold"),
     NUMBER(force_over_command_N, "force_over_command", "force over command", "N",

@@ -30,6 +30,7 @@ typedef struct summary {
     double max_penetration_m;
     double motor_work_J;
     double energy_residual_J; // largest absolute value over the run
+    double wall_loss_J;       // lost in a wall that gives, NaN at a rigid one
     // on the rig only, else NaN
     double force_command_N;         // control.force
     double force_over_command_N;    // peak_force_N - force_command_N

@@ -205,6 +205,9 @@ static void sum_up(corrected_run *c, status failed)
     s->steps = (double)m->steps;
     s->max_penetration_m = fmax(0, m->largest_penetration);
     s->motor_work_J = m->state[SLOT_MOTOR_WORK];
+    if (m->wall_gives) {
+        s->wall_loss_J = state_quadratures(m, m->state)[QUADRATURE_WALL];
+    }
     s->separations += r->state.separated;
 
     // what contact came to

@@ -126,7 +126,9 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
 
     // before it
     status failed = corrected_record_row(c, m->state, 0);
-    if (failed == STATUS_OK && report->event == MOTION_IMPACT && result->before_impact == NULL) {
+    const bool strikes = report->event == MOTION_IMPACT ||
+                         (m->wall_gives && report->event == MOTION_TOUCH);
+    if (failed == STATUS_OK && strikes && result->before_impact == NULL) {
         failed = keep_state_before_impact(result, m);
     }
     if (failed != STATUS_OK) {

@@ -44,6 +44,8 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
     const double kinetic = chain_kinetic_energy(a, q, w), strain = chain_strain_energy(a, q);
+    const double held =
+        m->wall_gives ? wall_stored_energy(&a->wall, -state[SLOT_GAP]) : (double)NAN;
     int first = a->first, last = a->dof - 1;
     sample row = {
         .time = state[SLOT_TIME],
@@ -73,7 +75,9 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
         .friction_loss = state[SLOT_FRICTION_LOSS],
         .damping_loss = quadrature[QUADRATURE_DAMPING],
         .impact_loss = state[SLOT_IMPACT_LOSS],
-        .energy_residual = motion_unaccounted(m, state, kinetic + strain),
+        .energy_residual = motion_unaccounted(m, state, kinetic + strain + (m->wall_gives ? held : 0)),
+        .wall_energy = held,
+        .wall_loss = m->wall_gives ? quadrature[QUADRATURE_WALL] : (double)NAN,
     };
 
     recording_add_rig_signals(r, &row);

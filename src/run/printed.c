@@ -115,6 +115,8 @@ static status add_row(const printed_run_state *run, const printed_row *row)
         .friction_loss = (double)NAN,
         .damping_loss = (double)NAN,
         .impact_loss = (double)NAN,
+        .wall_energy = (double)NAN,
+        .wall_loss = (double)NAN,
         .energy_residual = (double)NAN,
     };
 

@@ -27,6 +27,17 @@
 // Where steps do not resolve the fastest modes, accelerations at an instant are no information:
 // release(), stick() and slip() then take what the event says, and the next step corrects it.
 //
+// A wall that gives knows no constraint and no impact. There touch() begins the contact at any
+// speed, and release() ends it where the law's force falls to zero: in front of the wall, or still
+// behind it, if a damped face cannot follow. PARTED is free flight behind the face, until the face
+// is touched again or passed:
+//
+//     +------+  gap closes: touch()  +---------+  force falls to zero:  +--------+
+//     | FREE | --------------------> | CONTACT | --- release() -------> | PARTED |
+//     +------+ <-------------------- +---------+ <-- touch() ---------- +--------+
+//        ^       depth falls to zero: release()   law's force rises         | gap opens
+//        +------------------------------------------------------------------+
+//
 // After every transition hold:
 //
 //   1  contact is 0 or 1; friction is one of stuck, forwards, backwards
@@ -52,6 +63,7 @@
 #define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
 #define SHORT_FLIGHT    0.01  // of the arm's shortest period, a flight that says nothing by itself
 #define MOST_HALVINGS   8     // of a step that does not converge or makes energy
+#define PARTED_DEPTH    1e-12 // less of it left behind at a release is rounding [m]
 #define LEAST_AFTER_CUT 1e-9  // share of a step; what is left of one before a cut is longer
 // Angles, velocities and accelerations below this are zero [rad, rad/s, rad/s2]. The square of what
 // is left is a normal number: a motion that dies away never computes with denormal ones, which some
@@ -84,7 +96,9 @@ static double violation(const arm *a, const motion *m, const double *state, bool
 {
     contact_state now = contact_state_of(state);
     double worst = 0;
-    if (now.contact) {
+    if (m->wall_gives) {
+        worst = 0;
+    } else if (now.contact) {
         worst = fmax(worst, -state[SLOT_FORCE]);
     } else if (touching) {
         worst = fmax(worst, -state[SLOT_GAP_ACCELERATION]);
@@ -100,7 +114,8 @@ static double violation(const arm *a, const motion *m, const double *state, bool
 // Finds the one combination of contact and hub friction that violates nothing and evaluates the
 // state under it. Gauss's principle makes the problem a strictly convex one, since the friction
 // torque is bounded independently of the contact force: there is exactly one solution. At an event
-// two combinations agree to rounding; `event` says which of them the motion has just left.
+// two combinations agree to rounding; `event` says which of them the motion has just left. A wall
+// that gives leaves no choice: it is touched if `touching`, and friction alone is to be found.
 static void resolve(const arm *a, motion *m, bool touching, motion_event event)
 {
     static const hub_friction sticking_first[] = {HUB_STICK, HUB_FORWARD, HUB_BACKWARD};
@@ -110,7 +125,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     double hub_velocity = state_velocities(m, state)[0];
     bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
     hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
-    int choices = hub_rests ? 3 : 1, ways = touching ? 2 : 1;
+    int choices = hub_rests ? 3 : 1, ways = touching && !m->wall_gives ? 2 : 1;
     // what the event itself has ended would violate something an instant later: what it left for is
     // taken although rounding speaks against it
     int preferred = event == MOTION_RELEASE ? choices : event == MOTION_SLIP ? 2 : 0;
@@ -120,7 +135,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     // at a release the released arm is tried first, else the one in contact
     for (int i = 0; i < ways * choices; i++) {
         bool second = i >= choices;
-        state[SLOT_CONTACT] = touching && second == (event == MOTION_RELEASE);
+        state[SLOT_CONTACT] = touching && (m->wall_gives || second == (event == MOTION_RELEASE));
         state[SLOT_FRICTION] = hub_rests ? at_rest[i % choices] : sliding;
         motion_evaluate(a, m, state);
         double v = violation(a, m, state, touching, hub_rests);
@@ -148,6 +163,21 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
     state[SLOT_JUMPED] = 1;
+}
+
+// Whether the face of a wall that gives is on the arm, which was in contact or parted from it,
+// after its velocity or the wall's law changed.
+static bool face_follows(const arm *a, motion *m)
+{
+    double *state = m->state, depth, rate;
+    if (state[SLOT_CONTACT] == 0 && state[SLOT_PARTED] == 0) {
+        return false;
+    }
+    chain_penetration(a, state_angles(m, state), state_velocities(m, state), &depth, &rate);
+    double law = wall_force(&a->wall, depth, rate);
+    bool follows = law > 0 || (law == 0 && state[SLOT_CONTACT] != 0);
+    state[SLOT_PARTED] = !follows && depth > 0;
+    return follows;
 }
 
 // --- the transitions -----------------------------------------------------------------------------
@@ -201,9 +231,11 @@ static void impact(const arm *a, motion *m, motion_report *report)
     resolve(a, m, e == 0, MOTION_IMPACT);
 }
 
-// The arm comes to the wall without an approach velocity, as at a bounce's end.
+// The arm comes to the wall without an approach velocity, as at a bounce's end; to a wall that
+// gives at any speed.
 static void touch(const arm *a, motion *m)
 {
+    m->state[SLOT_PARTED] = 0;
     resolve(a, m, true, MOTION_TOUCH);
 }
 
@@ -213,6 +245,9 @@ static void release(const arm *a, motion *m)
     if (motion_unresolved(a, m)) {
         m->state[SLOT_CONTACT] = m->state[SLOT_FORCE] = 0;
         m->state[SLOT_JUMPED] = 1;
+    } else if (m->wall_gives) {
+        m->state[SLOT_PARTED] = -m->state[SLOT_GAP] > PARTED_DEPTH;
+        resolve(a, m, false, MOTION_REACHED);
     } else {
         resolve(a, m, true, MOTION_RELEASE);
     }
@@ -281,6 +316,9 @@ static void accept(motion *m, double step)
     double passed = m->state[SLOT_TIME] - previous[SLOT_TIME];
     m->steps += (long)fmax(1, ceil(passed / step - 1e-6));
     m->largest_penetration = fmax(m->largest_penetration, -m->state[SLOT_GAP]);
+    if (m->wall_gives) {
+        m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
+    }
 }
 
 // A motion that dies away comes to rest: what has faded becomes exactly zero. A velocity that has
@@ -302,9 +340,12 @@ static motion_event event_of(const motion *m, watch w)
 {
     switch (w) {
     case WATCH_GAP:
+        if (m->wall_gives) {
+            return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
+        }
         return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
     case WATCH_FORCE:
-        return MOTION_RELEASE;
+        return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
     case WATCH_HUB:
         return MOTION_STICK;
     case WATCH_STICTION:
@@ -391,7 +432,9 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
 
     accept(m, step);
-    if (any) {
+    if (any && first == WATCH_GAP && m->state[SLOT_PARTED] != 0) {
+        m->state[SLOT_PARTED] = m->state[SLOT_WALL_POWER] = 0; // free flight goes on as it was
+    } else if (any) {
         report->event = event_of(m, first);
     } else {
         come_to_rest(m);
@@ -469,7 +512,9 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
     m->state[SLOT_EXTERNAL_WORK] += chain_kinetic_energy(a, q, w) - before;
 
     // in contact the wall answers what goes into it
-    if (contact && chain_penetration_rate(a, q, w) > 0) {
+    if (m->wall_gives) {
+        resolve(a, m, face_follows(a, m), MOTION_REACHED);
+    } else if (contact && chain_penetration_rate(a, q, w) > 0) {
         report->event = MOTION_IMPACT;
         impact(a, m, report);
     } else {
@@ -513,6 +558,10 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
     assert(before != NULL && after != NULL && m != NULL && after->dof == m->dof);
     const double *q = state_angles(m, m->state);
     m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
-    resolve(after, m, m->state[SLOT_CONTACT] != 0, MOTION_REACHED);
+    if (m->wall_gives) {
+        resolve(after, m, face_follows(after, m), MOTION_REACHED);
+    } else {
+        resolve(after, m, m->state[SLOT_CONTACT] != 0, MOTION_REACHED);
+    }
     check_invariants(after, m);
 }

@@ -9,6 +9,12 @@
 // Dormand, Journal of Computational and Applied Mathematics 7 (1981), 67-75, their RK6(5)8M). Its
 // stability polynomial is that of the exponential up to z^7: at z = 0.2 it loses 6e-11 of the
 // amplitude and 1e-11 rad, for two thirds of the work.
+//
+// Both take the walls that give, with any number of links. Hunt-Crossley's x^n is not analytic at
+// the touch unless n is whole: a step from there is of order n + 1 only, whatever the method. Steps
+// are therefore graded: none is longer than half the time that the wall's face needs to or from the
+// touch, x/|v|, down to a shortest step whose error is below rounding. A step over [t, 3t/2] sees a
+// function that is analytic about t with radius t, and keeps the method's accuracy.
 #include <math.h>
 #include <string.h>
 
@@ -18,6 +24,11 @@
 // Steps over several time steps, which slow arms take, may go this far in (fastest rate) x (step):
 // they are few, and what they lose in a second is less than the short ones of fast arms do.
 #define LONG_RESOLUTION 0.45
+// Of the time from or to a touch that is not analytic, one step may take this share ...
+#define GRADING 0.5
+// ... and, next to the touch, this in (fastest rate) x (step): the error of order n + 1 is lost
+// there.
+#define SHORTEST_RESOLUTION 3e-5
 // Steps that are cut short and stay below this take the method's brief form, and with them all that
 // is located within.
 #define BRIEF_RESOLUTION 0.2
@@ -79,12 +90,13 @@ static const weight_row brief_weights[BRIEF_STAGES + 1] = {
      1.0 / 10},
 };
 
-// One step of the method with the given weights for n degrees of freedom; n, links, hub_spring and
-// contact are constants in the two-link case.
+// One step of the method with the given weights for n degrees of freedom; n, links, hub_spring,
+// contact and loaded are constants in the two-link case.
 KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *weights, int stages,
-                          int n, int links, bool hub_spring, bool contact)
+                          int n, int links, bool hub_spring, bool contact, bool loaded)
 {
     const int length = 2 * n + QUADRATURE_COUNT;
+    const int wanted = loaded ? length : length - (QUADRATURE_COUNT - QUADRATURE_WALL);
     const contact_state mode = contact_state_of(m->state);
     const double *y0 = state_angles(m, m->state);
     double *y = state_angles(m, m->trial);
@@ -101,11 +113,12 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
     quadrature[QUADRATURE_VISCOUS] = m->state[SLOT_VISCOUS_POWER];
     quadrature[QUADRATURE_DAMPING] = m->state[SLOT_DAMPING_POWER];
     quadrature[QUADRATURE_FORCE] = m->state[SLOT_FORCE];
+    quadrature[QUADRATURE_WALL] = m->state[SLOT_WALL_POWER];
 
 #pragma GCC unroll 12
     for (int stage = 1; stage <= stages; stage++) {
         // the quadratures do not enter the accelerations: only their result is wanted
-        for (int i = 0; i < (stage < stages ? 2 * n : length); i++) {
+        for (int i = 0; i < (stage < stages ? 2 * n : wanted); i++) {
             double sum = weights[stage][0] * rate[i];
 #pragma GCC unroll 12
             for (int j = 1; j < stage; j++) {
@@ -119,26 +132,29 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
             break;
         }
         double *k = rate + stage * length;
-        chain_sweep(a, links, hub_spring, contact, false, m->links, y, y + n, mode, k + n,
-                    &reaction);
+        chain_sweep_loaded(a, links, hub_spring, contact, loaded, false, m->links, y, y + n, mode,
+                           k + n, &reaction);
         for (int i = 0; i < n; i++) {
             k[i] = y[n + i];
         }
         k[2 * n + QUADRATURE_VISCOUS] = reaction.viscous_power;
         k[2 * n + QUADRATURE_DAMPING] = reaction.damping_power;
         k[2 * n + QUADRATURE_FORCE] = reaction.force;
+        k[2 * n + QUADRATURE_WALL] = reaction.wall_power;
     }
 }
 
 KERNEL void step_by(const weight_row *weights, int stages, const arm *a, motion *m, double h)
 {
     const bool contact = m->state[SLOT_CONTACT] != 0;
-    if (a->links == 2 && !a->hub_spring && contact) {
-        explicit_step(a, m, h, weights, stages, 2, 2, false, true);
+    if (chain_is_loaded(a)) {
+        explicit_step(a, m, h, weights, stages, a->dof, a->links, a->hub_spring, contact, true);
+    } else if (a->links == 2 && !a->hub_spring && contact) {
+        explicit_step(a, m, h, weights, stages, 2, 2, false, true, false);
     } else if (a->links == 2 && !a->hub_spring) {
-        explicit_step(a, m, h, weights, stages, 2, 2, false, false);
+        explicit_step(a, m, h, weights, stages, 2, 2, false, false, false);
     } else {
-        explicit_step(a, m, h, weights, stages, a->dof, a->links, a->hub_spring, contact);
+        explicit_step(a, m, h, weights, stages, a->dof, a->links, a->hub_spring, contact, false);
     }
 }
 
@@ -150,7 +166,7 @@ static status step(const arm *a, motion *m, double h)
         step_by(long_weights, LONG_STAGES, a, m, h);
     }
     motion_evaluate(a, m, m->trial);
-    if (m->trial[SLOT_CONTACT] != 0) {
+    if (m->trial[SLOT_CONTACT] != 0 && !m->wall_gives) {
         motion_project(a, m, m->trial);
     }
     return STATUS_OK;
@@ -173,13 +189,36 @@ static double rate_of_change(const arm *a, const motion *m)
     return sqrt(own * own + stretched * fastest * fastest);
 }
 
+// The same with a wall that gives, which the arm is in.
+static double rate_within_wall(const arm *a, motion *m, double own)
+{
+    double compliance, depth = fmax(-m->state[SLOT_GAP], 0), rate = -m->state[SLOT_GAP_VELOCITY];
+    const bool locked = contact_state_of(m->state).friction == HUB_STICK && m->dof > 1;
+    chain_contact_response(a, m->links, state_angles(m, m->state), locked, m->scratch, &compliance);
+    double wall = wall_rate(&a->wall, compliance, depth, rate);
+    return sqrt(own * own + wall * wall);
+}
+
+// How long a step may be for the touch's sake, where the law of the wall is not analytic there.
+static double graded(const arm *a, const motion *m, double rate, double longest)
+{
+    if (a->wall.exponent == floor(a->wall.exponent) || m->state[SLOT_GAP_VELOCITY] == 0) {
+        return longest;
+    }
+    double to_touch = fabs(m->state[SLOT_GAP] / m->state[SLOT_GAP_VELOCITY]);
+    return fmin(longest, fmax(GRADING * to_touch, SHORTEST_RESOLUTION / rate));
+}
+
 // How long the next step may be, and by which form of the method.
 static double begin(const arm *a, motion *m, double remaining, double step_length)
 {
-    const double rate = rate_of_change(a, m);
+    const bool pressed = m->wall_gives && m->state[SLOT_CONTACT] != 0;
+    double rate = rate_of_change(a, m);
+    rate = pressed ? rate_within_wall(a, m, rate) : rate;
     double steps = floor(LONG_RESOLUTION / (step_length * rate));
     double longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step_length
                                 : step_length / ceil(step_length * rate / EXPLICIT_RESOLUTION);
+    longest = pressed ? graded(a, m, rate, longest) : longest;
 
     // a step that something cuts to half or less, such as the next sample of a controller
     m->brief = remaining < 0.5 * longest && remaining * rate <= BRIEF_RESOLUTION;

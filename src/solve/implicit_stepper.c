@@ -73,6 +73,8 @@ static void forces_between_links(const arm *a, implicit_sweep *link, const doubl
         ax += dx;
         ay += dy;
     }
+    fx += a->tip_mass * ax;
+    fy += a->tip_mass * ay;
 
     for (int k = a->links - 1; k >= 0; k--) {
         link[k].force_x = fx;
@@ -164,7 +166,7 @@ static double newton_correction(const arm *a, implicit_sweep *link, iterate *it,
     forces_between_links(a, link, w, al, it->force * point.ex, it->force * point.ey);
 
     // elimination from tip to hub
-    double pxx = 0, pxy = 0, pyx = 0, pyy = 0;                 // P, no longer symmetric
+    double pxx = a->tip_mass, pxy = 0, pyx = 0, pyy = a->tip_mass; // P, no longer symmetric
     double hx = -it->force * point.angle_force * link[last].c; // p_f: the point wall's force turns
     double hy = -it->force * point.angle_force * link[last].s; // with the last link
     double gx = 0, gy = 0, yy = 0;                             // p_t and y of the joint beyond
@@ -487,7 +489,7 @@ static status step(const arm *a, motion *m, double h)
     const double *x0 = state_quadratures(m, m->state);
     double *x1 = state_quadratures(m, m->trial);
     static const int powers[] = {SLOT_VISCOUS_POWER, SLOT_DAMPING_POWER, SLOT_FORCE};
-    for (int i = 0; i < QUADRATURE_COUNT; i++) {
+    for (int i = 0; i < QUADRATURE_WALL; i++) {
         x1[i] = x0[i] + h / 2 * (m->state[powers[i]] + m->trial[powers[i]]);
     }
     return STATUS_OK;

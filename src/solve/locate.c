@@ -8,14 +8,38 @@
 #define UNRESOLVED_IMPACT 0.1 // share of a step that an impact takes where steps do not resolve it
 #define LOCATION_TIME     1e-15 // width to which the bracket of an event is narrowed [s]
 
+// Depth within a wall that gives and what its law says there, where the arm is on or in it.
+static double law_at(const arm *a, const double *state)
+{
+    return wall_force(&a->wall, -state[SLOT_GAP], -state[SLOT_GAP_VELOCITY]);
+}
+
+static double law_slope_at(const arm *a, const double *state)
+{
+    return wall_force_slope(&a->wall, -state[SLOT_GAP], -state[SLOT_GAP_VELOCITY],
+                            -state[SLOT_GAP_ACCELERATION]);
+}
+
+// Whether the arm is behind the face of a wall that gives: -1 with the face on it, 1 parted from
+// it, 0 if it is not. Within, what is watched of the gap is the depth, and of the force what the
+// law says: positive while the face follows the arm, negative while it does not.
+static int within_wall(const motion *m, const double *state)
+{
+    if (!m->wall_gives) {
+        return 0;
+    }
+    return state[SLOT_CONTACT] != 0 ? -1 : state[SLOT_PARTED] != 0 ? 1 : 0;
+}
+
 // Positive on the admissible side.
 static double watch_value(const arm *a, const motion *m, const double *state, watch w)
 {
     switch (w) {
     case WATCH_GAP:
-        return state[SLOT_GAP];
+        return within_wall(m, state) != 0 ? -state[SLOT_GAP] : state[SLOT_GAP];
     case WATCH_FORCE:
-        return state[SLOT_FORCE];
+        return within_wall(m, state) != 0 ? -within_wall(m, state) * law_at(a, state)
+                                          : state[SLOT_FORCE];
     case WATCH_HUB:
         return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
     case WATCH_STICTION:
@@ -36,12 +60,12 @@ bool watch_active(const arm *a, const motion *m, watch w)
 {
     bool contact = m->state[SLOT_CONTACT] != 0;
     bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
-    bool held = m->dof == 1 && contact;
+    bool held = m->dof == 1 && contact && !m->wall_gives;
     switch (w) {
     case WATCH_GAP:
-        return !contact && wall_stands(&a->wall);
+        return (!contact || m->wall_gives) && wall_stands(&a->wall);
     case WATCH_FORCE:
-        return contact;
+        return contact || m->state[SLOT_PARTED] != 0;
     case WATCH_HUB:
         return !stuck && !held && a->motor.stiction > 0;
     case WATCH_STICTION:
@@ -65,12 +89,17 @@ static double cubic_dip(double v0, double v1, double d0, double d1)
 
 // Slopes of a watched function at both ends of the step from m->state to m->trial, per step. False
 // where they are not known.
-static bool watch_slopes(const motion *m, double h, watch w, double *d0, double *d1)
+static bool watch_slopes(const arm *a, const motion *m, double h, watch w, double *d0, double *d1)
 {
     const double *state = m->state, *trial = m->trial;
+    const int within = within_wall(m, state);
     if (w == WATCH_GAP) {
-        *d0 = state[SLOT_GAP_VELOCITY] * h;
-        *d1 = trial[SLOT_GAP_VELOCITY] * h;
+        double sign = within != 0 ? -1 : 1;
+        *d0 = sign * state[SLOT_GAP_VELOCITY] * h;
+        *d1 = sign * trial[SLOT_GAP_VELOCITY] * h;
+    } else if (w == WATCH_FORCE && within != 0) {
+        *d0 = -within * law_slope_at(a, state) * h;
+        *d1 = -within * law_slope_at(a, trial) * h;
     } else if (w == WATCH_HUB) {
         *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
         *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
@@ -99,7 +128,7 @@ static double cubic(double s, double v0, double v1, double d0, double d1)
 static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
 {
     double d0, d1;
-    if (!watch_slopes(m, h, w, &d0, &d1)) {
+    if (!watch_slopes(a, m, h, w, &d0, &d1)) {
         // near the limit of friction the middle of the step is worth a look
         return fmin(v0, v1) < 0.2 * a->motor.stiction ? 0.5 : -1;
     }
@@ -112,10 +141,10 @@ static double suspected_dip(const arm *a, const motion *m, double h, watch w, do
 
 // A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of Hermite's
 // cubic by a few steps of false position, or of the straight line.
-static double guess_crossing(const motion *m, double h, watch w, double v0, double v1)
+static double guess_crossing(const arm *a, const motion *m, double h, watch w, double v0, double v1)
 {
     double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
-    if (!watch_slopes(m, h, w, &d0, &d1)) {
+    if (!watch_slopes(a, m, h, w, &d0, &d1)) {
         return s;
     }
     for (int i = 0; i < 12; i++) {
@@ -173,7 +202,7 @@ static status narrow(const arm *a, motion *m, watch w, double s, double lo, doub
 static status search(const arm *a, motion *m, watch w, double *h, bool *found)
 {
     double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
-    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(m, *h, w, v0, v1) : 0.5 * *h;
+    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(a, m, *h, w, v0, v1) : 0.5 * *h;
     double lo = 0, hi = *h, tolerance = watch_tolerance(w);
     *found = false;
     if (v1 >= -tolerance) {
@@ -238,10 +267,44 @@ status locate_first_event(const arm *a, motion *m, double *h, watch *first, bool
     return s;
 }
 
-// --- the largest force ----------------------------------------------------------------------
+// --- the largest depth and force ---------------------------------------------------------------
+
+// Records the deepest point of a step within which the arm turns back, m->trial being its end.
+static status locate_depth(const arm *a, motion *m, double h)
+{
+    enum { MOST_LOOKS = 40 };
+    double v0 = -m->state[SLOT_GAP_VELOCITY], v1 = -m->trial[SLOT_GAP_VELOCITY], lo = 0, hi = h;
+    if (!(m->wall_gives && v0 > 0 && v1 < 0)) {
+        return STATUS_OK;
+    }
+    memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
+    for (int i = 0; i < MOST_LOOKS && hi - lo > 1e-9 * h; i++) {
+        double s = lo + (hi - lo) * v0 / (v0 - v1); // false position, the end that stays halved
+        status failed = motion_try_step(a, m, s);
+        if (failed != STATUS_OK) {
+            return failed;
+        }
+        double v = -m->trial[SLOT_GAP_VELOCITY];
+        m->largest_penetration = fmax(m->largest_penetration, -m->trial[SLOT_GAP]);
+        if (v > 0) {
+            lo = s, v0 = v, v1 /= 2;
+        } else {
+            hi = s, v1 = v, v0 /= 2;
+        }
+        if (v == 0) {
+            break;
+        }
+    }
+    memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
+    return STATUS_OK;
+}
 
 status locate_peak(const arm *a, motion *m, double h)
 {
+    status looked = locate_depth(a, m, h);
+    if (looked != STATUS_OK) {
+        return looked;
+    }
     double f0 = m->state[SLOT_FORCE], f1 = m->trial[SLOT_FORCE], t0 = m->state[SLOT_TIME];
     if (f0 > m->pulse_peak) {
         m->pulse_peak = f0;

@@ -18,5 +18,6 @@ double watch_tolerance(watch w);
 status locate_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
 
 // Records the largest force within the step from m->state to m->trial, located between its ends by
-// refining a parabola. m->trial is left as it was.
+// refining a parabola, and the deepest point of an arm that turns back within a wall that gives.
+// m->trial is left as it was.
 status locate_peak(const arm *a, motion *m, double h);

@@ -16,6 +16,7 @@
 static void choose_engine(const arm *a, motion *m, const method_parameters *method)
 {
     double rho = method->spectral_radius;
+    m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall);
     bool too_stiff = a->fastest_rate * method->step > EXPLICIT_RESOLUTION * MOST_SUBSTEPS;
     if (method->name == METHOD_NEWMARK) {
         m->engine = &newmark_engine;
@@ -23,7 +24,7 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = method->gamma;
     } else if (method->name == METHOD_EVENT && taylor_engine_suits(a)) {
         m->engine = &taylor_engine;
-    } else if (method->name == METHOD_GENERALIZED_ALPHA || too_stiff) {
+    } else if (method->name == METHOD_GENERALIZED_ALPHA || (too_stiff && !m->wall_gives)) {
         m->engine = &generalized_alpha_engine;
         // Chung and Hulbert (1993), equations (17), (18), (25)
         m->alpha_m = (2 * rho - 1) / (rho + 1);
@@ -100,6 +101,7 @@ void motion_evaluate(const arm *a, motion *m, double *state)
     state[SLOT_GAP_VELOCITY] = r.gap_velocity;
     state[SLOT_VISCOUS_POWER] = r.viscous_power;
     state[SLOT_DAMPING_POWER] = r.damping_power;
+    state[SLOT_WALL_POWER] = r.wall_power;
 }
 
 void motion_watch(motion *m)
@@ -111,7 +113,11 @@ void motion_watch(motion *m)
 double motion_energy_residual(const arm *a, const motion *m, double *state)
 {
     const double *q = state_angles(m, state), *w = state_velocities(m, state);
-    return motion_unaccounted(m, state, chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q));
+    double energy = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q);
+    if (m->wall_gives) {
+        energy += wall_stored_energy(&a->wall, -state[SLOT_GAP]);
+    }
+    return motion_unaccounted(m, state, energy);
 }
 
 double motion_unaccounted(const motion *m, double *state, double energy)
@@ -120,7 +126,8 @@ double motion_unaccounted(const motion *m, double *state, double energy)
     double stored = energy - m->start_energy;
     double work = state[SLOT_MOTOR_WORK] + state[SLOT_EXTERNAL_WORK];
     double lost = state[SLOT_FRICTION_LOSS] + state[SLOT_IMPACT_LOSS] +
-                  quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING];
+                  quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING] +
+                  quadrature[QUADRATURE_WALL];
     return stored + lost - work;
 }
 
@@ -173,6 +180,7 @@ status motion_try_step(const arm *a, motion *m, double h)
     memcpy(trial, m->state, SLOT_COUNT * sizeof(double));
     trial[SLOT_TIME] += h;
     trial[SLOT_JUMPED] = trial[SLOT_IMPULSE] = 0;
+    state_quadratures(m, trial)[QUADRATURE_WALL] = state_quadratures(m, m->state)[QUADRATURE_WALL];
     status s = m->engine->state_at(a, m, h);
     if (s != STATUS_OK) {
         return s;

@@ -31,6 +31,8 @@ enum motion_slot {
     SLOT_DAMPING_POWER,    // at this state [W]
     SLOT_JUMPED,           // 1 just after an event, before the first step
     SLOT_IMPULSE,          // of an unresolved impact, which the next step is to deliver [N s]
+    SLOT_PARTED,           // 1 within a wall that gives whose face no longer follows
+    SLOT_WALL_POWER,       // lost in a wall that gives, at this state [W]
     SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
     SLOT_COUNT
@@ -41,6 +43,7 @@ enum motion_quadrature {
     QUADRATURE_VISCOUS, // lost to back EMF and viscous friction [J]
     QUADRATURE_DAMPING, // lost to structural damping [J]
     QUADRATURE_FORCE,   // integral of f dt [N s]
+    QUADRATURE_WALL,    // lost in a wall that gives; engines for rigid walls leave it [J]
     QUADRATURE_COUNT
 };
 
@@ -55,6 +58,7 @@ struct motion {
     // how the smooth motion is advanced
     const engine *engine;
     double nominal_step; // method.step [s]
+    bool wall_gives;     // contact is no constraint
     bool brief;          // explicit: the step takes the method of order 6
     double cut; // an instant at which a step ends without being made for it [s]; HUGE_VAL: none
     double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
@@ -100,7 +104,8 @@ static inline double *state_algorithmic(const motion *m, double *state)
 }
 static inline contact_state contact_state_of(const double *state)
 {
-    return (contact_state){state[SLOT_CONTACT] != 0, (hub_friction)(int)state[SLOT_FRICTION]};
+    return (contact_state){state[SLOT_CONTACT] != 0, (hub_friction)(int)state[SLOT_FRICTION],
+                           state[SLOT_PARTED] != 0};
 }
 
 // Length of the smooth part of the state: angles, velocities, quadratures.
@@ -124,7 +129,7 @@ void motion_evaluate(const arm *a, motion *m, double *state);
 static inline bool motion_held_still(const motion *m)
 {
     contact_state now = contact_state_of(m->state);
-    int holds = now.contact + (now.friction == HUB_STICK);
+    int holds = (now.contact && !m->wall_gives) + (now.friction == HUB_STICK);
     return m->dof == 1 ? holds > 0 : holds >= m->dof;
 }
 
@@ -156,5 +161,5 @@ static inline bool motion_unresolved(const arm *a, const motion *m)
 // Energy that the ledger does not account for at a state of this motion [J].
 double motion_energy_residual(const arm *a, const motion *m, double *state);
 
-// The same where the state's kinetic and strain energy together are known [J].
+// The same where what the state holds is known: kinetic and strain energy, and a giving wall's [J].
 double motion_unaccounted(const motion *m, double *state, double energy);

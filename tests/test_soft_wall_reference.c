@@ -1,0 +1,97 @@
+// Arms against walls that give: the library beside an integrator written apart for them.
+#include <math.h>
+#include <string.h>
+
+#include "src/run/run.h"
+#include "tests/arm_fixture.h"
+#include "tests/reference/soft_wall.h"
+
+static soft_wall_case cases[] = {
+    {"Kelvin-Voigt, point, N = 2, 1 V", 2, false, false, false, 75e3, 20, 1, 0, 1, 0.6},
+    {"Kelvin-Voigt, plane, N = 2, 5 V", 2, false, true, false, 1e4, 5, 1, 0, 5, 0.5},
+    {"Kelvin-Voigt, plane, N = 4, beam, sensor", 4, true, true, false, 2e4, 10, 1, 0.02, 2, 0.5},
+    {"Kelvin-Voigt, overdamped, N = 2", 2, false, false, false, 1e3, 60, 1, 0, 2, 0.5},
+    {"Hunt-Crossley, point, N = 2, 1 V", 2, false, false, true, 1e6, 3e5, 1.5, 0, 1, 0.6},
+    {"Hunt-Crossley, plane, N = 3, beam", 3, true, true, true, 1e6, 3e5, 1.5, 0, 3, 0.5},
+    {"Hunt-Crossley, n = 1.3, N = 2, sensor", 2, false, true, true, 2e5, 6e4, 1.3, 0.05, 2, 0.5},
+};
+
+static void set(parameters *p, const char *path, const char *text)
+{
+    fault f = {0};
+    if (parameter_set_text(p, parameter_find(path), text, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+static void set_number(parameters *p, const char *path, double value)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.17g", value);
+    set(p, path, text);
+}
+
+static void library_agrees(void **state)
+{
+    const soft_wall_case *c = *state;
+    soft_wall_answer r;
+    assert_true(soft_wall_simulate(c, &r));
+    check_below(fabs(r.energy_residual), 1e-11);
+
+    parameters p;
+    fault f = {0};
+    parameters_defaults(&p, ARM_CORRECTED);
+    set_number(&p, "arm.links", c->links);
+    set(&p, "arm.hub_joint", c->beam_root ? "beam" : "rigid");
+    set_number(&p, "arm.tip_mass", c->tip_mass);
+    set(&p, "wall.kind", c->plane_wall ? "plane" : "point");
+    set(&p, "wall.contact", c->hunt_crossley ? "hunt-crossley" : "kelvin-voigt");
+    set_number(&p, "wall.stiffness", c->stiffness);
+    set_number(&p, "wall.damping", c->damping);
+    set_number(&p, "wall.exponent", c->exponent);
+    set_number(&p, "motor.voltage", c->voltage);
+    set(&p, "motor.stiction", "0");
+    set_number(&p, "run.duration", c->duration);
+    if (parameters_resolve(&p, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    scenario s = {.parameters = p};
+    run_result result;
+    char name[] = "test";
+    s.name = s.file = s.title = s.description = name;
+    run_scenario(&s, true, &result);
+    const summary *l = &result.summary;
+    assert_int_equal(l->status, STATUS_OK);
+    int touches = 0;
+    for (size_t i = 0; i < result.trace.event_count; i++) {
+        touches += result.trace.events[i].kind == EVENT_CONTACT;
+    }
+    const double final_angle = result.trace.rows[result.trace.row_count - 1].hub_angle;
+    print_message("%s: contact %.3g s, pulse %.3g s, peak %.3g of it, delay %.3g s, depth %.3g of "
+                  "it, loss %.3g of it, residual %.3g J\n",
+                  c->name, l->first_contact_s - r.first_contact, l->first_pulse_s - r.first_pulse,
+                  l->first_pulse_peak_N / r.peak - 1, l->first_pulse_time_to_peak_s - r.peak_delay,
+                  l->max_penetration_m / r.deepest - 1, l->wall_loss_J / r.wall_loss - 1,
+                  l->energy_residual_J);
+    check_close(l->first_contact_s, r.first_contact, 1e-6);
+    check_close(l->first_pulse_s, r.first_pulse, 1e-6);
+    check_relative(l->first_pulse_peak_N, r.peak, 1e-4);
+    check_close(l->first_pulse_time_to_peak_s, r.peak_delay, 1e-6);
+    check_relative(l->max_penetration_m, r.deepest, 1e-4);
+    check_relative(l->wall_loss_J, r.wall_loss, 1e-4);
+    check_relative(l->steady_force_N, r.steady_force, 1e-4);
+    check_close(final_angle, r.final_hub_angle, 1e-7);
+    assert_int_equal(touches, r.touches);
+    check_below(l->energy_residual_J, 1e-9);
+    run_finish(&result);
+}
+
+int main(void)
+{
+    enum { CASES = sizeof cases / sizeof cases[0] };
+    struct CMUnitTest tests[CASES];
+    for (int i = 0; i < CASES; i++) {
+        tests[i] = (struct CMUnitTest){cases[i].name, library_agrees, NULL, NULL, &cases[i]};
+    }
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
