@@ -186,7 +186,7 @@ static void unknown_keys_suggest_what_was_meant(void **state)
     check_fault("wall: {kind: point, voltage: 1}\n", 1, 21, "did you mean motor.voltage?");
     check_fault("control: {k2_factor: 1}\n", 1, 11, "did you mean belief.k2_factor?");
     check_fault("wall: {height_above: 1}\n", 1, 8, "expected one of kind, angle, restitution");
-    check_fault("wall: {stiffness: -1}\n", 1, 18, "out of range");
+    check_fault("wall: {stiffness: -1}\n", 1, 19, "out of range");
     check_fault("wall: {contact: kelvin-voigt, restitution: 0.5}\n", 1, 44,
                 "for wall.contact = rigid");
     check_fault("arm.k2: 5\n", 1, 1, "expected 'k2:' under 'arm:'");

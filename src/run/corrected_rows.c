@@ -75,7 +75,8 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
         .friction_loss = state[SLOT_FRICTION_LOSS],
         .damping_loss = quadrature[QUADRATURE_DAMPING],
         .impact_loss = state[SLOT_IMPACT_LOSS],
-        .energy_residual = motion_unaccounted(m, state, kinetic + strain + (m->wall_gives ? held : 0)),
+        .energy_residual =
+            motion_unaccounted(m, state, kinetic + strain + (m->wall_gives ? held : 0)),
         .wall_energy = held,
         .wall_loss = m->wall_gives ? quadrature[QUADRATURE_WALL] : (double)NAN,
     };
