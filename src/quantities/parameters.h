@@ -97,6 +97,9 @@ typedef struct control_parameters {
     double jitter;                      // of the sampling instants, whole width [s]
     int seed;                           // of every random number of the rig
     double force;                       // commanded force [N]
+    double force_rate;                  // of the commanded force on its way to it, 0: any [N/s]
+    double force_amplitude;             // of a sine on it [N]
+    double force_frequency;             // of that sine [Hz]
     double approach_voltage;            // [V]
     double kp, kv;                      // gains of (5.24), (5.25), in N m/rad or V/rad, and s
     int gains;                          // 0 torque, 1 volts, 2 printed (errata B7)

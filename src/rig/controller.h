@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 // Version of this interface; a controller carries the one it was compiled with.
-enum { CONTROLLER_INTERFACE = 3 };
+enum { CONTROLLER_INTERFACE = 4 };
 
 // A number that a user may give a controller. One that is called like a control.NAME of the
 // scenario takes the scenario's value; given by its name alone, as {.name = "force"}, it takes
@@ -84,6 +84,9 @@ typedef struct controller {
     const char *(*start)(void *memory, const controller_setup *setup);
     // Called at every sampling instant.
     void (*sample)(void *memory, const controller_input *input, controller_output *output);
+    // Called before a sample when what it was told has changed; what it remembers stays. As `start`
+    // otherwise. NULL: its parameters cannot change during a run.
+    const char *(*tune)(void *memory, const controller_setup *setup);
 } controller;
 
 // A shared object named in control.plugin exports this function under this name.

@@ -21,8 +21,7 @@ const controller *controller_of(int law)
 
 // --- starting -------------------------------------------------------------------------------
 
-// What the controller is told: the arm and the rig as they are, changed by what it believes.
-static controller_setup believed_setup(const rig *r, const parameters *p)
+controller_setup rig_believed_setup(const rig *r, const parameters *p)
 {
     const belief_parameters *b = &p->belief;
 
@@ -76,7 +75,7 @@ static status start_controller(rig *r, const parameters *p, fault *f)
         return s;
     }
 
-    controller_setup setup = believed_setup(r, p);
+    controller_setup setup = rig_believed_setup(r, p);
     const char *refusal = r->law->start != NULL ? r->law->start(r->memory, &setup) : NULL;
     if (refusal != NULL) {
         return fault_set(f, STATUS_BAD_SCENARIO, "the controller '%s' cannot run: %.600s",
@@ -88,7 +87,7 @@ static status start_controller(rig *r, const parameters *p, fault *f)
 // Instant of the next sample, scattered evenly over the jitter's width; the first is not [s].
 static double sampling_instant(rig *r)
 {
-    double nominal = (double)r->samples * r->period;
+    double nominal = r->clock_start + (double)(r->samples - r->clock_samples) * r->period;
     if (r->jitter == 0 || r->samples == 0) {
         return nominal;
     }
@@ -113,6 +112,8 @@ status rig_create(rig **created, const parameters *p, fault *f)
     }
 
     // the loop before its first sample, at t = 0
+    r->told = *p;
+    r->ramp = r->wanted_force = p->control.force;
     r->period = 1 / p->control.rate;
     r->delay = p->control.delay + p->control.delay_periods * r->period;
     r->jitter = p->control.jitter;
@@ -131,6 +132,12 @@ status rig_create(rig **created, const parameters *p, fault *f)
     }
     s = s == STATUS_OK ? rig_lock(r, p->control.lock, f) : s;
     s = s == STATUS_OK ? start_controller(r, p, f) : s;
+    if (s == STATUS_OK && p->control.force_amplitude > 0 && r->law->tune == NULL) {
+        s = fault_set(f, STATUS_BAD_SCENARIO,
+                      "control.force_amplitude: the controller '%s' takes its force at the start "
+                      "only",
+                      r->law->name);
+    }
     if (s != STATUS_OK) {
         rig_destroy(r);
         return s;
@@ -184,6 +191,10 @@ static controller_input input_of(const rig *r, double time)
 // One sample: sensors, controller, D/A; the command is pending for the delay.
 static status take_sample(rig *r, double time, const sensed_motion *now, fault *f)
 {
+    status followed = rig_follow_setpoint(r, time, f);
+    if (followed != STATUS_OK) {
+        return followed;
+    }
     r->reading = sensors_read(&r->sensors, now);
     controller_input input = input_of(r, time);
     controller_output *out = &r->output;

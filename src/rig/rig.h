@@ -20,6 +20,12 @@ typedef struct rig {
     double voltage_limit;         // [V]
     double sample_time;           // of the next sample [s]
     double effect_time;           // when the pending command takes effect, HUGE_VAL if none [s]
+    parameters told;              // what sensors and controller have been told so far
+    double clock_start;           // nominal instant of sample clock_samples [s]
+    long clock_samples;           // the one that the clock of this rate counts from
+    double ramp;                  // where the commanded force is on its way to control.force [N]
+    double ramp_time;             // when it was there [s]
+    double wanted_force;          // that the controller was told last [N]
     double pending;               // that command, after the D/A [V]
     long samples;                 // taken so far
     random_generator clock;       // of the jitter
@@ -47,6 +53,20 @@ status rig_lock(rig *r, const char *lock, fault *f);
 // them. Returns how many; 0 if there is no law or the plug-in cannot be opened.
 enum { MODE_NAME_SIZE = 32 };
 int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, bool *lockable);
+
+// Takes over what has changed in control.*, belief.*, sensor.* and motor.voltage_limit at `time`
+// [s]: it holds from the next sample on. What is known of the arm stays as at the start.
+// STATUS_BAD_SCENARIO, with a sentence in f, if the law takes its parameters at the start only.
+status rig_retune(rig *r, const parameters *p, double time, fault *f);
+// Whether a parameter may change during a run of these parameters, rather than from the start.
+bool rig_can_change(const parameters *p, int parameter);
+
+// --- for the parts of the rig
+
+// What the controller is told: the arm and the rig as they are, changed by what it believes.
+controller_setup rig_believed_setup(const rig *r, const parameters *p);
+// Takes the commanded force along its ramp and its wave to `time` [s], before a sample.
+status rig_follow_setpoint(rig *r, double time, fault *f);
 
 // The next instant at which the rig has something to do [s].
 double rig_next_time(const rig *r);

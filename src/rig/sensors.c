@@ -64,21 +64,28 @@ static void idealise(sensor_parameters *p)
     p->accelerometer_rise_time = p->accelerometer_range = p->accelerometer_noise = 0;
 }
 
-void sensors_init(sensors *s, const sensor_parameters *p, int seed)
+void sensors_retune(sensors *s, const sensor_parameters *p)
 {
     assert(s != NULL && p != NULL);
-    const uint64_t other_sensor = UINT64_C(1) << 32; // beyond any seed
-    *s = (sensors){.p = *p, .seen_velocity = (double)NAN};
+    s->p = *p;
     if (p->ideal) {
         idealise(&s->p);
     }
-
-    // lags and leaks, all at rest
     s->fsr.time_constant = s->p.fsr_rise_time / RISE_OVER_TIME_CONSTANT;
     s->piezo_rise.time_constant = s->p.piezo_rise_time / RISE_OVER_TIME_CONSTANT;
     s->piezo_leak.time_constant = s->p.piezo_leak_time;
     s->film_leak.time_constant = s->p.film_leak_time;
     s->acceleration.time_constant = s->p.accelerometer_rise_time / RISE_OVER_TIME_CONSTANT;
+}
+
+void sensors_init(sensors *s, const sensor_parameters *p, int seed)
+{
+    assert(s != NULL && p != NULL);
+    const uint64_t other_sensor = UINT64_C(1) << 32; // beyond any seed
+
+    // lags and leaks, all at rest
+    *s = (sensors){.seen_velocity = (double)NAN};
+    sensors_retune(s, p);
 
     // each sensor that need not be there has numbers of its own
     noise_start(&s->noise, (uint64_t)seed);

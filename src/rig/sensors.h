@@ -60,6 +60,8 @@ typedef struct sensor_reading {
 
 // Starts sensors at rest, their noise from the seed; sensor.ideal takes every imperfection away.
 void sensors_init(sensors *s, const sensor_parameters *p, int seed);
+// Gives the sensors other properties; what they lag behind and their noise go on.
+void sensors_retune(sensors *s, const sensor_parameters *p);
 
 // Lets the sensors with a lag or a leak follow the arm over a time h [s]. Force, bending and hub
 // acceleration are each taken as the parabola that has the values of `first` and `last` at its ends

@@ -155,6 +155,9 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
     if (failed == STATUS_OK && r->rig != NULL) {
         failed = rig_lock(r->rig, r->now.control.lock, f);
     }
+    if (failed == STATUS_OK && r->rig != NULL) {
+        failed = rig_retune(r->rig, &r->now, c->motion->state[SLOT_TIME], f);
+    }
     arm before = c->arm;
     corrected_bind_arm(c);
     motion_rebind(&before, &c->arm, c->motion);

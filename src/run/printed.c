@@ -188,6 +188,9 @@ static status run_script(printed_run_state *run, fault *f)
         if (failed == STATUS_OK && r->rig != NULL) {
             failed = rig_lock(r->rig, r->now.control.lock, f);
         }
+        if (failed == STATUS_OK && r->rig != NULL) {
+            failed = rig_retune(r->rig, &r->now, time, f);
+        }
         if (failed == STATUS_OK) {
             failed = record_event(r, time, EVENT_CHANGE, r->state.next_action);
         }

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/rig/rig.h"
+#include "src/run/resume.h"
 #include "src/session/cursor.h"
 #include "src/session/session_run.h"
 
@@ -100,12 +102,29 @@ status session_change(session *s, int parameter, const char *text, fault *f)
     }
 
     in.value = parameter_get(&scratch, parameter);
-    if (info->timed && s->now > 0) {
+    if (rig_can_change(&s->effective.parameters, parameter) && s->now > 0) {
         in.kind = SESSION_INPUT_TIMED;
     } else {
         in.time = s->now;
     }
     return add_input(s, &in, f);
+}
+
+// The first of several small steps: the run before them is kept as their ghost.
+static status begin_adjusting(session *s, int parameter, const char *text, fault *f)
+{
+    run_result before;
+    const size_t rows = s->run.trace.row_count;
+    const bool kept = s->computing == NULL && run_share(&s->run, rows, &before) == STATUS_OK;
+    status code = session_change(s, parameter, text, f);
+    if (kept && code == STATUS_OK) {
+        session_forget_ghost(s);
+        s->ghost = before;
+        s->has_ghost = true;
+    } else if (kept) {
+        run_finish(&before);
+    }
+    return code;
 }
 
 status session_adjust(session *s, int parameter, const char *text, fault *f)
@@ -114,13 +133,14 @@ status session_adjust(session *s, int parameter, const char *text, fault *f)
     const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
     if (last == NULL || last->kind == SESSION_INPUT_PUSH || last->parameter != parameter ||
         last->time != s->now) {
-        return session_change(s, parameter, text, f);
+        return begin_adjusting(s, parameter, text, f);
     }
 
     // back at what it was before there is no input
     parameters scratch = session_parameters_at(s, s->now);
     if (parameter_set_text(&scratch, parameter, text, NULL) == STATUS_OK &&
         parameter_get(&scratch, parameter) == last->before) {
+        session_forget_ghost(s);
         return session_undo(s, f);
     }
 

@@ -9,8 +9,8 @@
 // what could be redone is forgotten. On failure nothing changes and f says why.
 status session_change(session *s, int parameter, const char *text, fault *f);
 // The same, in the place of the last input if that gave this parameter a value at this very
-// instant: small steps to a value are one input, and none once they have led back to where they
-// began.
+// instant: small steps to a value are one input (session.ghost is the run before them), and none
+// once they have led back to where they began.
 status session_adjust(session *s, int parameter, const char *text, fault *f);
 // The same as session_change for an impulse at the tip [N s].
 status session_push(session *s, double impulse, fault *f);

@@ -28,6 +28,7 @@ void session_finish(session *s)
     assert(s != NULL);
     session_stop(s);
     session_forget_other(s);
+    session_forget_ghost(s);
     run_finish(&s->run);
     free(s->effective.actions);
     free(s->inputs);

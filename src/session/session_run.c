@@ -276,3 +276,12 @@ void session_forget_other(session *s)
         s->has_other = false;
     }
 }
+
+void session_forget_ghost(session *s)
+{
+    if (s->has_ghost) {
+        run_finish(&s->ghost);
+        s->has_ghost = false;
+        s->version++;
+    }
+}

@@ -23,3 +23,5 @@ parameters session_parameters_at(const session *s, double time);
 status session_branch(session *s, fault *f);
 // Forgets the run kept for comparison.
 void session_forget_other(session *s);
+// Forgets the run before the value that was adjusted last.
+void session_forget_ghost(session *s);

@@ -32,6 +32,8 @@ typedef struct session {
     run_result run;     // of `effective`
     run_result other;   // the run branched from
     bool has_other;
+    run_result ghost; // the run before a value that is being adjusted
+    bool has_ghost;
     double now;       // the cursor [s]
     size_t row;       // the last row whose time is not after `now`
     double seen;      // the latest instant the cursor has been at since the last change [s]

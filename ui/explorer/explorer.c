@@ -61,6 +61,8 @@ void explorer_draw(explorer *ex, screen *s)
 
     // the state first, so that drawing only reads it; what the picture decided comes back
     if (compose_fits(size)) {
+        action_result news = act_follow_slider(st);
+        result_show(&news, &st->message);
         state_update(st);
     }
     compose_screen(st, &ex->layout, s);

@@ -108,6 +108,7 @@ static void escape(explorer *ex)
     } else {
         st->mark.set = false;
     }
+    session_forget_ghost(&st->session);
     message_clear(&st->message);
 }
 

@@ -13,7 +13,7 @@ const controller_parameter force_feedback_parameters[PARAMETERS] = {
     [INTEGRAL_GAIN] = {.name = "integral_gain"},
 };
 
-const char *force_feedback_start(void *memory, const controller_setup *setup)
+const char *force_feedback_tune(void *memory, const controller_setup *setup)
 {
     assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     force_memory *m = memory;
@@ -21,8 +21,15 @@ const char *force_feedback_start(void *memory, const controller_setup *setup)
     for (int i = 0; i < PARAMETERS; i++) {
         m->p[i] = setup->parameters[i];
     }
-    m->integral = m->p[APPROACH_VOLTAGE];
     return NULL;
+}
+
+const char *force_feedback_start(void *memory, const controller_setup *setup)
+{
+    force_memory *m = memory;
+    const char *refusal = force_feedback_tune(memory, setup);
+    m->integral = m->p[APPROACH_VOLTAGE];
+    return refusal;
 }
 
 void force_feedback_choose_mode(force_memory *m, const controller_input *in)

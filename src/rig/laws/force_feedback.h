@@ -18,7 +18,8 @@ typedef struct force_memory {
     double integral; // force-integral's command [V]
 } force_memory;
 
-// Takes setup and parameters into a force_memory; never refuses.
+// Takes setup and parameters into a force_memory, at the start or later; never refuses.
+const char *force_feedback_tune(void *memory, const controller_setup *setup);
 const char *force_feedback_start(void *memory, const controller_setup *setup);
 
 // Contact once the reading was above the threshold, and from then on, unless the law is held in a
@@ -34,5 +35,6 @@ double force_feedback_command(const force_memory *m, const controller_input *in)
     {                                                                                              \
         .interface = CONTROLLER_INTERFACE, .name = law, .modes = force_feedback_modes,             \
         .lockable = obeys, .parameters = force_feedback_parameters, .parameter_count = PARAMETERS, \
-        .memory_size = sizeof(force_memory), .start = force_feedback_start, .sample = samples      \
+        .memory_size = sizeof(force_memory), .start = force_feedback_start, .sample = samples,     \
+        .tune = force_feedback_tune                                                                \
     }

@@ -10,6 +10,8 @@ const char *hybrid_start(void *memory, const controller_setup *setup)
     assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     hybrid_memory *m = memory;
     const double *p = setup->parameters;
+    m->replans =
+        m->mode == IMPACT && (m->force != p[FORCE_WANTED] || m->transition != p[TRANSITION]);
     m->rig = *setup;
     m->force = p[FORCE_WANTED];
     m->approach_voltage = p[APPROACH_VOLTAGE];
@@ -87,7 +89,7 @@ static double feedback(const hybrid_memory *m, double angle_error, double veloci
 // solution of (5.18)-(5.20).
 static void plan(hybrid_memory *m, double angle, double velocity, double acceleration)
 {
-    double T = m->transition, way = hybrid_final_angle(m) - angle;
+    double T = m->length, way = hybrid_final_angle(m) - angle;
     m->a[0] = angle;
     m->a[1] = velocity;
     m->a[2] = acceleration / 2;
@@ -99,8 +101,22 @@ static void plan(hybrid_memory *m, double angle, double velocity, double acceler
 void hybrid_begin(hybrid_memory *m, int mode, const controller_input *in)
 {
     m->mode = mode;
-    m->since = in->time;
+    m->since = m->begun = in->time;
+    m->length = m->transition;
     if (mode == IMPACT) {
+        plan(m, in->encoder, in->tachometer,
+             contact_acceleration(m, in->encoder, in->tachometer, in->voltage));
+    }
+}
+
+// Plans anew for what is left of the transition, if that is more than a sample.
+static void plan_again(hybrid_memory *m, const controller_input *in)
+{
+    const double left = m->since + m->transition - in->time;
+    m->replans = false;
+    if (left > m->rig.period) {
+        m->begun = in->time;
+        m->length = left;
         plan(m, in->encoder, in->tachometer,
              contact_acceleration(m, in->encoder, in->tachometer, in->voltage));
     }
@@ -119,7 +135,7 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
                              controller_output *out)
 {
     // held in this mode beyond t_f it stays at the trajectory's end
-    const double *a = m->a, t = fmin(in->time - m->since, m->transition);
+    const double *a = m->a, t = fmin(in->time - m->begun, m->length);
     double angle = a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * (a[4] + t * a[5]))));
     double velocity = a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
     double acceleration = 2 * a[2] + t * (6 * a[3] + t * (12 * a[4] + t * 20 * a[5]));
@@ -153,6 +169,10 @@ double hybrid_command(hybrid_memory *m, const controller_input *in, controller_o
     }
     if (chooses && m->mode == IMPACT && in->time - m->since >= m->transition) {
         hybrid_begin(m, FORCE, in);
+    }
+
+    if (m->replans && m->mode == IMPACT) {
+        plan_again(m, in);
     }
 
     out->mode = m->mode;

@@ -43,13 +43,17 @@ typedef struct hybrid_memory {
     int mode;
     double since;       // start of the present mode [s]
     double a[6];        // quintic of the impact mode, (5.15)
+    double begun;       // when the quintic begins [s]
+    double length;      // and how long it is [s]
+    bool replans;       // force or t_f have changed since
     double start_angle; // at the first sample [rad]
     bool started, reversed;
     int readings_without_contact;
 } hybrid_memory;
 
-// Takes setup and parameters into a hybrid_memory; never refuses. The second is for laws with a
-// parameter of their own behind the shared ones, memory->own.
+// Takes setup and parameters into a hybrid_memory, at the start or later; never refuses. In the
+// impact mode the trajectory is then planned anew from where the arm is, for what is left of t_f.
+// The second is for laws with a parameter of their own behind the shared ones, memory->own.
 const char *hybrid_start(void *memory, const controller_setup *setup);
 const char *hybrid_start_with_own(void *memory, const controller_setup *setup);
 
@@ -85,5 +89,5 @@ double hybrid_speed_command(const hybrid_memory *m, const controller_input *in, 
     {                                                                                              \
         .interface = CONTROLLER_INTERFACE, .name = law, .modes = names, .lockable = true,          \
         .parameters = table, .parameter_count = (int)(sizeof table / sizeof table[0]),             \
-        .memory_size = sizeof(hybrid_memory), .start = starts, .sample = samples                   \
+        .memory_size = sizeof(hybrid_memory), .start = starts, .sample = samples, .tune = starts   \
     }

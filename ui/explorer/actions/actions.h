@@ -73,7 +73,10 @@ typedef struct slider_drag {
     int cells;
 } slider_drag;
 
-// Takes hold of a slider or moves it: only shows the value.
+// Takes hold of a slider or moves it: only says where it is.
 void act_hold_slider(explorer_state *st, slider_drag d);
-// Lets go of it: gives the value.
+// Gives the parameter the value that the slider shows; once for each picture, however often the
+// mouse has moved.
+action_result act_follow_slider(explorer_state *st);
+// Lets go of it, with its value given.
 action_result act_drop_slider(explorer_state *st);

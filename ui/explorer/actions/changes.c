@@ -42,6 +42,7 @@ static action_result tell_change(const explorer_state *st)
 action_result act_change(explorer_state *st, int parameter, const char *text)
 {
     assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
+    session_forget_ghost(&st->session);
     fault f = {0};
     status code = session_change(&st->session, parameter, text, &f);
     return code != STATUS_OK ? result_of(code, &f) : tell_change(st);
@@ -180,6 +181,7 @@ action_result act_edit(explorer_state *st, const char *argument)
 
 action_result act_push(explorer_state *st, const char *argument)
 {
+    session_forget_ghost(&st->session);
     double impulse = 0.01;
     fault f = {0};
     action_result read = act_read_optional(argument, &impulse);
@@ -194,6 +196,7 @@ action_result act_push(explorer_state *st, const char *argument)
 
 action_result act_undo(explorer_state *st, const char *argument)
 {
+    session_forget_ghost(&st->session);
     (void)argument;
     fault f = {0};
     status code = session_undo(&st->session, &f);
@@ -202,6 +205,7 @@ action_result act_undo(explorer_state *st, const char *argument)
 
 action_result act_redo(explorer_state *st, const char *argument)
 {
+    session_forget_ghost(&st->session);
     (void)argument;
     fault f = {0};
     status code = session_redo(&st->session, &f);
@@ -210,6 +214,7 @@ action_result act_redo(explorer_state *st, const char *argument)
 
 action_result act_branch(explorer_state *st, const char *argument)
 {
+    session_forget_ghost(&st->session);
     (void)argument;
     fault f = {0};
     status code = session_branch(&st->session, &f);
@@ -273,15 +278,21 @@ void act_hold_slider(explorer_state *st, slider_drag d)
     grip->value = slider_value(&grip->scale, d.parameter, d.share, d.cells);
 }
 
+action_result act_follow_slider(explorer_state *st)
+{
+    assert(st != NULL);
+    const slider_grip *grip = &st->slider;
+    const parameters p = state_parameters(st);
+    if (!grip->held || parameter_get(&p, grip->parameter) == grip->value) {
+        return result_done();
+    }
+    return act_adjust(st, grip->parameter, grip->value);
+}
+
 action_result act_drop_slider(explorer_state *st)
 {
     assert(st != NULL);
-    const slider_grip grip = st->slider;
+    const action_result followed = act_follow_slider(st);
     st->slider.held = false;
-    parameters p = state_parameters(st);
-    if (!grip.held || parameter_get(&p, grip.parameter) == grip.value) {
-        return result_done();
-    }
-
-    return act_adjust(st, grip.parameter, grip.value);
+    return followed;
 }

@@ -27,6 +27,7 @@ void act_scrub(explorer_state *st, double time)
 {
     assert(st != NULL && isfinite(time));
     st->playback.playing = false;
+    session_forget_ghost(&st->session);
     session_seek(&st->session, time);
 }
 
@@ -59,6 +60,7 @@ action_result act_play(explorer_state *st, const char *argument)
 {
     (void)argument;
     session *s = &st->session;
+    session_forget_ghost(s);
     st->playback.playing = !st->playback.playing;
     if (!st->playback.playing || s->now < session_end(s)) {
         return result_quiet();

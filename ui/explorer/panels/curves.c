@@ -250,8 +250,13 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int 
         const double *pairs =
             extremes_pairs(&st->extremes[run], state_run_id(st), t, p->signals[k]);
         f.style = look.style[k];
-        f.colour = run == 0 ? look.colour[k] : INK_OTHER;
-        draw_signal(&f, t, p->signals[k], run == 0 ? st->session.seen : f.to, pairs);
+        f.colour = run == 0                        ? look.colour[k]
+                   : t == &st->session.other.trace ? INK_OTHER
+                                                   : INK_FRAME;
+
+        // while a value is adjusted the whole future is shown
+        const bool hidden = run == 0 && !st->session.has_ghost;
+        draw_signal(&f, t, p->signals[k], hidden ? st->session.seen : f.to, pairs);
     }
 }
 

@@ -52,9 +52,9 @@ static const char *reason_of_arm(const parameters *p, const char *path)
 // What the law that is on does not ask for.
 static const char *reason_of_control(const parameters *p, const char *name)
 {
-    static const char *const of_every_law[] = {"law",           "settings", "rate", "delay",
-                                               "delay_periods", "jitter",   "seed", "force",
-                                               "k2_table",      NULL};
+    static const char *const of_every_law[] = {
+        "law",   "settings", "rate",       "delay",           "delay_periods",   "jitter", "seed",
+        "force", "k2_table", "force_rate", "force_amplitude", "force_frequency", NULL};
     const controller *law = controller_of(p->control.law);
     if (strcmp(name, "plugin") == 0) {
         return law == NULL ? NULL : "it belongs to control.law = plugin";

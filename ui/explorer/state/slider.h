@@ -1,6 +1,5 @@
 // Sliders of parameters: what they span, and the one that the mouse holds. A value that is dragged
-// is shown and takes effect when the mouse lets go, so that no run is computed for what is only
-// passed over.
+// takes effect with the next picture: the run follows the mouse.
 #pragma once
 
 #include <stdbool.h>
@@ -13,7 +12,7 @@ typedef struct slider_scale {
 
 // The slider that the mouse holds.
 typedef struct slider_grip {
-    bool held; // nothing is changed before it lets go
+    bool held;
     int parameter;
     double value;
     slider_scale scale;

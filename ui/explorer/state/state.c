@@ -111,13 +111,14 @@ unsigned long state_run_id(const explorer_state *st)
 int state_run_count(const explorer_state *st)
 {
     assert(st != NULL);
-    return st->session.has_other ? 2 : 1;
+    return 1 + st->session.has_other + st->session.has_ghost;
 }
 
 const run_result *state_run(const explorer_state *st, int index)
 {
     assert(index >= 0 && index < state_run_count(st));
-    return index == 0 ? &st->session.run : &st->session.other;
+    const session *s = &st->session;
+    return index == 0 ? &s->run : index == 1 && s->has_other ? &s->other : &s->ghost;
 }
 
 parameters state_parameters(const explorer_state *st)

@@ -1,0 +1,115 @@
+// Changes of the rig during a run: its clock, its sensors, and what its controller was told.
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/rig/controller_values.h"
+#include "src/rig/rig.h"
+
+static const double turn = 2 * 3.14159265358979323846; // [rad]
+
+// Whether any parameter of a group differs; the lock is the rig's own affair.
+static bool group_differs(const parameters *a, const parameters *b, const char *group)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        const bool number = info->type != PARAMETER_TEXT;
+        if (number && strncmp(info->path, group, strlen(group)) == 0 &&
+            parameter_get(a, i) != parameter_get(b, i)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Gives the controller what it is told now. STATUS_BAD_SCENARIO, with a sentence in f, if its law
+// takes its parameters at the start only.
+static status tell_controller(rig *r, const parameters *p, fault *f)
+{
+    if (r->law->tune == NULL) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "the controller '%s' takes its parameters at the start only: they cannot "
+                         "change during the run",
+                         r->law->name);
+    }
+    status s = controller_values(r->law, p, r->values, f);
+    if (s != STATUS_OK) {
+        return s;
+    }
+    const controller_setup setup = rig_believed_setup(r, p);
+    const char *refusal = r->law->tune(r->memory, &setup);
+    if (refusal != NULL) {
+        return fault_set(f, STATUS_BAD_SCENARIO, "the controller '%s' refuses: %.600s",
+                         r->law->name, refusal);
+    }
+    return STATUS_OK;
+}
+
+status rig_retune(rig *r, const parameters *p, double time, fault *f)
+{
+    assert(r != NULL && p != NULL);
+    parameters *told = &r->told;
+    const bool changes = group_differs(told, p, "control.") || group_differs(told, p, "belief.") ||
+                         told->motor.voltage_limit != p->motor.voltage_limit;
+    if (group_differs(told, p, "sensor.")) {
+        told->sensor = p->sensor;
+        sensors_retune(&r->sensors, &p->sensor);
+    }
+    if (!changes) {
+        return STATUS_OK;
+    }
+
+    // the arm as it was at the start is what the controller knows, whatever has changed since
+    told->control = p->control;
+    told->belief = p->belief;
+    told->motor.voltage_limit = p->motor.voltage_limit;
+    memcpy(told->set, p->set, sizeof told->set);
+    r->voltage_limit = p->motor.voltage_limit;
+    r->jitter = p->control.jitter;
+
+    // the next sample comes one new period after the last
+    const double period = 1 / p->control.rate;
+    if (period != r->period) {
+        r->clock_start =
+            r->samples > 0
+                ? r->clock_start + (double)(r->samples - 1 - r->clock_samples) * r->period
+                : r->clock_start;
+        r->clock_samples = r->samples > 0 ? r->samples - 1 : 0;
+        r->period = period;
+        r->sample_time = r->samples > 0 ? fmax(time, r->clock_start + period) : r->sample_time;
+    }
+    r->delay = p->control.delay + p->control.delay_periods * r->period;
+    return tell_controller(r, told, f);
+}
+
+status rig_follow_setpoint(rig *r, double time, fault *f)
+{
+    const control_parameters *c = &r->told.control;
+    const double way = c->force - r->ramp, most = c->force_rate * (time - r->ramp_time);
+    r->ramp = c->force_rate > 0 && fabs(way) > most ? r->ramp + copysign(most, way) : c->force;
+    r->ramp_time = time;
+    const double wave =
+        c->force_amplitude > 0 ? c->force_amplitude * sin(turn * c->force_frequency * time) : 0;
+    const double wanted = fmax(0, r->ramp + wave);
+    if (wanted == r->wanted_force) {
+        return STATUS_OK;
+    }
+    parameters now = r->told;
+    now.control.force = r->wanted_force = wanted;
+    now.set[PARAMETER_INDEX(control.force)] = 1;
+    return tell_controller(r, &now, f);
+}
+
+bool rig_can_change(const parameters *p, int parameter)
+{
+    assert(p != NULL && parameter >= 0 && parameter < parameter_count);
+    const char *path = parameter_table[parameter].path;
+    const controller *law = controller_of(p->control.law);
+    const bool told = strncmp(path, "control.", 8) == 0 || strncmp(path, "belief.", 7) == 0 ||
+                      parameter == PARAMETER_INDEX(motor.voltage_limit);
+    if (!parameter_table[parameter].timed) {
+        return false;
+    }
+    return p->control.law == LAW_NONE || !told || parameter == PARAMETER_INDEX(control.lock) ||
+           (law != NULL && law->tune != NULL);
+}

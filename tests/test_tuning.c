@@ -1,0 +1,191 @@
+// Parameters of the rig that change during a run: they hold from the next sample on, and nothing
+// before it is any different.
+#include "tests/check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/rig/rig.h"
+#include "src/session/session.h"
+
+static void fail_on_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static void open_session(session *s, const char *name)
+{
+    scenario base;
+    fault f = {0};
+    assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(session_init(s, &base, &f), STATUS_OK);
+}
+
+static void change(session *s, const char *path, const char *value)
+{
+    fault f = {0};
+    if (session_change(s, parameter_index(path), value, &f) != STATUS_OK) {
+        fail_msg("%s: %s", path, f.text);
+    }
+    if (s->run.summary.status != STATUS_OK) {
+        fail_msg("%s: %s", path, s->run.summary.message);
+    }
+}
+
+// Rows before an instant are the same to the last bit, and some after it differ.
+static void assert_changes_from(const run_result *before, const run_result *after, double time,
+                                double until)
+{
+    const trace *a = &before->trace, *b = &after->trace;
+    bool differ = false;
+    double first = HUGE_VAL;
+    for (size_t i = 0; i < a->row_count && i < b->row_count && !differ; i++) {
+        differ = memcmp(&a->rows[i], &b->rows[i], sizeof a->rows[i]) != 0;
+        first = fmin(a->rows[i].time, b->rows[i].time);
+    }
+    assert_true(differ);
+    assert_true(first >= time - 1e-12 && first <= until);
+}
+
+static void test_a_gain_holds_from_the_next_sample_on(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *value;
+        double at;
+    } changes[] = {
+        {"control.kp", "20", 0.4},         {"control.kv", "0.1", 0.4},
+        {"control.force", "1.5", 0.8},     {"control.transition_time", "0.5", 0.4},
+        {"sensor.fsr_noise", "0.05", 0.4}, {"control.approach_voltage", "0.8", 0.1},
+        {"control.delay", "0.002", 0.4},   {"belief.k2_factor", "0.8", 0.8},
+        {"motor.voltage_limit", "1", 0.5}, {"sensor.tachometer_noise", "0.2", 0.4},
+    };
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+        session s;
+        fault f = {0};
+        open_session(&s, "compare/hybrid");
+        session_seek(&s, changes[i].at + 0.0021);
+        assert_int_equal(session_branch(&s, &f), STATUS_OK);
+        change(&s, changes[i].path, changes[i].value);
+        assert_int_equal(s.inputs[0].kind, SESSION_INPUT_TIMED);
+
+        // the change itself has a row; then nothing is felt before a sample, at most two periods on
+        assert_changes_from(&s.other, &s.run, s.inputs[0].time, s.inputs[0].time + 0.0101);
+        session_finish(&s);
+    }
+}
+
+static void test_another_rate_samples_at_its_own_period(void **state)
+{
+    (void)state;
+    session s;
+    open_session(&s, "compare/hybrid");
+    session_seek(&s, 0.502);
+    change(&s, "control.rate", "50");
+    const trace *t = &s.run.trace;
+    double last = -1, command = (double)NAN;
+    int samples = 0;
+    for (size_t i = 0; i < t->row_count && t->rows[i].time < 0.64; i++) {
+        if (t->rows[i].time > 0.503 && t->rows[i].command != command) {
+            if (last > 0.503) {
+                const double periods = (t->rows[i].time - last) / 0.02;
+                check_close(periods, round(periods), 1e-6);
+                samples++;
+            }
+            last = t->rows[i].time;
+        }
+        command = t->rows[i].command;
+    }
+    assert_true(samples >= 3);
+    session_finish(&s);
+}
+
+// A ramp leads where a step does, later; a wave makes the force swing at its frequency.
+static void test_setpoints_are_steps_ramps_and_waves(void **state)
+{
+    (void)state;
+    session step, ramp, wave;
+    open_session(&step, "compare/force-integral");
+    open_session(&ramp, "compare/force-integral");
+    open_session(&wave, "compare/force-integral");
+    session *all[] = {&step, &ramp, &wave};
+    for (int i = 0; i < 3; i++) {
+        change(all[i], "run.duration", "6");
+        session_seek(all[i], 2);
+    }
+    change(&ramp, "control.force_rate", "1");
+    change(&step, "control.force", "1.5");
+    change(&ramp, "control.force", "1.5");
+    const sample *at = &step.run.trace.rows[trace_row_at(&step.run.trace, 2.1)];
+    const sample *slow = &ramp.run.trace.rows[trace_row_at(&ramp.run.trace, 2.1)];
+    check_below(slow->command, at->command);
+    const trace *a = &step.run.trace, *b = &ramp.run.trace;
+    check_close(b->rows[b->row_count - 1].force, a->rows[a->row_count - 1].force, 0.05);
+
+    change(&wave, "control.force_amplitude", "0.3");
+    change(&wave, "control.force_frequency", "0.5");
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    const trace *t = &wave.run.trace;
+    for (size_t i = trace_row_at(t, 3.5); i < t->row_count; i++) {
+        low = fmin(low, t->rows[i].force);
+        high = fmax(high, t->rows[i].force);
+    }
+    check_below(0.2, high - low);
+    for (int i = 0; i < 3; i++) {
+        session_finish(all[i]);
+    }
+}
+
+static void test_a_law_that_plans_at_its_start_takes_no_dated_change(void **state)
+{
+    (void)state;
+    session s;
+    open_session(&s, "compare/inverse-dynamics");
+    session_seek(&s, 0.3);
+    assert_false(rig_can_change(&s.effective.parameters, PARAMETER_INDEX(control.force)));
+    change(&s, "control.force", "0.8");
+    assert_int_equal(s.inputs[0].kind, SESSION_INPUT_START);
+    session_finish(&s);
+}
+
+static void test_a_saved_tuned_run_is_the_same(void **state)
+{
+    (void)state;
+    session s;
+    scenario saved;
+    run_result again;
+    char *text = NULL;
+    size_t size = 0;
+    open_session(&s, "compare/hybrid");
+    session_seek(&s, 0.4);
+    change(&s, "control.kp", "14");
+    session_seek(&s, 0.7);
+    change(&s, "control.force", "1.4");
+    FILE *stream = open_memstream(&text, &size);
+    scenario_write(stream, &s.effective);
+    fclose(stream);
+    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
+                     STATUS_OK);
+    run_scenario(&saved, true, &again);
+    assert_int_equal(again.trace.row_count, s.run.trace.row_count);
+    assert_memory_equal(again.trace.rows, s.run.trace.rows,
+                        again.trace.row_count * sizeof *again.trace.rows);
+    run_finish(&again);
+    scenario_finish(&saved);
+    free(text);
+    session_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_gain_holds_from_the_next_sample_on),
+        cmocka_unit_test(test_another_rate_samples_at_its_own_period),
+        cmocka_unit_test(test_setpoints_are_steps_ramps_and_waves),
+        cmocka_unit_test(test_a_law_that_plans_at_its_start_takes_no_dated_change),
+        cmocka_unit_test(test_a_saved_tuned_run_is_the_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
