@@ -369,6 +369,18 @@ static double press(optimal_memory *m, const controller_input *in)
     return limit_command(m, z, steady + m->gain[0] * error - m->gain[1] * velocity);
 }
 
+// Contact is lost when the sensor has felt nothing for two samples.
+static bool contact_is_lost(optimal_memory *m, const controller_input *in)
+{
+    const int most = 2;
+    m->readings_without_force = in->force > m->threshold ? 0 : m->readings_without_force + 1;
+    if (m->readings_without_force < most) {
+        return false;
+    }
+    m->readings_without_force = 0;
+    return true;
+}
+
 // The observer's turn, and the law's own choice where the flight ends.
 static void observe(optimal_memory *m, const controller_input *in)
 {
@@ -382,6 +394,9 @@ static void observe(optimal_memory *m, const controller_input *in)
     } else if (m->flies) {
         predict_flight(m, in);
         observe_flight(m, in);
+    } else if (!locked && contact_is_lost(m, in)) {
+        leave_contact(m, in);
+        m->mode = APPROACH;
     } else if (m->mode == PRESS || locked) {
         observe_contact(m, in);
     }

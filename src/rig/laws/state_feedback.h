@@ -49,6 +49,7 @@ typedef struct optimal_memory {
     double ceiling;      // largest force to brake with [N]
     double hold_command; // [V]
     double held_force;   // reading of the force sensor, smoothed [N]
+    int readings_without_force;
 } optimal_memory;
 
 // Takes setup and parameters, models the arm and finds the gains. Refuses an arm without a motor or
