@@ -76,6 +76,10 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
 
 void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
 {
+    if (m->engine->first_event != NULL) {
+        m->engine->first_event(a, m, h, first, any);
+        return;
+    }
     *any = false;
     *first = WATCH_GAP;
     for (watch w = WATCH_GAP; w <= WATCH_STICTION; w++) {
@@ -154,6 +158,10 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts)
 void dense_peak(const arm *a, motion *m, double h)
 {
     enum { CUTS = 4 };
+    if (m->engine->peak != NULL) {
+        m->engine->peak(a, m, h);
+        return;
+    }
     point start = {0, m->engine->force_at(a, m, 0)}, end = {h, m->engine->force_at(a, m, h)};
     note_force(m, start);
     note_force(m, end);

@@ -64,6 +64,16 @@ typedef struct engine {
     // Dense engines: the contact force [N] and its slope [N/s], never divided by anything.
     glance (*force_at)(const arm *a, const motion *m, double h);
 
+    // Dense engines that have ways of their own, else NULL: what dense_first_event and dense_peak of
+    // dense_location.h do.
+    void (*first_event)(const arm *a, motion *m, double *h, watch *first, bool *any);
+    void (*peak)(const arm *a, motion *m, double h);
+
+    // Engines whose memory grows with the arm, else NULL: bytes it wants in m->memory, and what
+    // prepares them.
+    size_t (*memory_for)(const arm *a);
+    void (*open)(const arm *a, motion *m);
+
     int scratch_vectors; // vectors of the state's smooth length that it wants in m->stages
     size_t link_scratch; // bytes a link that it wants in m->sweeps
     size_t memory_size;  // bytes, aligned to a cache line, that it wants in m->memory
@@ -73,6 +83,7 @@ extern const engine explicit_engine; // Runge-Kutta of order 8, of order 6 in br
 extern const engine newmark_engine;  // implicit, stepping
 extern const engine generalized_alpha_engine; // the same step with other coefficients
 
+extern const engine modal_engine; // exponential collocation for chains of many links; dense
 extern const engine taylor_engine; // power series of the two-link arm; dense
 
 // Whether the arm is one that the power series are for: two links, hub joint and damping of any
@@ -82,5 +93,5 @@ bool taylor_engine_suits(const arm *a);
 // Whether events and peaks are found in the stride itself.
 static inline bool engine_is_dense(const engine *e)
 {
-    return e->look != NULL;
+    return e->force_at != NULL;
 }

@@ -35,6 +35,7 @@ enum motion_slot {
     SLOT_WALL_POWER,       // lost in a wall that gives, at this state [W]
     SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
+    SLOT_STRIDE,           // that the engine proposes, 0 if none [s]
     SLOT_COUNT
 };
 

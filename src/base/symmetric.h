@@ -1,0 +1,21 @@
+// Eigenvalues and eigenvectors of symmetric matrices, from nothing but IEEE operations in a fixed
+// order: the same bits whatever libraries are installed. Dense, cost n^3.
+#pragma once
+
+#include <stdbool.h>
+
+// Decomposes the symmetric matrix[n * n] (row-major, both triangles given). On return row k of it
+// is the unit eigenvector of values[k], values in rising order. scratch: 2 n doubles. False if the
+// iteration does not end.
+//
+// Householder's reduction to tridiagonal form, then the QL method with implicit shifts (Bowdler,
+// Martin, Reinsch, Wilkinson, Numerische Mathematik 11 (1968), 293-306).
+bool symmetric_eigen(int n, double *matrix, double *values, double *scratch);
+
+// Cholesky's factor of the positive definite matrix[n * n] into its lower triangle; the upper one
+// is left as it was. False if it is not positive definite.
+bool symmetric_factor(int n, double *matrix);
+
+// vector <- L^-1 vector and vector <- L^-T vector, L from symmetric_factor.
+void symmetric_forward(int n, const double *factor, double *vector);
+void symmetric_backward(int n, const double *factor, double *vector);

@@ -1,0 +1,119 @@
+#include "src/solve/modal_response.h"
+
+#include <math.h>
+
+#include "src/base/sincos.h"
+
+enum { SERIES_TERMS = 30 };
+
+// e^x for x <= 0 from IEEE operations alone, within a few units of the last place.
+static double decay(double x)
+{
+    if (x < -700) {
+        return 0;
+    }
+    const double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
+    const double n = floor(x * 1.44269504088896338700 + 0.5);
+    const double r = (x - n * ln2_high) - n * ln2_low;
+    double sum = 1;
+    for (int i = 14; i >= 1; i--) {
+        sum = 1 + sum * r / i;
+    }
+    return ldexp(sum, (int)n);
+}
+
+// Small t: powers of t. g_m = -2 a g_{m-1} - w^2 g_{m-2} are the derivatives of G at 0.
+static void respond_by_series(double a, double w, double t, int powers, modal_response *r)
+{
+    // scaled: g_m t^m
+    const double p = -2 * a * t, q = -w * w * t * t;
+    double g[SERIES_TERMS + 1];
+    g[0] = 1;
+    g[1] = p;
+    for (int i = 2; i <= SERIES_TERMS; i++) {
+        g[i] = p * g[i - 1] + q * g[i - 2];
+    }
+    // F_j = t^(j+2) sum g_m t^m / (j + m + 2)!, and so on downwards to G' (j = -2)
+    double scale = 1;
+    for (int j = -2; j < powers; j++) {
+        double sum = 0;
+        for (int i = SERIES_TERMS; i >= 0; i--) {
+            sum = g[i] + sum / (j + i + 3);
+        }
+        if (j >= -1) {
+            scale *= t / (j + 2);
+        }
+        if (j == -2) {
+            r->impulse_rate = sum;
+        } else if (j == -1) {
+            r->impulse = scale * sum;
+        } else {
+            r->power[j] = scale * sum;
+        }
+    }
+}
+
+// From G and G' upwards: w^2 F_j = t^j / j! - 2 a F_{j-1} - F_{j-2}.
+static void climb(double a, double w, double t, int powers, modal_response *r)
+{
+    const double per = 1 / (w * w);
+    double lower = r->impulse_rate, last = r->impulse, term = 1;
+    for (int j = 0; j < powers; j++) {
+        double f = (term - 2 * a * last - lower) * per;
+        r->power[j] = f;
+        lower = last;
+        last = f;
+        term *= t / (j + 1);
+    }
+}
+
+// t^k phi_k(x t) for x <= 0, k = 0..count - 1: phi_0 = e^z, phi_{k+1} = (phi_k - 1/k!) / z.
+static void phi(double x, double t, int count, double *out)
+{
+    const double z = x * t;
+    if (z > -2) {
+        double scale = 1;
+        for (int k = 0; k < count; k++) {
+            double sum = 0;
+            for (int i = SERIES_TERMS; i >= 0; i--) {
+                sum = 1 + sum * z / (k + i + 1);
+            }
+            out[k] = scale * sum;
+            scale *= t / (k + 1);
+        }
+        return;
+    }
+    double term = 1;
+    out[0] = decay(z);
+    for (int k = 1; k < count; k++) {
+        out[k] = (out[k - 1] - term) / x;
+        term *= t / k;
+    }
+}
+
+void modal_respond(double a, double w, double t, int powers, modal_response *r)
+{
+    if (w * t <= 2 && a * t <= 1) {
+        respond_by_series(a, w, t, powers, r);
+        return;
+    }
+    if (a <= w) {
+        double rate = sqrt((w - a) * (w + a)), s, c, e = decay(-a * t);
+        inline_sincos(rate * t, &s, &c);
+        double sine = rate * t > 1e-4 ? s / rate : t;
+        r->impulse = e * sine;
+        r->impulse_rate = e * (c - a * sine);
+        climb(a, w, t, powers, r);
+        return;
+    }
+    const double root = sqrt((a - w) * (a + w));
+    const double slow = -w * w / (a + root), fast = -(a + root), per = 1 / (slow - fast);
+    double one[MODAL_POWERS + 2], two[MODAL_POWERS + 2];
+    phi(slow, t, powers + 2, one);
+    phi(fast, t, powers + 2, two);
+    r->impulse = (one[0] - two[0]) * per;
+    r->impulse_rate = (slow * one[0] - fast * two[0]) * per;
+    for (int j = 0; j < powers; j++) {
+        r->power[j] = (one[j + 1] - two[j + 1]) * per;
+    }
+}

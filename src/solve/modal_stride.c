@@ -1,0 +1,577 @@
+#include "src/solve/modal_stride.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/arm/chain_momentum.h"
+#include "src/solve/modal_response.h"
+
+enum { COLUMNS = 2 * (MODAL_NODES - 1), HUB_STEPS = 32, MOST_SWEEPS = 6 };
+
+#define CONVERGED 1e-9 // change of a sweep that ends them, of the modes' momenta
+#define LOW_TURN  24   // rate times time up to which modes are taken together
+
+// Lobatto's points on [0, 1].
+static const double points[MODAL_NODES] = {0, 0.27639320225002103, 0.72360679774997897, 1};
+
+// --- storage ----------------------------------------------------------------------------------
+
+static size_t table_size(int n)
+{
+    return (size_t)n * (MODAL_POWERS + 2);
+}
+
+size_t modal_stride_size(const arm *a)
+{
+    const size_t n = (size_t)a->dof;
+    size_t doubles = MODAL_CONTACT_STATES * modal_basis_size(a->dof) + modal_basis_scratch(a->dof);
+    doubles += (MODAL_NODES + 1) * table_size(a->dof);
+    doubles += n * (8 + 8 * MODAL_NODES + 3 * COLUMNS + 3);
+    return sizeof(modal_stride) + doubles * sizeof(double);
+}
+
+static double *take(double **storage, size_t count)
+{
+    double *taken = *storage;
+    *storage += count;
+    return taken;
+}
+
+static void place_table(modal_table *at, double **storage, size_t n)
+{
+    at->impulse = take(storage, n);
+    at->impulse_rate = take(storage, n);
+    for (int j = 0; j < MODAL_POWERS; j++) {
+        at->power[j] = take(storage, n);
+    }
+}
+
+void modal_stride_place(modal_stride *s, const arm *a)
+{
+    const size_t n = (size_t)a->dof;
+    double *storage = (double *)(s + 1);
+    memset(s, 0, sizeof *s);
+    s->dof = a->dof;
+    for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
+        modal_basis_place(&s->basis[i], a->dof, take(&storage, modal_basis_size(a->dof)));
+    }
+    s->scratch = take(&storage, modal_basis_scratch(a->dof));
+    for (int i = 0; i < MODAL_NODES; i++) {
+        place_table(&s->at[i], &storage, n);
+        s->point_angles[i] = take(&storage, n);
+        s->point_velocities[i] = take(&storage, n);
+        s->walk.force[i] = take(&storage, n);
+        s->walk.drift[i] = take(&storage, n);
+        s->drift[i] = take(&storage, n);
+        s->force[i] = take(&storage, n);
+        s->drifts[i] = take(&storage, n);
+        s->forces[i] = take(&storage, n);
+    }
+    s->damping = take(&storage, n);
+    s->viscous = take(&storage, n);
+    s->start = take(&storage, n);
+    s->momentum = take(&storage, n);
+    s->columns = take(&storage, n * COLUMNS);
+    s->more_columns = take(&storage, n * COLUMNS);
+    s->modal = take(&storage, n * COLUMNS);
+    s->angles = take(&storage, n);
+    s->velocities = take(&storage, n);
+    s->rates = take(&storage, n);
+    s->place = take(&storage, n);
+    s->momenta = take(&storage, n);
+    s->walk.x = take(&storage, n);
+    s->walk.y = take(&storage, n);
+    place_table(&s->walk.at, &storage, n);
+}
+
+// --- the linear part --------------------------------------------------------------------------
+
+// Responses of all modes at t.
+static void fill_table(const modal_stride *s, double t, int powers, int count,
+                       const modal_table *at)
+{
+    for (int k = 0; k < count; k++) {
+        modal_response r;
+        modal_respond(s->damping[k], s->modes->rate[k], t, powers, &r);
+        at->impulse[k] = r.impulse;
+        at->impulse_rate[k] = r.impulse_rate;
+        for (int j = 0; j < powers; j++) {
+            at->power[j][k] = r.power[j];
+        }
+    }
+}
+
+// Across the constraint of a contact nothing vibrates: x' = r(t), while y' = s(t) less what the
+// modes pull, x and its integral by K and C, carries the force's impulse.
+static void state_across(const modal_stride *s, const modal_table *at, double *x, double *y)
+{
+    const int e = s->modes->across;
+    double place = 0, rate = s->start[e], lower = at->impulse[e];
+    for (int j = 0; j < MODAL_NODES; j++) {
+        place += s->drift[j][e] * lower;
+        rate += s->force[j][e] * lower;
+        lower = at->power[j][e];
+    }
+    for (int k = 0; k < e; k++) {
+        const double twice = 2 * s->damping[k];
+        double integral = s->start[k] * at->power[0][k];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const double power = at->power[j + 1][k];
+            integral += s->force[j][k] * power + s->drift[j][k] * (at->power[j][k] + twice * power);
+        }
+        rate -= s->modes->pull[k] * (integral + s->per_stiffness * x[k]);
+    }
+    x[e] = place;
+    y[e] = rate;
+}
+
+// x and y of all modes.
+static void modal_state(const modal_stride *s, const modal_table *at, double *x, double *y)
+{
+    for (int k = 0; k < s->count; k++) {
+        const double twice = 2 * s->damping[k], stiff = s->modes->rate[k] * s->modes->rate[k];
+        double place = s->start[k] * at->impulse[k], rate = s->start[k] * at->impulse_rate[k];
+        double lower = at->impulse[k];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const double power = at->power[j][k], f = s->force[j][k], d = s->drift[j][k];
+            place += f * power + d * (lower + twice * power);
+            rate += f * lower - stiff * d * power;
+            lower = power;
+        }
+        x[k] = place;
+        y[k] = rate;
+    }
+    if (s->modes->across >= 0) {
+        state_across(s, at, x, y);
+    }
+}
+
+// From x and y to what stands for angles and momenta: in `y` the change of V' P.
+static void to_momenta(const modal_stride *s, const arm *a, const double *x, double *y)
+{
+    const double *hub = s->modes->by_dof;
+    double turned = 0;
+    for (int k = 0; k < s->count; k++) {
+        turned += hub[k] * x[k];
+    }
+    for (int k = 0; k < s->count; k++) {
+        y[k] += s->viscous[k] * x[k] - a->motor.damping * hub[k] * turned - s->start[k];
+    }
+}
+
+void modal_stride_modes(modal_stride *s, double t)
+{
+    fill_table(s, t, MODAL_POWERS, s->count, &s->at[0]);
+    modal_state(s, &s->at[0], s->place, s->momenta);
+}
+
+void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double t, const double *q,
+                        double *qt, double *wt, double *impulse)
+{
+    const int n = s->dof;
+    double *x = s->columns, *y = x + n, *turn = s->more_columns, *momentum = turn + n;
+    modal_stride_modes(s, t);
+    memcpy(x, s->place, (size_t)n * sizeof *x);
+    memcpy(y, s->momenta, (size_t)n * sizeof *y);
+    to_momenta(s, a, x, y);
+    modal_to_angles(s->modes, n, 2, x, turn, n);
+    modal_mass_times(a, momentum, y);
+    for (int i = 0; i < n; i++) {
+        qt[i] = q[i] + turn[i];
+        y[i] += s->momentum[i];
+    }
+    chain_from_momentum(a, links, s->mode, qt, y, wt, s->rates, impulse);
+}
+
+// --- start ------------------------------------------------------------------------------------
+
+// The basis of a contact state, computed when it is first wanted.
+static const modal_basis *basis_of(modal_stride *s, const arm *a, contact_state mode)
+{
+    const double now[4] = {a->hub_stiffness, a->joint_stiffness, a->hub_joint_damping,
+                           a->joint_damping};
+    if (memcmp(now, s->stiffness, sizeof now) != 0) {
+        memcpy(s->stiffness, now, sizeof now);
+        memset(s->known, 0, sizeof s->known);
+    }
+    const bool stuck = mode.friction == HUB_STICK;
+    const int i = mode.contact + 2 * stuck;
+    if (!s->known[i]) {
+        if (modal_basis_compute(&s->basis[i], a, mode.contact, stuck, s->scratch) != STATUS_OK) {
+            return NULL;
+        }
+        s->known[i] = true;
+    }
+    return &s->basis[i];
+}
+
+// r and s of one instant from x, y, the velocities there and dT/dq + J'^T L in s->rates; columns
+// are two vectors of dof doubles for what is to be brought to the modes.
+static void prepare_remainders(modal_stride *s, const arm *a, const double *w, double *columns)
+{
+    const int n = s->dof;
+    double *force = columns + n;
+    modal_mass_times(a, w, columns);
+    modal_stiffness_times(a, s->angles, force);
+    double inner = 0; // torque of structural damping in the joint before
+    for (int k = 0; k < n; k++) {
+        double outer = 0;
+        if (k + 1 < n) {
+            double c = k + 1 == a->first ? a->hub_joint_damping : a->joint_damping;
+            outer = c * (w[k + 1] - w[k]);
+        }
+        force[k] = s->rates[k] - force[k] + outer - inner;
+        inner = outer;
+    }
+    force[0] += a->motor.torque - s->mode.friction * a->motor.stiction;
+}
+
+static void take_remainders(const modal_stride *s, int point, const double *x, const double *y,
+                            const double *modal)
+{
+    const double *v = modal, *force = modal + s->dof;
+    for (int k = 0; k < s->count; k++) {
+        const double rate = s->modes->rate[k];
+        s->drifts[point][k] = v[k] - y[k];
+        s->forces[point][k] =
+            force[k] - s->viscous[k] * v[k] + rate * rate * x[k] + 2 * s->damping[k] * y[k];
+    }
+    const int e = s->modes->across;
+    if (e >= 0) {
+        double sum = force[e];
+        for (int k = 0; k < e; k++) {
+            sum += s->modes->pull[k] * (x[k] + s->per_stiffness * v[k]);
+        }
+        s->drifts[point][e] = v[e];
+        s->forces[point][e] = sum;
+    }
+}
+
+status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, contact_state mode,
+                          const double *q, const double *w)
+{
+    const int n = a->dof;
+    s->per_stiffness = a->joint_stiffness > 0 ? a->joint_damping / a->joint_stiffness : 0;
+    s->modes = basis_of(s, a, mode);
+    if (s->modes == NULL) {
+        return STATUS_SINGULAR;
+    }
+    s->mode = mode;
+    s->count = s->modes->count;
+    chain_momentum(a, q, w, s->momentum);
+    double impulse;
+    chain_from_momentum(a, links, mode, q, s->momentum, s->velocities, s->rates, &impulse);
+    memcpy(s->angles, q, (size_t)n * sizeof *q);
+    prepare_remainders(s, a, w, s->columns);
+    memcpy(s->columns + 2 * n, s->momentum, (size_t)n * sizeof *q);
+    modal_from_angles(s->modes, n, 3, s->columns, s->more_columns, n);
+    for (int k = 0; k < s->count; k++) {
+        const double rate = s->modes->rate[k], hub = s->modes->by_dof[k];
+        s->viscous[k] = k == s->modes->across ? 0 : a->motor.damping * hub * hub;
+        s->damping[k] = (s->per_stiffness * rate * rate + s->viscous[k]) / 2;
+        s->start[k] = s->more_columns[2 * n + k];
+    }
+    memset(s->columns, 0, (size_t)n * sizeof *q);
+    take_remainders(s, 0, s->columns, s->start, s->more_columns);
+    return STATUS_OK;
+}
+
+// --- collocation ------------------------------------------------------------------------------
+
+// Coefficients of the polynomial through values at the points: row j gives that of (t/h)^j.
+static const double to_powers[MODAL_NODES][MODAL_NODES] = {
+    {1, 0, 0, 0},
+    {-6, 8.0901699437494742, -3.0901699437494742, 1},
+    {10, -19.270509831248423, 14.270509831248423, -5},
+    {-5, 11.180339887498949, -11.180339887498949, 5}};
+
+void modal_polynomial(const double values[MODAL_NODES], double length, double out[MODAL_NODES])
+{
+    double scale = 1;
+    for (int j = 0; j < MODAL_NODES; j++) {
+        out[j] = 0;
+        for (int i = 0; i < MODAL_NODES; i++) {
+            out[j] += to_powers[j][i] * values[i];
+        }
+        out[j] *= scale;
+        scale *= (j + 1) / length;
+    }
+}
+
+// The polynomials of r and s from their values; returns what changed, as the momenta and, times
+// their rates, coordinates that it makes in the stride.
+static double fit_polynomials(modal_stride *s, double h)
+{
+    const modal_table *end = &s->at[MODAL_NODES - 1];
+    double square = 0;
+    for (int k = 0; k < s->count; k++) {
+        const double twice = 2 * s->damping[k], rate = s->modes->rate[k];
+        double scale = 1, moved = 0, placed = 0, lower = end->impulse[k];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            double drift = 0, force = 0;
+            for (int i = 0; i < MODAL_NODES; i++) {
+                drift += to_powers[j][i] * s->drifts[i][k];
+                force += to_powers[j][i] * s->forces[i][k];
+            }
+            drift *= scale;
+            force *= scale;
+            const double dd = drift - s->drift[j][k], df = force - s->force[j][k];
+            const double power = end->power[j][k];
+            placed += df * power + dd * (lower + twice * power);
+            moved += df * lower - rate * rate * dd * power;
+            lower = power;
+            s->drift[j][k] = drift;
+            s->force[j][k] = force;
+            scale *= (j + 1) / h;
+        }
+        square += moved * moved + rate * rate * placed * placed;
+    }
+    return sqrt(square);
+}
+
+// r and s at the points of collocation from the present polynomials.
+static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, const double *q)
+{
+    const int n = s->dof;
+    const size_t pair = 2 * (size_t)n;
+    for (int i = 1; i < MODAL_NODES; i++) {
+        double *x = s->columns + (size_t)(i - 1) * pair;
+        modal_state(s, &s->at[i], x, x + n);
+        memcpy(s->modal + (size_t)(i - 1) * pair, x, pair * sizeof *x);
+        to_momenta(s, a, x, x + n);
+    }
+    modal_to_angles(s->modes, n, COLUMNS, s->columns, s->more_columns, n);
+    for (int i = 1; i < MODAL_NODES; i++) {
+        double *turn = s->more_columns + (size_t)(i - 1) * pair;
+        double *momentum = s->columns + (size_t)(i - 1) * pair, impulse;
+        modal_mass_times(a, turn + n, momentum);
+        for (int k = 0; k < n; k++) {
+            s->angles[k] = q[k] + turn[k];
+            momentum[k] += s->momentum[k];
+        }
+        chain_from_momentum(a, links, s->mode, s->angles, momentum, s->velocities, s->rates,
+                            &impulse);
+        memcpy(s->point_angles[i], s->angles, (size_t)n * sizeof *q);
+        memcpy(s->point_velocities[i], s->velocities, (size_t)n * sizeof *q);
+        prepare_remainders(s, a, s->velocities, turn);
+    }
+    modal_from_angles(s->modes, n, COLUMNS, s->more_columns, s->columns, n);
+    for (int i = 1; i < MODAL_NODES; i++) {
+        const double *x = s->modal + (size_t)(i - 1) * pair;
+        take_remainders(s, i, x, x + n, s->columns + (size_t)(i - 1) * pair);
+    }
+}
+
+modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
+                           double length)
+{
+    const size_t size = (size_t)s->count * sizeof(double);
+    s->length = length;
+    double speed = 1e-30;
+    for (int i = 1; i < MODAL_NODES; i++) {
+        fill_table(s, points[i] * length, MODAL_NODES + 1, s->count, &s->at[i]);
+        memcpy(s->drifts[i], s->drifts[0], size);
+        memcpy(s->forces[i], s->forces[0], size);
+    }
+    for (int k = 0; k < s->count; k++) {
+        speed += s->start[k] * s->start[k];
+    }
+
+    modal_fit fit = {0};
+    fit_polynomials(s, length);
+    for (int i = 0; i < MOST_SWEEPS; i++) {
+        evaluate_points(s, a, links, q);
+        fit.change = fit_polynomials(s, length) / sqrt(speed);
+        if (!(fit.change < 1e3) || fit.change < CONVERGED) {
+            break;
+        }
+    }
+    for (int k = 0; k < s->count; k++) {
+        const int top = MODAL_NODES - 1;
+        double y = s->force[top][k] * s->at[top].power[top - 1][k];
+        double x = s->drift[top][k] * s->at[top].power[top - 1][k] * s->modes->rate[k];
+        fit.cut += y * y + x * x;
+    }
+    fit.cut = sqrt(fit.cut / speed);
+    return fit;
+}
+
+// --- walks ------------------------------------------------------------------------------------
+
+void modal_walk_begin(modal_stride *s, int count)
+{
+    modal_walk *w = &s->walk;
+    const size_t size = (size_t)count * sizeof(double);
+    const int e = s->modes->across;
+    w->count = count;
+    w->step = w->time = 0;
+    memset(w->x, 0, size);
+    memcpy(w->y, s->start, size);
+    for (int j = 0; j < MODAL_NODES; j++) {
+        memcpy(w->force[j], s->force[j], size);
+        memcpy(w->drift[j], s->drift[j], size);
+        if (e >= 0 && e < count) {
+            w->force[j][e] = w->y[e] = 0;
+        }
+    }
+}
+
+void modal_walk_set_step(modal_stride *s, double step)
+{
+    if (s->walk.step != step) {
+        s->walk.step = step;
+        fill_table(s, step, MODAL_NODES, s->walk.count, &s->walk.at);
+    }
+}
+
+void modal_walk_on(modal_stride *s)
+{
+    modal_walk *w = &s->walk;
+    const double t = w->step, t2 = t * t / 2, t3 = t * t2 / 3;
+    const modal_table *at = &w->at;
+    for (int k = 0; k < w->count; k++) {
+        const double twice = 2 * s->damping[k], stiff = s->modes->rate[k] * s->modes->rate[k];
+        const double x = w->x[k], y = w->y[k], g = at->impulse[k], gr = at->impulse_rate[k];
+        double place = x * (gr + twice * g) + y * g, rate = y * gr - stiff * g * x, lower = g;
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const double power = at->power[j][k], f = w->force[j][k], d = w->drift[j][k];
+            place += f * power + d * (lower + twice * power);
+            rate += f * lower - stiff * d * power;
+            lower = power;
+        }
+        w->x[k] = place;
+        w->y[k] = rate;
+    }
+    for (int i = 0; i < 2; i++) {
+        double **p = i == 0 ? w->force : w->drift;
+        for (int k = 0; k < w->count; k++) {
+            const double p1 = p[1][k], p2 = p[2][k], p3 = p[3][k];
+            p[0][k] += t * p1 + t2 * p2 + t3 * p3;
+            p[1][k] += t * p2 + t2 * p3;
+            p[2][k] += t * p3;
+        }
+    }
+    w->time += t;
+}
+
+// --- losses -----------------------------------------------------------------------------------
+
+// Integral from 0 to t of the product of two polynomials sum p[j] t^j / j!.
+static double product_integral(const double *p, const double *q, double t)
+{
+    static const double factorial[MODAL_NODES] = {1, 1, 2, 6};
+    double powers[2 * MODAL_NODES], sum = 0;
+    powers[0] = t;
+    for (int i = 1; i < 2 * MODAL_NODES; i++) {
+        powers[i] = powers[i - 1] * t;
+    }
+    for (int i = 0; i < MODAL_NODES; i++) {
+        for (int j = 0; j < MODAL_NODES; j++) {
+            sum += p[i] * q[j] * powers[i + j] / ((i + j + 1) * factorial[i] * factorial[j]);
+        }
+    }
+    return sum;
+}
+
+// Moments of a mode: of x, integral of t^j / j! x, and of v = x', the same.
+static void moments(const modal_stride *s, int k, double t, double *of_x, double *of_v)
+{
+    const modal_table *at = &s->at[0];
+    const double twice = 2 * s->damping[k];
+    double repeated[MODAL_NODES + 1]; // [i]: x integrated i times
+    for (int i = 1; i <= MODAL_NODES; i++) {
+        double sum = s->start[k] * at->power[i - 1][k];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const double power = at->power[j + i][k];
+            sum +=
+                s->force[j][k] * power + s->drift[j][k] * (at->power[j + i - 1][k] + twice * power);
+        }
+        repeated[i] = sum;
+    }
+    double term[MODAL_NODES] = {1};
+    for (int j = 1; j < MODAL_NODES; j++) {
+        term[j] = term[j - 1] * t / j;
+    }
+    for (int j = 0; j < MODAL_NODES; j++) {
+        of_x[j] = 0;
+        for (int i = 0; i <= j; i++) {
+            of_x[j] += (i % 2 ? -term[j - i] : term[j - i]) * repeated[i + 1];
+        }
+        of_v[j] = term[j] * s->place[k] - (j > 0 ? of_x[j - 1] : 0);
+    }
+}
+
+// What the hub's viscous damping takes from the low modes together: the trapezoidal rule with
+// corrected ends on a walk that resolves them.
+static double hub_loss(modal_stride *s, const arm *a, double t, int low)
+{
+    const double *hub = s->modes->by_dof;
+    double sum = 0, first_slope = 0, last_slope = 0;
+    modal_walk *w = &s->walk;
+    modal_walk_begin(s, low);
+    modal_walk_set_step(s, t / HUB_STEPS);
+    for (int i = 0; i <= HUB_STEPS; i++) {
+        double speed = 0, slope = 0;
+        for (int k = 0; k < low; k++) {
+            const double rate = s->modes->rate[k];
+            speed += hub[k] * (w->y[k] + w->drift[0][k]);
+            slope += hub[k] * (w->force[0][k] + w->drift[1][k] - rate * rate * w->x[k] -
+                               2 * s->damping[k] * w->y[k]);
+        }
+        sum += (i == 0 || i == HUB_STEPS ? 0.5 : 1) * speed * speed;
+        first_slope = i == 0 ? 2 * speed * slope : first_slope;
+        last_slope = 2 * speed * slope;
+        if (i < HUB_STEPS) {
+            modal_walk_on(s);
+        }
+    }
+    return a->motor.damping * w->step * (sum + w->step * (first_slope - last_slope) / 12);
+}
+
+modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t)
+{
+    const int e = s->modes->across;
+    modal_losses lost = {0};
+    int low = 0;
+    while (low < s->count && low != e && s->modes->rate[low] * t < LOW_TURN) {
+        low++;
+    }
+    for (int k = 0; k < s->count; k++) {
+        const double rate = s->modes->rate[k], twice = 2 * s->damping[k];
+        if (k == e || (twice == 0 && (e < 0 || s->per_stiffness == 0))) {
+            continue;
+        }
+
+        // 2 a v^2, from the change of y^2 + w^2 x^2
+        double of_x[MODAL_NODES], of_v[MODAL_NODES], drift[MODAL_NODES], sum[MODAL_NODES];
+        moments(s, k, t, of_x, of_v);
+        double x = s->place[k], y = s->momenta[k], y0 = s->start[k];
+        double loss = -0.5 * ((y - y0) * (y + y0) + rate * rate * x * x);
+        for (int j = 0; j < MODAL_NODES; j++) {
+            drift[j] = s->drift[j][k];
+            sum[j] = s->force[j][k] + twice * drift[j];
+            loss += (sum[j] + twice * drift[j]) * of_v[j] + rate * rate * drift[j] * of_x[j];
+        }
+        loss -= product_integral(sum, drift, t);
+
+        // in the springs, and at the hub beyond what the slow modes do together
+        if (twice > 0) {
+            lost.damping += loss * s->per_stiffness * rate * rate / twice;
+            lost.viscous += k >= low ? loss * s->viscous[k] / twice : 0;
+        }
+        double with_across = 0;
+        for (int j = 0; j < MODAL_NODES; j++) {
+            with_across += e >= 0 ? s->drift[j][e] * of_v[j] : 0;
+        }
+        lost.damping += 2 * s->per_stiffness * s->modes->pull[k] * with_across;
+    }
+    if (e >= 0) {
+        double across[MODAL_NODES];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            across[j] = s->drift[j][e];
+        }
+        lost.damping += s->per_stiffness * s->modes->pull[e] * product_integral(across, across, t);
+    }
+    lost.viscous += a->motor.damping > 0 ? hub_loss(s, a, t, low) : 0;
+    return lost;
+}

@@ -1,0 +1,103 @@
+// A stride of the chain's smooth motion by exponential collocation on the straight chain's modes,
+// in Hamilton's form (chain_momentum.h).
+//
+// From the stride's start let q = q0 + V x, and y the modal momenta V' P, with the hub's viscous
+// damping taken in: y_k = V_k' P + kv (V_0k (q - q0)_0 - V_0k^2 x_k). Then
+//
+//     x' = y + r(t),      y' = -w^2 x - 2 a y + s(t),      2 a = c w^2 + kv V_0k^2,
+//
+// is exact. r and s, what the O(N) sweeps say beyond the straight chain's linear part, are slow
+// where the chain is nearly straight: what vibrates fast enters them undifferentiated, in products
+// of small quantities. They are taken as polynomials through their values at Lobatto's points of
+// the stride. The modes then answer exactly, however fast they are (modal_response.h), which gives
+// angles and momenta at those points, and r and s anew: Picard's sweeps, until nothing changes.
+#pragma once
+
+#include "src/arm/chain_momentum.h"
+#include "src/solve/modal_basis.h"
+#include "src/solve/modal_response.h"
+
+enum { MODAL_NODES = 4, MODAL_CONTACT_STATES = 4 };
+
+// Responses of all modes at one instant, arrays of as many as there are modes.
+typedef struct modal_table {
+    double *impulse, *impulse_rate;
+    double *power[MODAL_POWERS];
+} modal_table;
+
+// The modes on a walk through the stride in steps of one length.
+typedef struct modal_walk {
+    int count;         // modes that walk
+    double step, time; // [s]
+    double *x, *y;     // by mode; of the vector across the constraint only x
+    double *force[MODAL_NODES], *drift[MODAL_NODES]; // of the polynomials about the present instant
+    modal_table at;                                  // responses at one step
+} modal_walk;
+
+typedef struct modal_stride {
+    // bases of the contact states, by contact + 2 * stuck, as far as they were wanted yet
+    modal_basis basis[MODAL_CONTACT_STATES];
+    bool known[MODAL_CONTACT_STATES];
+    double stiffness[4]; // of hub and joints, and their damping: what the bases were computed for
+    double *scratch;
+
+    // the stride
+    const modal_basis *modes; // of its contact state
+    contact_state mode;
+    int dof, count;
+    double length;               // [s]
+    double per_stiffness;        // c, structural damping over stiffness [s]
+    double *damping;             // a, by mode [1/s]
+    double *viscous;             // kv V_0k^2, by mode [1/s]
+    double *start;               // y at the start, by mode
+    double *momentum;            // P at the start, by degree of freedom
+    double *drift[MODAL_NODES];  // r(t) = sum drift[j] t^j / j!, by mode
+    double *force[MODAL_NODES];  // s(t), the same
+    modal_table at[MODAL_NODES]; // responses at the points of collocation; [0] at any other instant
+    double *drifts[MODAL_NODES], *forces[MODAL_NODES]; // r and s there, by mode
+    double *columns, *more_columns, *modal;            // 2 * (MODAL_NODES - 1) vectors of dof each
+    double *angles, *velocities, *rates;               // at one instant
+    double *point_angles[MODAL_NODES], *point_velocities[MODAL_NODES]; // at the points; [0] unused
+    double *place, *momenta; // x and y at the instant of the state last asked for
+    modal_walk walk;         // through the stride in steps of one length
+    double next;             // length proposed for the next stride [s]
+} modal_stride;
+
+// Bytes that the stride of an arm wants, and its arrays laid into so many.
+size_t modal_stride_size(const arm *a);
+void modal_stride_place(modal_stride *s, const arm *a);
+
+// Prepares a stride from angles and velocities in a contact state. STATUS_SINGULAR.
+status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, contact_state mode,
+                          const double *q, const double *w);
+
+// Fits n to a stride of the given length. `change` is what the last of the sweeps changed, `cut`
+// what the highest power of time does, both as shares of the greatest velocity.
+typedef struct modal_fit {
+    double change, cut;
+} modal_fit;
+modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
+                           double length);
+
+// x and y of all modes at t within the stride, into s->place and s->momenta.
+void modal_stride_modes(modal_stride *s, double t);
+
+// Polynomial sum out[j] t^j / j! through values at the points of collocation of a stride [s].
+void modal_polynomial(const double values[MODAL_NODES], double length, double out[MODAL_NODES]);
+
+// Angles and velocities at t within the stride, and the impulse of the contact force until then.
+void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double t, const double *q,
+                        double *qt, double *wt, double *impulse);
+
+// Energy lost until the instant of the state last asked for [J]: to back EMF and viscous friction,
+// and in the springs. Integrals of the modes' own motion, not of samples.
+typedef struct modal_losses {
+    double viscous, damping;
+} modal_losses;
+modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t);
+
+// Puts the walk of the first `count` modes at the stride's start, or changes the length of its
+// steps [s]; goes on by one.
+void modal_walk_begin(modal_stride *s, int count);
+void modal_walk_set_step(modal_stride *s, double step);
+void modal_walk_on(modal_stride *s);
