@@ -6,7 +6,10 @@
 #include "src/solve/contact_machine.h"
 #include "src/base/instant.h"
 
-#define RESOLVING 20.0 // fastest rate times step, at most: the event method then steps explicitly
+// A parabola is right to 1e-4 of the fastest mode's force over so much of (fastest rate) x (time).
+#define PARABOLA_REACH 0.25
+
+#define RESOLVING      20.0 // fastest rate times step, at most: the event method then steps explicitly
 
 const double sensor_constants[SENSOR_CONSTANTS] = {0.5e-3, 1e-3, 2e-3};
 
@@ -158,6 +161,10 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
 
         // a stride
         double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
+        if (!isnan(w->touched) && engine_is_dense(m->engine)) {
+            // its strides are no parabolas
+            until = fmin(until, m->state[SLOT_TIME] + PARABOLA_REACH / a->highest_frequency);
+        }
         status code = motion_step(a, m, until, step, &report);
         if (code != STATUS_OK) {
             return fault_set(f, code, "%d links, at t = %.9g s: %s", a->links, m->failure_time,
