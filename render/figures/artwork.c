@@ -12,6 +12,7 @@
 
 status make_folder(const char *folder, fault *f)
 {
+    assert(folder != NULL);
     if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
         return fault_set(f, STATUS_CANNOT_WRITE, "the folder '%s' cannot be made: %s", folder,
                          strerror(errno));
@@ -21,6 +22,7 @@ status make_folder(const char *folder, fault *f)
 
 status artwork_check_formats(char *const *formats, fault *f)
 {
+    assert(formats != NULL);
     for (int i = 0; formats[i] != NULL; i++) {
         if (picture_format_of(formats[i]) == FORMAT_NONE) {
             return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -39,6 +41,7 @@ static status paint_artwork(cairo_t *cr, const void *what, fault *f)
 
 picture artwork_picture(const artwork *a, const figure_options *options)
 {
+    assert(a != NULL && options != NULL);
     static char software[32];
     g_snprintf(software, sizeof software, "impactlab %s", lab_version());
     return (picture){.width = a->width,
@@ -69,11 +72,15 @@ status artwork_write(const artwork *a, const figure_options *options, const char
     assert(a != NULL && options != NULL && folder != NULL && file != NULL && formats != NULL);
     picture p = artwork_picture(a, options);
     status code = make_folder(folder, f);
+
+    // every form of the picture
     for (int i = 0; formats[i] != NULL && code == STATUS_OK; i++) {
         char *path = g_strdup_printf("%s/%s.%s", folder, file, formats[i]);
         code = picture_write(&p, path, f);
         g_free(path);
     }
+
+    // and its numbers
     if (code == STATUS_OK) {
         char *path = g_strdup_printf("%s/%s.csv", folder, file);
         code = a->write_csv(a->what, path, f);
@@ -135,6 +142,8 @@ static char *describe_figure(const figure *fig)
     GString *out = g_string_new(fig->title != NULL ? fig->title : "Figure");
     g_string_append_printf(out, ". %d panel%s", fig->panel_count, fig->panel_count == 1 ? "" : "s");
     append_axis(out, " over ", &fig->x);
+
+    // panel by panel: its axis, heading, colours and curves
     for (int i = 0; i < fig->panel_count; i++) {
         const figure_panel *p = &fig->panels[i];
         append_axis(out, i == 0 ? ": " : "; ", &p->y);
@@ -142,18 +151,21 @@ static char *describe_figure(const figure *fig)
         if (p->map != NULL && p->colours != NULL) {
             append_axis(out, ", coloured by ", &p->colours->axis);
         }
+
         const char *before = ", curves: ";
         for (int k = 0; k < p->series_count; k++) {
             append_plain(out, before, p->series[k].label);
             before = p->series[k].label != NULL ? ", " : before;
         }
     }
+
     g_string_append(out, ".");
     return g_string_free(out, FALSE);
 }
 
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner))
 {
+    assert(fig != NULL && release != NULL);
     plotted *p = g_new0(plotted, 1);
     *p = (plotted){fig, owner, release};
     artwork a = {.title = fig->title,

@@ -40,11 +40,14 @@ static status write_diagram(const void *what, const char *path, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
     csv_writer csv = csv_begin(file.stream);
     csv_heading(&csv, "quantity", NULL);
     csv_heading(&csv, "value", NULL);
     csv_heading(&csv, "unit", NULL);
     csv_end_row(&csv);
+
+    // single values, then the curve
     for (int i = 0; i < d->value_count; i++) {
         write_value(&csv, d->values[i].name, d->values[i].value, d->values[i].unit);
     }
@@ -52,6 +55,7 @@ static status write_diagram(const void *what, const char *path, fault *f)
         write_value(&csv, "force", d->curve_x[i], "N");
         write_value(&csv, "output", d->curve_y[i], "V");
     }
+
     return whole_file_commit(&file, f);
 }
 
@@ -82,6 +86,7 @@ diagram *diagram_create(const char *title, const char *caption, double body,
 
 artwork artwork_of_diagram(diagram *d)
 {
+    assert(d != NULL && d->title != NULL);
     artwork a = {.title = d->title,
                  .caption = d->frame.caption,
                  .parameters = d->parameters,

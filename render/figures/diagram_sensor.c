@@ -41,14 +41,20 @@ static void draw_amplifier(sketch *s, double x, double y)
 static void draw_divider(sketch *s, const sensor_parameters *p, double x, double y)
 {
     char text[96];
+
+    // supply
     decimal_print(text, sizeof text, "<i>V</i><sub>+</sub> = %g\u2009V", p->fsr_supply);
     sketch_text(s, x, y, 0.5, 0, text, SKETCH_SMALL);
     sketch_disc(s, x, y + 14, 1.8, SKETCH_INK, false);
     wire(s, x, y + 16, x, y + 20);
+
+    // sensor, which the force presses
     sketch_resistor(s, x, y + 18, x, y + 62);
     sketch_text(s, x + 9, y + 40, 0, 0.5, "FSR", SKETCH_SMALL);
     sketch_arrow(s, x - 34, y + 40, x - 8, y + 40, 5);
     sketch_text(s, x - 38, y + 40, 1, 0.5, "<i>f</i>", SKETCH_LABEL);
+
+    // measuring resistor to ground; the divider's output between them
     sketch_resistor(s, x, y + 62, x, y + 116);
     decimal_print(text, sizeof text, "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
     sketch_text(s, x - 9, y + 92, 1, 0.5, text, SKETCH_SMALL);
@@ -60,6 +66,8 @@ static void draw_divider(sketch *s, const sensor_parameters *p, double x, double
 static void draw_stages(sketch *s, double x, double y)
 {
     double first = x + 56, second = first + 92, node = second - 14;
+
+    // the buffer, fed back on itself
     wire(s, x, y, first, y);
     draw_amplifier(s, first, y + 10);
     wire(s, first + 40, y + 10, second, y + 10);
@@ -69,9 +77,13 @@ static void draw_stages(sketch *s, double x, double y)
     wire(s, first - 10, y + 44, first - 10, y + 20);
     wire(s, first - 10, y + 20, first, y + 20);
     sketch_text(s, first + 10, y - 20, 0.5, 1, "buffer", SKETCH_SMALL);
+
+    // the amplifier
     draw_amplifier(s, second, y + 20);
     sketch_text(s, second + 14, y - 10, 0.5, 1,
                 "gain 1 + <i>R</i><sub>6</sub>/<i>R</i><sub>5</sub> = 2", SKETCH_SMALL);
+
+    // its feedback
     wire(s, second, y + 30, node, y + 30);
     wire(s, node, y + 30, node, y + 62);
     sketch_disc(s, node, y + 62, 1.7, SKETCH_INK, true);
@@ -80,9 +92,13 @@ static void draw_stages(sketch *s, double x, double y)
                 SKETCH_SMALL);
     wire(s, second + 54, y + 62, second + 54, y + 20);
     sketch_disc(s, second + 54, y + 20, 1.7, SKETCH_INK, true);
+
+    // and the divider that sets its gain
     sketch_resistor(s, node, y + 62, node, y + 106);
     sketch_text(s, node - 9, y + 86, 1, 0.5, "<i>R</i><sub>5</sub>\n10\u2009kΩ", SKETCH_SMALL);
     draw_ground(s, node, y + 102);
+
+    // output
     wire(s, second + 40, y + 20, second + 86, y + 20);
     sketch_disc(s, second + 88, y + 20, 1.8, SKETCH_INK, false);
     sketch_text(s, second + 92, y + 12, 1, 1, "<i>V</i><sub>out</sub>", SKETCH_LABEL);
@@ -97,6 +113,8 @@ static void paint_part(sketch *s, const figure *fig, double x, double y)
     cairo_scale(s->cr, 1 / s->scale, 1 / s->scale);
     figure_paint(s->cr, fig, part, NULL);
     cairo_restore(s->cr);
+
+    // its texts into the report of the whole
     for (int i = 0; i < part->text_count; i++) {
         figure_rect r = part->texts[i].place;
         char *text = text_escape(part->texts[i].text);
@@ -105,6 +123,7 @@ static void paint_part(sketch *s, const figure *fig, double x, double y)
         report_add_text(s->report, text, part->texts[i].size, r);
         g_free(text);
     }
+
     g_free(part);
 }
 
@@ -112,6 +131,7 @@ static void draw_sensor(sketch *s, const diagram *d)
 {
     draw_divider(s, &d->p.sensor, s->left + 74, s->top);
     draw_stages(s, s->left + 74, s->top + 62);
+
     const figure_series curve = {
         .name = "output", .x = d->curve_x, .y = d->curve_y, .count = CURVE_POINTS, .colour = 5};
     const figure_panel panel = {.y = {.name = "output",
@@ -120,6 +140,7 @@ static void draw_sensor(sketch *s, const diagram *d)
                                       .with_zero = true},
                                 .series = &curve,
                                 .series_count = 1};
+
     const figure plot = {
         .x = {.name = "force", .label = "Force on the sensor <i>f</i>", .unit = "N"},
         .panels = &panel,
@@ -130,12 +151,14 @@ static void draw_sensor(sketch *s, const diagram *d)
         .transparent = s->frame->look.transparent,
         .font = s->frame->look.font,
         .theme = s->theme};
+
     paint_part(s, &plot, s->left, s->top + 186);
 }
 
 status diagram_sensor(const char *title, const figure_options *o, artwork *out, fault *f)
 {
     (void)f;
+
     diagram *d = diagram_create(title, NULL, 186 + 52 / 25.4 * 72, o);
     const sensor_parameters *p = &d->p.sensor;
     d->caption = text_printf(
@@ -144,6 +167,7 @@ status diagram_sensor(const char *title, const figure_options *o, artwork *out, 
         "supply and sensor are not printed there and are the rig's: %g\u2009V, %g\u2009kΩ at "
         "1\u2009N, resistance falling with the power %g of the force up to %g\u2009N.",
         p->fsr_supply, p->fsr_resistance / 1e3, p->fsr_exponent, p->fsr_saturation);
+
     d->frame.caption = d->caption;
     d->draw = draw_sensor;
     diagram_add_value(d, "measuring resistor", p->fsr_divider, "ohm");
@@ -153,6 +177,8 @@ status diagram_sensor(const char *title, const figure_options *o, artwork *out, 
     diagram_add_value(d, "sensor resistance at 1 N", p->fsr_resistance, "ohm");
     diagram_add_value(d, "exponent of the sensor's power law", p->fsr_exponent, "");
     diagram_add_value(d, "force beyond which it saturates", p->fsr_saturation, "N");
+
+    // force and output of the divider
     d->curve_x = g_new(double, CURVE_POINTS);
     d->curve_y = g_new(double, CURVE_POINTS);
     for (int i = 0; i < CURVE_POINTS; i++) {
@@ -161,6 +187,7 @@ status diagram_sensor(const char *title, const figure_options *o, artwork *out, 
         d->curve_x[i] = MOST_FORCE * share * share;
         d->curve_y[i] = fsr_volts(p, d->curve_x[i]);
     }
+
     *out = artwork_of_diagram(d);
     return STATUS_OK;
 }

@@ -1,4 +1,5 @@
 // The thesis's diagrams of the arm, drawn from the model's own geometry and numbers.
+#include <assert.h>
 #include <glib.h>
 #include <math.h>
 #include <string.h>
@@ -117,6 +118,7 @@ status diagram_links(const char *title, const figure_options *o, artwork *out, f
     diagram *d = diagram_create(title, NULL, 190, o);
     d->draw = draw_links;
     add_arm_values(d);
+
     d->caption = text_printf(
         "Hub (body 1) and two rigid links (bodies 2 and 3) in the proportions of the model, bent "
         "far more than in use. <i>l</i> = %g\u2009m, <i>ε</i> = %g\u2009m, <i>m</i> = "
@@ -127,6 +129,7 @@ status diagram_links(const char *title, const figure_options *o, artwork *out, f
         d->p.arm.length / 2, d->p.arm.length / 4, d->p.arm.mass / 2, d->p.arm.link_inertia,
         d->p.arm.hub_inertia, d->p.arm.k1, d->p.arm.k2);
     d->frame.caption = d->caption;
+
     *out = artwork_of_diagram(d);
     return STATUS_OK;
 }
@@ -196,6 +199,7 @@ status diagram_free_bodies(const char *title, const figure_options *o, artwork *
         "(2.16) keeps <i>k</i><sub>2</sub> all the same. The contact force <i>f</i> acts across "
         "the last link.",
         158, o);
+
     d->draw = draw_free_bodies;
     add_arm_values(d);
     *out = artwork_of_diagram(d);
@@ -208,6 +212,8 @@ static void draw_springs(sketch *s, const diagram *d)
 {
     char text[128];
     double y = s->top + 46, wall = s->right - 40, mass = s->left + 74;
+
+    // the floor and the mass on it
     sketch_line(s, s->left + 20, y + 20, wall, y + 20, 0.5, SKETCH_FAINT);
     set_colour(s->cr, s->colours->shade);
     cairo_rectangle(s->cr, mass - 26, y - 20, 52, 40);
@@ -215,18 +221,24 @@ static void draw_springs(sketch *s, const diagram *d)
     set_colour(s->cr, s->colours->axis);
     cairo_set_line_width(s->cr, 0.8);
     cairo_stroke(s->cr);
+
     sketch_text(s, mass, y, 0.5, 0.5, "<i>m</i><sub>c</sub>", SKETCH_LABEL);
     sketch_arrow(s, mass - 14, y - 30, mass + 34, y - 30, 2);
     sketch_text(s, mass + 38, y - 30, 0, 0.5, "<i>v</i><sub>0</sub>", SKETCH_LABEL);
+
+    // both springs in series, to the wall
     double middle = (mass + 26 + wall) / 2;
     sketch_coil(s, mass + 26, y, middle, y, 5, 0);
     sketch_coil(s, middle, y, wall, y, 9, 0);
     sketch_disc(s, middle, y, 2, SKETCH_INK, true);
     sketch_wall(s, wall, y + 34, wall, y - 34);
+
+    // their stiffnesses
     decimal_print(text, sizeof text, "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", d->p.arm.k1);
     sketch_text(s, (mass + 26 + middle) / 2, y + 26, 0.5, 0, text, SKETCH_SMALL);
     decimal_print(text, sizeof text, "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", d->p.arm.k2);
     sketch_text(s, (middle + wall) / 2, y + 26, 0.5, 0, text, SKETCH_SMALL);
+
     double k1 = d->p.arm.k1, k2 = d->p.arm.k2;
     decimal_print(text, sizeof text,
                   "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + 1/<i>k</i><sub>2</sub>,   "
@@ -243,6 +255,8 @@ static status take_first_impact(diagram *d, const char *name, double *speed, fau
     if (code != STATUS_OK) {
         return code;
     }
+
+    // the first impact of the run
     const trace *t = &run.result.trace;
     code = STATUS_BAD_SCENARIO;
     for (size_t i = 0; i < t->event_count && code != STATUS_OK; i++) {
@@ -255,6 +269,7 @@ static status take_first_impact(diagram *d, const char *name, double *speed, fau
                 (three_body_state){{touch[0], touch[0], touch[1]}, {touch[2], touch[2], touch[3]}};
         }
     }
+
     if (code != STATUS_OK) {
         fault_set(f, code, "%s: no impact to draw", name);
     } else {
@@ -267,6 +282,7 @@ static status take_first_impact(diagram *d, const char *name, double *speed, fau
 
 status diagram_springs(const char *title, const figure_options *o, artwork *out, fault *f)
 {
+    assert(title != NULL && o != NULL && out != NULL);
     diagram *d = diagram_create(title, NULL, 108, o);
     double speed = 0;
     parameters defaults = d->p;
@@ -275,14 +291,18 @@ status diagram_springs(const char *title, const figure_options *o, artwork *out,
         diagram_release(d);
         return code;
     }
+
+    // drawn with the defaults, not with the run's wall
     d->p = defaults;
     d->draw = draw_springs;
     add_arm_values(d);
+
     diagram_add_value(d, "stiffness in series",
                       d->p.arm.k1 * d->p.arm.k2 / (d->p.arm.k1 + d->p.arm.k2), "N m/rad");
     diagram_add_value(d, "approach speed", speed, "m/s");
     diagram_add_value(d, "impulse", d->impulse, "N s");
     diagram_add_value(d, "mass at the contact point", d->impulse / speed, "kg");
+
     d->caption = text_printf(
         "What the wall feels: a mass on the arm's springs in series. The stiff hub joint hardly "
         "counts, the beam's spring takes almost all the energy. At 1\u2009V the contact point "
@@ -290,6 +310,7 @@ status diagram_springs(const char *title, const figure_options *o, artwork *out,
         "mass <i>m</i><sub>c</sub> = %.3g\u2009kg there, of the beam's %.3g\u2009kg.",
         speed, d->impulse, d->impulse / speed, d->p.arm.mass);
     d->frame.caption = d->caption;
+
     *out = artwork_of_diagram(d);
     return STATUS_OK;
 }
@@ -342,7 +363,10 @@ static void draw_collision(sketch *s, const diagram *d)
 
 status diagram_collision(const char *title, const figure_options *o, artwork *out, fault *f)
 {
+    assert(title != NULL && o != NULL && out != NULL);
     diagram *d = diagram_create(title, NULL, 150, o);
+
+    // the impact, and what the links do after it
     double speed = 0, impulse = 0;
     status code = take_first_impact(d, "corrected/first-impact", &speed, f);
     if (code == STATUS_OK) {
@@ -352,6 +376,8 @@ status diagram_collision(const char *title, const figure_options *o, artwork *ou
         diagram_release(d);
         return code;
     }
+
+    // angles and velocities of both links
     static const char *const bodies[] = {"hub", "first link", "last link"};
     d->draw = draw_collision;
     for (int i = 1; i < 3; i++) {
@@ -361,6 +387,7 @@ status diagram_collision(const char *title, const figure_options *o, artwork *ou
     }
     diagram_add_value(d, "impulse", d->impulse, "N s");
     diagram_add_value(d, "approach speed", speed, "m/s");
+
     d->caption = text_printf(
         "The arm of corrected/first-impact at the instant of its first contact, seen along the "
         "line to the contact point and enlarged %g times across it. The impulse of the wall stops "
@@ -369,6 +396,7 @@ status diagram_collision(const char *title, const figure_options *o, artwork *ou
         "down.",
         ACROSS, d->before.velocity[1], d->before.velocity[2], d->after[1], fabs(d->after[2]));
     d->frame.caption = d->caption;
+
     *out = artwork_of_diagram(d);
     return STATUS_OK;
 }

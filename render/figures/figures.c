@@ -114,19 +114,24 @@ static status open_signals(const thesis_figure *which, const char *title, const 
     static const char *const names[] = {"printed", "corrected"};
     trace_run runs[2];
     signal_figure *s = g_new0(signal_figure, 1);
+
+    // the same panels for each model
     status code = run_scenarios(s, which, f);
     for (int i = 0; i < s->run_count; i++) {
         runs[i] = (trace_run){
             .scenario = &s->runs[i].scenario, .result = &s->runs[i].result, .name = names[i]};
     }
+
     if (code == STATUS_OK) {
         code = run_figure_init(&s->figure, title, which->panels, which->panel_count, runs,
                                s->run_count, o, f);
     }
+
     if (code != STATUS_OK) {
         release_signals(s);
         return code;
     }
+
     *out = artwork_of_figure(&s->figure.traces.figure, s, release_signals);
     return STATUS_OK;
 }
@@ -169,17 +174,21 @@ status figure_draw_as(const char *id, const figure_options *o, const char *folde
 status figure_draw_into(const char *id, const figure_options *o, const char *folder,
                         const char *formats, GString *tex, fault *f)
 {
+    assert(id != NULL && o != NULL && folder != NULL && formats != NULL);
     const thesis_figure *which = thesis_figure_find(id);
     if (which == NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "there is no figure '%s', expected %s to %s", id,
                          thesis_figures[0].id, thesis_figures[thesis_figure_count - 1].id);
     }
+
     artwork drawn;
     char **list = g_strsplit(formats, ",", -1);
     status code = artwork_check_formats(list, f);
     if (code == STATUS_OK) {
         code = figure_open(which, o, &drawn, f);
     }
+
+    // picture, numbers, caption and what LaTeX needs
     if (code == STATUS_OK) {
         char *first = g_strdup_printf("%s/%s.%s", folder, which->file, list[0]);
         code = artwork_write(&drawn, o, folder, which->file, list, f);
@@ -192,6 +201,7 @@ status figure_draw_into(const char *id, const figure_options *o, const char *fol
         g_free(first);
         artwork_finish(&drawn);
     }
+
     g_strfreev(list);
     return code;
 }

@@ -56,16 +56,21 @@ static impact_figure *new_impact(const char *title, const char *of, const char *
         g_free(fig);
         return NULL;
     }
+
+    // the pulse that the figure is about
     const summary *m = &fig->run.result.summary;
     fig->owned = g_ptr_array_new_with_free_func(g_free);
     fig->contact = m->first_contact_s;
     fig->peak_time = m->first_contact_s + m->first_pulse_time_to_peak_s;
     fig->peak = m->first_pulse_peak_N;
+
     if (!isfinite(fig->peak_time)) {
         fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to draw", of);
         release_impact(fig);
         return NULL;
     }
+
+    // what all of them have
     fig->figure.title = own(fig, g_strdup(title));
     fig->figure.parameters = own(fig, parameters_line(&fig->run.scenario));
     fig->figure.software = own(fig, g_strconcat("impactlab ", lab_version(), NULL));
@@ -135,11 +140,14 @@ static void describe_shapes(impact_figure *fig)
                                .colour = 5,
                                .marker = MARKER_SQUARE,
                                .no_line = true});
+
+    // seen along the line, from the hub to a little beyond the tip
     fig->figure.x.name = "along";
     fig->figure.x.label = "Along the line to the contact point";
     fig->figure.x.unit = "m";
     fig->figure.x.low = -0.04;
     fig->figure.x.high = 1.06;
+
     fig->panels[0].y.name = "across";
     fig->panels[0].y.label = "Across it";
     fig->panels[0].y.unit = "mm";
@@ -166,6 +174,8 @@ status figure_contact(const char *title, const figure_options *o, artwork *out, 
     if (fig == NULL) {
         return f != NULL ? f->code : STATUS_BAD_SCENARIO;
     }
+
+    // two rows, the first in contact and the next
     const trace *t = &fig->run.result.trace;
     size_t first = first_contact_pair(t);
     for (size_t i = first; i < first + 2 && i < t->row_count; i++) {
@@ -179,6 +189,7 @@ status figure_contact(const char *title, const figure_options *o, artwork *out, 
                                   .style = i == first ? LINE_SOLID : LINE_DASHED,
                                   .marker = MARKER_CIRCLE});
     }
+
     describe_shapes(fig);
     fig->figure.caption =
         "Hub, joint and tip of the printed model at two successive steps in contact, 1\u2009V. The "
@@ -218,11 +229,15 @@ status figure_peak_shape(const char *title, const figure_options *o, artwork *ou
     if (fig == NULL) {
         return f != NULL ? f->code : STATUS_BAD_SCENARIO;
     }
+
+    // half the bend on either side of the line, as the energy principle has it
     const trace *t = &fig->run.result.trace;
     const parameters *p = &fig->run.scenario.parameters;
     const sample *before = row_before(t, fig->contact), *peak = row_at(t, fig->peak_time);
     double energy = before->kinetic_energy + before->strain_energy;
     double bend = sqrt(2 * energy / p->arm.k2);
+
+    // the three shapes
     add_shape(fig, before->first_angle, before->last_angle,
               (figure_series){.name = "first contact",
                               .label = "at first contact",
@@ -240,6 +255,7 @@ status figure_peak_shape(const char *title, const figure_options *o, artwork *ou
                               .colour = 1,
                               .style = LINE_DASHED,
                               .marker = MARKER_TRIANGLE});
+
     describe_shapes(fig);
     fig->figure.caption = own(
         fig,
@@ -251,6 +267,7 @@ status figure_peak_shape(const char *title, const figure_options *o, artwork *ou
             "\u2212%.4f\u2009rad, because it leaves out what the impact itself takes.",
             1e3 * (fig->peak_time - fig->contact), fig->peak, peak->first_angle, peak->last_angle,
             fabs(peak->last_angle - peak->first_angle), 1e3 * energy, bend));
+
     *out = artwork_of_figure(&fig->figure, fig, release_impact);
     return STATUS_OK;
 }
@@ -263,6 +280,8 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
     const impact_figure *fig = what;
     figure_report *seen = report != NULL ? report : g_new0(figure_report, 1);
     status code = figure_paint(cr, &fig->figure, seen, f);
+
+    // the measure stands above the peak, from contact to it
     if (code == STATUS_OK) {
         const figure *shown = &fig->figure;
         plane p = {seen->panels[0],
@@ -285,6 +304,7 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
         cairo_restore(cr);
         g_object_unref(s.context);
     }
+
     if (report == NULL) {
         g_free(seen);
     }
@@ -297,12 +317,28 @@ static status write_profile(const void *what, const char *path, fault *f)
     return figure_write_csv(&fig->figure, path, f);
 }
 
+// An axis of time from low to high, with marks at first contact and at the peak.
+static void show_pulse(impact_figure *fig, double low, double high)
+{
+    fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
+    fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
+    fig->figure.marks = fig->marks;
+    fig->figure.mark_count = 2;
+
+    fig->figure.x.name = "time";
+    fig->figure.x.label = "Time <i>t</i>";
+    fig->figure.x.unit = "s";
+    fig->figure.x.low = low;
+    fig->figure.x.high = high;
+}
+
 status figure_force_profile(const char *title, const figure_options *o, artwork *out, fault *f)
 {
     impact_figure *fig = new_impact(title, IMPACT_SCENARIO, NULL, o, f);
     if (fig == NULL) {
         return f != NULL ? f->code : STATUS_BAD_SCENARIO;
     }
+
     const summary *m = &fig->run.result.summary;
     figure_panel *panel = &fig->panels[0];
     double pulse = isfinite(m->first_pulse_s) ? m->first_pulse_s : fig->peak_time - fig->contact;
@@ -311,34 +347,32 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
     panel->weight = 1.7;
     panel->y.low = -0.04 * fig->peak;
     panel->y.high = 1.3 * fig->peak;
+
+    // the impact, with its own axis
     fig->impulse = (figure_impulse){fig->contact, m->contact_impulse_Ns};
     panel->impulses = &fig->impulse;
     panel->impulse_count = 1;
     panel->impulse_label = "Impulse <i>p</i>";
     panel->impulse_unit = "N s";
+
     fig->levels[0] = (figure_level){
         fig->peak, own(fig, text_printf("<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak))};
     panel->levels = fig->levels;
     panel->level_count = 1;
-    fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
-    fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
-    fig->figure.marks = fig->marks;
-    fig->figure.mark_count = 2;
+
+    // the contact is shaded; the measure of T stands at the top of the panel
     fig->interval = (figure_interval){fig->contact, fig->contact + pulse};
-    // the measure of T stands at the top of the panel
     fig->figure.marks_above = true;
     fig->figure.intervals = &fig->interval;
     fig->figure.interval_count = 1;
-    fig->figure.x.name = "time";
-    fig->figure.x.label = "Time <i>t</i>";
-    fig->figure.x.unit = "s";
-    fig->figure.x.low = fig->contact - 0.25 * pulse;
-    fig->figure.x.high = fig->contact + 1.25 * pulse;
+
+    show_pulse(fig, fig->contact - 0.25 * pulse, fig->contact + 1.25 * pulse);
     fig->figure.panel_count = 1;
     fig->figure.caption =
         "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse that takes no "
         "time (arrow, its own axis); the force that follows is finite and grows to its peak while "
         "the beam bends. Shaded: contact.";
+
     // the figure with the measure of T on top
     *out = (artwork){.title = fig->figure.title,
                      .caption = fig->figure.caption,
@@ -366,17 +400,27 @@ static const sample *row_after(const trace *t)
 
 // What (4.19) assumes of a body from contact to peak: a velocity that falls to zero in a straight
 // line, and the angle that goes with it.
-static void add_assumption(impact_figure *fig, int panel, double angle, double velocity,
-                           bool of_angle, const char *label)
+typedef struct assumption {
+    double angle, velocity; // just after the impact [rad], [rad/s]
+    double period;          // from contact to peak [s]
+    bool of_angle;          // whether the angle or the velocity is shown
+} assumption;
+
+// The assumed angle or velocity, `since` seconds after first contact.
+static double assumed_at(const assumption *a, double since)
 {
-    double period = fig->peak_time - fig->contact;
-    double *x = own(fig, g_new(double, ASSUMED_POINTS)),
-           *y = own(fig, g_new(double, ASSUMED_POINTS));
+    return a->of_angle ? a->angle + a->velocity * (since - since * since / (2 * a->period))
+                       : a->velocity * (1 - since / a->period);
+}
+
+static void add_assumption(impact_figure *fig, int panel, const assumption *a, const char *label)
+{
+    double *x = own(fig, g_new(double, ASSUMED_POINTS));
+    double *y = own(fig, g_new(double, ASSUMED_POINTS));
     for (int i = 0; i < ASSUMED_POINTS; i++) {
-        double since = period * i / (ASSUMED_POINTS - 1);
+        double since = a->period * i / (ASSUMED_POINTS - 1);
         x[i] = fig->contact + since;
-        y[i] = of_angle ? angle + velocity * (since - since * since / (2 * period))
-                        : velocity * (1 - since / period);
+        y[i] = assumed_at(a, since);
     }
     add_series(fig, panel,
                (figure_series){.name = "assumed",
@@ -389,19 +433,15 @@ static void add_assumption(impact_figure *fig, int panel, double angle, double v
 }
 
 // Largest distance of a recorded signal from the assumption between contact and peak.
-static double departure(const impact_figure *fig, const char *name, double angle, double velocity,
-                        bool of_angle)
+static double departure(const impact_figure *fig, const char *name, const assumption *a)
 {
     const trace *t = &fig->run.result.trace;
-    double period = fig->peak_time - fig->contact, most = 0;
-    int index = signal_find(name);
-    assert(index >= 0);
+    const int index = signal_index(name);
+    double most = 0;
     for (size_t i = 0; i < t->row_count; i++) {
         double since = t->rows[i].time - fig->contact;
-        if (t->rows[i].contact > 0.5 && since >= 0 && since <= period) {
-            double assumed = of_angle ? angle + velocity * (since - since * since / (2 * period))
-                                      : velocity * (1 - since / period);
-            most = fmax(most, fabs(signal_value(&t->rows[i], index) - assumed));
+        if (t->rows[i].contact > 0.5 && since >= 0 && since <= a->period) {
+            most = fmax(most, fabs(signal_value(&t->rows[i], index) - assumed_at(a, since)));
         }
     }
     return most;
@@ -419,33 +459,31 @@ static status assumed_motion(const char *title, bool of_angle, const figure_opti
     if (fig == NULL) {
         return f != NULL ? f->code : STATUS_BAD_SCENARIO;
     }
+
+    // where the assumed motion starts
     const sample *after = row_after(&fig->run.result.trace);
     const double angles[] = {after->first_angle, after->last_angle};
     const double velocities[] = {after->first_velocity, after->last_velocity};
-    double most[PANELS];
+
+    double most[PANELS], period = fig->peak_time - fig->contact;
     for (int i = 0; i < PANELS; i++) {
         const char *name = signals[of_angle][i];
         add_signal(fig, i, name, i == 0 ? "computed" : NULL);
         // one legend speaks for both panels, so both have its colours
         fig->series[i][0].colour = 0;
-        add_assumption(fig, i, angles[i], velocities[i], of_angle,
+
+        const assumption a = {angles[i], velocities[i], period, of_angle};
+        add_assumption(fig, i, &a,
                        i > 0      ? NULL
                        : of_angle ? "quadratic approximation (4.19)"
                                   : "linear approximation");
-        most[i] = departure(fig, name, angles[i], velocities[i], of_angle);
+        most[i] = departure(fig, name, &a);
         fig->panels[i].y.label = labels[of_angle][i];
     }
-    double period = fig->peak_time - fig->contact;
-    fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
-    fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
-    fig->figure.marks = fig->marks;
-    fig->figure.mark_count = 2;
-    fig->figure.x.name = "time";
-    fig->figure.x.label = "Time <i>t</i>";
-    fig->figure.x.unit = "s";
-    fig->figure.x.low = fig->contact - 0.4 * period;
-    fig->figure.x.high = fig->contact + 1.4 * period;
+
+    show_pulse(fig, fig->contact - 0.4 * period, fig->contact + 1.4 * period);
     fig->figure.panel_count = PANELS;
+
     fig->figure.caption =
         own(fig, text_printf("First and last link of corrected/first-impact from first contact to "
                              "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
@@ -456,6 +494,7 @@ static status assumed_motion(const char *title, bool of_angle, const figure_opti
                                       : "The predictors assume that velocities fall to zero in a "
                                         "straight line",
                              most[0], most[1], of_angle ? "rad" : "rad/s"));
+
     *out = artwork_of_figure(&fig->figure, fig, release_impact);
     return STATUS_OK;
 }

@@ -77,12 +77,15 @@ char *latex_of_markup(const char *markup)
 {
     assert(markup != NULL);
     GString *out = g_string_new(NULL);
+
     while (*markup != '\0') {
+        // what LaTeX writes otherwise, else the character itself
         const replacement *found = NULL;
         for (size_t i = 0; i < G_N_ELEMENTS(replacements) && found == NULL; i++) {
             size_t length = strlen(replacements[i].from);
             found = strncmp(markup, replacements[i].from, length) == 0 ? &replacements[i] : NULL;
         }
+
         if (found != NULL) {
             g_string_append(out, found->to);
             markup += strlen(found->from);
@@ -138,6 +141,7 @@ void latex_add(GString *out, const artwork *a, const char *tex, const char *file
     char *title = text_escape(a->title != NULL ? a->title : ""), *heading = latex_of_markup(title);
     char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
     char *alt = latex_escape(a->alternative != NULL ? a->alternative : a->title);
+
     text_append(out,
                 "\\begin{figure}\n"
                 "  \\centering\n"
@@ -147,6 +151,7 @@ void latex_add(GString *out, const artwork *a, const char *tex, const char *file
                 "\\end{figure}\n",
                 a->width * 25.4 / 72, alt, path, heading, caption[0] != '\0' ? ". " : "", caption,
                 stem);
+
     g_free(path);
     g_free(stem);
     g_free(title);
@@ -200,15 +205,19 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 {
     assert(a != NULL && o != NULL && path != NULL);
     picture p = artwork_picture(a, o);
+
     status code = picture_write(&p, path, f);
     if (code == STATUS_OK && with_csv) {
         char *csv = beside(path, ".csv");
         code = a->write_csv(a->what, csv, f);
         g_free(csv);
     }
+
+    // what stands beside a picture without its own text
     if (code == STATUS_OK && o->look.bare) {
         code = caption_write(a, path, f);
     }
+
     if (code == STATUS_OK && o->latex != NULL) {
         GString *text = g_string_new(NULL);
         latex_add(text, a, o->latex, path);
@@ -241,9 +250,12 @@ status figure_publish(const figure *fig, const figure_options *o, const char *pa
                          "over",
                          path, o->overlay != NULL ? "--overlay" : "--signals");
     }
+
+    // a copy with the look and the range asked for
     figure shown = *fig;
     figure_take_look(&shown, &o->look);
     figure_take_range(&shown, o);
+
     artwork a = artwork_of_figure(&shown, NULL, borrow_nothing);
     status code = artwork_publish(&a, o, path, with_csv, f);
     artwork_finish(&a);

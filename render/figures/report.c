@@ -32,6 +32,7 @@ static report_item *item_at(const report *r, guint index)
 static status add_figures(report *r, fault *f)
 {
     const figure_options options = {0};
+
     for (int i = 0; i < thesis_figure_count; i++) {
         const thesis_figure *which = &thesis_figures[i];
         report_item item = {
@@ -40,6 +41,7 @@ static status add_figures(report *r, fault *f)
         if (code != STATUS_OK) {
             return code;
         }
+
         item.command = g_strdup_printf("impactlab figures %s", which->id);
         g_array_append_val(r->items, item);
     }
@@ -94,6 +96,8 @@ static void add_parameters(report *r)
     parameters_defaults(&printed, ARM_PRINTED);
     parameters_resolve(&corrected, NULL);
     parameters_resolve(&printed, NULL);
+
+    // a table for each group
     for (int i = 0; i < parameter_count;) {
         const char *group = parameter_table[i].path;
         size_t length = strcspn(group, ".");
@@ -102,6 +106,7 @@ static void add_parameters(report *r)
              i++) {
             add_parameter_row(t, &parameter_table[i], i, &corrected, &printed);
         }
+
         report_item item = {.file = "parameters",
                             .model = "defaults of both models",
                             .drawn = {.title = t->title,
@@ -109,6 +114,7 @@ static void add_parameters(report *r)
                                       .what = t,
                                       .paint = paint_table,
                                       .release = release_table}};
+
         table_size(t, &item.drawn.width, &item.drawn.height);
         g_array_append_val(r->items, item);
     }
@@ -160,6 +166,8 @@ static status add_svg(GString *html, const report_item *item, guint index, fault
 {
     const figure_options options = {0};
     picture p = artwork_picture(&item->drawn, &options);
+
+    // its own identifiers, as all figures stand in one page
     char *svg = picture_svg(&p, f);
     if (svg == NULL) {
         return f->code;
@@ -179,11 +187,15 @@ static status add_section(const report *r, guint index, GString *html, fault *f)
     const report_item *item = item_at(r, index);
     char *title = text_escape(item->drawn.title);
     g_string_append_printf(html, "<section id=\"item-%u\">\n<h2>%s</h2>\n", index, title);
+
+    // the item itself
     if (item->drawn.table != NULL) {
         table_add_html(item->drawn.table, html);
     } else {
         code = add_svg(html, item, index, f);
     }
+
+    // what it is made of, and how
     g_string_append_printf(html, "<p class=\"facts\">Model: %s.", item->model);
     if (item->scenario != NULL) {
         g_string_append_printf(html, " Scenario: %s.", item->scenario);
@@ -191,6 +203,7 @@ static status add_section(const report *r, guint index, GString *html, fault *f)
     if (item->command != NULL) {
         g_string_append_printf(html, " Again: <code>%s</code>", item->command);
     }
+
     g_string_append(html, "</p>\n</section>\n");
     g_free(title);
     return code;
@@ -201,15 +214,19 @@ static status write_html(const report *r, const char *path, fault *f)
     whole_file file;
     status code = STATUS_OK;
     GString *html = g_string_new(NULL);
+
+    // the whole page first: nothing is written of one that fails
     g_string_append_printf(html, page_head, r->heading, r->heading);
     add_contents(r, html);
     for (guint i = 0; i < r->items->len && code == STATUS_OK; i++) {
         code = add_section(r, i, html, f);
     }
     g_string_append(html, "</body>\n</html>\n");
+
     if (code == STATUS_OK) {
         code = whole_file_open(&file, path, f);
     }
+
     if (code == STATUS_OK) {
         fwrite(html->str, 1, html->len, file.stream);
         code = whole_file_commit(&file, f);
@@ -280,6 +297,8 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)
              "drawn by the lab from its own runs. Under each stand the scenario, the model and "
              "the one command that makes it again.",
              9, false, PAGE_MARGIN, y + 40);
+
+    // the items by title
     y += 92;
     for (guint i = 0; i < r->items->len; i++, y += 12) {
         char *title = text_escape(item_at(r, i)->drawn.title);
@@ -295,11 +314,13 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
     double y = PAGE_MARGIN;
     PangoContext *context = text_context_create();
     if (page->number == 0) {
         put_title_page(cr, context, page->report);
     }
+
     for (guint i = page->first; i < page->last && code == STATUS_OK; i++) {
         const report_item *item = item_at(page->report, i);
         double scale = item_scale(item);
@@ -311,6 +332,7 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
         put_facts(cr, context, item, y + item->drawn.height * scale + 2);
         y += item_height(item) + ITEM_SPACE;
     }
+
     if (page->number > 0) {
         char number[16];
         g_snprintf(number, sizeof number, "%d", page->number + 1);
@@ -323,6 +345,7 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
 // Puts as many items on each page as there is room for.
 static GArray *make_pages(const report *r)
 {
+    // the title page, then as many items as fit
     GArray *pages = g_array_new(FALSE, TRUE, sizeof(report_page));
     report_page page = {.report = r};
     g_array_append_val(pages, page);
@@ -334,6 +357,7 @@ static GArray *make_pages(const report *r)
             room -= item_height(item_at(r, i)) + ITEM_SPACE;
             i++;
         } while (i < r->items->len && room >= item_height(item_at(r, i)));
+
         page.last = i;
         g_array_append_val(pages, page);
     }
@@ -344,6 +368,7 @@ static status write_pdf(const report *r, const char *path, fault *f)
 {
     GArray *pages = make_pages(r);
     picture *pictures = g_new0(picture, pages->len);
+
     for (guint i = 0; i < pages->len; i++) {
         pictures[i] = (picture){.width = PAGE_WIDTH,
                                 .height = PAGE_HEIGHT,
@@ -352,6 +377,7 @@ static status write_pdf(const report *r, const char *path, fault *f)
                                 .paint = paint_page,
                                 .what = &g_array_index(pages, report_page, i)};
     }
+
     status code = picture_write_pages(pictures, (int)pages->len, path, f);
     g_free(pictures);
     g_array_free(pages, TRUE);
@@ -383,11 +409,13 @@ status report_write(const char *folder, fault *f)
     report r = {.items = g_array_new(FALSE, TRUE, sizeof(report_item)),
                 .heading = g_strconcat("impactlab ", lab_version(), ": report", NULL)};
     g_array_set_clear_func(r.items, clear_item);
+
     status code = add_figures(&r, &why);
     if (code == STATUS_OK) {
         add_parameters(&r);
         code = write_both(&r, folder, &why);
     }
+
     g_array_free(r.items, TRUE);
     g_free(r.heading);
     return code == STATUS_OK ? code : fault_set(f, code, "%s", why.text);

@@ -33,10 +33,14 @@ static void complete_panel(trace_panel *p, bool first)
 static status read_panel(const char *text, trace_panel *p, GPtrArray *names, fault *f)
 {
     status code = STATUS_OK;
+
     char **words = g_strsplit(text, "+", -1);
+
     for (int i = 0; words[i] != NULL && code == STATUS_OK; i++) {
         const char *name = g_strstrip(words[i]);
         int index = signal_find(name);
+
+        // known, with room, and of the panel's one unit
         if (index <= 0) {
             code = unknown_signal(name, f);
         } else if (i == TRACE_SIGNALS) {
@@ -53,6 +57,7 @@ static status read_panel(const char *text, trace_panel *p, GPtrArray *names, fau
             p->signals[i] = g_ptr_array_index(names, names->len - 1);
         }
     }
+
     g_strfreev(words);
     return code;
 }
@@ -62,6 +67,7 @@ static status read_signals(run_figure *r, const char *text, fault *f)
 {
     status code = STATUS_OK;
     GPtrArray *names = g_ptr_array_new();
+
     char **words = g_strsplit(text, ",", -1);
     for (int i = 0; words[i] != NULL && code == STATUS_OK; i++) {
         if (i == FIGURE_PANELS - 1) {
@@ -69,6 +75,7 @@ static status read_signals(run_figure *r, const char *text, fault *f)
                              FIGURE_PANELS - 1);
             break;
         }
+
         r->panels[i] = (trace_panel){.weight = 1};
         code = read_panel(words[i], &r->panels[i], names, f);
         if (code == STATUS_OK) {
@@ -76,6 +83,7 @@ static status read_signals(run_figure *r, const char *text, fault *f)
             r->panel_count = i + 1;
         }
     }
+
     g_strfreev(words);
     g_ptr_array_add(names, NULL);
     r->names = (char **)g_ptr_array_free(names, FALSE);

@@ -85,14 +85,18 @@ static double force_error(const map *m, const method_parameters *method)
 {
     run_result result;
     double force[SAMPLES], sum = 0;
+
     scenario s = m->base;
     s.parameters.method = *method;
     if (run_scenario(&s, true, &result) != STATUS_OK) {
         run_finish(&result);
         return (double)INFINITY;
     }
+
     sample_force(&result.trace, m->from, force);
     run_finish(&result);
+
+    // root of the mean square, in per cent of the peak
     for (int i = 0; i < SAMPLES; i++) {
         sum += (force[i] - m->reference[i]) * (force[i] - m->reference[i]);
     }
@@ -104,6 +108,8 @@ static void compute_job(map *m, int job)
     int panel = job / (CELLS + RADII), cell = job % (CELLS + RADII);
     method_parameters method = m->base.parameters.method;
     method.step = steps[panel];
+
+    // a cell of Newmark's, or a ring of generalised-alpha
     if (cell < CELLS) {
         method.name = METHOD_NEWMARK;
         method.beta = beta_at(cell / ROWS);
@@ -135,9 +141,12 @@ static status compute_map(map *m, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
+    // the pulse that errors are measured on
     m->from = run.result.summary.first_contact_s;
     m->peak = run.result.summary.first_pulse_peak_N;
     m->parameters = parameters_line(&run.scenario);
+
     if (!isfinite(m->from) || !(m->peak > 0)) {
         code = fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to compare",
                          MAP_SCENARIO);
@@ -145,10 +154,13 @@ static status compute_map(map *m, fault *f)
         sample_force(&run.result.trace, m->from, m->reference);
         m->base = run.scenario;
         m->base.parameters.run.duration = m->from + WINDOW + 0.01;
+
+        // two threads share the jobs
         GThread *helper = g_thread_new("map", compute_jobs, m);
         compute_jobs(m);
         g_thread_join(helper);
     }
+
     run_end(&run);
     return code;
 }
@@ -171,6 +183,7 @@ static void add_layers(map *m, int panel)
     static const double bound_y[] = {0.5, 0.5, (double)NAN, 0.5, 1};
     static const double quarter_x[] = {0.25, 0.25}, quarter_y[] = {GAMMA_LOW, GAMMA_HIGH};
     static const double thesis_x[] = {0.4}, thesis_y[] = {0.5};
+
     const figure_series layers[SERIES] = {
         {.name = "bounds",
          .label = "Table 3.1",
@@ -207,6 +220,7 @@ static void add_layers(map *m, int panel)
          .no_line = true,
          .rim = true},
     };
+
     memcpy(m->series[panel], layers, sizeof layers);
 }
 
@@ -222,7 +236,9 @@ static void describe_panel(map *m, int panel)
                                                   .high = MOST_ERROR},
                                          .reversed = true,
                                          .bar = panel == PANELS - 1};
+
     add_layers(m, panel);
+
     m->panels[panel] = (figure_panel){
         .heading = step_labels[panel],
         .y = {.name = "gamma", .label = "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH},
@@ -235,6 +251,7 @@ static void describe_panel(map *m, int panel)
 
 static void describe_map(map *m, const figure_options *o)
 {
+    // where the cells and the rings stand
     for (int i = 0; i < COLUMNS; i++) {
         m->beta[i] = BETA_HIGH * (i + 0.5) / COLUMNS;
     }
@@ -244,9 +261,11 @@ static void describe_map(map *m, const figure_options *o)
     for (int i = 0; i < RADII; i++) {
         alpha_pair(radii[i], &m->alpha_beta[i], &m->alpha_gamma[i]);
     }
+
     for (int panel = 0; panel < PANELS; panel++) {
         describe_panel(m, panel);
     }
+
     m->figure = (figure){.title = m->title,
                          .caption = m->caption,
                          .x = {.name = "beta", .label = "<i>β</i>", .low = 0, .high = BETA_HIGH},
@@ -284,6 +303,7 @@ static status write_map(const void *what, const char *path, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
     csv_writer csv = csv_begin(file.stream);
     csv_heading(&csv, "method", "");
     csv_heading(&csv, "step", "s");
@@ -291,6 +311,8 @@ static status write_map(const void *what, const char *path, fault *f)
     csv_heading(&csv, "gamma", "");
     csv_heading(&csv, "force_error", "%");
     csv_end_row(&csv);
+
+    // cells, then rings
     for (int panel = 0; panel < PANELS; panel++) {
         for (int cell = 0; cell < CELLS; cell++) {
             int column = cell % COLUMNS, row = cell / COLUMNS;
@@ -303,6 +325,7 @@ static status write_map(const void *what, const char *path, fault *f)
             write_line(&csv, "generalized-alpha", steps[panel], beta, gamma, m->alpha[panel][i]);
         }
     }
+
     return whole_file_commit(&file, f);
 }
 
@@ -323,6 +346,7 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
         release_map(m);
         return code;
     }
+
     m->title = g_strdup(title);
     m->caption = text_printf(
         "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root of "
@@ -333,6 +357,7 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
         "step to step, whatever <i>γ</i>. Hatched: the run was stopped because its "
         "energy no longer balanced. Rings have the colour of their own method's error.",
         1e3 * WINDOW);
+
     describe_map(m, o);
     *out = (artwork){.title = m->title,
                      .caption = m->caption,
@@ -341,6 +366,7 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
                      .paint = paint_map,
                      .write_csv = write_map,
                      .release = release_map};
+
     figure_size(&m->figure, &out->width, &out->height);
     return STATUS_OK;
 }

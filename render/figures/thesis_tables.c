@@ -75,11 +75,13 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
     if (code != STATUS_OK) {
         return code;
     }
+
     table_page *t = new_table(title, o);
     table_add_column(t, "Symbol", 0.75, TEXT_LEFT);
     table_add_column(t, "Thesis", 1.75, TEXT_LEFT);
     table_add_column(t, "As used", 1.75, TEXT_LEFT);
     table_add_column(t, "Parameter", 3.2, TEXT_LEFT);
+
     add_motor_row(t, &p, "<i>k</i><sub>B</sub>", "2.443\u2009V·s/rad", "motor.back_emf");
     add_motor_row(t, &p, "<i>k</i><sub>T</sub>", "0.249092\u2009kg·m/A", "motor.torque_constant");
     add_motor_row(t, &p, "<i>R</i><sub>a</sub>", "33.6\u2009Ω", "motor.resistance");
@@ -88,6 +90,7 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
     add_motor_row(t, &p, "<i>k</i><sub>st</sub>", "0.045\u2009N·m", "motor.stiction");
     add_motor_row(t, &p, "", "6.02 (section 2.3)", "motor.amplifier_gain");
     add_motor_row(t, &p, "", "10\u2009V (section 2.3)", "motor.voltage_limit");
+
     t->caption = g_strdup("The printed <i>k</i><sub>T</sub> counts kilograms of force; times "
                           "9.80665\u2009m/s² it is equal to <i>k</i><sub>B</sub>, as it must be.");
     *out = artwork_of_table(t);
@@ -101,6 +104,8 @@ static void add_pair(table_page *t, const char *name, double beta, double gamma,
 {
     bool always = 2 * beta >= gamma;
     char *pair = text_printf("%.4g, %.4g", beta, gamma), *bound, *step;
+
+    // a pair with a bound has a longest step, that of the fastest mode
     if (always) {
         bound = g_strdup("none");
         step = g_strdup("any");
@@ -109,6 +114,7 @@ static void add_pair(table_page *t, const char *name, double beta, double gamma,
         bound = text_printf("%.4g", critical);
         step = text_printf("%.3g\u2009ms", 1e3 * critical / fastest);
     }
+
     table_add_row(t, (const char *[]){name, pair, bound, step, gamma > 0.5 ? "1" : "2"});
     g_free(pair);
     g_free(bound);
@@ -134,28 +140,33 @@ status table_stability(const char *title, const figure_options *o, artwork *out,
         return fault_set(f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed");
     }
     double fastest = frequencies[count - 1];
+
     table_page *t = new_table(title, o);
     table_add_column(t, "Method", 2.6, TEXT_LEFT);
     table_add_column(t, "<i>β</i>, <i>γ</i>", 1.2, TEXT_LEFT);
     table_add_column(t, "Largest <i>ωh</i>", 1.1, TEXT_RIGHT);
     table_add_column(t, "Longest step", 1.2, TEXT_RIGHT);
     table_add_column(t, "Order", 0.7, TEXT_RIGHT);
+
     table_add_group(t, "Stable at any step: 2<i>β</i> ≥ <i>γ</i> ≥ ½");
     add_pair(t, "trapezoidal rule", 0.25, 0.5, fastest);
     add_pair(t, "the thesis's choice", 0.4, 0.5, fastest);
     add_pair(t, "with damping of fast modes", 0.36, 0.7, fastest);
+
     table_add_group(
         t, "Stable up to <i>ωh</i> = (<i>γ</i>/2 − <i>β</i>)<sup>−1/2</sup>: <i>γ</i> ≥ ½, "
            "<i>β</i> &lt; <i>γ</i>/2");
     add_pair(t, "linear acceleration", 1.0 / 6, 0.5, fastest);
     add_pair(t, "Fox and Goodwin", 1.0 / 12, 0.5, fastest);
     add_pair(t, "central differences", 0, 0.5, fastest);
+
     t->caption = text_printf(
         "Without damping; <i>ω</i> is the fastest mode, for the two-link arm with the printed hub "
         "spring %.4g\u2009rad/s. <i>γ</i> > ½ damps fast modes and costs one order. In contact "
         "<i>β</i> "
         "has to exceed ¼ as well, whatever the step: figure beta-gamma.",
         fastest);
+
     *out = artwork_of_table(t);
     return STATUS_OK;
 }
@@ -186,16 +197,20 @@ status table_algorithm(const char *title, const figure_options *o, artwork *out,
         {"7", "Next time step.", "printed_motion_step"},
     };
     (void)f;
+
     table_page *t = new_table(title, o);
     table_add_column(t, "", 0.25, TEXT_LEFT);
     table_add_column(t, "What happens in a step", 4, TEXT_LEFT);
     table_add_column(t, "In the lab", 1.2, TEXT_LEFT);
+
     for (size_t i = 0; i < G_N_ELEMENTS(rows); i++) {
         table_add_row(t, rows[i]);
     }
+
     t->caption = g_strdup("As the lab runs it for the printed model. The corrected model locates "
                           "contact and release in time instead; docs/physics.md, sections 4 and "
                           "7.");
+
     *out = artwork_of_table(t);
     return STATUS_OK;
 }
@@ -281,6 +296,8 @@ static status open_predictions(const char *table, const char *title, const figur
     if (all == NULL) {
         return f != NULL ? f->code : STATUS_NO_MEMORY;
     }
+
+    // a column for each voltage
     table_page *t = new_table(title, o);
     table_add_column(t, "Command", 2.2, TEXT_LEFT);
     static const char *const heads[TABLE_VOLTAGES] = {"1\u2009V", "2\u2009V", "5\u2009V",
@@ -288,23 +305,28 @@ static status open_predictions(const char *table, const char *title, const figur
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
         table_add_column(t, heads[i], 1, TEXT_RIGHT);
     }
+
+    // a group for each quantity
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
         const table_row *printed = find_row(all, table, "printed", quantities[q].quantity);
         const table_row *corrected = find_row(all, table, "corrected", quantities[q].quantity);
         bool delay = strncmp(quantities[q].quantity, "delay", 5) == 0;
         double scale = delay ? 1e3 : 1;
         const char *format = delay ? "%.1f" : "%.2f";
+
         table_add_group(t, quantities[q].label);
         add_values(t, "thesis", printed->printed, scale, delay ? "%.0f" : "%.2f");
         add_model(t, printed, scale, format);
         add_model(t, corrected, scale, format);
     }
+
     t->caption = text_printf(
         "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are from what "
         "the thesis prints. The printed model has the constants inferred from these tables "
         "(docs/physics.md, section 1); the corrected one has the mechanics derived anew and is not "
         "meant to agree. –: the arm swings away as it touches, there is no pulse.",
         4.92 * find_row(all, table, "printed", "max_force_energy")->k2_factor);
+
     t->parameters = g_strdup_printf("table=%s", table);
     *out = artwork_of_table(t);
     return STATUS_OK;
@@ -333,10 +355,12 @@ status table_errors(const char *title, const figure_options *o, artwork *out, fa
     if (all == NULL) {
         return f != NULL ? f->code : STATUS_NO_MEMORY;
     }
+
     table_page *t = new_table(title, o);
     table_add_column(t, "Row", 3, TEXT_LEFT);
     table_add_column(t, "Printed (%)", 1.2, TEXT_RIGHT);
     table_add_column(t, "Corrected (%)", 1.2, TEXT_RIGHT);
+
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
         char *printed =
             cell_text("%.1f", 100 * tables_mean_error(all, "printed", quantities[q].quantity));
@@ -346,9 +370,11 @@ status table_errors(const char *title, const figure_options *o, artwork *out, fa
         g_free(printed);
         g_free(corrected);
     }
+
     t->caption =
         g_strdup("Mean size of the difference from the thesis over the cells of a row that "
                  "have a value, three stiffnesses at four voltages.");
+
     *out = artwork_of_table(t);
     return STATUS_OK;
 }

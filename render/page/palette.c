@@ -79,12 +79,15 @@ colour palette_shade(figure_theme theme, double share)
         double grey = 0.15 + 0.82 * fmin(fmax(share, 0), 1);
         return (colour){grey, grey, grey};
     }
+
     static const colour points[] = {
         RGB(0x44, 0x01, 0x54), RGB(0x47, 0x2d, 0x7b), RGB(0x3b, 0x52, 0x8b),
         RGB(0x2c, 0x72, 0x8e), RGB(0x21, 0x91, 0x8c), RGB(0x28, 0xae, 0x80),
         RGB(0x5e, 0xc9, 0x62), RGB(0xad, 0xdc, 0x30), RGB(0xfd, 0xe7, 0x25),
     };
     enum { LAST = sizeof points / sizeof points[0] - 1 };
+
+    // between the two nearest points
     double at = fmin(fmax(share, 0), 1) * LAST;
     int i = at >= LAST ? LAST - 1 : (int)at;
     const colour *a = &points[i], *b = &points[i + 1];
@@ -102,6 +105,8 @@ void set_line_style(cairo_t *cr, line_style style, double width)
 {
     static const double dashed[] = {5, 2.2}, dotted[] = {1.2, 1.8}, dash_dot[] = {7, 2, 1.4, 2};
     double scaled[4];
+
+    // lengths are multiples of the line's width
     const double *pattern = style == LINE_DASHED   ? dashed
                             : style == LINE_DOTTED ? dotted
                                                    : dash_dot;
@@ -109,6 +114,7 @@ void set_line_style(cairo_t *cr, line_style style, double width)
     for (int i = 0; i < count; i++) {
         scaled[i] = pattern[i] * width;
     }
+
     cairo_set_dash(cr, scaled, count, 0);
     cairo_set_line_width(cr, width);
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);

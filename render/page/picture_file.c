@@ -24,6 +24,7 @@ picture_format picture_format_of(const char *path)
         const char *name;
         picture_format format;
     } known[] = {{"png", FORMAT_PNG}, {"pdf", FORMAT_PDF}, {"svg", FORMAT_SVG}};
+    assert(path != NULL);
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     const char *dot = strrchr(name, '.');
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
@@ -61,11 +62,14 @@ static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsign
 static status paint_surface(cairo_surface_t *surface, const picture *p, bool finish, fault *f)
 {
     cairo_t *cr = cairo_create(surface);
+
     status code = p->paint(cr, p->what, f);
     cairo_destroy(cr);
     if (finish) {
         cairo_surface_finish(surface);
     }
+
+    // what cairo met on the way
     cairo_status_t state = cairo_surface_status(surface);
     if (code == STATUS_OK && state != CAIRO_STATUS_SUCCESS && state != CAIRO_STATUS_WRITE_ERROR &&
         state != CAIRO_STATUS_SURFACE_FINISHED) {
@@ -89,12 +93,14 @@ static status write_png(FILE *stream, const picture *p, fault *f)
                          "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge",
                          pixels_across, pixels_down, MOST_PIXELS);
     }
+
     cairo_surface_t *surface =
         cairo_image_surface_create(p->transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24,
                                    (int)pixels_across, (int)pixels_down);
     // the page ends exactly where the pixels do
     cairo_surface_set_device_scale(surface, pixels_across / p->width, pixels_down / p->height);
     status code = paint_surface(surface, p, false, f);
+
     if (code == STATUS_OK) {
         const png_note notes[] = {{"Title", p->title},
                                   {"Software", p->software},
@@ -122,10 +128,12 @@ static status write_pages(FILE *stream, const picture *p, int count, fault *f)
         cairo_pdf_surface_create_for_stream(to_stream, stream, p->width, p->height);
     // without a date of ours cairo writes the present one, and no two files are alike
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
+
     set_metadata(surface, CAIRO_PDF_METADATA_TITLE, p->title);
     set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, p->software);
     set_metadata(surface, CAIRO_PDF_METADATA_KEYWORDS, p->parameters);
     set_metadata(surface, CAIRO_PDF_METADATA_SUBJECT, p->command);
+
     status code = STATUS_OK;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         cairo_pdf_surface_set_size(surface, p[i].width, p[i].height);
@@ -162,12 +170,15 @@ static void add_element(GString *out, const char *indent, const char *name, cons
 static GString *svg_metadata(const picture *p)
 {
     GString *out = g_string_new("\n");
+
     add_element(out, "", "title", p->title);
     add_element(out, "", "desc", p->alternative);
     g_string_append(out, "<metadata>\n"
                          "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\" "
                          "xmlns:dc=\"http://purl.org/dc/elements/1.1/\">\n"
                          "<rdf:Description>\n");
+
+    // Dublin Core, which viewers read
     add_element(out, "  ", "dc:title", p->title);
     add_element(out, "  ", "dc:creator", p->software);
     add_element(out, "  ", "dc:description", p->parameters);
@@ -178,12 +189,16 @@ static GString *svg_metadata(const picture *p)
 
 char *picture_svg(const picture *p, fault *f)
 {
+    assert(p != NULL && p->paint != NULL);
     char *numbered = NULL;
     GString *svg = g_string_new(NULL);
     cairo_surface_t *surface =
         cairo_svg_surface_create_for_stream(to_string, svg, p->width, p->height);
+
     status code = paint_surface(surface, p, true, f);
     cairo_surface_destroy(surface);
+
+    // metadata come right after the root's opening
     if (code == STATUS_OK) {
         char *root = strstr(svg->str, "<svg"), *end = root ? strchr(root, '>') : NULL;
         if (end != NULL) {
@@ -211,17 +226,13 @@ static status write_svg(FILE *stream, const picture *p, fault *f)
 
 status picture_write_pages(const picture *pages, int count, const char *path, fault *f)
 {
+    assert(pages != NULL && count > 0 && path != NULL);
     whole_file file;
     status code = whole_file_open(&file, path, f);
     if (code != STATUS_OK) {
         return code;
     }
-    code = write_pages(file.stream, pages, count, f);
-    if (code != STATUS_OK) {
-        whole_file_abandon(&file);
-        return code;
-    }
-    return whole_file_commit(&file, f);
+    return whole_file_close(&file, write_pages(file.stream, pages, count, f), f);
 }
 
 status picture_write(const picture *p, const char *path, fault *f)
@@ -231,17 +242,15 @@ status picture_write(const picture *p, const char *path, fault *f)
     static const writer writers[] = {
         [FORMAT_PNG] = write_png, [FORMAT_PDF] = write_pdf, [FORMAT_SVG] = write_svg};
     whole_file file;
+
+    // only a name that tells its format
     status code = check_extension(path, f);
     if (code == STATUS_OK) {
         code = whole_file_open(&file, path, f);
     }
-    if (code != STATUS_OK) {
-        return code;
+    if (code == STATUS_OK) {
+        code = writers[picture_format_of(path)](file.stream, p, f);
+        code = whole_file_close(&file, code, f);
     }
-    code = writers[picture_format_of(path)](file.stream, p, f);
-    if (code != STATUS_OK) {
-        whole_file_abandon(&file);
-        return code;
-    }
-    return whole_file_commit(&file, f);
+    return code;
 }

@@ -1,5 +1,6 @@
 #include "render/page/png_file.h"
 
+#include <assert.h>
 #include <math.h>
 #include <png.h>
 #include <setjmp.h>
@@ -39,6 +40,7 @@ static void set_notes(png_structp png, png_infop info, const png_note *notes, in
     png_text texts[NOTES_MOST];
     int used = 0;
     memset(texts, 0, sizeof texts);
+
     for (int i = 0; i < count && used < NOTES_MOST; i++) {
         if (notes[i].text != NULL) {
             texts[used].compression = PNG_ITXT_COMPRESSION_NONE;
@@ -92,7 +94,10 @@ static void write_rows(png_structp png, cairo_surface_t *surface, unsigned char 
 status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const png_note *notes,
                       int note_count, fault *f)
 {
+    assert(stream != NULL && surface != NULL && dpi > 0);
     fault own = {STATUS_OK, ""};
+
+    // libpng reports through `own` and a long jump
     cairo_surface_flush(surface);
     size_t width = (size_t)cairo_image_surface_get_width(surface);
     unsigned char *row = malloc(4 * width + 1);
@@ -103,6 +108,8 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
         png_destroy_write_struct(&png, &info);
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a PNG");
     }
+
+    // one row at a time
     if (setjmp(png_jmpbuf(png)) == 0) {
         png_uint_32 per_metre = (png_uint_32)lround(dpi / 0.0254);
         png_set_write_fn(png, stream, write_bytes, flush_nothing);
@@ -116,6 +123,7 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
         write_rows(png, surface, row);
         png_write_end(png, info);
     }
+
     png_destroy_write_struct(&png, &info);
     free(row);
     return own.code == STATUS_OK ? STATUS_OK : fault_set(f, own.code, "%s", own.text);

@@ -59,10 +59,12 @@ static void frame_heights(PangoContext *context, const sketch_frame *frame, doub
     if (frame->look.bare) {
         return;
     }
+
     char *title = text_escape(frame->title);
     text_block t = title_block(frame, title), c = caption_block(frame);
     text_measure(context, &t, &width, &height);
     *above += height + TITLE_SPACE;
+
     if (frame->caption != NULL) {
         text_measure(context, &c, &width, &height);
         *below += height + TITLE_SPACE;
@@ -72,6 +74,7 @@ static void frame_heights(PangoContext *context, const sketch_frame *frame, doub
 
 void sketch_size(const sketch_frame *frame, double *width, double *height)
 {
+    assert(frame != NULL && width != NULL && height != NULL);
     double above, below, scale = page_scale(frame);
     PangoContext *context = text_context_create();
     frame_heights(context, frame, &above, &below);
@@ -103,6 +106,7 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
     if (code != STATUS_OK) {
         return code;
     }
+
     *s = (sketch){.cr = cr,
                   .context = text_context_create(),
                   .colours = palette_of(frame->look.theme),
@@ -110,18 +114,24 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
                   .frame = frame,
                   .report = report,
                   .scale = page_scale(frame)};
+
+    // sizes, which the report keeps
     frame_heights(s->context, frame, &above, &below);
     sketch_size(frame, &width, &height);
     if (report != NULL) {
         memset(report, 0, sizeof *report);
         report->page = (figure_rect){0, 0, width, height};
     }
+
+    // the page
     cairo_save(cr);
     if (!frame->look.transparent) {
         set_colour(cr, s->colours->page);
         cairo_rectangle(cr, 0, 0, width, height);
         cairo_fill(cr);
     }
+
+    // where the body stands, in its own points
     cairo_scale(cr, s->scale, s->scale);
     s->left = SKETCH_MARGIN;
     s->right = s->left + inner_width(frame);
@@ -130,6 +140,8 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
     if (frame->look.bare) {
         return STATUS_OK;
     }
+
+    // title above, caption below
     char *title = text_escape(frame->title);
     draw_block(s, title_block(frame, title), s->left, SKETCH_MARGIN, 0, 0, s->colours->text);
     g_free(title);
@@ -142,6 +154,7 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
 
 void sketch_end(sketch *s)
 {
+    assert(s != NULL);
     cairo_restore(s->cr);
     g_object_unref(s->context);
 }
@@ -230,6 +243,7 @@ void sketch_dashed_arrow(const sketch *s, double x0, double y0, double x1, doubl
 
 void sketch_measure(const sketch *s, double x0, double y0, double x1, double y1)
 {
+    assert(s != NULL && isfinite(x0) && isfinite(y0) && isfinite(x1) && isfinite(y1));
     double direction = atan2(y1 - y0, x1 - x0);
     sketch_line(s, x0, y0, x1, y1, 0.5, SKETCH_INK);
     draw_head(s, x1, y1, direction, 3.6);
@@ -239,9 +253,12 @@ void sketch_measure(const sketch *s, double x0, double y0, double x1, double y1)
 void sketch_arc(const sketch *s, double x, double y, double radius, double from, double to,
                 int slot, bool head)
 {
+    assert(s != NULL && radius > 0);
     double turn = to > from ? 1 : -1;
     // the head takes the arc's last bit
     double bit = head ? turn * fmin(0.8 * 4.2 / radius, fabs(to - from)) : 0;
+
+    // cairo's y points down, so that its angles run the other way
     set_pen(s, LINE_WIDTH, slot);
     if (turn > 0) {
         cairo_arc_negative(s->cr, x, y, radius, -from, -(to - bit));
@@ -249,6 +266,7 @@ void sketch_arc(const sketch *s, double x, double y, double radius, double from,
         cairo_arc(s->cr, x, y, radius, -from, -(to - bit));
     }
     cairo_stroke(s->cr);
+
     if (head) {
         double direction = -(to - bit / 2) - turn * G_PI / 2;
         draw_head(s, x + radius * cos(to), y - radius * sin(to), direction, 4.2);
@@ -257,6 +275,7 @@ void sketch_arc(const sketch *s, double x, double y, double radius, double from,
 
 void sketch_disc(const sketch *s, double x, double y, double radius, int slot, bool filled)
 {
+    assert(s != NULL && radius >= 0);
     set_pen(s, LINE_WIDTH, slot);
     cairo_arc(s->cr, x, y, radius, 0, 2 * G_PI);
     if (!filled) {
@@ -300,6 +319,7 @@ void sketch_mass_point(const sketch *s, double x, double y)
 void sketch_spiral(const sketch *s, double x, double y, double radius, int slot)
 {
     enum { POINTS = 90 };
+    assert(s != NULL && radius > 0);
     set_pen(s, 1, slot);
     for (int i = 0; i <= POINTS; i++) {
         double share = (double)i / POINTS, angle = 2 * G_PI * 2.5 * share;
@@ -328,6 +348,7 @@ static void draw_zigzag(const sketch *s, double x0, double y0, double x1, double
 
 void sketch_coil(const sketch *s, double x0, double y0, double x1, double y1, int turns, int slot)
 {
+    assert(s != NULL && turns > 0);
     set_pen(s, 1.1, slot);
     draw_zigzag(s, x0, y0, x1, y1, turns, 8, 8);
 }
@@ -366,16 +387,19 @@ static text_block block_of(const sketch *s, const char *markup, double size)
 void sketch_text(sketch *s, double x, double y, double ax, double ay, const char *markup,
                  double size)
 {
+    assert(s != NULL && markup != NULL);
     draw_block(s, block_of(s, markup, size), x, y, ax, ay, s->colours->text);
 }
 
 void sketch_wrapped(sketch *s, double x, double y, double width, text_align align,
                     const char *markup, double size, bool bold)
 {
+    assert(s != NULL && markup != NULL);
     text_block t = block_of(s, markup, size);
     t.bold = bold;
     t.align = align;
     t.width = width;
+
     double ax = 0;
     if (align != TEXT_LEFT) {
         // short lines are placed by their own width
@@ -389,5 +413,6 @@ void sketch_wrapped(sketch *s, double x, double y, double width, text_align alig
             x += ax * width;
         }
     }
+
     draw_block(s, t, x, y, ax, 0, s->colours->text);
 }

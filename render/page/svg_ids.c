@@ -1,5 +1,6 @@
 #include "render/page/svg_ids.h"
 
+#include <assert.h>
 #include <glib.h>
 #include <string.h>
 
@@ -44,6 +45,7 @@ static size_t opening_length(const char *text)
 
 char *svg_prefix_ids(const char *svg, const char *prefix)
 {
+    assert(svg != NULL && prefix != NULL);
     GString *out = g_string_sized_new(strlen(svg) + 1);
     while (*svg != '\0') {
         size_t length = opening_length(svg);
@@ -60,14 +62,19 @@ char *svg_prefix_ids(const char *svg, const char *prefix)
 
 char *svg_renumber_ids(const char *svg)
 {
+    assert(svg != NULL);
     GHashTable *names = collect_ids(svg);
     GString *out = g_string_sized_new(strlen(svg) + 1);
+
+    // all but identifiers is copied
     while (*svg != '\0') {
         size_t length = opening_length(svg);
         if (length == 0) {
             g_string_append_c(out, *svg++);
             continue;
         }
+
+        // an identifier that is known gets its number
         g_string_append_len(out, svg, (gssize)length);
         svg += length;
         char *id = g_strndup(svg, id_length(svg));
@@ -76,6 +83,7 @@ char *svg_renumber_ids(const char *svg)
         svg += strlen(id);
         g_free(id);
     }
+
     g_hash_table_destroy(names);
     return g_string_free(out, FALSE);
 }

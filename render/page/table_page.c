@@ -12,6 +12,7 @@
 
 void table_begin(table_page *t, const char *title)
 {
+    assert(t != NULL && title != NULL);
     memset(t, 0, sizeof *t);
     t->title = g_strdup(title);
     t->rows = g_ptr_array_new_with_free_func((GDestroyNotify)g_strfreev);
@@ -35,6 +36,7 @@ void table_add_row(table_page *t, const char *const *cells)
 
 void table_add_group(table_page *t, const char *heading)
 {
+    assert(t != NULL && heading != NULL);
     char **row = g_new0(char *, 2);
     row[0] = g_strdup(heading);
     g_ptr_array_add(t->rows, row);
@@ -58,6 +60,7 @@ static char **row_cells(const table_page *t, guint row)
 
 bool table_row_is_group(const table_page *t, guint row)
 {
+    assert(t != NULL && row < t->rows->len);
     return t->column_count > 1 && row_cells(t, row)[1] == NULL;
 }
 
@@ -183,6 +186,7 @@ static void lay_out(table_layout *l, const table_page *t)
 
 void table_size(const table_page *t, double *width, double *height)
 {
+    assert(t != NULL && width != NULL && height != NULL);
     table_layout l;
     lay_out(&l, t);
     sketch_size(&l.frame, width, height);
@@ -214,6 +218,7 @@ static void draw_group(sketch *s, const char *heading, double y, double height)
 
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f)
 {
+    assert(cr != NULL && t != NULL);
     sketch s;
     table_layout l;
     lay_out(&l, t);
@@ -255,6 +260,7 @@ static void write_plain(csv_writer *csv, const char *markup)
 
 status table_write_csv(const table_page *t, const char *path, fault *f)
 {
+    assert(t != NULL && path != NULL);
     whole_file file;
     status code = whole_file_open(&file, path, f);
     if (code != STATUS_OK) {
@@ -302,24 +308,31 @@ static void add_html_cell(GString *html, const char *tag, text_align align, cons
 
 void table_add_html(const table_page *t, GString *html)
 {
+    assert(t != NULL && html != NULL);
+    // a heading that repeats where the table breaks
     g_string_append(html, "<table>\n<thead><tr>");
     for (int i = 0; i < t->column_count; i++) {
         add_html_cell(html, "th", t->columns[i].align, t->columns[i].label);
     }
     g_string_append(html, "</tr></thead>\n<tbody>\n");
+
     for (guint row = 0; row < t->rows->len; row++) {
         char **cells = row_cells(t, row);
+
+        // a group's heading spans all columns
         if (table_row_is_group(t, row)) {
             g_string_append_printf(html, "<tr><th class=\"group\" colspan=\"%d\">%s</th></tr>\n",
                                    t->column_count, cells[0]);
             continue;
         }
+
         g_string_append(html, "<tr>");
         for (int i = 0; i < t->column_count; i++) {
             add_html_cell(html, "td", t->columns[i].align, cells[i]);
         }
         g_string_append(html, "</tr>\n");
     }
+
     g_string_append(html, "</tbody>\n</table>\n");
     if (t->caption != NULL) {
         g_string_append_printf(html, "<p class=\"note\">%s</p>\n", t->caption);

@@ -17,15 +17,19 @@ static bool family_matches(const char *wanted_family)
     if (wanted == NULL) {
         return false;
     }
+
     FcPatternAddString(wanted, FC_FAMILY, (const FcChar8 *)wanted_family);
     FcConfigSubstitute(NULL, wanted, FcMatchPattern);
     FcDefaultSubstitute(wanted);
+
+    // fontconfig always finds some font: is it of this family?
     FcResult result;
     FcPattern *found = FcFontMatch(NULL, wanted, &result);
     FcChar8 *family = NULL;
     bool matches = found != NULL &&
                    FcPatternGetString(found, FC_FAMILY, 0, &family) == FcResultMatch &&
                    g_ascii_strcasecmp((const char *)family, wanted_family) == 0;
+
     if (found != NULL) {
         FcPatternDestroy(found);
     }
@@ -106,6 +110,7 @@ char *text_translate(const char *markup, double size)
 {
     assert(markup != NULL && size > 0);
     GString *out = g_string_new(NULL);
+
     bool in_tag = false;
     for (const char *c = markup; *c != '\0';) {
         in_tag = *c == '<' || (in_tag && *c != '>');
@@ -135,8 +140,10 @@ char *text_translate(const char *markup, double size)
 
 PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 {
+    assert(context != NULL && t != NULL && t->markup != NULL);
     static const PangoAlignment alignments[] = {PANGO_ALIGN_LEFT, PANGO_ALIGN_CENTER,
                                                 PANGO_ALIGN_RIGHT};
+
     PangoLayout *layout = pango_layout_new(context);
     PangoFontDescription *font = pango_font_description_new();
     pango_font_description_set_family(font, t->family != NULL ? t->family : TEXT_FAMILY);
@@ -145,6 +152,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     pango_layout_set_font_description(layout, font);
     pango_font_description_free(font);
 
+    // text that is no markup is shown as it is
     char *valid = g_utf8_make_valid(t->markup, -1), *markup = text_translate(valid, t->size);
     if (pango_parse_markup(markup, -1, 0, NULL, NULL, NULL, NULL)) {
         pango_layout_set_markup(layout, markup, -1);
@@ -153,6 +161,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     }
     g_free(markup);
     g_free(valid);
+
     pango_layout_set_alignment(layout, alignments[t->align]);
     if (t->width > 0) {
         pango_layout_set_width(layout, (int)(t->width * PANGO_SCALE));
@@ -192,6 +201,7 @@ void text_unit(const char *unit, char *out, size_t size)
     assert(unit != NULL && out != NULL && size > 0);
     static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+
     GString *shown = g_string_new(NULL);
     for (const char *c = unit; *c != '\0'; c++) {
         bool after_letter = c > unit && (g_ascii_isalpha(c[-1]) || g_ascii_isdigit(c[-1]));
@@ -205,12 +215,14 @@ void text_unit(const char *unit, char *out, size_t size)
             g_string_append_c(shown, *c);
         }
     }
+
     g_strlcpy(out, shown->str, size);
     g_string_free(shown, TRUE);
 }
 
 char *text_quantity(double value, int digits, const char *unit)
 {
+    assert(unit != NULL && digits > 0);
     char number[48], shown[64];
     decimal_print(number, sizeof number, "%#.*g", digits, fabs(value));
     size_t length = strlen(number);
@@ -238,6 +250,7 @@ char *text_label(const char *description)
 
 char *text_plain(const char *markup)
 {
+    assert(markup != NULL);
     char *valid = g_utf8_make_valid(markup, -1), *plain = NULL;
     if (pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
         g_free(valid);
@@ -248,6 +261,7 @@ char *text_plain(const char *markup)
 
 char *text_escape(const char *bytes)
 {
+    assert(bytes != NULL);
     char *valid = g_utf8_make_valid(bytes, -1), *escaped = g_markup_escape_text(valid, -1);
     g_free(valid);
     return escaped;
@@ -269,14 +283,18 @@ void report_add_text(figure_report *report, const char *markup, double size, fig
     if (report == NULL || report->text_count == FIGURE_TEXTS) {
         return;
     }
+
     figure_text *t = &report->texts[report->text_count++];
     char *plain = text_plain(markup);
     const char *end;
     bool indexed = strstr(markup, "<sub>") != NULL || strstr(markup, "<sup>") != NULL;
+
+    // as it is on the page
     t->place = place;
     t->size = indexed ? index_letters(size) : size;
     g_strlcpy(t->text, plain, sizeof t->text);
     // a character that was cut in two goes altogether
+
     if (!g_utf8_validate(t->text, -1, &end)) {
         t->text[end - t->text] = '\0';
     }

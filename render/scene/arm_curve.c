@@ -63,10 +63,13 @@ int scene_curve(const vector *joints, int links, vector *curve)
 {
     assert(joints != NULL && curve != NULL && links > 0);
     int spans = links > 1 ? links - 1 : 1, pieces = pieces_of_span(links), count = 0;
+
     for (int span = 0; span < spans; span++) {
         // a parabola from a link's middle to the next one's, with the joint as its control point
         vector bend =
             links > 1 ? joints[span + 1] : vector_scaled(vector_add(joints[0], joints[1]), 0.5);
+
+        // it starts at a joint of its own only where the arm starts, and ends at one where it ends
         vector from = joints[span], to = joints[links];
         if (span > 0) {
             from = vector_scaled(vector_add(joints[span], bend), 0.5);
@@ -74,6 +77,8 @@ int scene_curve(const vector *joints, int links, vector *curve)
         if (span + 1 < spans) {
             to = vector_scaled(vector_add(bend, joints[span + 2]), 0.5);
         }
+
+        // neighbouring pieces share their point
         for (int i = span > 0; i <= pieces; i++) {
             double s = (double)i / pieces, r = 1 - s;
             vector place = vector_sum(vector_scaled(from, r * r), 2 * r * s, bend);
@@ -89,6 +94,8 @@ void scene_instants(const run_result *result, double *times, int count)
     const trace *t = &result->trace;
     const summary *m = &result->summary;
     double end = t->rows[t->row_count - 1].time, path = 0, done = 0;
+
+    // until the force is largest, or the end of a run without contact
     if (!isnan(m->first_contact_s)) {
         double delay = isnan(m->first_pulse_time_to_peak_s) ? m->time_to_peak_s
                                                             : m->first_pulse_time_to_peak_s;

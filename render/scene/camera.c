@@ -1,5 +1,6 @@
 #include "render/scene/camera.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -17,6 +18,7 @@ static const struct {
 
 bool camera_kind_find(const char *name, camera_kind *kind)
 {
+    assert(name != NULL && kind != NULL);
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         if (strcmp(kinds[i].name, name) == 0) {
             *kind = (camera_kind)i;
@@ -45,6 +47,8 @@ static double fit_axis(const vector *points, int count, vector axis, vector back
 camera camera_fit(camera_kind kind, double heading, const vector *points, int count, int width,
                   int height, camera_window window)
 {
+    assert(points != NULL && count > 0 && width > 0 && height > 0);
+    // three axes of the view; the half angle is that of the shorter edge
     double azimuth = heading + kinds[kind].azimuth * M_PI / 180;
     double elevation = kinds[kind].elevation * M_PI / 180;
     double c = cos(elevation), s = sin(elevation);
@@ -56,11 +60,15 @@ camera camera_fit(camera_kind kind, double heading, const vector *points, int co
     double shorter = fmin(width, height);
     out.focal_x = shorter / width / tan(kinds[kind].half_view);
     out.focal_y = shorter / height / tan(kinds[kind].half_view);
+
     // within the window the view is narrower, and its middle is not the picture's
     double share_x = window.right - window.left, share_y = window.bottom - window.top;
+
     double x, y, far_x = fit_axis(points, count, out.right, out.back, out.focal_x / share_x, &x);
     double far_y = fit_axis(points, count, out.up, out.back, out.focal_y / share_y, &y);
     double distance = fmax(far_x, far_y), low = HUGE_VAL, high = -HUGE_VAL, middle;
+
+    // shift the eye so that the points' middle depth falls into the window's middle
     for (int i = 0; i < count; i++) {
         double depth = distance - vector_dot(points[i], out.back);
         low = fmin(low, depth);
@@ -70,6 +78,7 @@ camera camera_fit(camera_kind kind, double heading, const vector *points, int co
     x -= (window.left + window.right - 1) * middle / out.focal_x;
     y += (window.top + window.bottom - 1) * middle / out.focal_y;
     out.eye = vector_sum(vector_sum(vector_scaled(out.right, x), y, out.up), distance, out.back);
+
     // the points are only the outermost ones of what is seen
     out.nearest = fmax(0.1 * low, low - (high - low));
     out.farthest = high + (high - low);
@@ -78,6 +87,7 @@ camera camera_fit(camera_kind kind, double heading, const vector *points, int co
 
 vector camera_project(const camera *c, vector point)
 {
+    assert(c != NULL);
     vector to = vector_sum(point, -1, c->eye);
     double depth = -vector_dot(to, c->back);
     return (vector){(1 + c->focal_x * vector_dot(to, c->right) / depth) * c->width / 2,

@@ -1,5 +1,6 @@
 #include "render/scene/film.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -36,12 +37,15 @@ typedef struct film {
 
 film_clock film_clock_of(const run_result *result, double seconds, double slow)
 {
+    assert(result != NULL && result->trace.row_count > 0 && seconds > 0);
     const trace *t = &result->trace;
     const summary *m = &result->summary;
     film_clock c = {.start = t->rows[0].time,
                     .end = t->rows[t->row_count - 1].time,
                     .slow = 1,
                     .seconds = seconds};
+
+    // slow from shortly before the first contact
     double span = c.end - c.start;
     if (!isnan(m->first_contact_s)) {
         c.slow = slow;
@@ -64,10 +68,13 @@ static double slowness(const film_clock *c, double t)
 
 double film_clock_time(const film_clock *c, double film_time, double *speed)
 {
+    assert(c != NULL && c->seconds > 0 && speed != NULL);
     double span = c->end - c->start, cell = span / CLOCK_CELLS, total = 0, passed = 0;
     for (int i = 0; i < CLOCK_CELLS; i++) {
         total += slowness(c, c->start + (i + 0.5) * cell);
     }
+
+    // the cell in which the share of the film's time is passed
     double wanted = fmin(1, fmax(0, film_time / c->seconds)) * total;
     for (int i = 0; i < CLOCK_CELLS; i++) {
         double here = slowness(c, c->start + (i + 0.5) * cell);
@@ -77,6 +84,8 @@ double film_clock_time(const film_clock *c, double film_time, double *speed)
         }
         passed += here;
     }
+
+    // rounding passed the last cell
     *speed = total * cell / c->seconds / slowness(c, c->end);
     return c->end;
 }
@@ -92,20 +101,26 @@ static status paint_traces(film *m, fault *f)
         {.label = "Angular velocity",
          .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
     };
+
+    // a figure of the one run
     const trace_run run = {m->scenario, m->result, NULL};
     trace_figure t;
     status code = trace_figure_init(&t, NULL, panels, (int)G_N_ELEMENTS(panels), &run, 1, f);
     if (code != STATUS_OK) {
         return code;
     }
+
+    // its size: what the scene leaves of the picture
     int width = m->options.width - m->scene_width, height = m->options.height;
     m->trace_scale = TRACE_LETTERS * fmin(height / 720.0, m->options.width / 1280.0);
+
     // the scene has the title
     t.figure.title = t.figure.caption = NULL;
     t.figure.x.low = m->clock.start;
     t.figure.x.high = m->clock.end;
     t.figure.width = width / m->trace_scale * 25.4 / 72;
     t.figure.height = height / m->trace_scale * 25.4 / 72;
+
     m->traces = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
     cairo_t *cr = cairo_create(m->traces);
     cairo_set_source_rgb(cr, 1, 1, 1);
@@ -120,9 +135,12 @@ static status paint_traces(film *m, fault *f)
 // The traces with the present as a line, and what comes after it under a veil.
 static void draw_traces(const film *m, cairo_t *cr, double time)
 {
+    // all of it
     const figure_report *r = m->report;
     cairo_set_source_surface(cr, m->traces, m->scene_width, 0);
     cairo_paint(cr);
+
+    // the present as a line over each panel
     cairo_save(cr);
     cairo_translate(cr, m->scene_width, 0);
     cairo_scale(cr, m->trace_scale, m->trace_scale);
@@ -139,12 +157,14 @@ static void draw_traces(const film *m, cairo_t *cr, double time)
         cairo_stroke(cr);
     }
     cairo_restore(cr);
+
     // keys are of the past and the future
     for (int i = 0; i < r->panel_count; i++) {
         figure_rect key = r->legends[i];
         cairo_rectangle(cr, m->scene_width + key.x * m->trace_scale, key.y * m->trace_scale,
                         key.width * m->trace_scale, key.height * m->trace_scale);
     }
+
     cairo_set_source_surface(cr, m->traces, m->scene_width, 0);
     cairo_fill(cr);
 }
@@ -168,6 +188,8 @@ static void draw_speed(const film *m, cairo_t *cr, double speed)
 {
     char text[64];
     double scale = fmin(m->options.height / 720.0, m->scene_width / 800.0);
+
+    // the number that is larger than one
     if (speed < 1) {
         double times = 1 / speed;
         decimal_print(text, sizeof text, "%.*f times slower than real", times < 9.95 ? 1 : 0,
@@ -175,31 +197,30 @@ static void draw_speed(const film *m, cairo_t *cr, double speed)
     } else {
         decimal_print(text, sizeof text, "%.1f times faster than real", speed);
     }
+
     const text_block t = {.markup = text, .size = 13 * scale};
     cairo_set_source_rgb(cr, 0.38, 0.40, 0.43);
     cairo_move_to(cr, 22 * scale, 20 * scale);
     text_draw(cr, m->context, &t);
 }
 
-static void compose(const film *m, cairo_t *cr, double time, double speed)
+// A frame of the scene at `time`, with the traces until `present`, added to the file.
+static status add_frame(film *m, film_file *file, double time, double present, double speed,
+                        fault *f)
 {
+    status code = scene_paint(m->scene, &time, 1, m->view, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    cairo_t *cr = cairo_create(m->frame);
     cairo_set_source_surface(cr, m->view, 0, 0);
     cairo_paint(cr);
     soften_seam(m, cr);
-    draw_traces(m, cr, time);
+    draw_traces(m, cr, present);
     draw_speed(m, cr, speed);
-}
-
-static status paint_frame(film *m, double film_time, fault *f)
-{
-    double speed, time = film_clock_time(&m->clock, film_time, &speed);
-    status code = scene_paint(m->scene, &time, 1, m->view, f);
-    if (code == STATUS_OK) {
-        cairo_t *cr = cairo_create(m->frame);
-        compose(m, cr, time, speed);
-        cairo_destroy(cr);
-    }
-    return code;
+    cairo_destroy(cr);
+    return film_file_add(file, m->frame, f);
 }
 
 // A frame just after the first impact, with flash, arrow and traces: every colour of the film.
@@ -207,14 +228,7 @@ static status add_palette(film *m, film_file *file, fault *f)
 {
     double contact = m->result->summary.first_contact_s;
     double wanted = isnan(contact) ? m->clock.end : fmin(m->clock.end, contact + 0.008);
-    status code = scene_paint(m->scene, &wanted, 1, m->view, f);
-    if (code == STATUS_OK) {
-        cairo_t *cr = cairo_create(m->frame);
-        compose(m, cr, m->clock.end, 1);
-        cairo_destroy(cr);
-        code = film_file_add(file, m->frame, f);
-    }
-    return code;
+    return add_frame(m, file, wanted, m->clock.end, 1, f);
 }
 
 static status add_frames(film *m, film_file *file, fault *f)
@@ -222,14 +236,14 @@ static status add_frames(film *m, film_file *file, fault *f)
     const film_options *o = &m->options;
     int total = (int)fmax(2, round(o->seconds * o->frames_per_second));
     status code = film_file_wants_palette(file) ? add_palette(m, file, f) : STATUS_OK;
+
     for (int i = 0; i < total && code == STATUS_OK; i++) {
         if (o->stop != NULL && *o->stop != 0) {
             return fault_set(f, STATUS_CANNOT_WRITE, "interrupted after %d of %d frames", i, total);
         }
-        code = paint_frame(m, o->seconds * i / (total - 1), f);
-        if (code == STATUS_OK) {
-            code = film_file_add(file, m->frame, f);
-        }
+
+        double speed, time = film_clock_time(&m->clock, o->seconds * i / (total - 1), &speed);
+        code = add_frame(m, file, time, time, speed, f);
         if (code == STATUS_OK && o->progress != NULL) {
             o->progress(o->context, i + 1, total);
         }
@@ -248,14 +262,17 @@ static status check_options(const film_options *o, fault *f)
                          "4096",
                          o->width, o->height);
     }
+
     if (o->frames_per_second < 1 || o->frames_per_second > 120) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "%d frames per second, expected 1 to 120",
                          o->frames_per_second);
     }
+
     if (!(o->seconds >= 0.1 && o->seconds <= 3600)) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a film of %g s, expected 0.1 to 3600",
                          o->seconds);
     }
+
     if (!(o->slow >= 1 && o->slow <= 1000)) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "the impact slowed down %g times, expected 1 to 1000", o->slow);
@@ -279,22 +296,28 @@ static film_options completed(const film_options *options)
 static status prepare(film *m, fault *f)
 {
     status code = check_options(&m->options, f);
+
     if (code == STATUS_OK && m->result->trace.row_count == 0) {
         code = fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw");
     }
     if (code != STATUS_OK) {
         return code;
     }
+
+    // the scene takes what the traces leave
     m->scene_width = (int)(m->options.width * (1 - TRACE_SHARE));
     const scene_options view = {.camera = m->options.camera,
                                 .renderer = m->options.renderer,
                                 .width = m->scene_width,
                                 .height = m->options.height};
+
     m->clock = film_clock_of(m->result, m->options.seconds, m->options.slow);
     code = scene_create(&m->scene, m->scenario, m->result, &view, f);
     if (code != STATUS_OK) {
         return code;
     }
+
+    // what the frames are made of
     m->report = calloc(1, sizeof *m->report);
     if (m->report == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
@@ -317,18 +340,21 @@ static void finish(film *m)
 
 static status record(film *m, const char *path, fault *f)
 {
+    // the same notes as a picture's
     char software[64], *values = parameters_line(m->scenario);
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     const png_note notes[] = {{"Title", m->scenario->title},
                               {"Software", software},
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(m->scene)}};
+
     const film_facts facts = {.width = m->options.width,
                               .height = m->options.height,
                               .frames_per_second = m->options.frames_per_second,
                               .notes = notes,
                               .note_count = 4};
     film_file *file;
+
     status code = film_file_open(&file, path, &facts, f);
     if (code == STATUS_OK) {
         code = add_frames(m, file, f);
@@ -345,6 +371,7 @@ static status record(film *m, const char *path, fault *f)
 status film_write(const scenario *s, const run_result *result, const film_options *options,
                   const char *path, fault *f)
 {
+    assert(s != NULL && result != NULL && options != NULL && path != NULL);
     film m = {.scenario = s, .result = result, .options = completed(options)};
     status code = prepare(&m, f);
     if (code == STATUS_OK) {

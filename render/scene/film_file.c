@@ -1,5 +1,6 @@
 #include "render/scene/film_file.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <dirent.h>
 #include <fcntl.h>
@@ -40,6 +41,7 @@ static film_kind kind_of(const char *path)
         const char *ending;
         film_kind kind;
     } known[] = {{".mp4", FILM_MP4}, {".webm", FILM_WEBM}, {".gif", FILM_GIF}};
+
     struct stat found;
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     for (size_t i = 0; dot != NULL && i < sizeof known / sizeof known[0]; i++) {
@@ -47,8 +49,9 @@ static film_kind kind_of(const char *path)
             return known[i].kind;
         }
     }
-    bool folder = stat(path, &found) == 0 && S_ISDIR(found.st_mode);
+
     // a name without an ending means a folder, as does one that is there
+    bool folder = stat(path, &found) == 0 && S_ISDIR(found.st_mode);
     return folder || dot == NULL || dot[1] == '\0' || dot[1] == '/' ? FILM_FRAMES : FILM_UNKNOWN;
 }
 
@@ -105,16 +108,20 @@ static status check_folder(const char *path, fault *f)
 
 status film_file_check(const char *path, fault *f)
 {
+    assert(path != NULL);
     film_kind kind = kind_of(path);
+
     if (kind == FILM_UNKNOWN || strcmp(path, "-") == 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "'%s' is no name for a film: expected one that ends in .mp4, .webm or "
                          ".gif, or a folder for PNG frames",
                          path);
     }
+
     if (kind == FILM_FRAMES) {
         return check_folder(path, f);
     }
+
     if (!has_ffmpeg()) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "%s needs the program ffmpeg, which is not installed: install the package "
@@ -162,6 +169,7 @@ static void add_notes(argument_list *list, const film_facts *facts)
             free(word);
             continue;
         }
+
         // the containers know few keys; a comment takes the parameters
         bool title = strcmp(note->keyword, "Title") == 0;
         bool parameters_note = strcmp(note->keyword, "Parameters") == 0;
@@ -171,6 +179,7 @@ static void add_notes(argument_list *list, const film_facts *facts)
             sprintf(word, "%s=%s",
                     strcmp(note->keyword, "Software") == 0 ? "artist" : "description", note->text);
         }
+
         add_word(list, "-metadata");
         add_word(list, word);
         free(word);
@@ -185,6 +194,7 @@ static void add_codec(argument_list *list, film_kind kind)
             "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset fast -crf 18 -threads 2 "
             "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 "
             "-movflags +faststart -f mp4",
+
         [FILM_WEBM] =
             "-vf scale=out_color_matrix=bt709 -c:v libvpx-vp9 -b:v 0 -crf 24 -deadline "
             "realtime -cpu-used 7 -row-mt 1 -threads 2 -pix_fmt yuv420p -colorspace bt709 "
@@ -202,15 +212,20 @@ static void add_codec(argument_list *list, film_kind kind)
 static void list_arguments(argument_list *list, const film_file *film)
 {
     char word[4096 + 8];
+
+    // raw frames from the pipe
     add_words(list, "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s");
     snprintf(word, sizeof word, "%dx%d", film->facts.width, film->facts.height);
     add_word(list, word);
     add_word(list, "-r");
     snprintf(word, sizeof word, "%d", film->facts.frames_per_second);
     add_word(list, word);
+
     add_words(list, "-i pipe:0 -an");
     add_codec(list, film->kind);
     add_notes(list, &film->facts);
+
+    // to the temporary, which is renamed once it is whole
     const char *target = film->file.temporary ? film->file.temporary : film->file.path;
     snprintf(word, sizeof word, "file:%s", target);
     add_word(list, word);
@@ -223,16 +238,20 @@ static status spawn(film_file *film, char **words, int input, fault *f)
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     sigset_t defaults;
+
+    // frames come in, complaints go to a file of ours
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, input, 0);
     posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, fileno(film->words), 2);
+
     // a group of its own: an interrupt of the terminal reaches us, and we end it in order
     posix_spawnattr_init(&attributes);
     sigemptyset(&defaults);
     sigaddset(&defaults, SIGPIPE);
     posix_spawnattr_setsigdefault(&attributes, &defaults);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
     int failed = posix_spawnp(&film->encoder, words[0], &actions, &attributes, words, environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
@@ -251,6 +270,7 @@ static status start_encoder(film_file *film, fault *f)
     status code = STATUS_NO_MEMORY;
     list_arguments(&list, film);
     film->words = tmpfile();
+
     if (list.out_of_memory) {
         fault_set(f, code, "no memory for a film");
     } else if (film->words == NULL ||
@@ -262,6 +282,7 @@ static status start_encoder(film_file *film, fault *f)
         close(ends[0]);
         film->pipe = ends[1];
     }
+
     for (int i = 0; i < list.count; i++) {
         free(list.words[i]);
     }
@@ -273,6 +294,8 @@ static bool end_encoder(film_file *film, char *said, size_t size)
 {
     int result = -1;
     said[0] = '\0';
+
+    // the end of the frames is what ends it
     if (film->pipe >= 0) {
         close(film->pipe);
         film->pipe = -1;
@@ -282,11 +305,12 @@ static bool end_encoder(film_file *film, char *said, size_t size)
         }
         film->encoder = 0;
     }
+
+    // what it complained about; the first complaint is the cause, later ones follow from it
     rewind(film->words);
     char line[512];
     while (fgets(line, sizeof line, film->words) != NULL) {
         line[strcspn(line, "\r\n")] = '\0';
-        // the first complaint is the cause, later ones follow from it
         if (said[0] == '\0') {
             snprintf(said, size, "%s", line);
         }
@@ -338,11 +362,13 @@ static void film_file_free(film_file *film)
 
 status film_file_open(film_file **out, const char *path, const film_facts *facts, fault *f)
 {
+    assert(out != NULL && path != NULL && facts != NULL && facts->width > 0 && facts->height > 0);
     *out = NULL;
     status code = film_file_check(path, f);
     if (code != STATUS_OK) {
         return code;
     }
+
     film_file *film = calloc(1, sizeof *film);
     if (film != NULL) {
         film->path = strdup(path);
@@ -351,6 +377,8 @@ status film_file_open(film_file **out, const char *path, const film_facts *facts
         free(film);
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
     }
+
+    // into a folder of frames, or through the encoder
     film->kind = kind_of(path);
     film->facts = *facts;
     film->pipe = -1;
@@ -384,11 +412,7 @@ static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
     }
     code =
         png_file_write(file.stream, frame, FRAME_DPI, film->facts.notes, film->facts.note_count, f);
-    if (code != STATUS_OK) {
-        whole_file_abandon(&file);
-        return code;
-    }
-    return whole_file_commit(&file, f);
+    return whole_file_close(&file, code, f);
 }
 
 bool film_file_wants_palette(const film_file *film)
@@ -398,10 +422,12 @@ bool film_file_wants_palette(const film_file *film)
 
 status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 {
+    assert(film != NULL && frame != NULL);
     status code = STATUS_OK;
     if (film->kind == FILM_FRAMES) {
         code = add_to_folder(film, frame, f);
     } else {
+        // row by row, as a surface's rows may be longer than the picture
         cairo_surface_flush(frame);
         const unsigned char *data = cairo_image_surface_get_data(frame);
         ptrdiff_t stride = cairo_image_surface_get_stride(frame);

@@ -1,5 +1,6 @@
 #include "render/scene/floor.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -26,13 +27,17 @@ static double line_cover(double place, double grid, double across)
 // Colour of the floor at (x, y) within its reach, a pixel being `wide` by `deep` there.
 static uint32_t floor_colour(const scene_floor *floor, double x, double y, double wide, double deep)
 {
+    // fades out towards its reach
     double away_x = x - floor->middle.x, away_y = y - floor->middle.y;
     double left = 1 - (away_x * away_x + away_y * away_y) / (floor->reach * floor->reach);
+
     double fade = left * sqrt(left), over_x = line_cover(x, floor->grid, wide);
     double over_y = line_cover(y, floor->grid, deep);
+
     // lines closer than a few pixels would only flicker
     double dense = fmin(1, fmax(0, floor->grid / fmax(wide, deep) / 6 - 0.5));
     double cover = dense * (1 - (1 - over_x) * (1 - over_y));
+
     uint32_t rgb = 0;
     for (int i = 0; i < 3; i++) {
         double own = ground[i] + cover * (line[i] - ground[i]);
@@ -50,14 +55,18 @@ typedef struct ray_field {
 static void paint_pixel(scene_floor *floor, const camera *c, const ray_field *rays, vector ray,
                         size_t at)
 {
+    // where the ray meets the floor
     double along = (floor->level - c->eye.z) / ray.z;
     double x = c->eye.x + along * ray.x, y = c->eye.y + along * ray.y;
     double away_x = x - floor->middle.x, away_y = y - floor->middle.y;
+
     // a ray towards the sky meets the floor behind the eye, and none beyond its reach is seen
     bool meets = ray.z < 0 && away_x * away_x + away_y * away_y < floor->reach * floor->reach;
     floor->x[at] = meets ? (float)x : 1e30F;
     floor->y[at] = meets ? (float)y : 1e30F;
     floor->ground[at] = 0xFFFFFF;
+
+    // how far a pixel reaches on the floor along both directions
     if (meets) {
         double slope_x = ray.x / ray.z, slope_y = ray.y / ray.z;
         const vector *r = &rays->right, *d = &rays->down;
@@ -83,8 +92,10 @@ static void paint_ground(scene_floor *floor, const camera *c)
 
 status scene_floor_init(scene_floor *floor, const camera *c, fault *f)
 {
+    assert(floor != NULL && c != NULL && floor->reach > 0);
     floor->width = (int)c->width;
     floor->height = (int)c->height;
+
     size_t pixels = (size_t)floor->width * (size_t)floor->height;
     floor->ground = malloc(pixels * sizeof *floor->ground);
     floor->x = malloc(pixels * sizeof *floor->x);
@@ -95,6 +106,8 @@ status scene_floor_init(scene_floor *floor, const camera *c, fault *f)
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
                          floor->width, floor->height);
     }
+
+    // the map of the shadow covers all of the floor
     floor->map_left = floor->middle.x - floor->reach;
     floor->map_low = floor->middle.y - floor->reach;
     floor->map_cell = 2 * floor->reach / MAP;
@@ -138,11 +151,14 @@ static void cast_shadow(scene_floor *floor, const mesh *m)
         cairo_image_surface_create_for_data(floor->mask, CAIRO_FORMAT_A8, MAP, MAP, MAP);
     cairo_t *cr = cairo_create(map);
     cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE);
+
     for (size_t i = 0; i + 2 < m->corner_count; i += 3) {
         // a closed solid's shadow is that of its lit side
         if (vector_dot(m->vertices[m->corners[i]].normal, floor->light) <= 0) {
             continue;
         }
+
+        // its corners, moved along the light onto the floor
         for (size_t k = 0; k < 3; k++) {
             vector p = m->vertices[m->corners[i + k]].place;
             double along = fmax(0, p.z - floor->level) / floor->light.z;
@@ -153,8 +169,11 @@ static void cast_shadow(scene_floor *floor, const mesh *m)
         cairo_close_path(cr);
         cairo_fill(cr);
     }
+
     cairo_destroy(cr);
     cairo_surface_destroy(map);
+
+    // a soft edge, as of a wide lamp
     for (int pass = 0; pass < BLUR_PASSES; pass++) {
         blur_turned(floor->mask, floor->spare);
         blur_turned(floor->spare, floor->mask);
@@ -185,10 +204,13 @@ static uint32_t darkened(uint32_t rgb, float shadow)
 
 void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
 {
+    assert(floor != NULL && m != NULL && onto != NULL);
     cast_shadow(floor, m);
+
     cairo_surface_flush(onto);
     unsigned char *data = cairo_image_surface_get_data(onto);
     ptrdiff_t stride = cairo_image_surface_get_stride(onto);
+
     for (int row = 0; row < floor->height; row++) {
         uint32_t *to = (uint32_t *)(void *)(data + row * stride);
         size_t at = (size_t)row * (size_t)floor->width;

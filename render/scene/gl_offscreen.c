@@ -1,5 +1,6 @@
 #include "render/scene/gl_offscreen.h"
 
+#include <assert.h>
 #include <dlfcn.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -156,6 +157,8 @@ static status open_osmesa(gl_offscreen *g, fault *f)
                                  3,
                                  0,
                                  0};
+
+    // the library, where it is installed
     void *(*create)(const int *, void *);
     g->handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
     if (g->handle == NULL) {
@@ -163,6 +166,8 @@ static status open_osmesa(gl_offscreen *g, fault *f)
                          "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose "
                          "--gl=egl or --gl=cairo");
     }
+
+    // a context of OpenGL 3.3 without a window
     if (!load(g->handle, "OSMesaCreateContextAttribs", &create) ||
         !load(g->handle, "OSMesaGetProcAddress", &g->find)) {
         return fault_set(f, STATUS_CANNOT_WRITE,
@@ -203,13 +208,15 @@ static void *egl_display(void *handle)
     void *(*get)(unsigned, void *, const void *);
     unsigned (*initialise)(void *, int *, int *);
     function_finder find;
+
     if (display != NULL || !load(handle, "eglGetProcAddress", &find) ||
         !load(handle, "eglInitialize", &initialise)) {
         return display;
     }
+
+    // a platform without windows; what Mesa has to say on the way is said by the fault
     any_function found = find("eglGetPlatformDisplayEXT");
     memcpy(&get, &found, sizeof found);
-    // what Mesa has to say on the way is said by the fault
     setenv("EGL_LOG_LEVEL", "fatal", 0);
     void *opened = get ? get(EGL_PLATFORM_SURFACELESS, NULL, NULL) : NULL;
     if (opened != NULL && initialise(opened, NULL, NULL)) {
@@ -230,6 +237,8 @@ static status open_egl(gl_offscreen *g, fault *f)
     void *(*create_context)(void *, void *, void *, const int *);
     void *(*create_surface)(void *, void *, const int *), *config;
     int count = 0;
+
+    // the library and its display
     g->handle = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
     if (g->handle == NULL) {
         return complain_egl(f, "is not installed (libEGL.so.1)");
@@ -238,6 +247,8 @@ static status open_egl(gl_offscreen *g, fault *f)
     if (g->display == NULL) {
         return complain_egl(f, "gives no display without a screen");
     }
+
+    // OpenGL and a configuration for small surfaces
     if (!load(g->handle, "eglBindAPI", &bind) || !load(g->handle, "eglChooseConfig", &choose) ||
         !load(g->handle, "eglCreateContext", &create_context) ||
         !load(g->handle, "eglCreatePbufferSurface", &create_surface) ||
@@ -245,6 +256,7 @@ static status open_egl(gl_offscreen *g, fault *f)
         !choose(g->display, config_wanted, &config, 1, &count) || count < 1) {
         return complain_egl(f, "knows no OpenGL");
     }
+
     g->surface = create_surface(g->display, config, surface_wanted);
     g->context = create_context(g->display, config, NULL, context_wanted);
     if (g->surface == NULL || g->context == NULL || !make_current(g)) {
@@ -295,6 +307,8 @@ static unsigned compile(gl_offscreen *g, unsigned kind, const char *text)
 static bool make_program(gl_offscreen *g)
 {
     int linked = 0;
+
+    // two shaders that hand on
     g->program = g->CreateProgram();
     unsigned vertex = compile(g, GL_VERTEX_SHADER,
                               "#version 330 core\n"
@@ -307,6 +321,8 @@ static bool make_program(gl_offscreen *g)
                                 "in vec4 shade;\n"
                                 "out vec4 pixel;\n"
                                 "void main() { pixel = shade; }\n");
+
+    // once linked the shaders are not needed
     g->LinkProgram(g->program);
     g->GetProgramiv(g->program, GL_LINK_STATUS, &linked);
     g->DeleteShader(vertex);
@@ -317,12 +333,15 @@ static bool make_program(gl_offscreen *g)
 
 static bool make_framebuffer(gl_offscreen *g)
 {
+    // colours of 8 bits
     g->GenFramebuffers(1, &g->framebuffer);
     g->BindFramebuffer(GL_FRAMEBUFFER, g->framebuffer);
     g->GenRenderbuffers(1, &g->colour);
     g->BindRenderbuffer(GL_RENDERBUFFER, g->colour);
     g->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, g->width, g->height);
     g->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, g->colour);
+
+    // and a depth buffer
     g->GenRenderbuffers(1, &g->depth);
     g->BindRenderbuffer(GL_RENDERBUFFER, g->depth);
     g->RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, g->width, g->height);
@@ -332,16 +351,20 @@ static bool make_framebuffer(gl_offscreen *g)
 
 static void make_buffers(gl_offscreen *g)
 {
+    // vertices and corners of one array
     g->GenVertexArrays(1, &g->vertex_array);
     g->BindVertexArray(g->vertex_array);
     g->GenBuffers(2, g->buffers);
     g->BindBuffer(GL_ARRAY_BUFFER, g->buffers[0]);
     g->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->buffers[1]);
+
+    // places and colours alternate
     g->EnableVertexAttribArray(0);
     g->EnableVertexAttribArray(1);
     g->VertexAttribPointer(0, 4, GL_FLOAT, 0, sizeof(gl_vertex), NULL);
     g->VertexAttribPointer(1, 4, GL_FLOAT, 0, sizeof(gl_vertex),
                            (const void *)offsetof(gl_vertex, colour));
+
     g->Enable(GL_DEPTH_TEST);
     g->Enable(GL_SCISSOR_TEST);
     g->ClearColor(0, 0, 0, 0);
@@ -351,14 +374,19 @@ static status set_up(gl_offscreen *g, fault *f)
 {
     status code = g->library == GL_OSMESA ? open_osmesa(g, f) : open_egl(g, f);
     const char *name = g->library == GL_OSMESA ? "OSMesa" : "EGL";
+
+    // a context with OpenGL's functions
     if (code != STATUS_OK) {
         return code;
     }
     if (!load_functions(g)) {
         return fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3.3", name);
     }
+
+    // what draws, as the picture's notes name it
     snprintf(g->renderer, sizeof g->renderer, "%s, %s, OpenGL %s", name,
              (const char *)g->GetString(GL_RENDERER), (const char *)g->GetString(GL_VERSION));
+
     if (!make_framebuffer(g) || !make_program(g)) {
         return fault_set(f, STATUS_CANNOT_WRITE, "%s cannot draw a picture of %d x %d pixels", name,
                          g->width, g->height);
@@ -369,6 +397,7 @@ static status set_up(gl_offscreen *g, fault *f)
 
 status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f)
 {
+    assert(out != NULL && width > 0 && height > 0);
     gl_offscreen *g = calloc(1, sizeof *g);
     *out = NULL;
     if (g == NULL) {
@@ -377,6 +406,8 @@ status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, in
     g->library = library;
     g->width = width;
     g->height = height;
+
+    // whatever was opened is closed by the destructor
     status code = set_up(g, f);
     if (code != STATUS_OK) {
         gl_offscreen_destroy(g);
@@ -391,6 +422,8 @@ void gl_offscreen_destroy(gl_offscreen *g)
     if (g == NULL) {
         return;
     }
+
+    // OpenGL's objects, as far as they were made
     bool current = g->context != NULL && make_current(g);
     if (current && g->vertex_array != 0) {
         g->DeleteVertexArrays(1, &g->vertex_array);
@@ -404,17 +437,20 @@ void gl_offscreen_destroy(gl_offscreen *g)
     if (current && g->program != 0) {
         g->DeleteProgram(g->program);
     }
+
     if (g->library == GL_OSMESA) {
         close_osmesa(g);
     } else {
         close_egl(g);
     }
+
     // the library stays: its threads may still be ending
     free(g);
 }
 
 const char *gl_offscreen_renderer(const gl_offscreen *g)
 {
+    assert(g != NULL);
     return g->renderer;
 }
 
@@ -422,18 +458,25 @@ status gl_offscreen_draw(gl_offscreen *g, const gl_vertex *vertices, size_t vert
                          const unsigned *corners, size_t corner_count, int x, int y, int width,
                          int height, uint32_t *pixels, fault *f)
 {
+    assert(g != NULL && vertices != NULL && corners != NULL && pixels != NULL);
     if (!make_current(g)) {
         return fault_set(f, STATUS_CANNOT_WRITE, "OpenGL's context is lost");
     }
+
+    // only the part of the picture that is wanted
     g->Viewport(0, 0, g->width, g->height);
     g->Scissor(x, y, width, height);
     g->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+
+    // triangles in, pixels out
     g->BufferData(GL_ARRAY_BUFFER, (ptrdiff_t)(vertex_count * sizeof *vertices), vertices,
                   GL_STREAM_DRAW);
     g->BufferData(GL_ELEMENT_ARRAY_BUFFER, (ptrdiff_t)(corner_count * sizeof *corners), corners,
                   GL_STREAM_DRAW);
     g->DrawElements(GL_TRIANGLES, (int)corner_count, GL_UNSIGNED_INT, NULL);
     g->ReadPixels(x, y, width, height, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, pixels);
+
+    // one question for all calls
     unsigned error = g->GetError();
     if (error != 0) {
         return fault_set(f, STATUS_CANNOT_WRITE, "OpenGL refused to draw (error 0x%x)", error);

@@ -1,5 +1,6 @@
 #include "render/scene/labels.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "render/page/text.h"
@@ -31,6 +32,8 @@ void labels_flash(const labels *l, vector place, double radius, double strength)
     enum { RAYS = 12 };
     vector at = camera_project(l->camera, place);
     double r = pixels_of(l->camera, place, radius) * (0.55 + 0.45 * strength);
+
+    // a glow that fades outward
     cairo_pattern_t *glow = cairo_pattern_create_radial(at.x, at.y, 0, at.x, at.y, r);
     cairo_pattern_add_color_stop_rgba(glow, 0, 1, 0.93, 0.65, 0.95 * strength);
     cairo_pattern_add_color_stop_rgba(glow, 0.3, 1, 0.75, 0.2, 0.6 * strength);
@@ -39,6 +42,8 @@ void labels_flash(const labels *l, vector place, double radius, double strength)
     cairo_arc(l->cr, at.x, at.y, r, 0, 2 * M_PI);
     cairo_fill(l->cr);
     cairo_pattern_destroy(glow);
+
+    // rays, long and short in turn
     cairo_set_line_width(l->cr, 1.6 * l->scale);
     cairo_set_line_cap(l->cr, CAIRO_LINE_CAP_ROUND);
     cairo_set_source_rgba(l->cr, 0.88, 0.5, 0.02, strength);
@@ -53,15 +58,20 @@ void labels_flash(const labels *l, vector place, double radius, double strength)
 void labels_force(const labels *l, vector from, vector end, double force, colour ink)
 {
     char text[48];
+
+    // text and its size
     double width, height, digits = force < 10 ? 2 : force < 100 ? 1 : 0;
     decimal_print(text, sizeof text, "%.*f\u2009N", (int)digits, force);
     const text_block t = {.markup = text, .size = TITLE_LETTERS * l->scale, .bold = true};
     text_measure(l->context, &t, &width, &height);
     vector start = camera_project(l->camera, from), tip = camera_project(l->camera, end);
     double dx = tip.x - start.x, dy = tip.y - start.y, length = fmax(1e-9, hypot(dx, dy));
+
     // beyond the arrow's point, the box touching a circle round it
     double x = tip.x + dx / length * (width / 2 + 8 * l->scale) - width / 2;
     double y = tip.y + dy / length * (height / 2 + 6 * l->scale) - height / 2;
+
+    // inside the picture
     x = fmin(fmax(x, 4), l->camera->width - width - 4);
     y = fmin(fmax(y, 4), l->camera->height - height - 4);
     draw_text(l, x, y, text, TITLE_LETTERS, true, ink);
@@ -69,6 +79,7 @@ void labels_force(const labels *l, vector from, vector end, double force, colour
 
 void labels_caption(const labels *l, const char *title, const char *facts)
 {
+    assert(l != NULL && title != NULL && facts != NULL);
     double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale;
     char *escaped = text_escape(title);
     draw_text(l, left, bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale, escaped,
@@ -78,25 +89,32 @@ void labels_caption(const labels *l, const char *title, const char *facts)
     g_free(escaped);
 }
 
+// "12.3 ms" in the letters of facts. Returns its width.
+static double print_instant(const labels *l, double time, char *text, size_t size, double *height)
+{
+    double width;
+    decimal_print(text, size, "%.1f\u2009ms", 1e3 * time);
+    const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
+    text_measure(l->context, &t, &width, height);
+    return width;
+}
+
 void labels_instants(const labels *l, const double *times, const colour *inks, int count)
 {
+    assert(l != NULL && times != NULL && inks != NULL && count > 0);
     double swatch = 26 * l->scale, step = FACT_LETTERS * 1.55 * l->scale;
     double bottom = l->camera->height - MARGIN * l->scale, width = 0, height = 0;
-    for (int i = 0; i < count; i++) {
-        char text[48];
-        decimal_print(text, sizeof text, "%.1f\u2009ms", 1e3 * times[i]);
-        const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
-        double own;
-        text_measure(l->context, &t, &own, &height);
-        width = fmax(width, own);
-    }
     double right = l->camera->width - MARGIN * l->scale;
+    char text[48];
+
+    // all swatches stand left of the widest text
     for (int i = 0; i < count; i++) {
-        char text[48];
-        double own, y = bottom - (count - i) * step;
-        decimal_print(text, sizeof text, "%.1f\u2009ms", 1e3 * times[i]);
-        const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
-        text_measure(l->context, &t, &own, &height);
+        width = fmax(width, print_instant(l, times[i], text, sizeof text, &height));
+    }
+
+    for (int i = 0; i < count; i++) {
+        double y = bottom - (count - i) * step;
+        double own = print_instant(l, times[i], text, sizeof text, &height);
         draw_text(l, right - own, y, text, FACT_LETTERS, false, ink_faint);
         set_colour(l->cr, inks[i]);
         cairo_rectangle(l->cr, right - width - 10 * l->scale - swatch,

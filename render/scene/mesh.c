@@ -1,5 +1,6 @@
 #include "render/scene/mesh.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -51,6 +52,7 @@ void mesh_clear(mesh *m)
 // Adds a vertex and returns its number.
 static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
 {
+    // grow by doubling
     if (m->vertex_count == m->vertex_capacity && !m->out_of_memory) {
         size_t capacity = m->vertex_capacity ? 2 * m->vertex_capacity : 4096;
         mesh_vertex *vertices = realloc(m->vertices, capacity * sizeof *vertices);
@@ -60,6 +62,7 @@ static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
             m->vertex_capacity = capacity;
         }
     }
+
     if (m->out_of_memory) {
         return 0;
     }
@@ -69,6 +72,7 @@ static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
 
 static void add_triangle(mesh *m, unsigned a, unsigned b, unsigned c)
 {
+    // grow by doubling
     if (m->corner_count + 3 > m->corner_capacity && !m->out_of_memory) {
         size_t capacity = m->corner_capacity ? 2 * m->corner_capacity : 12288;
         unsigned *corners = realloc(m->corners, capacity * sizeof *corners);
@@ -78,6 +82,7 @@ static void add_triangle(mesh *m, unsigned a, unsigned b, unsigned c)
             m->corner_capacity = capacity;
         }
     }
+
     if (m->out_of_memory) {
         return;
     }
@@ -108,20 +113,26 @@ static void frame_of(vector axis, vector *across, vector *other)
 void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of)
 {
     vector across, other;
+    assert(m != NULL && rings != NULL && count > 1);
     frame_of(axis, &across, &other);
+
+    // one ring of quadrilaterals between each circle and the next
     for (int k = 0; k + 1 < count; k++) {
         const lathe_ring *low = &rings[k], *high = &rings[k + 1];
         // the normal of a cone's flank leans against its taper
         double rise = high->along - low->along, taper = low->radius - high->radius;
         unsigned before_low = 0, before_high = 0;
+
         for (int i = 0; i <= LATHE_SIDES; i++) {
             double angle = 2 * M_PI * i / LATHE_SIDES;
             vector out = vector_sum(vector_scaled(across, cos(angle)), sin(angle), other);
             vector normal = vector_unit(vector_sum(vector_scaled(out, rise), taper, axis));
+
             vector foot = vector_sum(base, low->along, axis);
             vector head = vector_sum(base, high->along, axis);
             unsigned at_low = add_vertex(m, vector_sum(foot, low->radius, out), normal, of);
             unsigned at_high = add_vertex(m, vector_sum(head, high->radius, out), normal, of);
+
             if (i > 0) {
                 add_triangle(m, before_low, at_low, at_high);
                 add_triangle(m, before_low, at_high, before_high);
@@ -144,6 +155,8 @@ static void add_face(mesh *m, vector centre, vector out, vector u, vector v, dou
 {
     int across = cells_along(u, cell), down = cells_along(v, cell);
     vector middle = vector_add(centre, out), normal = vector_unit(out);
+
+    // one quadrilateral a cell: light is computed at vertices alone
     for (int i = 0; i < across; i++) {
         for (int j = 0; j < down; j++) {
             static const int di[] = {0, 1, 1, 0}, dj[] = {0, 0, 1, 1};
@@ -215,7 +228,10 @@ static void cap_ribbon(mesh *m, const section *s, vector place, vector along, bo
 void mesh_ribbon(mesh *m, const vector *places, int count, double height, double thickness,
                  material of)
 {
+    assert(m != NULL && places != NULL && count > 0);
     const section s = broken_rectangle(thickness, height);
+
+    // edge by edge, as each has a normal of its own
     for (int edge = 0; edge < 8; edge++) {
         unsigned before_low = 0, before_high = 0;
         for (int i = 0; i < count; i++) {
@@ -225,6 +241,7 @@ void mesh_ribbon(mesh *m, const vector *places, int count, double height, double
             unsigned low = add_vertex(m, section_point(&s, edge, places[i], across), normal, of);
             unsigned high =
                 add_vertex(m, section_point(&s, (edge + 1) % 8, places[i], across), normal, of);
+
             if (i > 0) {
                 add_triangle(m, before_low, high, low);
                 add_triangle(m, before_low, before_high, high);
@@ -233,6 +250,8 @@ void mesh_ribbon(mesh *m, const vector *places, int count, double height, double
             before_high = high;
         }
     }
+
+    // the ends
     if (count > 1) {
         cap_ribbon(m, &s, places[0], direction_at(places, count, 0), false, of);
         cap_ribbon(m, &s, places[count - 1], direction_at(places, count, count - 1), true, of);
@@ -241,10 +260,13 @@ void mesh_ribbon(mesh *m, const vector *places, int count, double height, double
 
 void mesh_tube(mesh *m, const vector *places, const material *of, int count, double radius)
 {
+    assert(m != NULL && places != NULL && of != NULL);
     unsigned before = 0;
     for (int i = 0; i < count; i++) {
         vector across, other;
         frame_of(direction_at(places, count, i), &across, &other);
+
+        // a circle of vertices
         unsigned first = 0;
         for (int k = 0; k <= TUBE_SIDES; k++) {
             double angle = 2 * M_PI * k / TUBE_SIDES;
@@ -252,6 +274,8 @@ void mesh_tube(mesh *m, const vector *places, const material *of, int count, dou
             unsigned at = add_vertex(m, vector_sum(places[i], radius, out), out, of[i]);
             first = k == 0 ? at : first;
         }
+
+        // joined with the circle before
         for (unsigned k = 0; k < TUBE_SIDES && i > 0; k++) {
             add_triangle(m, before + k, first + k + 1, first + k);
             add_triangle(m, before + k, before + k + 1, first + k + 1);

@@ -1,5 +1,6 @@
 #include "render/scene/painter.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -27,6 +28,7 @@ struct scene_painter {
 
 bool scene_renderer_find(const char *name, scene_renderer *which)
 {
+    assert(name != NULL && which != NULL);
     static const char *const names[] = {"auto", "osmesa", "egl", "cairo"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strcmp(names[i], name) == 0) {
@@ -48,12 +50,15 @@ static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
 {
     int width = SAMPLES * p->width, height = SAMPLES * p->height;
     status code = STATUS_OK;
+
+    // OSMesa is tried first: it needs no driver
     if (which == RENDER_OSMESA || which == RENDER_AUTO) {
         code = gl_offscreen_create(&p->gl, GL_OSMESA, width, height, f);
     }
     if (which == RENDER_EGL || (which == RENDER_AUTO && p->gl == NULL)) {
         code = gl_offscreen_create(&p->gl, GL_EGL, width, height, f);
     }
+
     if (p->gl != NULL) {
         snprintf(p->name, sizeof p->name, "%s", gl_offscreen_renderer(p->gl));
         return STATUS_OK;
@@ -61,6 +66,8 @@ static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
     if (which != RENDER_AUTO && which != RENDER_CAIRO) {
         return code;
     }
+
+    // drawing by hand needs only memory for the depths
     snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer", cairo_version_string());
     p->depths = malloc((size_t)width * (size_t)height * sizeof *p->depths);
     return p->depths ? STATUS_OK : complain_memory(p, f);
@@ -69,6 +76,7 @@ static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
 status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
                             fault *f)
 {
+    assert(out != NULL && width > 0 && height > 0);
     scene_painter *p = calloc(1, sizeof *p);
     *out = NULL;
     if (p != NULL) {
@@ -76,11 +84,13 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
         p->height = height;
         p->samples = malloc((size_t)width * (size_t)height * SAMPLES * SAMPLES * sizeof(uint32_t));
     }
+
     if (p == NULL || p->samples == NULL) {
         scene_painter_destroy(p);
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width,
                          height);
     }
+
     status code = open_renderer(p, which, f);
     if (code != STATUS_OK) {
         scene_painter_destroy(p);
@@ -103,6 +113,7 @@ void scene_painter_destroy(scene_painter *p)
 
 const char *scene_painter_name(const scene_painter *p)
 {
+    assert(p != NULL);
     return p->name;
 }
 
@@ -164,6 +175,8 @@ static region project(scene_painter *p, const mesh *m, const camera *c, vector l
 {
     double left = p->width, right = 0, top = p->height, bottom = 0;
     double span = c->farthest - c->nearest;
+
+    // vertices in OpenGL's clip coordinates, lit
     for (size_t i = 0; i < m->vertex_count; i++) {
         vector at = camera_project(c, m->vertices[i].place);
         gl_vertex *v = &p->vertices[i];
@@ -174,11 +187,15 @@ static region project(scene_painter *p, const mesh *m, const camera *c, vector l
             (float)(((c->farthest + c->nearest) * at.z - 2 * c->farthest * c->nearest) / span);
         v->place[3] = (float)at.z;
         light_vertex(&m->vertices[i], c, light, v->colour);
+
+        // the box round all of them
         left = fmin(left, at.x);
         right = fmax(right, at.x);
         top = fmin(top, at.y);
         bottom = fmax(bottom, at.y);
     }
+
+    // whole pixels within the picture
     int x = (int)fmax(0, floor(left)), y = (int)fmax(0, floor(top));
     int x_end = (int)fmin(p->width, ceil(right)), y_end = (int)fmin(p->height, ceil(bottom));
     return (region){x, y, x_end - x, y_end - y};
@@ -220,6 +237,7 @@ static int bounded(float value, int most)
 static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_vertex *const v[3],
                           int width, int height)
 {
+    // barycentric shares, colour and depth change linearly over the picture
     ramp share[3], depth, tint[3];
     for (int k = 0; k < 3; k++) {
         share[k] = ramp_of(t, k == 0, k == 1, k == 2);
@@ -227,14 +245,18 @@ static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_ver
     }
     depth = ramp_of(t, v[0]->place[2] / v[0]->place[3], v[1]->place[2] / v[1]->place[3],
                     v[2]->place[2] / v[2]->place[3]);
+
+    // the rows and columns that it may touch
     int top = bounded(fminf(t->y[0], fminf(t->y[1], t->y[2])), height);
     int bottom = bounded(fmaxf(t->y[0], fmaxf(t->y[1], t->y[2])) + 1, height);
     int left = bounded(fminf(t->x[0], fminf(t->x[1], t->x[2])), width);
     int right = bounded(fmaxf(t->x[0], fmaxf(t->x[1], t->x[2])) + 1, width);
+
     for (int row = top; row < bottom; row++) {
         ptrdiff_t at = (ptrdiff_t)row * width + left;
         float y = (float)row + 0.5F;
         for (int column = left; column < right; column++, at++) {
+            // inside, and nearer than what is there
             float x = (float)column + 0.5F, z = ramp_at(depth, x, y);
             if (ramp_at(share[0], x, y) >= 0 && ramp_at(share[1], x, y) >= 0 &&
                 ramp_at(share[2], x, y) >= 0 && z < p->depths[at]) {
@@ -252,13 +274,19 @@ static void paint_by_hand(scene_painter *p, const mesh *m, region r)
 {
     int width = SAMPLES * r.width, height = SAMPLES * r.height;
     size_t count = (size_t)width * (size_t)height;
+
+    // empty, and farther than everything
     memset(p->samples, 0, count * sizeof *p->samples);
     for (size_t i = 0; i < count; i++) {
         p->depths[i] = 2;
     }
+
+    // triangle by triangle
     for (size_t i = 0; i + 2 < m->corner_count; i += 3) {
         const gl_vertex *v[3];
         flat_triangle t;
+
+        // corners in samples of the region
         for (size_t k = 0; k < 3; k++) {
             v[k] = &p->vertices[m->corners[i + k]];
             const float *at = v[k]->place;
@@ -266,6 +294,8 @@ static void paint_by_hand(scene_painter *p, const mesh *m, region r)
             t.y[k] =
                 (at[1] / at[3] + 1) * (float)(p->height * SAMPLES) / 2 - (float)(SAMPLES * r.y);
         }
+
+        // those seen edge-on cover nothing
         t.twice_area =
             (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
         if (fabsf(t.twice_area) > 1e-6F) {
@@ -277,6 +307,7 @@ static void paint_by_hand(scene_painter *p, const mesh *m, region r)
 // Two channels at once: the mean of four samples over what was there before.
 static uint32_t mean_over(const uint32_t *upper, const uint32_t *lower, uint32_t before)
 {
+    // two channels at a time, with room for the sum of four
     const uint32_t pair = 0x00FF00FF, half = 0x00020002;
     uint32_t even =
         (((upper[0] & pair) + (upper[1] & pair) + (lower[0] & pair) + (lower[1] & pair) + half) >>
@@ -286,6 +317,8 @@ static uint32_t mean_over(const uint32_t *upper, const uint32_t *lower, uint32_t
                      (lower[1] >> 8 & pair) + half) >>
                     2) &
                    pair;
+
+    // of what lies below only as much as the samples let through
     uint32_t left = 255 - (odd >> 16); // what the samples let through
     if (left == 255) {
         return before;
@@ -313,14 +346,19 @@ static void lay_over(const scene_painter *p, region r, cairo_surface_t *onto)
 status scene_painter_paint(scene_painter *p, const mesh *m, const camera *c, vector light,
                            cairo_surface_t *onto, fault *f)
 {
+    assert(p != NULL && m != NULL && c != NULL && onto != NULL);
     status code = make_room(p, m, f);
     if (code != STATUS_OK) {
         return code;
     }
+
+    // only the part of the picture that holds something
     region r = project(p, m, c, light);
     if (r.width <= 0 || r.height <= 0) {
         return STATUS_OK;
     }
+
+    // samples, by OpenGL or by hand
     if (p->gl != NULL) {
         code = gl_offscreen_draw(p->gl, p->vertices, m->vertex_count, m->corners, m->corner_count,
                                  SAMPLES * r.x, SAMPLES * r.y, SAMPLES * r.width,
@@ -328,6 +366,7 @@ status scene_painter_paint(scene_painter *p, const mesh *m, const camera *c, vec
     } else {
         paint_by_hand(p, m, r);
     }
+
     if (code == STATUS_OK) {
         lay_over(p, r, onto);
     }

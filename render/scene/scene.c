@@ -98,6 +98,8 @@ static vector at_angle(double angle, double x, double y, double z)
 static void build_hub(scene *sc, double angle)
 {
     const double l = sc->length, edge = 0.006 * l;
+
+    // solids of revolution, from the floor up
     const vector up = {0, 0, 1};
     const lathe_ring motor[] = {{FLOOR_LEVEL * l, MOTOR_RADIUS * l * 1.25},
                                 {FLOOR_LEVEL * l + 2 * edge, MOTOR_RADIUS * l * 1.25},
@@ -113,10 +115,12 @@ static void build_hub(scene *sc, double angle)
                               {HUB_TOP * l, 0.020 * l},
                               {(HUB_TOP + 0.012) * l, 0.018 * l},
                               {(HUB_TOP + 0.012) * l, 0}};
+
     mesh_lathe(&sc->mesh, (vector){0}, up, motor, 6, motor_case);
     mesh_lathe(&sc->mesh, (vector){0, 0, -0.066 * l}, up,
                (lathe_ring[]){{0, 0.03 * l}, {0.014 * l, 0.03 * l}}, 2, pin_steel);
     mesh_lathe(&sc->mesh, (vector){0}, up, hub, 8, hub_steel);
+
     // the jaws that hold the beam
     for (int side = -1; side <= 1; side += 2) {
         mesh_box(&sc->mesh, at_angle(angle, 0.078 * l, side * 0.014 * l, 0),
@@ -129,6 +133,7 @@ static void build_wall(scene *sc)
 {
     const wall_parameters *w = &sc->scenario->parameters.wall;
     const double l = sc->length, floor_z = FLOOR_LEVEL * l;
+
     if (w->kind == WALL_POINT) {
         double off = (PIN_RADIUS + BEAM_THICKNESS / 2) * l, r = PIN_RADIUS * l, top = PIN_TOP * l;
         vector foot = at_angle(w->angle, l, off, 0);
@@ -140,6 +145,7 @@ static void build_wall(scene *sc)
                                     {top, 0.7 * r},
                                     {top, 0}};
         mesh_lathe(&sc->mesh, foot, (vector){0, 0, 1}, rings, 7, pin_steel);
+
     } else if (w->kind == WALL_PLANE) {
         double off = (SLAB_THICKNESS / 2 + BEAM_THICKNESS / 2) * l;
         double half = (SLAB_TO - SLAB_FROM) / 2 * l, rise = (SLAB_TOP * l - floor_z) / 2;
@@ -175,9 +181,12 @@ static void build_arm(scene *sc, double time, double pale)
     vector start, end;
     sample row = scene_joints(&sc->result->trace, &sc->scenario->parameters, time, sc->joints);
     int count = scene_curve(sc->joints, sc->links, sc->curve);
+
     // where several arms lie in one place the latest is the outermost
     mesh_ribbon(&sc->mesh, sc->curve, count, BEAM_HEIGHT * l * (1 - 0.04 * pale),
                 BEAM_THICKNESS * l * (1 - 0.2 * pale), paler(beam_steel, pale));
+
+    // the wall's force
     if (force_arrow(sc, &row, &start, &end)) {
         vector along = vector_sum(end, -1, start);
         mesh_arrow(&sc->mesh, start, vector_unit(along), sqrt(vector_dot(along, along)),
@@ -191,18 +200,21 @@ static void build_trail(scene *sc, double from, double time)
     const trace *t = &sc->result->trace;
     const parameters *p = &sc->scenario->parameters;
     int count = 0;
+
     for (int i = 0; i < TRAIL_POINTS; i++) {
         double share = (double)i / (TRAIL_POINTS - 1);
         scene_joints(t, p, between(from, time, share), sc->joints);
         vector tip = sc->joints[sc->links];
         tip.z = BEAM_HEIGHT / 2 * sc->length;
         vector step = vector_sum(tip, -1, sc->trail[count > 0 ? count - 1 : 0]);
+
         // a tip at rest leaves one point, not a knot of them
         if (count == 0 || vector_dot(step, step) > 1e-6 * sc->length * sc->length) {
             sc->trail[count] = tip;
             sc->trail_of[count++] = paler(trail_paint, 0.85 * (1 - share) * (1 - share));
         }
     }
+
     if (count > 1) {
         mesh_tube(&sc->mesh, sc->trail, sc->trail_of, count, TRAIL_RADIUS * sc->length);
     }
@@ -217,16 +229,22 @@ static int extent(scene *sc, vector *points)
     const parameters *p = &sc->scenario->parameters;
     const double l = sc->length, low = FLOOR_LEVEL * l, high = PIN_TOP * l;
     int count = 0;
+
+    // the motor
     for (int i = 0; i < 8; i++) {
         vector rim = at_angle(i * M_PI / 4, 1.1 * MOTOR_RADIUS * l, 0, i % 2 ? low : high);
         points[count++] = rim;
     }
+
+    // wherever the tip comes
     for (int i = 0; i < EXTENT_ROWS; i++) {
         double time = t->rows[t->row_count - 1].time * i / (EXTENT_ROWS - 1);
         scene_joints(t, p, time, sc->joints);
         points[count] = sc->joints[sc->links];
         points[count++].z = i % 2 ? -BEAM_HEIGHT / 2 * l : BEAM_HEIGHT / 2 * l;
     }
+
+    // the wall, and the longest arrow
     if (p->wall.kind != WALL_NONE) {
         bool slab = p->wall.kind == WALL_PLANE;
         double from = slab ? SLAB_FROM : 0.96, to = slab ? SLAB_TO : 1.05;
@@ -267,10 +285,13 @@ static status set_view(scene *sc, fault *f)
 {
     vector points[EXTENT_POINTS], low = {HUGE_VAL, HUGE_VAL, 0}, high = {-HUGE_VAL, -HUGE_VAL, 0};
     int count = extent(sc, points);
+
     // text stands below the picture
     camera_window window = {0.05, 0.05, 0.95, sc->options.plain ? 0.95 : 0.88};
     sc->camera = camera_fit(sc->options.camera, heading(sc), points, count, sc->options.width,
                             sc->options.height, window);
+
+    // a lamp to the left of who looks
     for (int i = 0; i < count; i++) {
         low = (vector){fmin(low.x, points[i].x), fmin(low.y, points[i].y), 0};
         high = (vector){fmax(high.x, points[i].x), fmax(high.y, points[i].y), 0};
@@ -278,6 +299,8 @@ static status set_view(scene *sc, fault *f)
     vector right = sc->camera.right, toward = {right.y, -right.x, 0};
     vector lamp = vector_sum(vector_scaled(right, -0.50), 0.32, toward);
     sc->light = vector_unit(vector_sum(lamp, 0.95, (vector){0, 0, 1}));
+
+    // the floor, as far as its middle and beyond
     sc->floor =
         (scene_floor){.level = FLOOR_LEVEL * sc->length,
                       .grid = sc->grid,
@@ -309,17 +332,22 @@ static status prepare(scene *sc, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
+    // room for one shape
     sc->joints = malloc(((size_t)sc->links + 1) * sizeof *sc->joints);
     sc->curve = malloc((size_t)scene_curve_length(sc->links) * sizeof *sc->curve);
     if (sc->joints == NULL || sc->curve == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d links", sc->links);
     }
+
+    // arrows and flashes are drawn relative to the largest force and impulse
     for (size_t i = 0; i < t->row_count; i++) {
         sc->largest = fmax(sc->largest, t->rows[i].force);
     }
     for (size_t i = 0; i < t->event_count; i++) {
         sc->impulse = fmax(sc->impulse, t->events[i].impulse);
     }
+
     sc->context = text_context_create();
     code = set_view(sc, f);
     return code == STATUS_OK ? scene_painter_create(&sc->painter, sc->options.renderer,
@@ -336,16 +364,20 @@ status scene_create(scene **out, const scenario *s, const run_result *result,
     if (sc == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene");
     }
+
     sc->scenario = s;
     sc->result = result;
     sc->options = *options;
+
     if (options->width == 0 && options->height == 0) {
         sc->options.width = 1280;
         sc->options.height = 720;
     }
+
     sc->links = s->parameters.arm.links;
     sc->length = s->parameters.arm.length;
     sc->grid = grid_of(sc->length);
+
     status code = prepare(sc, f);
     if (code != STATUS_OK) {
         scene_destroy(sc);
@@ -400,12 +432,16 @@ static void draw_labels(scene *sc, const double *times, const colour *inks, int 
     double time = times[count - 1];
     vector start, end;
     draw_flashes(sc, &l, time);
+
+    // what a plain scene goes without
     if (!sc->options.plain) {
         char facts[160];
         sample row = scene_joints(&sc->result->trace, &sc->scenario->parameters, time, sc->joints);
+
         if (force_arrow(sc, &row, &start, &end)) {
             labels_force(&l, start, end, row.force, (colour){0.70, 0.28, 0});
         }
+
         decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m",
                       1e3 * time, sc->grid);
         labels_caption(&l, sc->scenario->title, facts);
@@ -420,17 +456,22 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
 {
     assert(sc != NULL && times != NULL && count > 0 && onto != NULL);
     colour inks[SCENE_INSTANTS];
+
+    // every instant's arm, the last one full
     mesh_clear(&sc->mesh);
     for (int i = 0; i < count; i++) {
         double pale = count > 1 ? PALEST * (count - 1 - i) / (count - 1) : 0;
         inks[i] = paler(beam_steel, pale).colour;
         build_arm(sc, times[i], pale);
     }
+
+    // what does not move
     sample last =
         scene_joints(&sc->result->trace, &sc->scenario->parameters, times[count - 1], sc->joints);
     build_hub(sc, last.hub_angle);
     build_wall(sc);
     scene_floor_paint(&sc->floor, &sc->mesh, onto);
+
     // the trail hovers and throws no shadow
     build_trail(sc, sc->result->trace.rows[0].time, times[count - 1]);
     status code = scene_painter_paint(sc->painter, &sc->mesh, &sc->camera, sc->light, onto, f);
@@ -444,6 +485,7 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
 
 status scene_check_path(const char *path, fault *f)
 {
+    assert(path != NULL);
     if (picture_format_of(path) != FORMAT_PNG || strchr(path, '.') == NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "'%s' is no name for a scene: expected one that ends in .png", path);
@@ -454,10 +496,12 @@ status scene_check_path(const char *path, fault *f)
 static status check_instants(const run_result *result, const double *times, int count, fault *f)
 {
     const trace *t = &result->trace;
+
     if (count < 1 || count > SCENE_INSTANTS) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a scene of %d instants, expected 1 to %d", count,
                          SCENE_INSTANTS);
     }
+
     for (int i = 0; i < count; i++) {
         double end = t->row_count > 0 ? t->rows[t->row_count - 1].time : 0;
         if (!(times[i] >= 0 && !instant_after(times[i], end))) {
@@ -478,14 +522,11 @@ static status write_surface(const scene *sc, cairo_surface_t *surface, const cha
                               {"Software", software},
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(sc)}};
+
     status code = whole_file_open(&file, path, f);
     if (code == STATUS_OK) {
         code = png_file_write(file.stream, surface, PICTURE_DPI, notes, 4, f);
-        if (code == STATUS_OK) {
-            code = whole_file_commit(&file, f);
-        } else {
-            whole_file_abandon(&file);
-        }
+        code = whole_file_close(&file, code, f);
     }
     g_free(values);
     return code;
@@ -496,6 +537,7 @@ status scene_write(const scenario *s, const run_result *result, const scene_opti
 {
     assert(s != NULL && result != NULL && times != NULL && path != NULL);
     scene *sc;
+
     status code = scene_check_path(path, f);
     if (code == STATUS_OK) {
         code = check_instants(result, times, count, f);
@@ -506,6 +548,7 @@ status scene_write(const scenario *s, const run_result *result, const scene_opti
     if (code != STATUS_OK) {
         return code;
     }
+
     cairo_surface_t *surface =
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, sc->options.width, sc->options.height);
     code = scene_paint(sc, times, count, surface, f);

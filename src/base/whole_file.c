@@ -298,3 +298,12 @@ void whole_file_abandon(whole_file *w)
     free(w->temporary);
     memset(w, 0, sizeof *w);
 }
+
+status whole_file_close(whole_file *w, status written, fault *f)
+{
+    if (written != STATUS_OK) {
+        whole_file_abandon(w);
+        return written;
+    }
+    return whole_file_commit(w, f);
+}

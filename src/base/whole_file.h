@@ -31,6 +31,10 @@ status whole_file_commit(whole_file *w, fault *f);
 // Gives up: the target stays as it was. Closes w.
 void whole_file_abandon(whole_file *w);
 
+// Commits w if what was written succeeded (`written` is STATUS_OK), otherwise abandons it and
+// returns `written`. Closes w in either case.
+status whole_file_close(whole_file *w, status written, fault *f);
+
 // Removes the temporaries of all files that are open just now. Safe in a signal handler that is
 // about to end the program.
 void whole_file_remove_unfinished(void);

@@ -18,11 +18,8 @@ static int write_csv(const sweep_order *o, sweep_store *store)
     if (whole_file_open(&file, o->arguments->csv, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    if (sweep_store_csv(store, file.stream, &f) != STATUS_OK) {
-        whole_file_abandon(&file);
-        return complain_fault(&f);
-    }
-    return whole_file_commit(&file, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    const status code = whole_file_close(&file, sweep_store_csv(store, file.stream, &f), &f);
+    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
 static int write_plot(const sweep_order *o, const double *values)
