@@ -6,12 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/instant.h"
 #include "src/rig/rig.h"
 #include "src/run/resume.h"
 #include "src/session/cursor.h"
 #include "src/session/session_run.h"
 
-#define BEFORE_EVENT 1e-9 // how much before an event a change at the row before it takes effect [s]
+#define BEFORE_EVENT 1e-7 // how much before an event a change at the row before it takes effect [s]
 
 // The row shown, to which undoing returns.
 static void remember_cursor(const session *s, session_input *in)
@@ -37,15 +38,15 @@ static double effect_time(const session *s)
 {
     const trace *t = &s->run.trace;
     const double now = s->now;
-    if (s->row + 1 >= t->row_count || t->rows[s->row].time != now ||
-        t->rows[s->row + 1].time != now) {
+    if (s->row + 1 >= t->row_count || !same_instant(t->rows[s->row].time, now) ||
+        !same_instant(t->rows[s->row + 1].time, now)) {
         return now;
     }
 
     // two rows at one instant: an event, and the one before it is shown
-    for (size_t i = 0; i < t->event_count && t->events[i].time <= now; i++) {
+    for (size_t i = 0; i < t->event_count; i++) {
         const event_kind kind = t->events[i].kind;
-        if (t->events[i].time == now && kind != EVENT_CHANGE && kind != EVENT_PUSH) {
+        if (same_instant(t->events[i].time, now) && kind != EVENT_CHANGE && kind != EVENT_PUSH) {
             double before = s->row > 0 ? t->rows[s->row - 1].time : 0;
             return fmax(now - BEFORE_EVENT, (before + now) / 2);
         }

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/instant.h"
+
 action_result act_read_number(const char *text, double *value)
 {
     assert(text != NULL && value != NULL);
@@ -137,7 +139,8 @@ action_result act_step_touch(explorer_state *st, const char *argument)
             continue;
         }
         size_t before = trace_row_at(t, e->time);
-        while (before > 0 && (t->rows[before].time >= e->time) && t->rows[before].contact != 0) {
+        while (before > 0 && (same_instant(t->rows[before - 1].time, e->time) ||
+                              (t->rows[before].contact != 0 && t->rows[before].time >= e->time))) {
             before--;
         }
         if (t->rows[before].contact == 0 && (back ? before < row : before > row)) {
