@@ -48,21 +48,26 @@ static int film_run(const arguments *a, const scenario *s, const run_result *res
     struct sigaction caught = {.sa_handler = catch_signal}, old[2];
     bool bar = isatty(STDERR_FILENO) && !a->quiet;
     o->progress = bar ? show_progress : NULL;
+
+    // a signal ends the film, not the program: no half file stays
     sigemptyset(&caught.sa_mask);
     sigaction(SIGINT, &caught, &old[0]);
     sigaction(SIGTERM, &caught, &old[1]);
     status code = film_write(s, result, o, a->output, &f);
     sigaction(SIGINT, &old[0], NULL);
     sigaction(SIGTERM, &old[1], NULL);
+
     if (bar) {
         fprintf(stderr, "\r%78s\r", "");
     }
+
     if (code == STATUS_OK) {
         if (!a->quiet) {
             printf("%s: %s\n", s->name, a->output);
         }
         return EXIT_DONE;
     }
+
     int exit_status = complain_fault(&f);
     return signal_caught != 0 ? 128 + signal_caught : exit_status;
 }

@@ -69,11 +69,13 @@ static int read_number(const option_row *o, const char *text, double *value)
     const char *rest;
     const char *space = o->unit != NULL ? " " : "", *unit = o->unit != NULL ? o->unit : "";
     double number;
+
     if (decimal_read(text, &number, &rest) && *rest == '\0' && number >= o->low &&
         number <= o->high) {
         *value = number;
         return EXIT_DONE;
     }
+
     if (isinf(o->high)) {
         return complain("--%s %s: expected a number from %g%s%s", o->name, text, o->low, space,
                         unit);
@@ -91,6 +93,7 @@ static int read_length(const option_row *o, const char *text, double *value)
     } units[] = {{"", 1}, {"mm", 1}, {"cm", 10}, {"in", 25.4}, {"pt", 25.4 / 72}};
     const char *rest;
     double number;
+
     if (decimal_read(text, &number, &rest)) {
         for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
             double mm = number * units[i].mm;
@@ -100,6 +103,7 @@ static int read_length(const option_row *o, const char *text, double *value)
             }
         }
     }
+
     return complain("--%s %s: expected a length from %gmm to %gmm, such as 85mm, 8.5cm or 3.35in",
                     o->name, text, o->low, o->high);
 }
@@ -222,14 +226,18 @@ static int complain_option(const command *self, int found, const char *text)
 {
     char shown[96];
     const option_row *o;
+
     if (found == ':') {
         return complain("option %s needs a value (see impactlab %s --help)", text, self->name);
     }
+
+    // the nearest option is offered
     snprintf(shown, sizeof shown, "%.*s", (int)strcspn(text, "="), text);
     nearest_word near = nearest_begin(shown + strspn(shown, "-"));
     for (int i = 0; (o = command_option(self, i)) != NULL; i++) {
         nearest_try(&near, o->name);
     }
+
     if (near.best != NULL && near.distance > 0) {
         return complain("%s has no option %s, did you mean --%s?", self->name, shown, near.best);
     }
@@ -242,13 +250,16 @@ static void option_lists(const command *self, struct option *longs, char *shorts
     const option_row *o;
     // the colon makes getopt tell a missing value from an unknown option
     *shorts++ = ':';
+
     for (int i = 0; (o = command_option(self, i)) != NULL; i++) {
         int takes_value = o->type != OPTION_FLAG;
         assert(i < COMMAND_OPTIONS && (o->value != NULL) == (takes_value != 0));
+
         *longs++ = (struct option){o->name, takes_value, NULL, ROW_VALUE + i};
         if (o->alias != NULL) {
             *longs++ = (struct option){o->alias, takes_value, NULL, ROW_VALUE + i};
         }
+
         if (o->letter != 0) {
             *shorts++ = o->letter;
             if (takes_value) {
@@ -313,6 +324,7 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
     char shorts[2 * COMMAND_OPTIONS + 2];
     bool given[COMMAND_OPTIONS] = {false};
     int found;
+
     option_lists(a->command, longs, shorts);
     opterr = 0;
     while (*exit_status == EXIT_DONE &&
@@ -321,11 +333,15 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
             *exit_status = complain_option(a->command, found, argv[optind - 1]);
             break;
         }
+
+        // a row of the command's or of every command's table
         int i = row_of(a->command, found);
         const option_row *o = command_option(a->command, i);
+
         if (o == help_options.rows) {
             return true;
         }
+
         *exit_status = given[i] && o->type != OPTION_FLAG && !is_repeated(o)
                            ? complain("option --%s was given twice", o->name)
                            : store_value(a, o, optarg);
@@ -341,6 +357,8 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
 static int check_places(const arguments *a)
 {
     const option_row *o, *other;
+
+    // each path against those of the options before it
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         const char *path = option_is_written(o) ? option_text(a, o) : NULL;
         for (int j = 0; path != NULL && j < i; j++) {
@@ -374,6 +392,8 @@ static bool prepare(arguments *a, int argc)
 {
     const option_row *o;
     bool room = true;
+
+    // lists have room for all that the command line could hold
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         void *place = place_of(a, o);
         if (o->type == OPTION_PARAMETERS) {
@@ -442,12 +462,15 @@ int check_results(const arguments *a)
 {
     const option_row *o;
     int result = EXIT_DONE;
+
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         fault f = {.code = STATUS_OK};
         const char *path = option_is_written(o) ? option_text(a, o) : NULL;
+
         if (path == NULL || o->type == OPTION_PLACE) {
             continue;
         }
+
         if (o->type == OPTION_PICTURE) {
             f.code = picture_check_path(path, &f);
         }

@@ -41,11 +41,13 @@ static status measure_figures(double *value, fault *f)
         return fault_set(f, STATUS_CANNOT_WRITE, "no folder for the figures can be made as '%s'",
                          folder);
     }
+
     double start = bench_computing_time();
     status code = STATUS_OK;
     for (int i = 0; i < thesis_figure_count && code == STATUS_OK; i++) {
         code = figure_draw(thesis_figures[i].id, folder, "png", f);
     }
+
     *value = bench_computing_time() - start;
     remove_folder(folder);
     return code;
@@ -122,15 +124,18 @@ static int measure_all(const arguments *a, const baseline *before)
     bench_result results[MOST];
     int count = 0;
     bool aloud = summary_wanted(a);
+
     for (int i = 0; i < benchmark_count() && count < MOST; i++) {
         const benchmark *b = benchmark_at(i);
         fault f = {0};
         if (a->only != NULL && strcmp(a->only, b->name) != 0) {
             continue;
         }
+
         if (bench_run(b, &results[count], &f) != STATUS_OK) {
             return complain_fault(&f);
         }
+
         if (aloud && count == 0) {
             print_head(before);
         }
@@ -139,6 +144,7 @@ static int measure_all(const arguments *a, const baseline *before)
         }
         count++;
     }
+
     if (count == 0) {
         return complain_only(a->only);
     }
@@ -161,6 +167,7 @@ static status measure_scaling(scaling *s, bool aloud, fault *f)
         printf("\n%-8s %16s %16s   us for an implicit step of 1 ms\n", "links", "free flight",
                "contact");
     }
+
     for (int i = 0; i < LENGTHS; i++) {
         int links = 2 << i;
         s->links[i] = links;
@@ -169,6 +176,7 @@ static status measure_scaling(scaling *s, bool aloud, fault *f)
         if (code != STATUS_OK) {
             return code;
         }
+
         if (aloud) {
             printf("%-8d %16.4g %16.4g   (%.3f and %.3f a link)\n", links, s->free_us[i],
                    s->contact_us[i], s->free_us[i] / links, s->contact_us[i] / links);
@@ -186,6 +194,7 @@ static int plot_scaling(const arguments *a)
     if (measure_scaling(&s, summary_wanted(a), &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
     const figure_series series[] = {
         {.name = "free",
          .label = "free flight",
@@ -209,6 +218,7 @@ static int plot_scaling(const arguments *a)
          .colour = 7,
          .secondary = true},
     };
+
     const figure_panel panel = {.y = {.name = "step",
                                       .label = "Time for a step of 1\u2009ms",
                                       .unit = "µs",
@@ -216,6 +226,7 @@ static int plot_scaling(const arguments *a)
                                 .series = series,
                                 .series_count = 3,
                                 .weight = 2.4};
+
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     const figure fig = {.title = "Cost of an implicit step over the number of links",
                         .x = {.name = "links",
@@ -234,10 +245,12 @@ static int bench(const arguments *a)
     baseline before = {NULL, 0};
     fault f = {0};
     int result = EXIT_DONE;
+
     if (a->baseline != NULL &&
         bench_read(a->baseline, &before.results, &before.count, &f) != STATUS_OK) {
         result = complain_fault(&f);
     }
+
     if (result == EXIT_DONE) {
         result = measure_all(a, &before);
     }

@@ -18,23 +18,30 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
     double most = 0.9 * s->parameters.motor.voltage_limit;
     fault f = {0};
     sweep series;
+
+    // without --vary an even series up to nine tenths of the limit
     decimal_print(standard, sizeof standard, VOLTAGE_PATH "=%.17g:%.17g:%d", most / DEFAULT_PRESSES,
                   most, DEFAULT_PRESSES);
     if (a->varies.count > 0) {
         given = a->varies.items[0];
     }
+
     if (a->varies.count > 1 || strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0) {
         return complain("calibrate varies " VOLTAGE_PATH " and nothing else, once");
     }
+
     sweep_request request = {.vary = &given, .vary_count = 1};
     if (sweep_init(&series, s, &request, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
+    // the values, as many as a table holds
     size_t wanted = series.run_count;
     for (size_t i = 0; i < wanted && i < K2_TABLE_MOST; i++) {
         commands[i] = sweep_value(&series, i, 0);
     }
     sweep_finish(&series);
+
     if (wanted > K2_TABLE_MOST) {
         return complain("--vary %s: %zu commands are too many, expected at most %d", given, wanted,
                         K2_TABLE_MOST);
@@ -48,6 +55,7 @@ static void print_points(const calibration *c, const scenario *s, const char *ta
     printf("%s: %s\n\n", s->name, s->title);
     printf("  %9s  %9s  %11s  %11s  %9s  %9s  %9s\n", "command/V", "force/N", "hub/rad",
            "K2/(Nm/rad)", "K2/arm.k2", "+-force/N", "+-hub/rad");
+
     bool drifts = false;
     for (int i = 0; i < c->count; i++) {
         const calibration_point *p = &c->points[i];
@@ -57,10 +65,12 @@ static void print_points(const calibration *c, const scenario *s, const char *ta
                moved ? " *" : "");
         drifts |= moved;
     }
+
     if (drifts) {
         printf("\n* K2 still moves by more than %g %%: a longer run.duration settles it\n",
                100 * DRIFT_WORTH_A_WORD);
     }
+
     printf("\n  --set \"control.k2_table=%s\"\n", table);
 }
 
@@ -98,6 +108,7 @@ static int report(const arguments *a, const scenario *s, const calibration *c)
     fault f = {0};
     k2_table by_force;
     int result = EXIT_DONE;
+
     if (calibration_table(c, &by_force, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -105,6 +116,8 @@ static int report(const arguments *a, const scenario *s, const calibration *c)
         return complain("%d commands make a table of more than %d characters, expected fewer",
                         c->count, PARAMETER_TEXT_SIZE - 1);
     }
+
+    // every result is tried, one that fails stops no other
     if (a->json != NULL && write_json(a->json, calibration_json(c, s, table)) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
@@ -114,6 +127,7 @@ static int report(const arguments *a, const scenario *s, const calibration *c)
     if (a->output != NULL && write_scenario(a->output, s, table) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
+
     if (summary_wanted(a)) {
         print_points(c, s, table);
     }

@@ -14,13 +14,17 @@ static bool check_one(const char *file)
 {
     scenario s;
     int faults = 0;
+
+    // a file under test, or the name of a scenario
     status code = access(file, F_OK) == 0 ? scenario_read(&s, file, NULL, report_and_count, &faults)
                                           : scenario_open(&s, file, report_and_count, &faults);
+
     if (code == STATUS_OK) {
         scenario_finish(&s);
         printf("%s: no fault\n", file);
         return true;
     }
+
     if (faults == 0) {
         complain("'%s': %s", file, status_text(code));
     }

@@ -80,17 +80,21 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
     int reported = 0;
     assert(s != NULL && name_or_file != NULL && a != NULL);
     status code = scenario_open(s, name_or_file, report_and_count, &reported);
+
     if (code != STATUS_OK) {
         if (reported == 0) {
             complain("'%s': %s", name_or_file, status_text(code));
         }
         return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
     }
+
+    // what the command line changes
     int result = check_keeps_scenario(s, a);
     if (result == EXIT_DONE && scenario_override_all(s, a->sets.items, a->sets.count,
                                                      complain_sentence, NULL) != STATUS_OK) {
         result = EXIT_BAD_ARGUMENTS;
     }
+
     if (result != EXIT_DONE) {
         scenario_finish(s);
     }

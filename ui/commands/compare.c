@@ -46,11 +46,13 @@ static int open_sweep(comparison *c, const arguments *a, int i)
     if (sweep_init(&c->sweeps[i], &c->scenarios[i], &request, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
     c->swept++;
     size_t rows = c->sweeps[i].run_count * (size_t)c->operands;
     if (rows > MOST_ROWS) {
         return complain("%zu rows are too many for a table, expected at most %d", rows, MOST_ROWS);
     }
+
     c->combinations = (int)c->sweeps[i].run_count;
     for (int k = 0; k < c->sweeps[i].axis_count; k++) {
         c->varied[k] = c->sweeps[i].axes[k].parameter;
@@ -63,12 +65,15 @@ static int open_all(comparison *c, const arguments *a)
     int count = a->operand_count + (a->against != NULL), result = EXIT_DONE;
     c->operands = a->operand_count;
     c->combinations = 1;
+
     c->scenarios = calloc((size_t)count, sizeof *c->scenarios);
     c->sweeps = calloc((size_t)count, sizeof *c->sweeps);
     if (c->scenarios == NULL || c->sweeps == NULL) {
         complain("out of memory");
         return EXIT_FAILED;
     }
+
+    // the operands, then what they are compared against
     for (int i = 0; i < count && result == EXIT_DONE; i++) {
         const char *name = i < a->operand_count ? a->operands[i] : a->against;
         result = open_scenario(&c->scenarios[i], name, a);
@@ -77,6 +82,7 @@ static int open_all(comparison *c, const arguments *a)
             result = open_sweep(c, a, i);
         }
     }
+
     if (result == EXIT_DONE) {
         size_t combinations = c->swept > 0 ? c->sweeps[0].run_count : 1;
         c->rows = calloc(combinations * (size_t)a->operand_count, sizeof *c->rows);
@@ -94,6 +100,7 @@ static int open_all(comparison *c, const arguments *a)
 static compare_row run_one(comparison *c, int i, int combination)
 {
     run_result result;
+
     fault f = {0};
     scenario s = c->scenarios[i];
     compare_row row = {0};
@@ -101,10 +108,12 @@ static compare_row run_one(comparison *c, int i, int combination)
         complain_fault(&f); // values that do not go together were refused before
         c->failed = true;
     }
+
     if (run_scenario(&s, false, &result) != STATUS_OK) {
         complain("%s failed: %s", s.name, result.summary.message);
         c->failed = true;
     }
+
     row = compare_row_of(&s, &result);
     for (int k = 0; c->swept > 0 && k < c->sweeps[i].axis_count; k++) {
         row.varied[k] = sweep_value(&c->sweeps[i], (size_t)combination, k);
@@ -141,12 +150,14 @@ static int write_table(const char *path, const compare_table *t,
 static int write_results(const arguments *a, const comparison *c, compare_table *t)
 {
     int result = c->failed ? EXIT_FAILED : EXIT_DONE;
+
     t->rows = c->rows;
     t->count = c->combinations * c->operands;
     t->group = c->operands;
     t->varied = c->varied;
     t->varied_count = a->varies.count;
     t->against = a->against != NULL ? c->against : NULL;
+
     if (a->json != NULL && write_json(a->json, compare_json(t)) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
@@ -156,6 +167,7 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     if (a->markdown != NULL && write_table(a->markdown, t, compare_markdown) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
+
     if (summary_wanted(a)) {
         compare_text(stdout, t);
         if (t->against != NULL) {
@@ -199,9 +211,11 @@ static int compare(const arguments *a)
     compare_table table = {0};
     fault f = {0};
     table.tolerance = a->tolerance / 100;
+
     if (a->columns != NULL && compare_choose(&table, a->columns, &f) != STATUS_OK) {
         return complain("--columns %s: %s", a->columns, f.text);
     }
+
     int result = open_all(&c, a);
     if (result == EXIT_DONE) {
         run_all(&c);

@@ -107,12 +107,14 @@ static void put_bash_offer(FILE *stream, const option_row *o)
         [OFFER_SCENARIOS] = "_impactlab_words \"$(" SCENARIO_NAMES ")\"; _impactlab_files",
         [OFFER_QUANTITIES] = "_impactlab_words \"$quantities\"",
     };
+
     offer what = offer_of(o);
     fprintf(stream, "        '--%s'", o->name);
     if (o->letter != 0) {
         fprintf(stream, "|'-%c'", o->letter);
     }
     fprintf(stream, ") ");
+
     if (what == OFFER_WORDS) {
         fprintf(stream, "_impactlab_words '");
         put_choices(stream, o);
@@ -120,18 +122,23 @@ static void put_bash_offer(FILE *stream, const option_row *o)
     } else {
         fprintf(stream, "%s", calls[what]);
     }
+
     fprintf(stream, "; return ;;\n");
 }
 
 static void put_bash_command(FILE *stream, const command *c)
 {
     const option_row *o;
+
+    // values by the option before the cursor
     fprintf(stream, "    %s)\n        case $before in\n", c->name);
     for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
         if (o->type != OPTION_FLAG) {
             put_bash_offer(stream, o);
         }
     }
+
+    // words that need none
     fprintf(stream, "        esac\n        options='");
     for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
         fprintf(stream, "%s--%s", i > 0 ? " " : "", o->name);
@@ -157,16 +164,19 @@ void write_bash_completion(FILE *stream)
                     "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
                     "    local command=${COMP_WORDS[1]} options='' operands='' scenarios=''\n"
                     "    local parameters='");
+
     put_parameters(stream);
     fprintf(stream, "'\n    local quantities='");
     put_quantities(stream);
     fprintf(stream, "'\n    COMPREPLY=()\n"
                     "    if [ \"$COMP_CWORD\" = 1 ]; then\n        _impactlab_words '");
     put_commands(stream);
+
     fprintf(stream, " --help --version'\n        return\n    fi\n    case $command in\n");
     for (int i = 0; i < command_count; i++) {
         put_bash_command(stream, command_table[i]);
     }
+
     fprintf(stream, "    esac\n"
                     "    case $word in\n"
                     "    -*) _impactlab_words \"$options\"; return ;;\n"
@@ -191,7 +201,10 @@ static void put_zsh_option(FILE *stream, const option_row *o)
         [OFFER_SCENARIOS] = "_impactlab_scenarios",
         [OFFER_QUANTITIES] = "_impactlab_quantities",
     };
+
     bool repeats = o->type == OPTION_PARAMETERS || o->type == OPTION_NUMBERS;
+
+    // the short form, then the long one
     for (int form = o->letter != 0 ? 0 : 1; form < 2; form++) {
         fprintf(stream, " \\\n            '%s", repeats ? "*" : "");
         if (form == 0) {
@@ -199,9 +212,11 @@ static void put_zsh_option(FILE *stream, const option_row *o)
         } else {
             fprintf(stream, "--%s%s", o->name, o->type == OPTION_FLAG ? "" : "=");
         }
+
         fprintf(stream, "[");
         put_quoted(stream, o->help, "[]:\\");
         fprintf(stream, "]");
+
         if (o->type != OPTION_FLAG) {
             fprintf(stream, ":");
             put_quoted(stream, o->value, "[]:\\");
@@ -214,6 +229,7 @@ static void put_zsh_option(FILE *stream, const option_row *o)
                 fprintf(stream, "%s", actions[offer_of(o)]);
             }
         }
+
         fprintf(stream, "'");
     }
 }
@@ -222,14 +238,17 @@ static void put_zsh_command(FILE *stream, const command *c)
 {
     const option_row *o;
     fprintf(stream, "        %s)\n            _arguments", c->name);
+
     for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
         put_zsh_option(stream, o);
     }
+
     if (c->operand_word != NULL) {
         fprintf(stream, " \\\n            '%s:word:(", c->takes_scenarios ? "1" : "*");
         put_operand_words(stream, c);
         fprintf(stream, ")'");
     }
+
     if (c->takes_scenarios) {
         fprintf(stream, " \\\n            '*:scenario:_impactlab_scenarios'");
     }
@@ -244,8 +263,10 @@ void write_zsh_completion(FILE *stream)
                     "    compadd -- $(" SCENARIO_NAMES ")\n    _files\n}\n"
                     "_impactlab_parameters() {\n    compadd -S '' -- ");
     put_parameters(stream);
+
     fprintf(stream, "\n}\n_impactlab_quantities() {\n    compadd -- ");
     put_quantities(stream);
+
     fprintf(stream, "\n}\n"
                     "_impactlab() {\n"
                     "    local context state line\n"
@@ -253,11 +274,13 @@ void write_zsh_completion(FILE *stream)
                     "    case $state in\n"
                     "    command)\n"
                     "        local -a commands=(");
+
     for (int i = 0; i < command_count; i++) {
         fprintf(stream, "\n            '%s:", command_table[i]->name);
         put_quoted(stream, command_table[i]->summary, ":\\");
         fprintf(stream, "'");
     }
+
     fprintf(stream, "\n        )\n"
                     "        _describe command commands ;;\n"
                     "    argument)\n"
@@ -265,6 +288,7 @@ void write_zsh_completion(FILE *stream)
     for (int i = 0; i < command_count; i++) {
         put_zsh_command(stream, command_table[i]);
     }
+
     fprintf(stream, "        esac ;;\n    esac\n}\n"
                     "if [ \"$funcstack[1]\" = _impactlab ]; then\n"
                     "    _impactlab \"$@\"\n"
@@ -279,9 +303,11 @@ static void put_fish_option(FILE *stream, const command *c, const option_row *o)
 {
     fprintf(stream, "complete -c impactlab -n '__fish_seen_subcommand_from %s' -l %s", c->name,
             o->name);
+
     if (o->letter != 0) {
         fprintf(stream, " -s %c", o->letter);
     }
+
     switch (offer_of(o)) {
     case OFFER_NOTHING:
         fprintf(stream, "%s", o->type == OPTION_FLAG ? "" : " -x");
@@ -308,6 +334,7 @@ static void put_fish_option(FILE *stream, const command *c, const option_row *o)
         fprintf(stream, "'");
         break;
     }
+
     fprintf(stream, " -d '");
     put_quoted(stream, o->help, "");
     fprintf(stream, "'\n");
@@ -319,17 +346,20 @@ static void put_fish_command(FILE *stream, const command *c)
     fprintf(stream, "complete -c impactlab -n __fish_use_subcommand -f -a %s -d '", c->name);
     put_quoted(stream, c->summary, "");
     fprintf(stream, "'\n");
+
     if (c->operand_word != NULL) {
         fprintf(stream, "complete -c impactlab -n '__fish_seen_subcommand_from %s' -a '", c->name);
         put_operand_words(stream, c);
         fprintf(stream, "'\n");
     }
+
     if (c->takes_scenarios) {
         fprintf(stream,
                 "complete -c impactlab -n '__fish_seen_subcommand_from %s' -F -a "
                 "'(__impactlab_scenarios)'\n",
                 c->name);
     }
+
     for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
         put_fish_option(stream, c, o);
     }

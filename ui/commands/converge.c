@@ -13,10 +13,12 @@ static json_t *panel_object(const scenario *s, const convergence_panel *panel)
 {
     json_t *object = json_object(), *steps = json_array(), *rows = json_array();
     json_object_set_new(object, "scenario", json_text(s->name));
+
     for (int i = 0; i < PANEL_STEPS; i++) {
         json_array_append_new(steps, json_number(panel->step[i]));
     }
     json_object_set_new(object, "step_s", steps);
+
     for (int k = 0; k < panel->row_count; k++) {
         const convergence_row *row = &panel->rows[k];
         json_t *line = json_object(), *values = json_array();
@@ -28,6 +30,7 @@ static json_t *panel_object(const scenario *s, const convergence_panel *panel)
         json_object_set_new(line, "order", json_number(row->order));
         json_array_append_new(rows, line);
     }
+
     json_object_set_new(object, "convergence", rows);
     return object;
 }
@@ -42,6 +45,8 @@ static bool all_digits_agree(const convergence_row *row)
 static void print_panel(const scenario *s, const convergence_panel *panel)
 {
     char step[PANEL_STEPS][32], method[32];
+
+    // head: scenario, method and the three steps
     parameter_format(&s->parameters, PARAMETER_INDEX(method.name), method, sizeof method);
     printf("%s: %s\nmethod %s\n\n  %-26s", s->name, s->title, method, "step [s]");
     for (int i = 0; i < PANEL_STEPS; i++) {
@@ -49,10 +54,12 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
         printf(" %15s", step[i]);
     }
     printf("   %s\n", "order");
+
     for (int k = 0; k < panel->row_count; k++) {
         const convergence_row *row = &panel->rows[k];
         const summary_info *quantity = &summary_table[summary_index(row->key)];
         printf("  %-26s", quantity->label);
+
         for (int i = 0; i < PANEL_STEPS; i++) {
             if (isnan(row->value[i])) {
                 printf(" %15s", "-");
@@ -60,6 +67,7 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
                 printf(" %15.10g", row->value[i]);
             }
         }
+
         printf(" %-4s", quantity->unit);
         if (all_digits_agree(row)) {
             printf("agree\n");
@@ -69,6 +77,7 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
             printf("%.2f\n", row->order);
         }
     }
+
     printf("\n  order p: the error falls as (step)^p, from the differences of the three columns;\n"
            "  agree: equal to nine digits; -: cannot be told\n");
 }
@@ -119,6 +128,8 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
     const trace *finest = &r->result[PANEL_STEPS - 1].trace;
     char label[PANEL_STEPS][48], software[64], title[256];
     figure_series force[PANEL_STEPS], less[PANEL_STEPS - 1];
+
+    // each run's force, and what it lacks of the finest
     for (int i = 0; i < PANEL_STEPS; i++) {
         const trace *t = &r->result[i].trace;
         decimal_print(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms",
@@ -130,6 +141,7 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
                                    .count = t->row_count,
                                    .stride = sizeof(sample),
                                    .colour = colours[i]};
+
         if (i < PANEL_STEPS - 1) {
             size_t count = difference(t, finest, work[2 * i], work[2 * i + 1]);
             less[i] = (figure_series){.name = names[i],
@@ -140,6 +152,7 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
                                       .colour = colours[i]};
         }
     }
+
     const figure_panel panels[] = {
         {.y = {.name = "force", .label = "Contact force <i>f</i>", .unit = "N", .with_zero = true},
          .series = force,
@@ -148,6 +161,7 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
          .series = less,
          .series_count = PANEL_STEPS - 1},
     };
+
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     snprintf(title, sizeof title, "%s: the same run at three steps", r->scenario[0].name);
     const figure fig = {.title = title,
@@ -195,15 +209,19 @@ static int compute_and_report(const arguments *a, scenario *s)
     convergence_panel panel;
     fault f = {0};
     int result = EXIT_DONE;
+
     if (convergence_compute(s, &panel, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
     if (a->json != NULL) {
         result = write_json(a->json, panel_object(s, &panel));
     }
+
     if (summary_wanted(a)) {
         print_panel(s, &panel);
     }
+
     if (result == EXIT_DONE && a->plot != NULL) {
         result = plot(a, s, &panel);
     }

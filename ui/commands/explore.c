@@ -31,11 +31,14 @@ static double seconds_now(void)
 static int run_script(explorer *ex, const char *path)
 {
     char line[LINE_TEXT];
+
     bool is_stdin = strcmp(path, "-") == 0;
     FILE *stream = is_stdin ? stdin : fopen(path, "r");
     if (stream == NULL) {
         return complain("%s cannot be read: %s", path, strerror(errno));
     }
+
+    // line by line until one fails or quits
     int code = EXIT_DONE;
     for (int number = 1; code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
          number++) {
@@ -45,6 +48,7 @@ static int run_script(explorer *ex, const char *path)
             code = EXIT_FAILED;
         }
     }
+
     if (!is_stdin) {
         fclose(stream);
     }
@@ -68,18 +72,19 @@ static int run_off_screen(explorer *ex, const arguments *a)
 {
     int width = 120, height = 40;
     fault f = {0};
-    int code = EXIT_DONE;
+
     if (a->size.width > 0) {
         width = a->size.width;
         height = a->size.height;
     }
+
     ex->state.size = (screen_size){width, height};
-    if (code == EXIT_DONE && a->script != NULL) {
-        code = run_script(ex, a->script);
-    }
+    int code = a->script != NULL ? run_script(ex, a->script) : EXIT_DONE;
+
     if (code == EXIT_DONE && a->keys != NULL && !explorer_keys(ex, a->keys, &f)) {
         code = complain_fault(&f);
     }
+
     if (code == EXIT_DONE && !a->quiet) {
         code = print_screen(ex, width, height);
     }
@@ -119,28 +124,35 @@ static void run_on_terminal(explorer *ex)
     screen s = {0};
     bool dirty = true, leave = false;
     double drawn = 0, last = seconds_now();
+
     while (!ex->state.quit && !leave) {
+        // draw, though not more often than frames
         double now = seconds_now();
         if (dirty && now - drawn >= FRAME) {
             show(ex, &s);
             drawn = now;
             dirty = false;
         }
+
         bool waits = dirty || explorer_is_busy(ex);
         // a picture that took longer than a frame leaves nothing to wait for
         double left = fmax(0, dirty ? FRAME - (seconds_now() - drawn) : FRAME);
         terminal_input in = terminal_wait(waits ? left : -1);
         now = seconds_now();
+
+        // what was computed, and time going on
         dirty |= explorer_follow(ex);
         if (ex->state.playback.playing) {
             explorer_advance(ex, now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
             dirty = true;
         }
+
         last = now;
         dirty |= in.kind != TERMINAL_NONE;
         leave = in.kind == TERMINAL_LEAVE;
         take_input(ex, in);
     }
+
     screen_finish(&s);
 }
 
@@ -170,10 +182,13 @@ static int open_explorer(explorer *ex, const arguments *a)
     if (code != EXIT_DONE) {
         return code;
     }
+
     bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
     if (explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
+    // the terminal's own looks, then those that were kept
     char line[LINE_TEXT];
     ex->state.looks.glyphs = usual_glyphs();
     if (live) {
@@ -181,6 +196,8 @@ static int open_explorer(explorer *ex, const arguments *a)
         explorer_load_settings(ex);
         ex->state.looks.glyphs = terminal_has_utf8() ? ex->state.looks.glyphs : GLYPHS_ASCII;
     }
+
+    // what the command line says comes last
     const char *const settings[3][2] = {
         {"glyphs", a->glyphs}, {"theme", a->theme}, {"colours", a->colours}};
     for (int i = 0; i < 3; i++) {
@@ -189,6 +206,7 @@ static int open_explorer(explorer *ex, const arguments *a)
             code = complain("--%s: %s", settings[i][0], ex->state.message.text);
         }
     }
+
     if (code != EXIT_DONE) {
         explorer_finish(ex);
     }
@@ -199,14 +217,17 @@ static int run(const arguments *a)
 {
     explorer ex;
     fault f = {0};
+
     bool off_screen = a->keys != NULL || a->script != NULL || a->size.width > 0;
     if (!off_screen && !terminal_usable(&f)) {
         return complain_fault(&f);
     }
+
     int code = open_explorer(&ex, a);
     if (code != EXIT_DONE) {
         return code;
     }
+
     if (off_screen) {
         code = run_off_screen(&ex, a);
     } else if (terminal_open(&f) != STATUS_OK) {
@@ -217,6 +238,7 @@ static int run(const arguments *a)
         terminal_close();
         say_goodbye(&ex);
     }
+
     explorer_finish(&ex);
     return code;
 }

@@ -18,6 +18,7 @@ static int check_ids(const arguments *a)
         if (thesis_figure_find(a->operands[i]) != NULL) {
             continue;
         }
+
         for (int k = 0; k < thesis_figure_count; k++) {
             nearest_try(&near, thesis_figures[k].id);
         }
@@ -34,9 +35,11 @@ static int figures(const arguments *a)
     const char *folder = a->output ? a->output : DEFAULT_FOLDER;
     const char *formats = a->format ? a->format : DEFAULT_FORMATS;
     int count = a->operand_count > 0 ? a->operand_count : thesis_figure_count;
+
     int code = check_ids(a);
     code = code == EXIT_DONE ? read_picture_options(a, &options) : code;
     GString *tex = g_string_new(NULL);
+
     for (int i = 0; i < count && code == EXIT_DONE; i++) {
         const thesis_figure *drawn =
             a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : &thesis_figures[i];
@@ -47,10 +50,12 @@ static int figures(const arguments *a)
             printf("%-10s  %s/%s  %s\n", drawn->id, folder, drawn->file, drawn->caption);
         }
     }
+
     fault f = {0};
     if (code == EXIT_DONE && a->latex != NULL && latex_write(a->latex, tex, &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
+
     g_string_free(tex, TRUE);
     return code;
 }

@@ -14,15 +14,18 @@ static void print_paragraphs(FILE *stream, const char *text)
 {
     paragraph p;
     bool was_literal = false;
+
     while (next_paragraph(&text, &p)) {
         if (!(p.literal && was_literal)) {
             fprintf(stream, "\n");
         }
+
         if (p.literal) {
             fprintf(stream, "%.*s\n", p.bytes, p.start);
         } else {
             print_wrapped(stream, p.start, p.bytes, LINE);
         }
+
         was_literal = p.literal;
     }
 }
@@ -86,10 +89,12 @@ void print_commands(FILE *stream)
         COMMAND_GROUPS(GROUP_TITLE)
 #undef GROUP_TITLE
     };
+
     fprintf(stream,
             "impactlab %s: impact and force control of a flexible robot arm\n\n"
             "usage: impactlab COMMAND [ARGUMENT]...\n",
             lab_version());
+
     for (int group = 0; group < COMMAND_GROUP_COUNT; group++) {
         fprintf(stream, "\n%s:\n", titles[group]);
         for (int i = 0; i < command_count; i++) {
@@ -98,6 +103,7 @@ void print_commands(FILE *stream)
             }
         }
     }
+
     fprintf(stream,
             "\nimpactlab COMMAND --help tells more about a command.\n"
             "Exit status: 0 done; 1 the run failed or a file could not be written; 2 bad arguments "
@@ -116,6 +122,7 @@ static int write_completion(const char *shell)
         {"zsh", write_zsh_completion},
         {"fish", write_fish_completion},
     };
+
     for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++) {
         if (strcmp(writers[i].shell, shell) == 0) {
             writers[i].write(stdout);
@@ -158,15 +165,18 @@ static int write_pages(const char *folder)
 static int help(const arguments *a)
 {
     const command *about = a->operand_count > 0 ? command_find(a->operands[0]) : NULL;
+
     if (a->operand_count > 0 && about == NULL) {
         return complain_command(a->operands[0]);
     }
+
     if (a->completion != NULL) {
         return write_completion(a->completion);
     }
     if (a->man_pages != NULL) {
         return write_pages(a->man_pages);
     }
+
     if (a->man) {
         write_man_page(stdout, about);
     } else if (about != NULL) {

@@ -27,17 +27,22 @@ static int list(const arguments *a)
     char **names;
     int count, width = 0;
     fault f = {0};
+
     if (scenario_list(&names, &count, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
+    // titles stand in a column
     for (int i = 0; i < count; i++) {
         int length = (int)strlen(names[i]);
         width = length > width ? length : width;
     }
+
     for (int i = 0; i < count; i++) {
         print_scenario(names[i], width);
         free(names[i]);
     }
+
     free(names);
     return EXIT_DONE;
 }

@@ -11,10 +11,12 @@
 static void put_text(FILE *stream, const char *text, int bytes)
 {
     for (int i = 0; i < bytes; i++) {
+        // a dot or quote at the start of a line would be a request
         bool at_start = i == 0 || text[i - 1] == '\n';
         if (at_start && strchr(".'", text[i]) != NULL) {
             fputs("\\&", stream);
         }
+
         switch (text[i]) {
         case '\\':
             fputs("\\e", stream);
@@ -51,16 +53,19 @@ static void put_paragraphs(FILE *stream, const char *text)
 {
     paragraph p;
     bool was_literal = false;
+
     while (next_paragraph(&text, &p)) {
         if (p.literal && !was_literal) {
             fprintf(stream, ".PP\n.nf\n");
         } else if (!p.literal) {
             fprintf(stream, "%s.PP\n", was_literal ? ".fi\n" : "");
         }
+
         put_text(stream, p.start, p.bytes);
         fprintf(stream, "\n");
         was_literal = p.literal;
     }
+
     fprintf(stream, "%s", was_literal ? ".fi\n" : "");
 }
 
@@ -72,10 +77,12 @@ static void put_option(FILE *stream, const option_row *o)
     }
     fprintf(stream, "\\-\\-");
     put_string(stream, o->name);
+
     if (o->value != NULL) {
         fprintf(stream, " \\fI");
         put_string(stream, o->value);
     }
+
     fprintf(stream, "\\fR\n");
     put_string(stream, o->help);
     fprintf(stream, "\n");
@@ -137,6 +144,7 @@ static void write_overview(FILE *stream)
 {
     fprintf(stream, ".SH NAME\nimpactlab \\- impact and force control of a flexible robot arm\n"
                     ".SH SYNOPSIS\n\\fBimpactlab\\fR [\\fICOMMAND\\fR [\\fIARGUMENT\\fR]...]\n");
+
     put_title(stream, "Description");
     put_paragraphs(
         stream,
@@ -146,6 +154,7 @@ static void write_overview(FILE *stream)
         "where there is none, the scenarios are listed.\n\n"
         "Options may stand before or after the other arguments. Files are written whole or not at "
         "all. impactlab --version prints the version.");
+
     put_title(stream, "Commands");
     for (int i = 0; i < command_count; i++) {
         const command *c = command_table[i];
@@ -153,6 +162,7 @@ static void write_overview(FILE *stream)
         put_string(stream, c->summary);
         fprintf(stream, ".\n");
     }
+
     PUT_TERMS(stream, "Environment", environment);
     PUT_TERMS(stream, "Exit status", exit_status);
     PUT_TERMS(stream, "Examples", examples);

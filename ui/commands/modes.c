@@ -43,11 +43,13 @@ static json_t *modes_object(const scenario *s, const arm *a, const mode_set *set
 {
     json_t *object = json_object(), *array = json_array();
     json_object_set_new(object, "scenario", json_text(s->name));
+
     for (int i = 0; i < HOLDS; i++) {
         json_t *entry = json_object(), *shapes = json_array();
         for (int mode = 0; mode < sets[i].count; mode++) {
             json_array_append_new(shapes, array_of(sets[i].shapes + mode * a->dof, a->dof, 1));
         }
+
         json_object_set_new(entry, "hub", json_string(holds[i].hub_name));
         json_object_set_new(entry, "tip", json_string(holds[i].tip_name));
         json_object_set_new(entry, "frequency_Hz",
@@ -55,6 +57,7 @@ static json_t *modes_object(const scenario *s, const arm *a, const mode_set *set
         json_object_set_new(entry, "shapes", shapes);
         json_array_append_new(array, entry);
     }
+
     json_object_set_new(object, "modes", array);
     return object;
 }
@@ -63,9 +66,11 @@ static void print_set(const arm *a, const mode_set *set, const char *hub, const 
 {
     int shown = set->count < MODES_SHOWN ? set->count : MODES_SHOWN;
     int angles = a->dof < ANGLES_SHOWN ? a->dof : ANGLES_SHOWN;
+
     printf("\nHub %s, tip %s\n", hub, tip);
     printf("%s\n", shown > 0 ? "  mode  frequency [Hz]   [rad/s]   angles, the largest is 1"
                              : "  nothing can move");
+
     for (int mode = 0; mode < shown; mode++) {
         printf("  %4d  %14.5g  %8.5g  ", mode + 1, set->frequencies[mode] / TWO_PI,
                set->frequencies[mode]);
@@ -76,6 +81,7 @@ static void print_set(const arm *a, const mode_set *set, const char *hub, const 
         }
         printf("%s\n", angles < a->dof ? " ..." : "");
     }
+
     if (shown < set->count) {
         printf("  ... and %d more (--json lists all)\n", set->count - shown);
     }
@@ -191,10 +197,12 @@ static int compute_and_report(const arguments *args, const scenario *s)
     arm a;
     mode_set sets[HOLDS] = {{0}};
     fault f = {.code = STATUS_OK};
+
     arm_init(&a, &s->parameters);
     for (int i = 0; i < HOLDS && f.code == STATUS_OK; i++) {
         f.code = compute_set(&a, &sets[i], i);
     }
+
     int result = f.code == STATUS_OK ? report(args, s, &a, sets) : complain_fault(&f);
     for (int i = 0; i < HOLDS; i++) {
         free(sets[i].frequencies);

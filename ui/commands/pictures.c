@@ -45,14 +45,17 @@ int read_picture_options(const arguments *a, figure_options *o)
                           .signals = a->signals,
                           .latex = a->latex,
                           .command = a->command_line};
+
     int code = read_theme(a, &o->look.theme);
     if (code == EXIT_DONE && ranged && !(a->from < a->to)) {
         code = complain("--from and --to go together, the first below the second");
     }
+
     if (ranged) {
         o->from = a->from;
         o->to = a->to;
     }
+
     if (code == EXIT_DONE && o->look.font != NULL &&
         text_check_family(o->look.font, &f) != STATUS_OK) {
         code = complain_fault(&f);
@@ -81,17 +84,21 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs, i
     figure_options o;
     run_figure r;
     fault f = {0};
+
     int code = read_picture_options(a, &o);
     if (code != EXIT_DONE) {
         return code;
     }
+
     if (run_figure_init(&r, title, NULL, 0, runs, run_count, &o, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
     artwork drawn = artwork_of_figure(&r.traces.figure, NULL, borrow_nothing);
     if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
+
     artwork_finish(&drawn);
     run_figure_finish(&r);
     return code;

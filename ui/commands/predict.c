@@ -93,10 +93,13 @@ static void print_predictions(const scenario *s, const sample *row,
 {
     printf("%s: %s\nfirst contact at %.6g s, predicted from the instant before it\n\n", s->name,
            s->title, m->first_contact_s);
+
     printf("  last free row at %.6g s: hub, first and last link at %.5g, %.5g, %.5g rad,\n"
            "  turning with %.5g, %.5g, %.5g rad/s\n\n",
            row->time, row->hub_angle, row->first_angle, row->last_angle, row->hub_velocity,
            row->first_velocity, row->last_velocity);
+
+    // the predictors, then what they should have found
     printf("  %-30s %14s %14s %14s\n", "first pulse", "peak [N]", "after [ms]", "impulse [N s]");
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         const prediction *p = &answers[i].prediction;
@@ -106,8 +109,10 @@ static void print_predictions(const scenario *s, const sample *row,
             printf("  %-30s %s\n", answers[i].label, prediction_reason(&answers[i]));
         }
     }
+
     print_line("simulation", m->first_pulse_peak_N, m->first_pulse_time_to_peak_s,
                m->contact_impulse_Ns);
+
     if (s->parameters.arm.links != 2) {
         printf("\n  The thesis's predictors know two links, the simulation has %d.\n",
                s->parameters.arm.links);
@@ -168,11 +173,13 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
 {
     prediction_answer answers[PREDICTOR_COUNT];
     const sample *row = last_free_row(&result->trace);
+
     if (row == NULL) {
         complain("%s has no free flight that ends in a contact, there is nothing to predict",
                  s->name);
         return EXIT_FAILED;
     }
+
     ask_predictors(s, result, row, answers);
     int code = EXIT_DONE;
     if (a->json != NULL) {

@@ -84,17 +84,21 @@ static void print_expectations(const scenario *s, const summary *m)
     if (s->expectation_count == 0) {
         return;
     }
+
     printf("\nExpected:\n");
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];
         char found[64], wanted[64];
         const char *label = summary_table[e->quantity].label;
         const char *unit = summary_table[e->quantity].unit, *space = unit[0] ? " " : "";
+
         double value = summary_value(m, e->quantity);
         bool met = expectation_is_met(e, value);
+
         snprintf(found, sizeof found, isnan(value) ? "none" : "%.5g%s%s", value, space, unit);
         snprintf(wanted, sizeof wanted, e->is_null ? "none" : "%g within %g", e->value,
                  e->tolerance);
+
         printf("  %s %s: %s (expected %s)\n",
                met ? (ticks ? "\u2713" : "ok ") : (ticks ? "\u2717" : "NOT MET"), label, found,
                wanted);
@@ -118,16 +122,20 @@ static int write_results(const arguments *a, const scenario *s, const run_result
 {
     const recorded signals = {&result->trace, s->parameters.arm.links};
     int code = EXIT_DONE;
+
     if (a->json != NULL) {
         code = worse(code, write_json(a->json, export_run(s, result)));
     }
+
     if (a->csv != NULL) {
         code = worse(code, write_file(a->csv, write_signals, &signals));
     }
+
     if (a->plot != NULL) {
         const trace_run shown = {.scenario = s, .result = result, .name = s->name};
         code = worse(code, publish_runs(a, NULL, &shown, 1));
     }
+
     if (a->scene != NULL) {
         code = worse(code, write_scene(a, s, result));
     }
@@ -150,13 +158,17 @@ static int run_and_report(const arguments *a, scenario *s)
     run_result result;
     bool keep_trace = a->csv != NULL || a->plot != NULL || a->scene != NULL;
     status code = run_with_progress(s, keep_trace, &result);
+
+    // results are written of a run that failed, too
     int exit_status = write_results(a, s, &result);
+
     if (summary_wanted(a)) {
         print_heading(s);
         print_quantities(&result.summary);
         print_events(s, &result.trace);
         print_expectations(s, &result.summary);
     }
+
     if (code != STATUS_OK) {
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
@@ -167,10 +179,12 @@ static int run_and_report(const arguments *a, scenario *s)
     } else if (result.summary.message[0] != '\0') {
         fprintf(stderr, "impactlab: note: %s\n", result.summary.message);
     }
+
     note_limited_voltage(&s->parameters);
     if (code == STATUS_OK && run_check_expectations(s, &result, report_to_stderr, NULL) > 0) {
         exit_status = worse(exit_status, EXIT_FAILED);
     }
+
     run_finish(&result);
     if (code == STATUS_STOPPED) {
         run_progress_leave();

@@ -41,10 +41,13 @@ static void *tick(void *argument)
     bool told = false;
     struct timespec next = time_after(FIRST_NOTE);
     pthread_mutex_lock(&t->lock);
+
+    // a note now and then until the run is over
     while (!t->over) {
         if (pthread_cond_timedwait(&t->ended, &t->lock, &next) == 0) {
             continue;
         }
+
         double time = atomic_load_explicit(&watched.time, memory_order_relaxed);
         fprintf(stderr, "\rimpactlab: %.*f of %g s (^C stops) ", t->duration < 10 ? 3 : 1, time,
                 t->duration);
@@ -52,7 +55,9 @@ static void *tick(void *argument)
         told = true;
         next = time_after(NEXT_NOTE);
     }
+
     pthread_mutex_unlock(&t->lock);
+
     if (told) {
         fprintf(stderr, "\r%60s\r", "");
         fflush(stderr);
@@ -65,11 +70,14 @@ status run_with_progress(const scenario *s, bool keep_trace, run_result *result)
     if (!isatty(STDERR_FILENO)) {
         return run_scenario(s, keep_trace, result);
     }
+
     const run_options options = {.keep_trace = keep_trace, .monitor = &watched};
     ticker t = {.duration = s->parameters.run.duration};
     struct sigaction act = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND}, before;
     sigset_t interrupt, mask;
     pthread_t thread;
+
+    // an interrupt ends the run in order; where it is ignored it stays so
     atomic_store(&watched.stop, false);
     pthread_mutex_init(&t.lock, NULL);
     pthread_cond_init(&t.ended, NULL);
@@ -77,12 +85,17 @@ status run_with_progress(const scenario *s, bool keep_trace, run_result *result)
     if (before.sa_handler == SIG_IGN) {
         sigaction(SIGINT, &before, NULL);
     }
+
+    // the thread of the notes is not to take the interrupt
     sigemptyset(&interrupt);
     sigaddset(&interrupt, SIGINT);
     pthread_sigmask(SIG_BLOCK, &interrupt, &mask);
     bool ticks = pthread_create(&thread, NULL, tick, &t) == 0;
     pthread_sigmask(SIG_SETMASK, &mask, NULL);
+
     status code = run_scenario_with(s, &options, result);
+
+    // the notes end before anything else is printed
     pthread_mutex_lock(&t.lock);
     t.over = true;
     pthread_cond_signal(&t.ended);
@@ -90,6 +103,7 @@ status run_with_progress(const scenario *s, bool keep_trace, run_result *result)
     if (ticks) {
         pthread_join(thread, NULL);
     }
+
     sigaction(SIGINT, &before, NULL);
     pthread_mutex_destroy(&t.lock);
     pthread_cond_destroy(&t.ended);

@@ -61,19 +61,23 @@ static int print_scenario(const arguments *a, scenario *s)
     (void)a;
     printf("%s: %s\n", s->name, s->title);
     print_wrapped(stdout, s->description, (int)strlen(s->description), 96);
+
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",
            "value", "unit", "range");
     for (int i = 0; i < parameter_count; i++) {
         print_parameter(&s->parameters, i);
     }
+
     if (s->action_count > 0) {
         printf("\nScript:\n");
         print_actions(s);
     }
+
     if (s->expectation_count > 0) {
         printf("\nExpected:\n");
         print_expectations(s);
     }
+
     return EXIT_DONE;
 }
 

@@ -10,26 +10,33 @@ static json_t *methods_object(const scenario *s, const method_study *study)
 {
     json_t *object = json_object(), *reference = json_object(), *points = json_array();
     json_object_set_new(object, "scenario", json_text(s->name));
+
+    // what errors are measured against
     json_object_set_new(reference, "method", json_string("event"));
     json_object_set_new(reference, "step_s", json_number(study->reference_step));
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         json_object_set_new(reference, study_keys[k], json_number(study->reference[k]));
     }
     json_object_set_new(object, "reference", reference);
+
     for (int m = 0; m < STUDY_METHODS; m++) {
         for (int i = 0; i < STUDY_STEPS; i++) {
             const study_point *point = &study->points[m][i];
             json_t *line = json_object(), *errors = json_object();
+
             json_object_set_new(line, "method", json_string(study_methods[m]));
             json_object_set_new(line, "step_s", json_number(point->step));
             json_object_set_new(line, "computing_time_s", json_number(point->cost));
+
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
                 json_object_set_new(errors, study_keys[k], json_number(point->error[k]));
             }
+
             json_object_set_new(line, "errors", errors);
             json_array_append_new(points, line);
         }
     }
+
     json_object_set_new(object, "methods", points);
     return object;
 }
@@ -50,6 +57,8 @@ static void print_methods(const scenario *s, const method_study *study)
            "pulse peak %.12g N,\nsteady force %.12g N\n",
            s->name, study->reference_step, study->reference[0], study->reference[1],
            study->reference[2]);
+
+    // a table for each method
     for (int m = 0; m < STUDY_METHODS; m++) {
         printf("\n%-18s %10s %12s %12s %12s\n", study_methods[m], "cost", "contact", "peak",
                "steady");
@@ -64,6 +73,8 @@ static void print_methods(const scenario *s, const method_study *study)
             printf("\n");
         }
     }
+
+    // and the question that decides between them
     printf("\nLeast cost for an error of the first pulse's peak of at most\n");
     for (double error = 1e-2; error > 0.9e-8; error /= 100) {
         printf("  %7.0e N:", error);
@@ -93,6 +104,7 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
     figure_series series[STUDY_QUANTITIES][STUDY_METHODS];
     figure_panel panels[STUDY_QUANTITIES];
     char title[256];
+
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         for (int m = 0; m < STUDY_METHODS; m++) {
             series[k][m] = (figure_series){.name = study_methods[m],
@@ -104,6 +116,7 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
                                            .colour = colours[m],
                                            .marker = markers[m]};
         }
+
         panels[k] = (figure_panel){.y = {.name = plain[k],
                                          .label = names[k],
                                          .unit = units[k],
@@ -112,7 +125,9 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
                                    .series_count = STUDY_METHODS,
                                    .weight = 1.8};
     }
+
     snprintf(title, sizeof title, "%s: error against cost", s->name);
+
     figure fig = {
         .title = title,
         .caption =
@@ -132,9 +147,11 @@ int study_of_methods(const arguments *a, scenario *s)
     if (method_study_compute(s, &study, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
     if (summary_wanted(a)) {
         print_methods(s, &study);
     }
+
     int result = a->json != NULL ? write_json(a->json, methods_object(s, &study)) : EXIT_DONE;
     if (result == EXIT_DONE && a->plot != NULL) {
         result = plot_methods(a, s, &study);

@@ -8,9 +8,12 @@ static json_t *sensor_object(const scenario *s, const sensor_study *study)
 {
     json_t *object = json_object(), *rows = json_array();
     json_object_set_new(object, "scenario", json_text(s->name));
+
     for (int i = 0; i < SENSOR_LENGTHS; i++) {
         const sensor_view *view = &study->views[i];
         json_t *line = json_object(), *sensors = json_array();
+
+        // what the contact gives, of the links and of the beam
         json_object_set_new(line, "links", json_integer(view->links));
         json_object_set_new(line, "approach_speed_m_s", json_number(view->speed));
         json_object_set_new(line, "contact_impulse_Ns", json_number(view->impulse));
@@ -18,6 +21,8 @@ static json_t *sensor_object(const scenario *s, const sensor_study *study)
         json_object_set_new(line, "impacts", json_number(view->impacts));
         json_object_set_new(line, "momentum_2ms_Ns", json_number(view->momentum));
         json_object_set_new(line, "beam_momentum_2ms_Ns", json_number(study->beam_momentum[i]));
+
+        // what sensors make of it
         for (int k = 0; k < SENSOR_CONSTANTS; k++) {
             json_t *sensor = json_object();
             json_object_set_new(sensor, "time_constant_s", json_number(sensor_constants[k]));
@@ -26,9 +31,11 @@ static json_t *sensor_object(const scenario *s, const sensor_study *study)
             json_object_set_new(sensor, "beam_peak_N", json_number(study->beam_peak[k][i]));
             json_array_append_new(sensors, sensor);
         }
+
         json_object_set_new(line, "sensors", sensors);
         json_array_append_new(rows, line);
     }
+
     json_object_set_new(object, "sensor", rows);
     return object;
 }
@@ -38,29 +45,36 @@ static void print_sensor(const scenario *s, const sensor_study *study)
     printf("%s: the first %g ms after first contact\n\n", s->name, 1e3 * SENSOR_WINDOW);
     printf(
         "        ideal point contact           momentum   peak of a sensor with time constant\n");
+
     printf("links   impulse    peak      impacts  in %g ms  ", 1e3 * MOMENTUM_WINDOW);
     for (int k = 0; k < SENSOR_CONSTANTS; k++) {
         printf("%7g ms", 1e3 * sensor_constants[k]);
     }
+
     printf("\n        [N s]      [N]                [N s]     ");
     for (int k = 0; k < SENSOR_CONSTANTS; k++) {
         printf("%10s", "[N]");
     }
     printf("\n");
+
     for (int i = 0; i < SENSOR_LENGTHS; i++) {
         const sensor_view *view = &study->views[i];
         printf("%-6d  %-9.5f  %-8.4g  %-7g  %-9.5f ", view->links, view->impulse, view->peak,
                view->impacts, view->momentum);
+
         for (int k = 0; k < SENSOR_CONSTANTS; k++) {
             printf(" %9.4g", view->sensed[k]);
         }
         printf("\n");
     }
+
+    // the beam's limit below the links
     printf("%-6s  %-9s  %-8s  %-7s  %-9.5f ", "beam", "0", "infinite", "",
            study->beam_momentum[SENSOR_LENGTHS - 1]);
     for (int k = 0; k < SENSOR_CONSTANTS; k++) {
         printf(" %9.4g", study->beam_peak[k][SENSOR_LENGTHS - 1]);
     }
+
     printf("\n\nbeam: a long Euler-Bernoulli beam whose tip is stopped from the same speed, %.4g "
            "m/s\n",
            study->views[SENSOR_LENGTHS - 1].speed);
@@ -69,6 +83,8 @@ static void print_sensor(const scenario *s, const sensor_study *study)
 static int plot_sensor(const arguments *a, const scenario *s, const sensor_study *study)
 {
 #define CURVE(what) .x = study->links, .y = (what), .count = SENSOR_LENGTHS
+
+    // largest force: ideal, by sensors, and the beam's limits
     const figure_series force[] = {
         {.name = "ideal",
          .label = "ideal point contact",
@@ -98,12 +114,14 @@ static int plot_sensor(const arguments *a, const scenario *s, const sensor_study
         {.name = "beam 1 ms", CURVE(study->beam_peak[1]), .colour = 7, .secondary = true},
         {.name = "beam 2 ms", CURVE(study->beam_peak[2]), .colour = 7, .secondary = true},
     };
+
     const figure_series momentum[] = {
         {.name = "first impact", CURVE(study->impulse), .colour = 5, .marker = MARKER_SQUARE},
         {.name = "2 ms", CURVE(study->momentum), .colour = 0, .marker = MARKER_CIRCLE},
         {.name = "beam 2 ms", CURVE(study->beam_momentum), .colour = 7, .secondary = true},
     };
 #undef CURVE
+
     const figure_panel panels[] = {
         {.y = {.name = "peak", .label = "Largest force", .unit = "N", .scale = SCALE_LOGARITHMIC},
          .series = force,
@@ -117,6 +135,7 @@ static int plot_sensor(const arguments *a, const scenario *s, const sensor_study
          .series_count = 3,
          .weight = 1.8},
     };
+
     char title[256];
     snprintf(title, sizeof title, "%s: what a force sensor would see", s->name);
     figure fig = {.title = title,
@@ -136,9 +155,11 @@ int study_of_sensor(const arguments *a, scenario *s)
     if (sensor_study_compute(s, &study, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
     if (summary_wanted(a)) {
         print_sensor(s, &study);
     }
+
     int result = a->json != NULL ? write_json(a->json, sensor_object(s, &study)) : EXIT_DONE;
     if (result == EXIT_DONE && a->plot != NULL) {
         result = plot_sensor(a, s, &study);

@@ -98,18 +98,22 @@ static int read_share(const arguments *a, sweep_share *share)
 static int prepare(sweep_order *o, const arguments *a)
 {
     fault f = {0};
+
     *o = order_of(a);
     int code = read_share(a, &o->share);
     code = code == EXIT_DONE ? open_scenario(&o->scenario, a->operands[0], a) : code;
     if (code != EXIT_DONE) {
         return code;
     }
+
+    // a sweep that cannot be, or that could not be drawn, is refused before it computes
     if (sweep_init(&o->sweep, &o->scenario, &o->request, &f) != STATUS_OK) {
         code = complain_fault(&f);
     } else if (a->plot != NULL && sweep_plot_check(&o->sweep, a->plot, &f) != STATUS_OK) {
         code = complain_fault(&f);
         sweep_finish(&o->sweep);
     }
+
     if (code != EXIT_DONE) {
         scenario_finish(&o->scenario);
     }
@@ -134,20 +138,24 @@ static void show_progress(void *context, const sweep_progress *p)
 {
     char bar[BAR_LENGTH + 1], left[32] = "", failed[32] = "", line[160];
     (void)context;
+
     int filled = p->total > 0 ? (int)(BAR_LENGTH * p->done / p->total) : 0;
     for (int i = 0; i < BAR_LENGTH; i++) {
         bar[i] = i < filled ? '=' : ' ';
     }
     bar[BAR_LENGTH] = '\0';
+
     if (p->done_now > 0) {
         char time[24];
         double rate = (double)p->done_now / p->elapsed_s;
         format_duration(time, sizeof time, (double)(p->total - p->done) / rate);
         snprintf(left, sizeof left, ", %s left", time);
     }
+
     if (p->failed > 0) {
         snprintf(failed, sizeof failed, ", %zu failed", p->failed);
     }
+
     snprintf(line, sizeof line, "[%s] %3zu %%  %zu of %zu runs%s%s", bar, 100 * p->done / p->total,
              p->done, p->total, failed, left);
     fprintf(stderr, "\r%-78.78s", line);
@@ -187,9 +195,11 @@ static int compute(const sweep_order *o, sweep_store *store)
                              .report = bar ? show_progress : NULL};
     catch_signals();
     status code = sweep_run(&o->sweep, store, &options, &progress, &f);
+
     if (bar) {
         clear_progress();
     }
+
     if (code != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -211,16 +221,19 @@ static int sweep_command_run(const arguments *a)
     sweep_order o;
     fault f = {0};
     sweep_store *store;
+
     int code = prepare(&o, a);
     if (code != EXIT_DONE) {
         return code;
     }
+
     if (sweep_store_open(&store, a->db, &o.sweep, &f) == STATUS_OK) {
         code = compute(&o, store);
         sweep_store_close(store);
     } else {
         code = complain_fault(&f);
     }
+
     sweep_finish(&o.sweep);
     scenario_finish(&o.scenario);
     return code;

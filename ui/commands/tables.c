@@ -21,6 +21,7 @@ static json_t *tables_object(const thesis_tables *t)
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
         json_t *line = json_object();
+
         json_object_set_new(line, "table", json_string(row->table));
         json_object_set_new(line, "k2_factor", json_number(row->k2_factor));
         json_object_set_new(line, "model", json_string(row->model));
@@ -30,6 +31,7 @@ static json_t *tables_object(const thesis_tables *t)
         json_object_set_new(line, "computed", numbers(row->computed));
         json_array_append_new(rows, line);
     }
+
     json_object_set_new(object, "tables", rows);
     return object;
 }
@@ -97,20 +99,25 @@ static void print_tables(const thesis_tables *t)
     const char *table = "", *model = "";
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
+
+        // a heading where table or model changes
         if (strcmp(table, row->table) != 0 || strcmp(model, row->model) != 0) {
             printf("%sTable %s, %g times the nominal k2, %s model\n", i > 0 ? "\n" : "", row->table,
                    row->k2_factor, row->model);
         }
+
         table = row->table;
         model = row->model;
         print_row(t, row);
     }
+
     printf("\nMean error over the 12 cells of a row kind (printed model, corrected model):\n");
     for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {
         printf("  %-36s %6.1f %% %6.1f %%\n", labels[i].label,
                100 * tables_mean_error(t, "printed", labels[i].quantity),
                100 * tables_mean_error(t, "corrected", labels[i].quantity));
     }
+
     printf("\nInferred, since the thesis does not print them (docs/physics.md):\n");
     for (int i = 0; i < INFERRED; i++) {
         printf("  %s\n", inferred[i]);
@@ -122,12 +129,15 @@ static int tables(const arguments *a)
     thesis_tables t;
     fault f = {0};
     int result = EXIT_DONE;
+
     if (tables_compute(&t, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
+
     if (a->json != NULL) {
         result = write_json(a->json, tables_object(&t));
     }
+
     if (summary_wanted(a)) {
         print_tables(&t);
     }

@@ -44,14 +44,17 @@ static sequence_result take_parameter(escape_sequence *e, int character, pointer
         e->state = SEQUENCE_OLD_MOUSE;
         return SEQUENCE_GOES_ON;
     }
+
     if (character < ' ' || character > 0x7e) {
         // broken off: a control character or another escape begins something new
         e->state = SEQUENCE_NONE;
         return SEQUENCE_OTHER_KEY;
     }
+
     if (character >= 0x40) {
         return end(e, character, report);
     }
+
     // one that is longer than any we know loses its end
     if (e->length + 1 < (int)sizeof e->text) {
         e->text[e->length++] = (char)character;

@@ -1,5 +1,6 @@
 #include "ui/terminal/ink_colours.h"
 
+#include <assert.h>
 #include <math.h>
 
 // As many colours as can be told apart with 4.6 of contrast on both grounds, also without the
@@ -47,6 +48,7 @@ static const rgb light[INK_COUNT] = {
 
 bool ink_rgb(colour_theme theme, ink i, rgb *colour)
 {
+    assert(colour != NULL);
     *colour = theme == COLOURS_LIGHT ? light[i] : dark[i];
     return theme != COLOURS_MONO && i != INK_TEXT && i != INK_TITLE && i != INK_SELECTED;
 }
@@ -139,18 +141,22 @@ static int nearest(colour_theme theme, ink i, int first, int last, rgb (*colour)
     double least = i == INK_FRAME ? 3 : 4.5, distance = (double)INFINITY;
     rgb wanted;
     int best = -1;
+
     if (!ink_rgb(theme, i, &wanted)) {
         return -1;
     }
     greys = greys || is_grey(wanted);
+
     for (int index = first; index <= last; index++) {
         rgb c = colour(index);
         // no colour for what has none, and the other way round where there are some
         bool readable =
             (is_grey(c) ? greys : !is_grey(wanted)) && (index >= 16 || !(taken >> index & 1));
+
         for (int g = 0; g < grounds; g++) {
             readable = readable && rgb_contrast(c, theme_grounds(theme)[g]) >= least;
         }
+
         if (readable && rgb_distance(c, wanted) < distance) {
             best = index;
             distance = rgb_distance(c, wanted);

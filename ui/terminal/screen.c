@@ -31,6 +31,7 @@ void screen_finish(screen *s)
 
 void screen_clear(screen *s)
 {
+    assert(s != NULL);
     for (long i = 0; i < (long)s->width * s->height; i++) {
         s->cells[i] = (cell){' ', INK_TEXT};
     }
@@ -154,6 +155,7 @@ void screen_frame(screen *s, int x, int y, int width, int height, ink colour, co
 
 void screen_tint(screen *s, int x, int y, int width, int height, ink colour)
 {
+    assert(s != NULL);
     for (int row = y; row < y + height; row++) {
         for (int column = x; column < x + width; column++) {
             cell *c = cell_at(s, column, row);
@@ -250,6 +252,7 @@ static uint32_t ascii_glyph(uint32_t glyph)
                  {0x00d7, 'x'}, {0x2025, '~'}, {0x25b8, '>'}, {0x2506, ':'}, {0x2524, '+'},
                  {0x252c, '+'}, {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'}, {0x25be, 'v'},
                  {0x25cb, '.'}};
+
     for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++) {
         if (twins[i].glyph == glyph) {
             return (uint32_t)twins[i].ascii;
@@ -269,6 +272,7 @@ uint32_t glyph_in_set(uint32_t glyph, glyph_set set)
 
 void glyph_encode(uint32_t glyph, char *text)
 {
+    assert(text != NULL);
     if (glyph < 0x80) {
         *text++ = (char)glyph;
     } else if (glyph < 0x800) {
@@ -292,15 +296,19 @@ void screen_dump(const screen *s, glyph_set set, FILE *stream)
     assert(s != NULL && stream != NULL);
     for (int y = 0; y < s->height; y++) {
         const cell *row = s->cells + (long)y * s->width;
+
+        // blanks at the end of a line are left out
         int length = s->width;
         while (length > 0 && row[length - 1].glyph == ' ') {
             length--;
         }
+
         for (int x = 0; x < length; x++) {
             char text[5];
             glyph_encode(glyph_in_set(row[x].glyph, set), text);
             fputs(text, stream);
         }
+
         fputc('\n', stream);
     }
 }

@@ -86,10 +86,12 @@ static void take_signals(void)
 {
     stack_t stack = {.ss_sp = signal_stack, .ss_size = sizeof signal_stack};
     sigaltstack(&stack, NULL);
+
     for (int i = 0; i < POLITE; i++) {
         struct sigaction act = {.sa_handler = on_polite};
         sigaction(polite_signals[i], &act, &polite_before[i]);
     }
+
     for (int i = 0; i < FATAL; i++) {
         // one that is ignored ends nothing and stays ignored
         struct sigaction act = {.sa_handler = on_fatal, .sa_flags = SA_ONSTACK};
@@ -169,6 +171,7 @@ static void define_common_keys(void)
                 {"\033[6~", KEY_NPAGE}, {"\033[3~", KEY_DC},      {"\033OP", KEY_F(1)},
                 {"\033[11~", KEY_F(1)}, {"\033[1;2D", KEY_SLEFT}, {"\033[1;2C", KEY_SRIGHT},
                 {"\033[1;2A", KEY_SR},  {"\033[1;2B", KEY_SF}};
+
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         define_key(keys[i].sequence, keys[i].key);
     }
@@ -305,6 +308,7 @@ static int key_of_curses(int key)
         {KEY_SR, KEY_CODE_SHIFT_UP},
         {KEY_SF, KEY_CODE_SHIFT_DOWN},
     };
+
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         if (keys[i].curses == key) {
             return keys[i].ours;
@@ -326,16 +330,20 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
 {
     bool escaped = tty.sequence.state == SEQUENCE_ESCAPED;
     sequence_result result = SEQUENCE_OTHER_KEY;
+
     if (kind == OK && (escaped || seconds_now() - tty.sequence_time < SEQUENCE_TIME)) {
         result = escape_sequence_take(&tty.sequence, (int)key, &in->pointer);
     }
     tty.sequence_time = seconds_now();
+
+    // a key after the escape: it was no sequence, and the escape a key of its own
     if (result == SEQUENCE_OTHER_KEY) {
         tty.sequence.state = SEQUENCE_NONE;
         *in = (terminal_input){.kind = escaped ? TERMINAL_KEY : TERMINAL_NONE,
                                .code = KEY_CODE_ESCAPE};
         return false;
     }
+
     in->kind = result == SEQUENCE_MOUSE ? TERMINAL_POINTER : TERMINAL_NONE;
     return true;
 }
@@ -347,6 +355,7 @@ static terminal_input pending_input(void)
     wint_t key = 0;
     int kind;
     while ((kind = get_wch(&key)) != ERR) {
+        // in the middle of a sequence
         if (tty.sequence.state != SEQUENCE_NONE) {
             if (take_sequence(key, kind, &in)) {
                 if (in.kind != TERMINAL_NONE) {
@@ -364,20 +373,25 @@ static terminal_input pending_input(void)
                 return in;
             }
         }
+
         if (kind == KEY_CODE_YES) {
             return key == KEY_RESIZE
                        ? (terminal_input){.kind = TERMINAL_RESIZE}
                        : (terminal_input){.kind = TERMINAL_KEY, .code = key_of_curses((int)key)};
         }
+
         if (key != KEY_CODE_ESCAPE) {
             return (terminal_input){.kind = TERMINAL_KEY, .code = (int)key};
         }
         tty.sequence.state = SEQUENCE_ESCAPED;
     }
+
+    // no more came after an escape: it was the key
     if (tty.sequence.state == SEQUENCE_ESCAPED) {
         tty.sequence.state = SEQUENCE_NONE;
         return (terminal_input){.kind = TERMINAL_KEY, .code = KEY_CODE_ESCAPE};
     }
+
     return (terminal_input){.kind = TERMINAL_NONE};
 }
 
