@@ -48,6 +48,7 @@ static status check_extension(const char *path, fault *f)
 
 status picture_check_path(const char *path, fault *f)
 {
+    assert(path != NULL);
     status code = check_extension(path, f);
     return code == STATUS_OK ? whole_file_check(path, f) : code;
 }

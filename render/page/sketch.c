@@ -22,6 +22,7 @@ static double page_scale(const sketch_frame *frame)
 
 double sketch_letters(const sketch_frame *frame, double size)
 {
+    assert(frame != NULL);
     // a smaller page has smaller letters, though not as small as its lines; a larger one has not
     double scale = page_scale(frame), shrunk = size * fmin(1, fmax(scale, LEAST_SHRINK));
     return page_letters(frame->look.letters, shrunk) / scale;
@@ -163,6 +164,7 @@ void sketch_end(sketch *s)
 
 colour sketch_colour(const sketch *s, int slot)
 {
+    assert(s != NULL);
     if (slot == SKETCH_FAINT) {
         return s->colours->mark;
     }
@@ -180,6 +182,7 @@ static void set_pen(const sketch *s, double width, int slot)
 void sketch_line(const sketch *s, double x0, double y0, double x1, double y1, double width,
                  int slot)
 {
+    assert(s != NULL && width > 0);
     set_pen(s, width, slot);
     cairo_move_to(s->cr, x0, y0);
     cairo_line_to(s->cr, x1, y1);
@@ -195,6 +198,7 @@ static void set_dashes(const sketch *s)
 
 void sketch_dashed(const sketch *s, double x0, double y0, double x1, double y1, int slot)
 {
+    assert(s != NULL);
     set_pen(s, 0.6, slot);
     set_dashes(s);
     cairo_move_to(s->cr, x0, y0);
@@ -292,6 +296,7 @@ void sketch_disc(const sketch *s, double x, double y, double radius, int slot, b
 
 void sketch_bar(const sketch *s, double x0, double y0, double x1, double y1, double thickness)
 {
+    assert(s != NULL && thickness > 0);
     cairo_set_dash(s->cr, NULL, 0, 0);
     cairo_set_line_cap(s->cr, CAIRO_LINE_CAP_ROUND);
     cairo_move_to(s->cr, x0, y0);
@@ -306,6 +311,7 @@ void sketch_bar(const sketch *s, double x0, double y0, double x1, double y1, dou
 
 void sketch_mass_point(const sketch *s, double x, double y)
 {
+    assert(s != NULL);
     const double r = 3;
     sketch_disc(s, x, y, r, SKETCH_INK, false);
     for (int quarter = 0; quarter < 4; quarter += 2) {
@@ -355,6 +361,7 @@ void sketch_coil(const sketch *s, double x0, double y0, double x1, double y1, in
 
 void sketch_resistor(const sketch *s, double x0, double y0, double x1, double y1)
 {
+    assert(s != NULL);
     double length = hypot(x1 - x0, y1 - y0);
     set_pen(s, LINE_WIDTH, SKETCH_INK);
     draw_zigzag(s, x0, y0, x1, y1, 3, 4, (length - 22) / 2);
@@ -362,6 +369,7 @@ void sketch_resistor(const sketch *s, double x0, double y0, double x1, double y1
 
 void sketch_wall(const sketch *s, double x0, double y0, double x1, double y1)
 {
+    assert(s != NULL);
     const double spacing = 5, depth = 6;
     double length = hypot(x1 - x0, y1 - y0), ux = (x1 - x0) / length, uy = (y1 - y0) / length;
     sketch_line(s, x0, y0, x1, y1, 1.1, SKETCH_INK);

@@ -96,6 +96,7 @@ vector camera_project(const camera *c, vector point)
 
 vector camera_ray(const camera *c, double x, double y)
 {
+    assert(c != NULL);
     double across = (2 * x / c->width - 1) / c->focal_x, up = (1 - 2 * y / c->height) / c->focal_y;
     vector ray = vector_scaled(c->back, -1);
     return vector_sum(vector_sum(ray, across, c->right), up, c->up);

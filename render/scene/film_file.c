@@ -417,6 +417,7 @@ static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
 
 bool film_file_wants_palette(const film_file *film)
 {
+    assert(film != NULL);
     return film->kind == FILM_GIF;
 }
 
@@ -441,6 +442,7 @@ status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 
 status film_file_commit(film_file *film, fault *f)
 {
+    assert(film != NULL);
     status code = STATUS_OK;
     if (film->kind != FILM_FRAMES) {
         char said[512];
@@ -457,6 +459,7 @@ status film_file_commit(film_file *film, fault *f)
 
 void film_file_abandon(film_file *film)
 {
+    assert(film != NULL);
     if (film->kind != FILM_FRAMES) {
         char said[512];
         if (film->encoder > 0) {

@@ -29,6 +29,7 @@ static double pixels_of(const camera *c, vector place, double length)
 
 void labels_flash(const labels *l, vector place, double radius, double strength)
 {
+    assert(l != NULL && radius > 0);
     enum { RAYS = 12 };
     vector at = camera_project(l->camera, place);
     double r = pixels_of(l->camera, place, radius) * (0.55 + 0.45 * strength);
@@ -57,6 +58,7 @@ void labels_flash(const labels *l, vector place, double radius, double strength)
 
 void labels_force(const labels *l, vector from, vector end, double force, colour ink)
 {
+    assert(l != NULL);
     char text[48];
 
     // text and its size

@@ -39,6 +39,7 @@ vector vector_unit(vector a)
 
 void mesh_finish(mesh *m)
 {
+    assert(m != NULL);
     free(m->vertices);
     free(m->corners);
     *m = (mesh){0};
@@ -46,6 +47,7 @@ void mesh_finish(mesh *m)
 
 void mesh_clear(mesh *m)
 {
+    assert(m != NULL);
     m->vertex_count = m->corner_count = 0;
 }
 
@@ -172,6 +174,7 @@ static void add_face(mesh *m, vector centre, vector out, vector u, vector v, dou
 
 void mesh_box(mesh *m, vector centre, vector u, vector v, vector w, double cell, material of)
 {
+    assert(m != NULL && cell > 0);
     const vector half[] = {u, v, w};
     for (int face = 0; face < 3; face++) {
         vector out = half[face], a = half[(face + 1) % 3], b = half[(face + 2) % 3];
@@ -286,6 +289,7 @@ void mesh_tube(mesh *m, const vector *places, const material *of, int count, dou
 
 void mesh_arrow(mesh *m, vector start, vector direction, double length, double radius, material of)
 {
+    assert(m != NULL && length >= 0 && radius > 0);
     double head = fmin(7 * radius, 0.6 * length), broad = 2.6 * radius * head / (7 * radius);
     double shaft = fmin(radius, 0.5 * broad);
     const lathe_ring rings[] = {

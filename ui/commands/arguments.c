@@ -59,6 +59,7 @@ const char *option_text(const arguments *a, const option_row *o)
 
 bool option_is_written(const option_row *o)
 {
+    assert(o != NULL);
     return o->type == OPTION_RESULT || o->type == OPTION_PICTURE || o->type == OPTION_PLACE;
 }
 
@@ -460,6 +461,7 @@ void arguments_finish(arguments *a)
 
 int check_results(const arguments *a)
 {
+    assert(a != NULL);
     const option_row *o;
     int result = EXIT_DONE;
 

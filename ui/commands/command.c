@@ -10,6 +10,7 @@
 
 int complain(const char *format, ...)
 {
+    assert(format != NULL);
     va_list list;
     fflush(stdout);
     fputs("impactlab: ", stderr);
@@ -22,6 +23,7 @@ int complain(const char *format, ...)
 
 int complain_fault(const fault *f)
 {
+    assert(f != NULL);
     complain("%s", f->text[0] ? f->text : status_text(f->code));
     switch (f->code) {
     case STATUS_OK:
@@ -104,6 +106,7 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
 int with_scenario(const char *name_or_file, const arguments *a,
                   int (*use)(const arguments *a, scenario *s))
 {
+    assert(use != NULL);
     scenario s;
     int result = open_scenario(&s, name_or_file, a);
     if (result == EXIT_DONE) {
@@ -120,6 +123,7 @@ static void write_json_value(FILE *stream, const void *value)
 
 int write_json(const char *path, json_t *value)
 {
+    assert(path != NULL);
     if (value == NULL) {
         complain("%s", status_text(STATUS_NO_MEMORY));
         return EXIT_FAILED;
@@ -149,6 +153,7 @@ int worse(int a, int b)
 
 bool summary_wanted(const arguments *a)
 {
+    assert(a != NULL);
     const option_row *o;
     bool alone = false;
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {

@@ -54,6 +54,7 @@ const command *command_find(const char *name)
 
 int complain_command(const char *name)
 {
+    assert(name != NULL);
     nearest_word near = nearest_begin(name);
     for (int i = 0; i < command_count; i++) {
         nearest_try(&near, command_table[i]->name);

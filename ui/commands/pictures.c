@@ -1,5 +1,6 @@
 #include "ui/commands/pictures.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -32,6 +33,7 @@ static int read_theme(const arguments *a, figure_theme *theme)
 
 int read_picture_options(const arguments *a, figure_options *o)
 {
+    assert(a != NULL && o != NULL);
     fault f = {0};
     bool ranged = !isnan(a->from) || !isnan(a->to);
     *o = (figure_options){.look = {.width = a->width,
@@ -65,6 +67,7 @@ int read_picture_options(const arguments *a, figure_options *o)
 
 int publish_figure(const arguments *a, const figure *fig)
 {
+    assert(a != NULL && a->plot != NULL && fig != NULL);
     figure_options o;
     fault f = {0};
     int code = read_picture_options(a, &o);
@@ -81,6 +84,7 @@ static void borrow_nothing(void *owner)
 
 int publish_runs(const arguments *a, const char *title, const trace_run *runs, int run_count)
 {
+    assert(a != NULL && a->plot != NULL && runs != NULL && run_count > 0);
     figure_options o;
     run_figure r;
     fault f = {0};

@@ -25,6 +25,7 @@ scene_options read_view(const arguments *a)
 
 int check_scene(const arguments *a)
 {
+    assert(a != NULL);
     fault f = {0};
     if (a->instants.count > SCENE_INSTANTS) {
         return complain("--at was given %d times, expected at most %d", a->instants.count,

@@ -1,5 +1,6 @@
 #include "ui/commands/study_topics.h"
 
+#include <assert.h>
 #include <stdio.h>
 
 #include <string.h>
@@ -8,6 +9,7 @@
 
 int publish_study(const arguments *a, figure *fig)
 {
+    assert(a != NULL && fig != NULL);
     char software[64];
     snprintf(software, sizeof software, "impactlab %s", lab_version());
     fig->x.scale = SCALE_LOGARITHMIC;

@@ -6,6 +6,7 @@
 
 int text_width(const char *text)
 {
+    assert(text != NULL);
     int width = 0;
     for (; *text != '\0'; text++) {
         width += ((unsigned char)*text & 0xC0) != 0x80;
@@ -36,6 +37,7 @@ void print_wrapped(FILE *stream, const char *text, int bytes, int width)
 
 bool next_paragraph(const char **text, paragraph *p)
 {
+    assert(text != NULL && *text != NULL && p != NULL);
     *text += strspn(*text, "\n");
     if (**text == '\0') {
         return false;
