@@ -27,16 +27,23 @@ write_all() {
         mkdir -p "$name"
         host run "$name" "${changed[@]}" --csv "$name/run.csv" --json "$name/all.json" \
             --plot "$name/run.svg"
-        # but for the time the computing took
-        grep -vE '(wall|cpu)_time_s' "$name/all.json" >"$name/run.json"
-        rm "$name/all.json"
+    done
+    # one with a remark that it is inaccurate, which is a failure
+    mkdir rough
+    printf 'title: Presses\nwall: {angle: 0.5e-1 rad}\nrun: {duration: 0.5 s}\n' >short.yaml
+    LC_ALL=$host_locale "$host" run short.yaml --set method.name=newmark --quiet \
+        --set method.residual_bound=1e-15 --json rough/all.json --plot rough/run.svg 2>fault
+    # but for the time the computing took
+    for name in */all.json */*/all.json; do
+        grep -vE '(wall|cpu)_time_s' "$name" >"${name%all.json}run.json"
+        rm "$name"
     done
     host run corrected/first-impact --scene scene.png --gl cairo --size 320x180
-    host figures 3.4 4.3 -o figures --format svg,pdf
+    host figures -o figures --format svg
+    host figures 3.4 -o figures --format pdf
     host tables --json tables.json
 
     # many runs; a sweep that is taken up finds its own numbers again
-    printf 'title: Presses\nwall: {angle: 0.5e-1 rad}\nrun: {duration: 0.5 s}\n' >short.yaml
     # shellcheck disable=SC2054
     local sweep=(sweep short.yaml --vary motor.voltage=0.5:1.5:3 --vary arm.k2=4.5,5.25)
     host "${sweep[@]}" --db s.sqlite --csv sweep.csv --plot sweep.svg
@@ -50,7 +57,7 @@ write_all() {
     printf 'set motor.voltage 1.5\nsave half.yaml\n' >script
     host lab short.yaml --script script --size 100x30 --glyphs ascii
     host run half.yaml --csv half.csv
-    LC_ALL=$host_locale "$host" check short.yaml --set "control.settings=…" >fault 2>&1
+    LC_ALL=$host_locale "$host" check short.yaml --set "control.settings=…" >>fault 2>&1
     LC_ALL=$host_locale "$host" run short.yaml --set wall.angle=99.5 >>fault 2>&1
     cd ..
 }

@@ -166,7 +166,7 @@ static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char 
     }
     va_list values;
     va_start(values, format);
-    vsnprintf(s->message + length, sizeof s->message - length, format, values);
+    decimal_vprint(s->message + length, sizeof s->message - length, format, values);
     va_end(values);
 }
 
