@@ -6,7 +6,8 @@ static void gain_makes_the_cost_least(void **state)
 {
     (void)state;
     // the arm in contact at 200 Hz; the cost of 400 samples from one start, gains moved either way
-    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0, 1}, {-510, -4.7}}, input[ESTIMATOR_STATES] = {0, 11.3}, gain[2];
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0, 1}, {-510, -4.7}},
+           input[ESTIMATOR_STATES] = {0, 11.3}, gain[2];
     const double output[2] = {28.2, 0.08}, direct = -0.19, effort = 2e-3;
     sampled_model m;
     sampled_model_init(&m, 2, rate, input, 0.005);

@@ -228,5 +228,6 @@ int main(void)
         cmocka_unit_test(faults_are_sentences),
         cmocka_unit_test(a_full_disk_is_noticed),
     };
-    return cmocka_run_group_tests_name("figure_file", tests, make_work_folder, remove_work_folder) != 0;
+    return cmocka_run_group_tests_name("figure_file", tests, make_work_folder,
+                                       remove_work_folder) != 0;
 }

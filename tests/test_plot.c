@@ -42,7 +42,8 @@ static void indices_are_small_and_scale_with_the_letters(void **state)
     PangoContext *context = text_context_create();
     double plain, lowered, twice, height, narrow;
     text_measure(context, &(text_block){.markup = "x111", .size = 12}, &plain, &height);
-    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 12}, &lowered, &height);
+    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 12}, &lowered,
+                 &height);
     text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 24}, &twice, &height);
     text_measure(context, &(text_block){.markup = "x", .size = 12}, &narrow, &height);
     check_close(lowered - narrow, 0.72 * (plain - narrow), 0.1);

@@ -126,8 +126,8 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
 
     // before it
     status failed = corrected_record_row(c, m->state, 0);
-    const bool strikes = report->event == MOTION_IMPACT ||
-                         (m->wall_gives && report->event == MOTION_TOUCH);
+    const bool strikes =
+        report->event == MOTION_IMPACT || (m->wall_gives && report->event == MOTION_TOUCH);
     if (failed == STATUS_OK && strikes && result->before_impact == NULL) {
         failed = keep_state_before_impact(result, m);
     }

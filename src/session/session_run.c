@@ -136,9 +136,8 @@ static status start_run(session *s, const scenario *effective, fault *f)
 
     // a run that diverges is worth looking at; one without a single row is not
     if (run.trace.row_count == 0) {
-        status code = run.summary.status != STATUS_OK
-                          ? summary_fault(&run.summary, f)
-                          : fault_no_memory(f);
+        status code =
+            run.summary.status != STATUS_OK ? summary_fault(&run.summary, f) : fault_no_memory(f);
         run_finish(&run);
         return code;
     }

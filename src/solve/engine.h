@@ -64,8 +64,8 @@ typedef struct engine {
     // Dense engines: the contact force [N] and its slope [N/s], never divided by anything.
     glance (*force_at)(const arm *a, const motion *m, double h);
 
-    // Dense engines that have ways of their own, else NULL: what dense_first_event and dense_peak of
-    // dense_location.h do.
+    // Dense engines that have ways of their own, else NULL: what dense_first_event and dense_peak
+    // of dense_location.h do.
     void (*first_event)(const arm *a, motion *m, double *h, watch *first, bool *any);
     void (*peak)(const arm *a, motion *m, double h);
 
@@ -83,7 +83,7 @@ extern const engine explicit_engine; // Runge-Kutta of order 8, of order 6 in br
 extern const engine newmark_engine;  // implicit, stepping
 extern const engine generalized_alpha_engine; // the same step with other coefficients
 
-extern const engine modal_engine; // exponential collocation for chains of many links; dense
+extern const engine modal_engine;  // exponential collocation for chains of many links; dense
 extern const engine taylor_engine; // power series of the two-link arm; dense
 
 // Whether the arm is one that the power series are for: two links, hub joint and damping of any
