@@ -64,6 +64,7 @@ static void integrate_motion(integrated_motion *g, const parameters *p, const tw
     // the listing takes the hub to turn forwards
     double turning = printed ? 1 : (speed > 0) - (speed < 0);
 
+    // what (4.20)-(4.22) are made of
     *g = (integrated_motion){
         .hub_inertia = p->arm.hub_inertia,
         .hub_damping = t->hub_damping,
@@ -197,6 +198,7 @@ static bool newton(const integrated_motion *g, double x[3])
                    fabs(g->k1 * x[0] * g->hub_bend) +
                    g->k1 * x[0] * x[0] * (fabs(g->w2) + fabs(x[2])) / 4;
 
+    // the residual to begin with
     double e[3], jacobian[9], error;
     equations(g, x, e, jacobian);
     error = hypot(hypot(e[0], e[1]), e[2]);
@@ -206,6 +208,7 @@ static bool newton(const integrated_motion *g, double x[3])
         if (!dense_solve(3, jacobian, e)) {
             return false;
         }
+
         do {
             double trial_e[3];
             for (int j = 0; j < 3; j++) {
@@ -362,6 +365,7 @@ status predict_impact_quadratic(const parameters *p, const three_body_state *s, 
         rigid.arm.hub_joint = HUB_RIGID;
     }
 
+    // a rigid hub is quadratic as it is; with a hub spring the printed form makes it so
     status result = start(&rigid, s, &t, &g, out, after, f);
     if (result == STATUS_OK && t.rigid_hub) {
         solve_rigid_hub(&g, out);
@@ -374,6 +378,7 @@ status predict_impact_quadratic(const parameters *p, const three_body_state *s, 
         out->delay = earliest_delay(c);
         out->force = force_of_delay(&g, out->delay);
     }
+
     if (result == STATUS_OK) {
         finish(&rigid, &t, s, after, out);
     }

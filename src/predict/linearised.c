@@ -312,6 +312,7 @@ static void exponential(const double *matrix, int size, double h, double *result
 {
     const size_t bytes = (size_t)(size * size) * sizeof(double);
 
+    // the largest row sum
     double norm = 0;
     for (int i = 0; i < size; i++) {
         double row = 0;
@@ -333,6 +334,7 @@ static void exponential(const double *matrix, int size, double h, double *result
     // first the terms of the series, then the squarings
     enum { TERMS = 14 };
     for (int term = 1; term <= TERMS + squarings; term++) {
+        // a term of the series, or the square of what there is so far
         const double *left = term <= TERMS ? matrix : result;
         const double *right = term <= TERMS ? power : result;
         double factor = term <= TERMS ? scale / term : 1;
@@ -345,6 +347,7 @@ static void exponential(const double *matrix, int size, double h, double *result
                 product[i * size + j] = sum * factor;
             }
         }
+
         if (term > TERMS) {
             memcpy(result, product, bytes);
             continue;
@@ -368,6 +371,7 @@ static status many_link_peak(const arm *a, chain_link *links, contact_state mode
         return STATUS_NO_MEMORY;
     }
 
+    // scratch and results lie one after another
     double *matrix = block, *step = matrix + square, *power = step + square;
     double *product = power + square, *output = product + square, *z = output + size;
     double *next = z + size, *scratch = next + size;
@@ -383,6 +387,7 @@ static status many_link_peak(const arm *a, chain_link *links, contact_state mode
     }
     z[2 * n] = 1;
 
+    // step by step along the path
     double f[3] = {first_force, first_force, first_force};
     out->force = first_force;
     out->delay = 0;
@@ -413,6 +418,7 @@ static status many_link_peak(const arm *a, chain_link *links, contact_state mode
             break; // the hub turns back: friction changes its direction
         }
     }
+
     free(block);
     return STATUS_OK;
 }

@@ -38,6 +38,8 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     const parameters *p = question->parameters;
     const three_body_state *s = &question->bodies;
     status code = STATUS_OK;
+
+    // what none of them knows
     if (p->wall.contact != WALL_RIGID) {
         return PREDICTION_RIGID_WALL_ONLY; // all of them begin with an impact
     }
@@ -60,6 +62,7 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     case PREDICTOR_COUNT:
         break;
     }
+
     return code != STATUS_OK ? PREDICTION_FAILED : out->holds ? PREDICTION_HOLDS : PREDICTION_LOST;
 }
 

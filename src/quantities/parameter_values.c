@@ -18,6 +18,8 @@ static const parameter_info *row_of(int index)
 static void store(parameters *p, const parameter_info *info, double value)
 {
     char *at = (char *)p + info->offset;
+
+    // the field is copied, since the table alone knows its type
     switch (info->type) {
     case PARAMETER_REAL:
         memcpy(at, &value, sizeof value);
@@ -240,6 +242,7 @@ void parameter_format(const parameters *p, int index, char *text, size_t size)
     const char *choice = info->choices;
     char number[NUMBER_TEXT];
 
+    // as a scenario file would have it
     switch (info->type) {
     case PARAMETER_TEXT:
         snprintf(text, size, "%s", (const char *)p + info->offset);

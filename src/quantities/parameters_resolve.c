@@ -89,12 +89,16 @@ static status resolve_wall(parameters *p, fault *f)
 {
     wall_parameters *w = &p->wall;
     const bool hertz = w->contact == WALL_HUNT_CROSSLEY;
+
+    // defaults that depend on the law
     if (isnan(w->stiffness)) {
         w->stiffness = hertz ? HERTZ_STIFFNESS : SOFT_STIFFNESS;
     }
     if (isnan(w->damping)) {
         w->damping = hertz ? 1.5 * RESTITUTION_LOSS * w->stiffness : SOFT_DAMPING;
     }
+
+    // what a wall that gives cannot be combined with
     if (w->contact == WALL_RIGID) {
         return STATUS_OK;
     }
@@ -223,6 +227,7 @@ static status check_printed(const parameters *p, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.name),
                             "the printed model runs with method.name = newmark only");
     }
+
     if (p->wall.kind == WALL_PLANE) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.kind),
                             "the printed model knows wall.kind = point or none, not plane");

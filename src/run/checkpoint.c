@@ -64,6 +64,7 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
     if (t->row_count < before + CHECKPOINT_ROWS) {
         return true;
     }
+
     if (!shared_array_grow(&h->checkpoints, h->checkpoint_count + 1)) {
         return false;
     }
@@ -84,6 +85,7 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
                          .pulse_peak_time = m->pulse_peak_time,
                          .largest_penetration = m->largest_penetration};
     memcpy(kept->state, m->state, (size_t)m->size * sizeof(double));
+
     return true;
 }
 

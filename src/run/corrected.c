@@ -136,9 +136,13 @@ status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
         if (*ended) {
             break;
         }
+
+        // the mean force of the end begins to count here
         if (same_instant(m->state[SLOT_TIME], window)) {
             r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         }
+
+        // what is due now, then how far the motion may go on its own
         failed = corrected_run_script(c, f);
         if (failed == STATUS_OK) {
             failed = corrected_run_rig(c, f);

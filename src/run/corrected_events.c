@@ -65,6 +65,8 @@ static status record_applied_event(corrected_run *c, const motion_report *report
     summary *s = &r->result->summary;
     const double now = m->state[SLOT_TIME];
     const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
+
+    // the event itself
     status failed = record_event(r, m, kind_of(m, report), report);
     s->impacts += report->event == MOTION_IMPACT;
 

@@ -48,6 +48,7 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
         m->wall_gives ? wall_stored_energy(&a->wall, -state[SLOT_GAP]) : (double)NAN;
     int first = a->first, last = a->dof - 1;
     sample row = {
+        // every signal of the table that the corrected model has
         .time = state[SLOT_TIME],
         .hub_angle = q[0],
         .first_angle = q[first],
@@ -135,6 +136,8 @@ static bool step_separated(corrected_run *c)
 {
     motion *m = c->motion;
     double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
+
+    // the ends of the step decide nearly always
     if (m->state[SLOT_GAP] > SEPARATION_GAP) {
         return true;
     }
@@ -194,6 +197,7 @@ static status record_force(corrected_run *c, const force_step *whole)
     const double length = whole->end - whole->start;
     const bool contact = m->trial[SLOT_CONTACT] != 0;
     const int pieces = contact ? pieces_of_step(c, length, FORCE_REACH) : 1;
+
     if (pieces == 1) {
         return recording_add_step(r, *whole);
     }
@@ -225,6 +229,8 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole)
     const int pieces = pieces_of_step(c, length, SENSOR_REACH);
     sensed_motion first = corrected_sensed_motion(c, m->trial);
     double integral = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+
+    // from piece to piece
     for (int i = 1; i < pieces; i++) {
         double *state = motion_between(&c->arm, m, whole->start + length * i / pieces);
         if (state == NULL) {
@@ -238,6 +244,7 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole)
         integral = pressed;
     }
 
+    // the last piece ends where the step does
     sensed_motion last = corrected_sensed_motion(c, m->state);
     double pressed = state_quadratures(m, m->state)[QUADRATURE_FORCE];
     double mean = pieces > 1 ? (pressed - integral) / (length / pieces) : whole->mean;

@@ -67,10 +67,13 @@ double force_settled_since(const force_history *h, double final)
         const force_step *step = &steps[i];
         double upper = last_crossing(step, final + band), lower = last_crossing(step, final - band);
         double left = fmax(upper, lower);
+
         if (fabs(step->last - final) > band) {
             // outside at its end: inside only from the next step's start on
             return i + 1 == h->count ? (double)NAN : step->end;
         }
+
+        // it came into the band within this step
         if (left >= 0) {
             return step->start + left * (step->end - step->start);
         }

@@ -91,6 +91,8 @@ static double largest_between(const run_result *r, const window_end *front, cons
         if (!(length > 0)) {
             continue;
         }
+
+        // the step's parabola, moved to `from` and scaled to seconds
         double s = (from - (end == 0 ? 0 : window) - step->start) / length;
         step_parabola p = step_parabola_of(step);
         sums[0] += sign * (p.first + s * (p.slope + s * p.curve));

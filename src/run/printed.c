@@ -178,6 +178,8 @@ static status run_script(printed_run_state *run, fault *f)
     const scenario *s = r->scenario;
     const double time = run->motion.row.time;
     bool changed = false;
+
+    // all that is due by now
     for (; r->state.next_action < s->action_count; r->state.next_action++) {
         const action *todo = &s->actions[r->state.next_action];
         if (todo->time > time) {
@@ -200,6 +202,7 @@ static status run_script(printed_run_state *run, fault *f)
         changed = true;
     }
 
+    // the arm takes new parameters once
     if (changed) {
         printed_motion_rebind(&run->motion, &r->now);
     }
@@ -307,6 +310,8 @@ static status refuse_pushes(const scenario *s, fault *f)
 status run_printed(recording *r, fault *f)
 {
     assert(r != NULL && r->scenario->parameters.arm.model == ARM_PRINTED);
+
+    // what the printed model does not know is refused
     printed_run_state run = {.recording = r};
     status failed = recording_open_trace(r, 3, f);
     if (failed == STATUS_OK) {
@@ -337,6 +342,7 @@ status run_printed(recording *r, fault *f)
             failed = record_row(&run, f);
         }
     }
+
     sum_up(&run, failed);
     return failed;
 }

@@ -129,6 +129,8 @@ static bool go_on(side_by_side *group, int place)
     side_run *one = &group->in_hand[place];
     status failed = STATUS_OK;
     bool ended = false;
+
+    // strides that need no series are taken at once, one that does waits for company
     while (failed == STATUS_OK && !ended) {
         failed = corrected_approach_stride(&one->run, &ended, &one->fault);
         if (failed == STATUS_OK && !ended) {
@@ -140,6 +142,7 @@ static bool go_on(side_by_side *group, int place)
             failed = corrected_stride(&one->run, &one->fault);
         }
     }
+
     corrected_close(&one->run, failed);
     close_recording(&one->recording, failed, &one->fault, (time_used){0});
     return false;
@@ -163,6 +166,8 @@ static void begin_next(side_by_side *group, int place)
 {
     side_run *one = &group->in_hand[place];
     bool waits = false;
+
+    // the printed model has nothing to wait for and is run here
     while (!waits && group->next < group->count) {
         const scenario *s = &group->scenarios[group->next];
         run_result *result = &group->results[group->next++];
@@ -170,6 +175,8 @@ static void begin_next(side_by_side *group, int place)
             run_scenario_with(s, &summary_only, result);
             continue;
         }
+
+        // the next corrected run, up to its first wait
         *one = (side_run){0};
         status failed = open_recording(&one->recording, s, &summary_only, result, &one->fault);
         if (failed == STATUS_OK) {
@@ -196,6 +203,8 @@ static void serve(side_by_side *group)
 {
     enum { LOOKED_AT = 4 };
     const int width = taylor_width();
+
+    // the form that most of the first in the queue share
     int best = 0, most = 0, chosen[TAYLOR_WIDEST], count = 0;
     for (int i = 0; i < group->waiting_count && i < LOOKED_AT && most < width; i++) {
         int alike = 0;
@@ -222,6 +231,7 @@ static void serve(side_by_side *group)
     }
     group->waiting_count = left;
 
+    // side by side, then each goes on by itself or makes room
     taylor_compute(requests, count);
     for (int i = 0; i < count; i++) {
         if (!stride_and_go_on(group, chosen[i])) {

@@ -159,6 +159,8 @@ static bool walk(name_list *list, const char *folder, const char *prefix, int de
     if (directory == NULL) {
         return true;
     }
+
+    // every entry that may be a scenario or a folder of them
     for (struct dirent *entry; good && (entry = readdir(directory)) != NULL;) {
         // recipes of figures are no scenarios
         bool recipes = depth == 0 && strcmp(entry->d_name, "recipes") == 0;
@@ -166,6 +168,7 @@ static bool walk(name_list *list, const char *folder, const char *prefix, int de
             good = add_entry(list, folder, prefix, entry->d_name, depth);
         }
     }
+
     closedir(directory);
     return good;
 }
@@ -191,17 +194,21 @@ status scenario_list(char ***names, int *count, fault *f)
     const char *folder = scenario_folder();
     *names = NULL;
     *count = 0;
+
     if (!is_folder(folder)) {
         return fault_set(f, STATUS_CANNOT_READ,
                          "%.500s: no such folder, expected the scenarios there (set "
                          "IMPACTLAB_SCENARIOS to the folder that holds them)",
                          folder);
     }
+
+    // all names below it
     if (!walk(&list, folder, "", 0)) {
         free_names(list.names, list.count);
         return fault_set(f, STATUS_NO_MEMORY, "out of memory");
     }
 
+    // in the order of the alphabet
     if (list.count > 0) {
         qsort(list.names, (size_t)list.count, sizeof *list.names, compare_names);
     }
@@ -278,6 +285,7 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
     if (is_file(name_or_file)) {
         return scenario_read(s, name_or_file, NULL, report, context);
     }
+
     path = text_of("%s%s", name_or_file, suffix);
     status result = STATUS_NO_MEMORY;
     if (path != NULL && is_file(path)) {
@@ -287,6 +295,7 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
     } else if (path != NULL) {
         result = report_unknown(name_or_file, report, context);
     }
+
     free(path);
     return result;
 }

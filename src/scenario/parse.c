@@ -39,6 +39,7 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
         report_node(r, node, "%s has %zu bytes, expected at most %d", what, length, LONGEST_TITLE);
         return NULL;
     }
+
     char *copy = strndup(node->text, length);
     reader_have_memory(r, copy);
     return copy;
@@ -69,12 +70,14 @@ static void report_unknown_top(reader *r, const tree_node *key)
             size_t used = strlen(groups);
             snprintf(groups + used, sizeof groups - used, ", %s", group);
         }
+
         // compared as a word of its own, kept as the beginning of its path, which lasts
         if (edit_distance(key->text, group, near.distance) < near.distance) {
             near.distance = edit_distance(key->text, group, near.distance);
             near.best = path;
         }
     }
+
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         nearest_try(&near, others[i]);
     }
@@ -104,6 +107,7 @@ static void parse_root(reader *r, const tree_node *root)
         if (key == NULL) {
             continue;
         }
+
         if (strcmp(key, "title") == 0) {
             r->s->title = parse_prose(r, child, "title", false);
         } else if (strcmp(key, "description") == 0) {

@@ -54,6 +54,7 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
                         key, quantity);
         }
     }
+
     if (value == NULL || tolerance == NULL) {
         report_node(r, map, "%s has no %s, expected {value: ..., tolerance: ...}", quantity,
                     value == NULL ? "value" : "tolerance");
@@ -67,6 +68,7 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
         e->tolerance < 0) {
         report_node(r, tolerance, "tolerance = %g is negative, expected 0 or more", e->tolerance);
     }
+
     return r->faults == faults;
 }
 
@@ -94,6 +96,7 @@ void reader_expectations(reader *r, const tree_node *map)
         if (quantity < 0) {
             continue;
         }
+
         expectation e = {
             .quantity = quantity, .line = child->key->line, .column = child->key->column};
         e.is_null = node_is_null(child);

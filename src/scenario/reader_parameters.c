@@ -46,6 +46,7 @@ static void report_unknown_parameter(reader *r, const tree_node *key, const char
             nearest_try(&near, tail);
         }
     }
+
     if (near.best != NULL) {
         report_node(r, key, "unknown key '%.60s' in %s, did you mean '%s'?", key->text, group,
                     near.best);
@@ -60,6 +61,7 @@ static void report_unknown_parameter(reader *r, const tree_node *key, const char
                     elsewhere);
         return;
     }
+
     report_node(r, key, "unknown key '%.60s' in %s, expected one of %s", key->text, group, known);
 }
 

@@ -38,6 +38,8 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
     if (!reader_expect_map(r, map, "set", "motor.voltage: 2 V")) {
         return;
     }
+
+    // each parameter by itself, so that one fault does not hide the next
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *path = reader_key(r, map, child);
         int index = path != NULL ? find_timed_parameter(r, child->key) : -1;
@@ -51,6 +53,8 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
         parameters scratch = r->s->parameters;
         if (parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
+
+            // in force from the instant on, or from the start
         } else if (timed) {
             action a = {.time = time,
                         .kind = ACTION_SET,
@@ -118,6 +122,7 @@ static void find_action_parts(reader *r, const tree_node *map, const tree_node *
             report_node(r, child->key, "unknown key '%.60s' in an action, %s%s%s", key,
                         near.best ? "did you mean '" : "expected at, set or push",
                         near.best ? near.best : "", near.best ? "'?" : "");
+
         } else if (*deed != NULL) {
             report_node(r, child->key,
                         "'%s' after '%s' in one action, expected one of them (begin a new '- at:')",

@@ -71,6 +71,8 @@ static void write_actions(FILE *stream, const scenario *s)
         const action *a = &s->actions[i];
         number_format(text, a->time);
         fprintf(stream, "  - at: %s s\n", text);
+
+        // the value as the parameter table writes it
         if (a->kind == ACTION_SET) {
             parameters scratch = s->parameters;
             action_apply(a, &scratch, NULL);

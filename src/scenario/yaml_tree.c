@@ -107,6 +107,8 @@ static bool next_event(builder *b, yaml_event_t *event)
 static const char *forbidden(const yaml_event_t *event)
 {
     const void *anchor = NULL, *tag = NULL;
+
+    // where the parser keeps both depends on the kind of event
     switch (event->type) {
     case YAML_ALIAS_EVENT:
         return "an alias (*name) is not allowed here, expected the value itself";
@@ -226,12 +228,14 @@ static tree_node *build(builder *b, const yaml_event_t *event, int depth)
     }
 
     // a list or a map, not so deep that the recursion exhausts the stack
+
     if (depth >= TREE_MAX_DEPTH) {
         char sentence[96];
         snprintf(sentence, sizeof sentence, "nested too deeply, expected at most %d levels",
                  TREE_MAX_DEPTH);
         return refuse_at(b, event->start_mark, sentence);
     }
+
     tree_kind kind = event->type == YAML_MAPPING_START_EVENT ? TREE_MAP : TREE_LIST;
     tree_node *node = new_node(b, kind, event->start_mark);
     if (node != NULL && !build_children(b, node, depth + 1)) {
@@ -274,6 +278,7 @@ static tree_node *build_document(builder *b)
             return root;
         }
     }
+
     tree_free(root);
     return NULL;
 }

@@ -155,6 +155,7 @@ status session_adjust(session *s, int parameter, const char *text, fault *f)
         s->input_total = total;
         return code;
     }
+
     session_input *now = &s->inputs[s->input_count - 1];
     now->seen_at = replaced.seen_at;
     now->seen_row = replaced.seen_row;
@@ -227,6 +228,8 @@ status session_change_input(session *s, int index, const char *text, fault *f)
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "a push has no other value: drop it and push again");
     }
+
+    // a copy with the new text, which a scratch copy of the parameters checks
     session_input in = *old;
     if (strlen(text) >= sizeof in.text) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "the value is too long");

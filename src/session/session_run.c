@@ -28,6 +28,7 @@ static int count_actions(const session *s)
 // The scenario with the inputs in effect. Its actions are the only thing it owns.
 static status build_effective(const session *s, scenario *to, fault *f)
 {
+    // the base without its script
     *to = s->base;
     to->expectation_count = 0;
     to->action_count = 0;
@@ -54,6 +55,7 @@ static status build_effective(const session *s, scenario *to, fault *f)
             scenario_insert_action(to, a);
         }
     }
+
     return code == STATUS_OK ? parameters_resolve(&to->parameters, f) : code;
 }
 

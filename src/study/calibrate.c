@@ -115,6 +115,7 @@ static status press(const scenario *s, double command, int number, calibration_p
         return code;
     }
 
+    // a run that presses with it, and what the sensors read at its end
     code = run_scenario(&under, true, &result);
     if (code != STATUS_OK) {
         fault_set_at(f, code, result.summary.path, "pressing with %g V failed: %.700s", command,

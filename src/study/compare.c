@@ -73,6 +73,7 @@ compare_row compare_row_of(const scenario *s, const run_result *result)
     const summary *m = &result->summary;
     double command = m->force_command_N, peak, settling;
     bool commanded = !isnan(command) && command > 0;
+
     find_best(s, result, &peak, &settling);
 
     // on the rig what is over is over the command, else over the steady force
@@ -351,6 +352,8 @@ json_t *compare_json(const compare_table *t)
 void compare_csv(FILE *stream, const compare_table *t)
 {
     assert(stream != NULL && t != NULL);
+
+    // headings
     csv_writer csv = csv_begin(stream);
     csv_heading(&csv, "scenario", "");
     csv_heading(&csv, "law", "");
@@ -362,8 +365,10 @@ void compare_csv(FILE *stream, const compare_table *t)
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
         csv_heading(&csv, compare_quantities[k].name, compare_quantities[k].unit);
     }
+
     csv_end_row(&csv);
 
+    // rows
     for (int i = 0; i < t->count; i++) {
         const compare_row *row = &t->rows[i];
         csv_text(&csv, row->scenario);

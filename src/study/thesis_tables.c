@@ -223,6 +223,7 @@ status tables_compute(thesis_tables *t, fault *f)
     memset(t, 0, sizeof *t);
     memcpy(t->voltage, voltages, sizeof t->voltage);
 
+    // printed and corrected model side by side for each stiffness
     for (int k = 0; k < STIFFNESSES; k++) {
         for (int m = 0; m < MODELS; m++) {
             parameters p;
@@ -231,6 +232,7 @@ status tables_compute(thesis_tables *t, fault *f)
             if (result == STATUS_OK) {
                 result = compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count, f);
             }
+
             if (result != STATUS_OK) {
                 return result;
             }
