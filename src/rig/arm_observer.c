@@ -78,6 +78,7 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup)
         return refusal;
     }
 
+    // what the states obey, in each piece of a period
     o->torque_per_volt = setup->torque_per_volt;
     o->hub_damping = setup->hub_damping;
     o->stiction = setup->stiction;
@@ -101,6 +102,8 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
         o->e.p[i][i] = ANGLE_NOISE * ANGLE_NOISE * o->arm.inertia;
         o->e.p[set->count + i][set->count + i] = 1e-6;
     }
+
+    // what it knows of the rest: friction's share, and nothing of the wall
     int torque = 2 * set->count;
     o->e.p[torque][torque] = o->stiction * o->stiction;
     o->touches = false;
@@ -229,6 +232,8 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
         double kick = set->hub[i] * TORQUE_NOISE * o->period;
         noise[n + i] = share * kick * kick;
     }
+
+    // what wanders
     noise[arm_observer_torque_index(o)] = TORQUE_DRIFT * TORQUE_DRIFT * h;
     if (o->touches) {
         // a stiffness believed wrongly shows as a wall that moves with the hub
@@ -236,6 +241,7 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
         double wandering = 2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
         noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
     }
+
     estimator_predict(e, model, drive - arm_observer_friction(o, e, drive), noise);
 }
 
@@ -302,6 +308,7 @@ static void take_force(arm_observer *o, const controller_input *in)
 
 void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force)
 {
+    // the motion since the sample before, the old command first
     const sampled_model *models = o->touches ? o->contact_model : o->free_model;
     if (o->delay > 0) {
         predict(o, &o->e, &models[0], o->delay, o->last_voltage);
@@ -311,10 +318,13 @@ void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes
     }
     o->last_voltage = in->voltage;
 
+    // what the sensors say
     take_motion(o, in);
     if (o->touches && takes_force) {
         take_force(o, in);
     }
+
+    // what a touch will need to know
     if (o->touches) {
         o->wall = o->e.z[wall_index(o)];
         o->wall_variance = o->e.p[wall_index(o)][wall_index(o)];
@@ -341,6 +351,7 @@ static void transform(estimator *e, int from, int to, double t[N][N])
     estimator before = *e;
     double product[N][N];
     memset(e, 0, sizeof *e);
+
     for (int i = 0; i < to; i++) {
         for (int j = 0; j < from; j++) {
             e->z[i] += t[i][j] * before.z[j];

@@ -28,6 +28,8 @@ controller_parameter controller_parameter_at(const controller *law, int index)
     if (!has_only_a_name(own)) {
         return *own;
     }
+
+    // its name alone: the rest stands in the table of parameters
     int i = scenario_parameter(own->name);
     assert(i >= 0);
     const parameter_info *info = &parameter_table[i];
@@ -122,6 +124,8 @@ static status read_setting(const controller *law, setting s, double *values, fau
 status controller_values(const controller *law, const parameters *p, double *values, fault *f)
 {
     assert(law != NULL && p != NULL && (values != NULL || law->parameter_count == 0));
+
+    // the scenario's values, or the law's own
     for (int i = 0; i < law->parameter_count; i++) {
         const char *name = law->parameters[i].name;
         if (has_only_a_name(&law->parameters[i]) && scenario_parameter(name) < 0) {
@@ -133,6 +137,7 @@ status controller_values(const controller *law, const parameters *p, double *val
         values[i] = scenario_value(&law->parameters[i], p);
     }
 
+    // those that control.settings replaces
     status code = STATUS_OK;
     const char *rest = p->control.settings;
     while (code == STATUS_OK && *(rest += strspn(rest, " ")) != '\0') {

@@ -22,6 +22,7 @@ static status check_controller(const controller *law, const char *file, fault *f
                          "control.plugin = %s has no function %s that returns a controller", file,
                          CONTROLLER_ENTRY);
     }
+
     // nothing behind `interface` can be read before the version is known
     if (law->interface != CONTROLLER_INTERFACE) {
         return fault_set(
@@ -30,6 +31,7 @@ static status check_controller(const controller *law, const char *file, fault *f
             "compile it again",
             file, law->interface, CONTROLLER_INTERFACE);
     }
+
     if (law->sample == NULL) {
         return fault_set(f, STATUS_BAD_SCENARIO, "control.plugin = %s has no function `sample`",
                          file);
@@ -46,6 +48,7 @@ status plugin_open(plugin *p, const char *file, fault *f)
                          file, dlerror());
     }
 
+    // an object that cannot be run is closed again
     p->law = exported_controller(p->library);
     status s = check_controller(p->law, file, f);
     if (s != STATUS_OK) {

@@ -26,6 +26,8 @@ static void believed_arm(arm *a, const controller_setup *setup)
     p.arm.damping_ratio = setup->damping_ratio;
     p.arm.hub_joint = isfinite(setup->hub_spring) ? HUB_SPRING : HUB_RIGID;
     p.arm.k1 = isfinite(setup->hub_spring) ? setup->hub_spring : p.arm.k1;
+
+    // bodies of two links have the inertia they are told, of more that of rods
     double m = p.arm.mass / p.arm.links, l = p.arm.length / p.arm.links;
     p.arm.link_inertia = setup->links == 2 ? setup->link_inertia : m * l * l / 12;
     arm_init(a, &p);
@@ -123,6 +125,7 @@ const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup)
     believed_arm(&a, setup);
     r->length = 2 * setup->link_length;
 
+    // one block for the matrices and shapes of the whole chain
     size_t square = (size_t)a.dof * (size_t)a.dof;
     double *block = calloc(4 * square + (size_t)a.dof, sizeof *block);
     if (block == NULL) {

@@ -25,6 +25,8 @@ static void multiply(int n, matrix out, matrix a, bool transpose_a, matrix b, bo
             }
         }
     }
+
+    // `out` may be one of the factors
     for (int j = 0; j < n; j++) {
         memcpy(out[j], product[j], (size_t)n * sizeof(double));
     }

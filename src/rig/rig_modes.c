@@ -30,6 +30,7 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
                             lock, law->name);
     }
 
+    // the mode of that name
     for (int i = 0; law->modes[i] != NULL; i++) {
         if (strcmp(law->modes[i], lock) == 0) {
             *mode = i;
@@ -37,6 +38,7 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
         }
     }
 
+    // none: say which there are
     char modes[256];
     list_modes(law, modes, sizeof modes);
     return fault_set_at(f, STATUS_BAD_SCENARIO, "control.lock",

@@ -32,11 +32,14 @@ static status tell_controller(rig *r, const parameters *p, fault *f)
                          "change during the run",
                          r->law->name);
     }
+
+    // its parameters, and the rig as it is to believe it
     status s = controller_values(r->law, p, r->values, f);
     if (s != STATUS_OK) {
         return s;
     }
     const controller_setup setup = rig_believed_setup(r, p);
+
     const char *refusal = r->law->tune(r->memory, &setup);
     if (refusal != NULL) {
         return fault_set(f, STATUS_BAD_SCENARIO, "the controller '%s' refuses: %.600s",
@@ -85,12 +88,16 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
 status rig_follow_setpoint(rig *r, double time, fault *f)
 {
     const control_parameters *c = &r->told.control;
+
+    // the ramp towards the setpoint, and the wave upon it
     const double way = c->force - r->ramp, most = c->force_rate * (time - r->ramp_time);
     r->ramp = c->force_rate > 0 && fabs(way) > most ? r->ramp + copysign(most, way) : c->force;
     r->ramp_time = time;
     const double wave =
         c->force_amplitude > 0 ? c->force_amplitude * sin(turn * c->force_frequency * time) : 0;
     const double wanted = fmax(0, r->ramp + wave);
+
+    // the controller hears of a change only
     if (wanted == r->wanted_force) {
         return STATUS_OK;
     }

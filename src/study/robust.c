@@ -26,10 +26,13 @@ static status read_text(const char *path, char **text, fault *f)
         return fault_set(f, STATUS_CANNOT_READ, "the set '%s' cannot be opened: %s", path,
                          strerror(errno));
     }
+
+    // all of it, if it is not too long
     *text = calloc(1, MOST_SET_BYTES + 1);
     size_t length = *text != NULL ? fread(*text, 1, MOST_SET_BYTES, file) : 0;
     bool whole = *text != NULL && ferror(file) == 0 && fgetc(file) == EOF;
     fclose(file);
+
     if (*text == NULL) {
         return fault_no_memory(f);
     }
@@ -51,12 +54,15 @@ status robust_set_read(robust_set *set, const char *path, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
+    // a line has at least one character
     set->lines = calloc(strlen(set->text) + 1, sizeof *set->lines);
     if (set->lines == NULL) {
         robust_set_finish(set);
         return fault_no_memory(f);
     }
 
+    // without the blanks at both ends; remarks and empty lines say nothing
     char *rest = set->text;
     for (char *line; (line = strsep(&rest, "\n")) != NULL;) {
         line += strspn(line, " \t\r");
@@ -68,6 +74,7 @@ status robust_set_read(robust_set *set, const char *path, fault *f)
             set->lines[set->count++] = line;
         }
     }
+
     if (set->count == 0) {
         robust_set_finish(set);
         return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -128,6 +135,8 @@ static void judge(robust_law *out, const sweep *s, double *values)
     for (int q = 0; q < QUANTITIES; q++) {
         of[q] = values + (size_t)q * n;
     }
+
+    // each run
     for (size_t i = 0; i < n; i++) {
         scenario derived;
         bool known = sweep_scenario(s, i, &derived, NULL) == STATUS_OK;
@@ -144,6 +153,7 @@ static void judge(robust_law *out, const sweep *s, double *values)
         of[ERROR][i] = 100 * fabs(of[ERROR][i]) / command;
     }
 
+    // all of them
     out->settled = (double)settled / (double)n;
     out->separated = (double)separated / (double)n;
     out->exceeded = (double)exceeded / (double)n;
@@ -156,6 +166,8 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sto
 {
     assert(out != NULL && law != NULL && s != NULL && store != NULL && s->run_count > 0);
     *out = (robust_law){.law = law, .runs = s->run_count};
+
+    // a column of the store for each quantity
     double *values = calloc(QUANTITIES * s->run_count, sizeof *values);
     out->overshoots = calloc(s->run_count, sizeof *out->overshoots);
     status code = values != NULL && out->overshoots != NULL ? STATUS_OK : fault_no_memory(f);
@@ -163,6 +175,7 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sto
         code = sweep_store_quantity(store, keys[q], values + (size_t)q * s->run_count, &out->failed,
                                     f);
     }
+
     if (code == STATUS_OK) {
         judge(out, s, values);
     }
@@ -227,11 +240,15 @@ static void format_value(char *text, size_t size, double value)
 void robust_text(FILE *stream, const robust_table *t)
 {
     assert(stream != NULL && t != NULL);
+
+    // headings
     fprintf(stream, "%-16s  %5s", "law", "runs");
     for (int k = 0; k < COLUMNS; k++) {
         fprintf(stream, "  %11s", columns[k].heading);
     }
     fputc('\n', stream);
+
+    // a line a law
     for (int i = 0; i < t->count; i++) {
         double values[COLUMNS];
         values_of(&t->laws[i], values);
@@ -251,6 +268,8 @@ void robust_text(FILE *stream, const robust_table *t)
 void robust_markdown(FILE *stream, const robust_table *t)
 {
     assert(stream != NULL && t != NULL);
+
+    // headings
     fputs("| law | runs |", stream);
     for (int k = 0; k < COLUMNS; k++) {
         fprintf(stream, " %s |", columns[k].heading);
@@ -260,6 +279,8 @@ void robust_markdown(FILE *stream, const robust_table *t)
         fputs("---|", stream);
     }
     fputc('\n', stream);
+
+    // a line a law
     for (int i = 0; i < t->count; i++) {
         double values[COLUMNS];
         values_of(&t->laws[i], values);
@@ -276,6 +297,8 @@ void robust_markdown(FILE *stream, const robust_table *t)
 void robust_csv(FILE *stream, const robust_table *t)
 {
     assert(stream != NULL && t != NULL);
+
+    // headings
     csv_writer csv = csv_begin(stream);
     csv_heading(&csv, "law", "");
     csv_heading(&csv, "runs", "");
@@ -284,6 +307,8 @@ void robust_csv(FILE *stream, const robust_table *t)
         csv_heading(&csv, columns[k].name, columns[k].unit);
     }
     csv_end_row(&csv);
+
+    // a row a law
     for (int i = 0; i < t->count; i++) {
         double values[COLUMNS];
         values_of(&t->laws[i], values);
@@ -301,6 +326,7 @@ json_t *robust_json(const robust_table *t)
 {
     assert(t != NULL);
     json_t *whole = json_object(), *laws = json_array();
+
     for (int i = 0; i < t->count; i++) {
         json_t *law = json_object();
         double values[COLUMNS];
@@ -313,6 +339,7 @@ json_t *robust_json(const robust_table *t)
         }
         json_array_append_new(laws, law);
     }
+
     json_object_set_new(whole, "scenario", json_text(t->scenario));
     json_object_set_new(whole, "laws", laws);
     return whole;

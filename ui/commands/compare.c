@@ -47,6 +47,7 @@ static int open_sweep(comparison *c, const arguments *a, int i)
         return complain_fault(&f);
     }
 
+    // too many rows are refused before anything runs
     c->swept++;
     size_t rows = c->sweeps[i].run_count * (size_t)c->operands;
     if (rows > MOST_ROWS) {
@@ -151,6 +152,7 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
 {
     int result = c->failed ? EXIT_FAILED : EXIT_DONE;
 
+    // the whole comparison as one table
     t->rows = c->rows;
     t->count = c->combinations * c->operands;
     t->group = c->operands;
@@ -158,6 +160,7 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     t->varied_count = a->varies.count;
     t->against = a->against != NULL ? c->against : NULL;
 
+    // to files
     if (a->json != NULL && write_json(a->json, compare_json(t)) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
@@ -168,6 +171,7 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
         result = EXIT_FAILED;
     }
 
+    // and for people
     if (summary_wanted(a)) {
         compare_text(stdout, t);
         if (t->against != NULL) {
@@ -184,12 +188,16 @@ static int plot_runs(const arguments *a, const comparison *c)
     trace_run shown[TRACE_RUNS] = {{.scenario = NULL}};
     run_result results[TRACE_RUNS];
     int count = 0, code = EXIT_DONE;
+
+    // what cannot be shown
     if (c->swept > 0) {
         return complain("--plot shows the scenarios themselves, not --vary's combinations");
     }
     if (c->opened > TRACE_RUNS) {
         return complain("--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened);
     }
+
+    // each runs once more, this time recorded
     for (; count < c->opened; count++) {
         // one that fails shows what it has
         run_scenario(&c->scenarios[count], true, &results[count]);
@@ -198,6 +206,7 @@ static int plot_runs(const arguments *a, const comparison *c)
                                    .name = c->scenarios[count].name,
                                    .rank = count + 1};
     }
+
     code = publish_runs(a, "Runs compared", shown, count);
     for (int i = 0; i < count; i++) {
         run_finish(&results[i]);

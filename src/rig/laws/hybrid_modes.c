@@ -10,8 +10,11 @@ const char *hybrid_start(void *memory, const controller_setup *setup)
     assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     hybrid_memory *m = memory;
     const double *p = setup->parameters;
+
+    // a trajectory under way is planned anew if it leads elsewhere now
     m->replans =
         m->mode == IMPACT && (m->force != p[FORCE_WANTED] || m->transition != p[TRANSITION]);
+
     m->rig = *setup;
     m->force = p[FORCE_WANTED];
     m->approach_voltage = p[APPROACH_VOLTAGE];

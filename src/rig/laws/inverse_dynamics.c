@@ -223,12 +223,14 @@ static void sample(void *memory, const controller_input *in, controller_output *
         plan(m, in);
     }
 
+    // a touch before its time moves the plan on to it
     double time = in->time - m->departure;
     if (time < m->joint[TOUCH] - EARLY / m->zero && in->force > m->threshold) {
         m->departure = in->time - m->joint[TOUCH];
         time = m->joint[TOUCH];
     }
 
+    // where it should be now, and what the torque is to be while the command holds
     moment now = plan_at(m, time);
     moment held = plan_at(m, time + m->rig.delay + m->rig.period / 2);
     out->mode = time < m->joint[TOUCH] ? MODE_TRAVEL : MODE_PRESS;

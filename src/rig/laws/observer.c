@@ -69,7 +69,10 @@ static void command_model(const observer_memory *m, const mode_set *set, int fir
                           sampled_model *model)
 {
     const int n = set->count, k = n - first;
+
     double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}}, input[ESTIMATOR_STATES] = {0};
+
+    // a_i'' = -w_i^2 a_i - c_i a_i' + h_i (Kt u - damping hub rate)
     for (int i = 0; i < n; i++) {
         if (i >= first) {
             rate[i - first][k + i] = 1;
@@ -107,6 +110,8 @@ static bool find_travel_gain(observer_memory *m)
     sampled_model model;
     quadratic_cost cost = {.growth = 1};
     command_model(m, set, 1, &model);
+
+    // twice the energy: of motion, and of bending
     for (int i = 0; i < n; i++) {
         double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
         motion[n - 1 + i] = 1;
@@ -116,6 +121,8 @@ static bool find_travel_gain(observer_memory *m)
             quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
         }
     }
+
+    // what the motor may do about it; the angle itself is not fed back
     double time_constant = set->hub[0] * m->rig.torque_per_volt * TRAVEL_TIME;
     cost.effort = time_constant * time_constant;
     double gain[ESTIMATOR_STATES] = {0};
@@ -136,6 +143,7 @@ static bool find_press_gain(observer_memory *m)
     sampled_model model;
     quadratic_cost cost = {.growth = 1};
     command_model(m, set, 0, &model);
+
     for (int i = 0; i < n; i++) {
         double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
         strain[i] = motion[n + i] = 1;
@@ -156,15 +164,20 @@ static void find_speeds(observer_memory *m, double force)
     const reduced_arm *arm = &m->observer.arm;
     const mode_set *set = &arm->contact;
     double square = set->square[0], h = set->hub[0], p = set->momentum[0];
+
+    // the fastest is what the approach voltage holds against friction
     double held = m->rig.torque_per_volt * fabs(m->p[APPROACH_VOLTAGE]) - m->rig.stiction;
     m->top_speed = fmax(0, held) / fmax(m->rig.hub_damping, 1e-9);
     m->touch_speed = m->top_speed;
+
+    // the touch is slow enough to be stopped
     if (p * h > 1) {
         double s = sqrt(square / (p * h - 1));
         double stopped =
             force * h * arm->length * s / (square * p) * exp(-s * (m->rig.period + m->rig.delay));
         m->touch_speed = fmin(m->touch_speed, TOUCH_SHARE * stopped);
     }
+
     m->ramp_time = 2 * PI / sqrt(arm->free.square[1]);
     m->rise_time = RISE_PERIODS * 2 * PI / sqrt(square);
 }
@@ -177,10 +190,13 @@ static const char *start(void *memory, const controller_setup *setup)
     if (!(setup->torque_per_volt > 0)) {
         return "it needs a motor that turns the hub";
     }
+
+    // model, gains, and the plan's speeds
     const char *refusal = arm_observer_init(&m->observer, setup);
     if (refusal != NULL) {
         return refusal;
     }
+
     if (!find_travel_gain(m) || !find_press_gain(m)) {
         return "the Riccati equation of its gains has no stabilising solution";
     }
@@ -266,11 +282,15 @@ static double travel(observer_memory *m, const estimator *e)
     const mode_set *set = &o->arm.free;
     const int n = set->count;
     double speed = planned_speed(m), hub_speed = 0, feedback = 0;
+
+    // all deviations but the angle's
     for (int i = 0; i < n; i++) {
         hub_speed += set->hub[i] * m->plan[n + i];
         feedback += m->travel_gain[i] * (m->plan[i] - e->z[i]) +
                     m->travel_gain[n + i] * (m->plan[n + i] - e->z[n + i]);
     }
+
+    // and what the plan takes
     double torque = m->rig.hub_damping * hub_speed - e->z[arm_observer_torque_index(o)] +
                     friction_ahead(m, arm_observer_rate(o, e), fmax(speed, hub_speed)) +
                     follow_plan(m, arm_observer_tip(o, e));
@@ -314,6 +334,8 @@ static double press(const observer_memory *m, const estimator *e, double time)
     const mode_set *set = &o->arm.contact;
     const int n = set->count;
     const double *c = m->rise, t = fmin(time - m->rise_start, m->rise_time);
+
+    // the first mode's way, and the torque on it
     bool moves = time - m->rise_start < m->rise_time;
     double a = c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
     double rate = c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
@@ -324,6 +346,7 @@ static double press(const observer_memory *m, const estimator *e, double time)
         torque = (m->p[FORCE_WANTED] + m->correction) * o->arm.length;
     }
 
+    // the others stand as that torque bends them
     double way = 0, feedback = 0, hub_rate = set->hub[0] * rate;
     for (int i = 0; i < n; i++) {
         double wanted = moves && i == 0 ? a : set->hub[i] * torque / set->square[i];
@@ -331,6 +354,7 @@ static double press(const observer_memory *m, const estimator *e, double time)
         way += set->hub[i] * off;
         feedback += m->press_gain[i] * off + m->press_gain[n + i] * off_rate;
     }
+
     torque += m->rig.hub_damping * hub_rate - e->z[arm_observer_torque_index(o)] +
               friction_ahead(m, arm_observer_rate(o, e), moves ? hub_rate : way);
     return within_force(m, e, torque / m->rig.torque_per_volt + feedback);
@@ -350,12 +374,16 @@ static void follow_contact(observer_memory *m, const controller_input *in)
 {
     arm_observer *o = &m->observer;
     const bool felt = in->force > m->p[THRESHOLD];
+
+    // it begins with the first reading that feels the wall
     if (!o->touches && felt) {
         arm_observer_touch(o, in->time);
         m->mode = PRESS;
         m->correction = 0;
         begin_rise(m, &o->e, in->time);
     }
+
+    // it ends with several readings that do not
     m->readings_without_force = felt ? 0 : m->readings_without_force + 1;
     if (o->touches && m->readings_without_force >= LOST_AFTER) {
         arm_observer_leave(o, in->time);
@@ -382,11 +410,15 @@ static void choose_hold(observer_memory *m, const estimator *e, const controller
 {
     const arm_observer *o = &m->observer;
     double force = m->p[FORCE_WANTED], share = m->rig.period / HOLD_MEAN;
+
+    // held: until the mean of the readings is off
     if (m->mode == HOLD) {
         m->held_force += fmin(1, share) * (in->force - m->held_force);
         m->mode = fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST ? HOLD : PRESS;
         return;
     }
+
+    // at rest where the force is right: held from now on
     double rests_at = resting_force(m, e);
     if (fabs(arm_observer_rate(o, e)) < REST &&
         fabs(rests_at - force) < HOLD_WITHIN * force + HOLD_LEAST) {
@@ -400,6 +432,8 @@ static void sample(void *memory, const controller_input *in, controller_output *
 {
     observer_memory *m = memory;
     arm_observer *o = &m->observer;
+
+    // what the sensors say
     if (!m->started) {
         m->started = true;
         arm_observer_start(o, in);
@@ -409,6 +443,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
         follow_contact(m, in);
     }
 
+    // the command, for the state when it takes effect
     estimator ahead = arm_observer_ahead(o, in->voltage);
     double force_now = 0;
     if (o->touches) {
@@ -426,6 +461,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
         out->desired_velocity = planned_speed(m);
         out->command = travel(m, &ahead);
     }
+
     out->mode = m->mode;
     out->calculated_force = force_now;
 }

@@ -8,6 +8,8 @@ static const controller_parameter parameters_of_law[] = {HYBRID_PARAMETERS,
 static void sample(void *memory, const controller_input *in, controller_output *out)
 {
     hybrid_memory *m = memory;
+
+    // contact begins the pull back, its time ends it
     bool chooses = !hybrid_held(m, in);
     if (chooses && m->mode == APPROACH && in->force > m->threshold) {
         hybrid_begin(m, IMPACT, in);
@@ -15,6 +17,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
     if (chooses && m->mode == IMPACT && in->time - m->since >= m->own) {
         hybrid_begin(m, FORCE, in);
     }
+
     out->mode = m->mode;
     out->calculated_force = m->mode == APPROACH ? 0 : hybrid_calculated_force(m, in);
     out->command = m->mode == APPROACH ? m->approach_voltage

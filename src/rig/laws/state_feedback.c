@@ -388,6 +388,7 @@ static void observe(optimal_memory *m, const controller_input *in)
     if (!m->started) {
         m->started = m->flies = true;
         m->e = (estimator){.z = {in->encoder, in->encoder, 0, 0}};
+
     } else if (m->flies && in->wanted_mode != APPROACH && in->force > m->threshold) {
         enter_contact(m, in);
         m->mode = locked ? m->mode : PRESS;
@@ -409,6 +410,8 @@ void state_feedback_sample(void *memory, const controller_input *in, controller_
     if (in->wanted_mode >= 0 && in->wanted_mode != m->mode) {
         change_mode(m, in);
     }
+
+    // the command of the mode
     out->command = m->mode == APPROACH ? approach(m)
                    : m->mode == HOLD   ? hold(m, in)
                    : m->flies          ? seek_wall(m)
@@ -420,6 +423,7 @@ void state_feedback_sample(void *memory, const controller_input *in, controller_
         return;
     }
 
+    // in contact: where the hub should be, and what the force is taken to be
     double wall = m->flies ? m->rig.wall_angle : m->e.z[PRESSED_WALL];
     out->desired_angle = wall + m->force / m->spring_force;
     out->desired_velocity = 0;
