@@ -89,6 +89,8 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
 {
     const char *name = NULL;
     text[0] = '\0';
+
+    // names of one kind, by the command and which of its words it is
     if (p->word == 0) {
         name = i < explorer_command_count ? explorer_command_table[i].name : NULL;
     } else if (strcmp(p->command, "set") == 0 && p->word == 1) {
@@ -106,6 +108,8 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
     } else if (p->word == 1) {
         return command_word(p->command, i, text);
     }
+
+    // only one of those that have a name is a candidate
     if (name != NULL) {
         snprintf(text, CANDIDATE, "%s", name);
     }

@@ -116,6 +116,8 @@ static void propose_name(const explorer_state *st, const char *ending, char *nam
     const char *slash = strrchr(s->base.name, '/');
     char stem[LINE_TEXT / 2] = "";
     append_word(stem, 60, slash != NULL ? slash + 1 : s->base.name);
+
+    // what the last change changed
     const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
     if (last != NULL && last->kind == SESSION_INPUT_PUSH) {
         append_word(stem, sizeof stem, "-push");
@@ -125,6 +127,8 @@ static void propose_name(const explorer_state *st, const char *ending, char *nam
         append_word(stem, 100, "-");
         append_word(stem, 100, last->text);
     }
+
+    // the first that is free
     snprintf(name, size, "%s%s", stem, ending);
     for (int i = 2; exists(name) && i < 10000; i++) {
         snprintf(name, size, "%s-%d%s", stem, i, ending);
@@ -191,12 +195,16 @@ action_result act_save_scene(explorer_state *st, const char *argument)
     const session *s = &st->session;
     const scene_options options = {0};
     fault f = {0};
+
+    // without a name the prompt proposes one
     if (argument[0] == '\0') {
         char name[LINE_TEXT / 2];
         propose_name(st, "-arm.png", name, sizeof name);
         prompt_open_value(&st->prompt, "scene ", name);
         return result_done();
     }
+
+    // nothing is replaced, and nothing incomplete is drawn
     if (exists(argument)) {
         return result_refused("%.200s is there already: give the scene another name", argument);
     }
@@ -204,6 +212,8 @@ action_result act_save_scene(explorer_state *st, const char *argument)
     if (!result_ok(&whole)) {
         return whole;
     }
+
+    // the cursor's instant
     status code = scene_write(&s->effective, &s->run, &options, &s->now, 1, argument, &f);
     return code == STATUS_OK ? tell_saved(argument) : result_of(code, &f);
 }

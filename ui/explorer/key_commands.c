@@ -10,6 +10,8 @@ static action_result read_key(const char *argument, int *key, const char **rest)
     int length = (int)strcspn(argument, " \t");
     *key = key_of_name(argument, (size_t)length);
     *rest = argument + length + strspn(argument + length, " \t");
+
+    // what cannot be bound
     if (length == 0) {
         return result_refused("a key is a character or a name such as Space, PgUp, F1, S-Left "
                               "or C-r");

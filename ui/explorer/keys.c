@@ -18,6 +18,8 @@ bool explorer_keys(explorer *ex, const char *text, fault *f)
             explorer_key(ex, plain ? *text++ : (int)glyph_decode(&text));
             continue;
         }
+
+        // a key by its name
         int key = key_of_name(text + 1, (size_t)(close - text - 1));
         if (key == 0) {
             fault_set(f, STATUS_BAD_ARGUMENT, "there is no key '%.*s'", (int)(close - text + 1),
@@ -35,6 +37,8 @@ static void key_in_prompt(explorer *ex, int key)
     prompt *p = &ex->state.prompt;
     message_line *message = &ex->state.message;
     char line[LINE_TEXT];
+
+    // only Tab after Tab goes through what fits
     p->cycling = p->cycling && key == KEY_CODE_TAB;
     switch (key) {
     case KEY_CODE_ESCAPE:
@@ -68,6 +72,7 @@ static void key_in_prompt(explorer *ex, int key)
 static void key_in_filter(explorer *ex, int key)
 {
     explorer_state *st = &ex->state;
+
     const panel_id filtered = st->filters.typing;
     switch (key) {
     case KEY_CODE_ESCAPE:
@@ -142,6 +147,7 @@ void explorer_key(explorer *ex, int key)
 {
     assert(ex != NULL);
     explorer_state *st = &ex->state;
+
     bool leaves = key == ('c' & 0x1f) && st->page.panel != PANEL_SCENARIOS;
     if (st->prompt.open) {
         key_in_prompt(ex, key);

@@ -17,6 +17,8 @@ static bool settings_folder(char *path, size_t size, bool make)
 {
     const char *base = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
     int length;
+
+    // where settings belong, or the usual place below the home folder
     if (base != NULL && base[0] == '/') {
         length = snprintf(path, size, "%s", base);
     } else if (home != NULL && home[0] == '/') {
@@ -27,6 +29,8 @@ static bool settings_folder(char *path, size_t size, bool make)
     if (length < 0 || (size_t)length + 16 > size) {
         return false;
     }
+
+    // the folders above it must exist
     if (make) {
         mkdir(path, 0700);
     }
@@ -61,6 +65,8 @@ static action_result execute_line(explorer_state *st, const char *path, int numb
 {
     const int begin = (int)strspn(line, " \t");
     action_result result;
+
+    // only what :remember writes is taken from a file
     if (!is_remembered(line + begin)) {
         result = result_refused("this is no setting");
         result.at = begin;
@@ -70,6 +76,8 @@ static action_result execute_line(explorer_state *st, const char *path, int numb
     } else {
         result = explorer_execute(st, line);
     }
+
+    // the place in the file comes before what is wrong
     if (result_ok(&result)) {
         return result;
     }

@@ -273,6 +273,8 @@ uint32_t glyph_in_set(uint32_t glyph, glyph_set set)
 void glyph_encode(uint32_t glyph, char *text)
 {
     assert(text != NULL);
+
+    // one byte, or a first one with the length and six bits in each that follows
     if (glyph < 0x80) {
         *text++ = (char)glyph;
     } else if (glyph < 0x800) {

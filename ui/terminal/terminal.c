@@ -488,6 +488,7 @@ static void set_colours(colour_theme theme, colour_depth depth)
 
 static attr_t attributes_of(ink colour, bool coloured)
 {
+    // weight tells apart what colours do, where there are any
     switch (colour) {
     case INK_SELECTED:
         return A_REVERSE;

@@ -29,6 +29,8 @@ action_result act_zoom(explorer_state *st, const char *argument)
     double from, to;
     char rest;
     state_window(st, &from, &to);
+
+    // all of it, nearer or further, or two instants
     if (strcmp(argument, "all") == 0) {
         time_window_show_all(&st->window);
     } else if (strcmp(argument, "in") == 0 || strcmp(argument, "out") == 0) {

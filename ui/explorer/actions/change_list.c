@@ -10,6 +10,8 @@ static action_result read_change(const explorer_state *st, const char *text, int
     const session *s = &st->session;
     char *end;
     const long number = strtol(text, &end, 10);
+
+    // a number from 1 on, and blanks behind it
     if (s->input_count == 0) {
         return result_refused("there are no changes");
     }
@@ -17,6 +19,8 @@ static action_result read_change(const explorer_state *st, const char *text, int
         return result_refused("changes are numbered from 1 to %d (:changes lists them)",
                               s->input_count);
     }
+
+    // what follows the blanks is the rest
     while (*end == ' ') {
         end++;
     }
@@ -69,12 +73,16 @@ action_result act_drop_change(explorer_state *st, const char *argument)
     if (!result_ok(&read)) {
         return read;
     }
+
+    // the text first: the change is gone afterwards
     fault f = {0};
     state_change_text(st, index, text, sizeof text);
     const status code = session_drop_input(&st->session, index, &f);
     if (code != STATUS_OK) {
         return result_of(code, &f);
     }
+
+    // the selection stays within the list
     const int last = st->session.input_count - 1;
     st->change = st->change > last ? (last < 0 ? 0 : last) : st->change;
     return result_news("without %s; U puts it in again", text);

@@ -55,11 +55,15 @@ action_result act_adjust(explorer_state *st, int parameter, double value)
     parameters p = state_parameters(st);
     char text[LINE_TEXT];
     fault f = {0};
+
+    // checked and rounded as the table has it
     status code = parameter_set_number(&p, parameter, value, &f);
     if (code != STATUS_OK) {
         return result_of(code, &f);
     }
     parameter_format(&p, parameter, text, sizeof text);
+
+    // a value that is as it was leaves no change
     const int changes = s->input_count;
     code = session_adjust(s, parameter, text, &f);
     if (code != STATUS_OK) {
@@ -83,10 +87,9 @@ action_result act_set(explorer_state *st, const char *argument)
     if (parameter == -2) {
         return result_refused("several parameters begin with '%s' (Tab lists them)", path);
     }
-    if (parameter < 0) {
-        const char *near = parameter_suggest(path);
-        return result_refused("there is no parameter '%s'%s%s%s", path,
-                              near ? ", did you mean " : "", near ? near : "", near ? "?" : "");
+    fault f = {0};
+    if (parameter < 0 && parameter_look_up(path, &f) < 0) {
+        return result_of(STATUS_BAD_ARGUMENT, &f);
     }
 
     // without a value it is only selected

@@ -92,6 +92,8 @@ static action_result tell_event(explorer_state *st)
 {
     const run_log *log = state_run_log(st);
     const event *e = session_event(&st->session);
+
+    // an event tells its numbers
     if (e != NULL && e->kind == EVENT_IMPACT) {
         return result_news("impact at %.6f s: %.4g N s at %.4g m/s, %.4g J lost", e->time,
                            e->impulse, e->speed, e->loss);
@@ -99,6 +101,8 @@ static action_result tell_event(explorer_state *st)
     if (e != NULL) {
         return result_news("%s at %.6f s", event_name(e->kind), e->time);
     }
+
+    // else it may be the instant of another mode
     for (size_t i = log->count; i-- > 0;) {
         const log_entry *entry = &log->entries[i];
         if (entry->event < 0 && entry->time == st->session.now) {

@@ -24,6 +24,8 @@ action_result act_select_parameter(explorer_state *st, const char *argument)
 action_result act_fold(explorer_state *st, const char *argument)
 {
     parameter_list *list = &st->parameters;
+
+    // all groups at once, the one of the selected parameter, or one by name
     if (strcmp(argument, "all") == 0 || strcmp(argument, "none") == 0) {
         for (int i = 0; i < PARAMETER_GROUPS; i++) {
             list->folded[i] = argument[0] == 'a';

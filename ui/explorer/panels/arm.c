@@ -109,6 +109,8 @@ static point draw_links(const view *v, const trace *t, const arm_parameters *bea
 {
     point at = {0, 0};
     double part = beam->length / beam->links;
+
+    // one link after the other, dots or a line two dots thick
     for (int i = 0; i < beam->links; i++) {
         double angle = link_angle(t, beam->links, row, i);
         point to = {at.x + part * cos(angle), at.y + part * sin(angle)};

@@ -20,6 +20,8 @@ void draw_title(const explorer_state *st, screen *s)
 {
     const session *e = &st->session;
     char changes[64] = "";
+
+    // how many changes, and those that are to come
     if (e->input_count > 0) {
         const int later = state_later_changes(st);
         int used = snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
@@ -28,6 +30,7 @@ void draw_title(const explorer_state *st, screen *s)
             snprintf(changes + used, sizeof changes - (size_t)used, ", \u25cb %d later", later);
         }
     }
+
     // the name and the changes go before the title
     const char *title = e->base.title ? e->base.title : "";
     int room = s->width - 2 - (changes[0] ? cells_of(changes) + 2 : 0), x = 1;
@@ -63,6 +66,8 @@ static int write_status(const explorer_state *st, status_item items[STATUS_ITEMS
                                                              : "paused";
     char model[64], law[64] = "", speed[32] = "";
     int n = 0;
+
+    // words for the parts that may be missing
     parameter_format(p, PARAMETER_INDEX(arm.model), model, sizeof model);
     if (p->control.law != LAW_NONE) {
         char name[40];
@@ -72,6 +77,8 @@ static int write_status(const explorer_state *st, status_item items[STATUS_ITEMS
     if (st->playback.playing) {
         snprintf(speed, sizeof speed, " (%.3g)", st->playback.measured);
     }
+
+    // each part with what it is worth where not all fit
 #define ITEM(importance, ...)                                                                      \
     do {                                                                                           \
         items[n].rank = importance;                                                                \
@@ -103,6 +110,7 @@ void draw_status(const explorer_state *st, screen *s, int y)
     status_item items[STATUS_ITEMS];
     int count = write_status(st, items), x = 1;
     bool shown[STATUS_ITEMS] = {false};
+
     // the most important ones first, as long as there is room
     for (int rank = 0, used = 1; rank < 8; rank++) {
         for (int i = 0; i < count; i++) {
@@ -113,6 +121,8 @@ void draw_status(const explorer_state *st, screen *s, int y)
             }
         }
     }
+
+    // a bar across the screen with what is shown
     for (int i = 0; i < s->width; i++) {
         screen_put(s, i, y, ' ', INK_TEXT);
     }
@@ -121,6 +131,8 @@ void draw_status(const explorer_state *st, screen *s, int y)
             x += 2 + screen_text(s, x, y, s->width - x, INK_TEXT, items[i].text);
         }
     }
+
+    // what went wrong colours the bar
     const summary *m = &st->session.run.summary;
     bool failed = m->status != STATUS_OK || m->inaccurate;
     screen_tint(s, 0, y, s->width, 1, failed && !st->playback.playing ? INK_WARNING : INK_SELECTED);
@@ -183,6 +195,8 @@ static void draw_hints(const explorer_state *st, screen *s)
     char texts[HINTS][64];
     bool shown[HINTS] = {false};
     int x = 1;
+
+    // the first key of each, and what it does
     for (int i = 0; i < HINTS; i++) {
         char keys[64];
         key_names_of(&st->keys, hints[i].command, keys, sizeof keys);
@@ -197,6 +211,8 @@ static void draw_hints(const explorer_state *st, screen *s)
             texts[i][0] = '\0';
         }
     }
+
+    // the most wanted ones first
     for (int rank = 0, used = 1; rank < HINTS; rank++) {
         for (int i = 0; i < HINTS; i++) {
             int length = cells_of(texts[i]);
@@ -206,6 +222,8 @@ static void draw_hints(const explorer_state *st, screen *s)
             }
         }
     }
+
+    // from left to right
     for (int i = 0; i < HINTS; i++) {
         if (shown[i]) {
             x += 2 + screen_text(s, x, s->height - 1, s->width - x, INK_DIM, texts[i]);
@@ -216,6 +234,8 @@ static void draw_hints(const explorer_state *st, screen *s)
 int draw_bottom(const explorer_state *st, screen *s)
 {
     enum { MOST = 3 };
+
+    // what is being typed comes first
     if (st->prompt.open) {
         return draw_prompt(st, s);
     }
@@ -228,11 +248,14 @@ int draw_bottom(const explorer_state *st, screen *s)
                     "filters by words and their parts; Enter takes, Esc shows all");
         return 1;
     }
+
+    // without a message there are hints
     if (st->message.text[0] == '\0') {
         blank_row(s, s->height - 1);
         draw_hints(st, s);
         return 1;
     }
+
     // a long message covers some of the panels until the next key
     text_line lines[MOST];
     int count = text_wrap(st->message.text, s->width - 2, lines, MOST, NULL);
@@ -254,6 +277,8 @@ void draw_too_small(screen *s)
     char texts[6][96];
     text_line lines[24];
     int w = s->width, h = s->height;
+
+    // from a sentence down to a sign
     snprintf(texts[0], sizeof texts[0],
              "The lab needs %d x %d characters, here are %d x %d. q quits.", LEAST_WIDTH,
              LEAST_HEIGHT, w, h);
@@ -263,6 +288,8 @@ void draw_too_small(screen *s)
     snprintf(texts[3], sizeof texts[3], "< %dx%d", LEAST_WIDTH, LEAST_HEIGHT);
     snprintf(texts[4], sizeof texts[4], "small");
     snprintf(texts[5], sizeof texts[5], "<");
+
+    // the first whose words all fit
     for (int i = 0; i < 6; i++) {
         bool split;
         int count = text_wrap(texts[i], w, lines, h < 24 ? h : 24, &split);

@@ -26,12 +26,16 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     const int count = st->session.input_count;
     const area a = page_area(s, 76, count < 1 ? 4 : count + 3);
     const int height = a.height - 3, first = draw_first_line(st->change, count, height);
+
+    // the frame, with what its keys do
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  a.width < 60 ? "changes (d drops, Esc closes)"
                               : "changes (Enter edits, d drops, g goes there, Esc closes)");
     screen_text(s, a.x + 2, a.y + a.height - 2, a.width - 4, INK_DIM,
                 count > 0 ? "\u25cb takes effect after the cursor"
                           : "none yet: Enter changes a value, p pushes");
+
+    // the lines lie over the page, so a click meets them first
     const area lines = {a.x + 1, a.y + 1, a.width - 2, height};
     layout_add_hit(lay, (hit_area){PANEL_CHANGES, PART_BODY, 0, a});
     layout_add_hit(lay, (hit_area){PANEL_CHANGES, PART_LINES, first, lines});
@@ -44,6 +48,8 @@ static action_result list_key(explorer_state *st, int key)
 {
     const session *s = &st->session;
     char number[16];
+
+    // keys move the selection or do something with the change
     snprintf(number, sizeof number, "%d", st->change + 1);
     if (key == KEY_CODE_UP || key == 'k') {
         st->change -= st->change > 0;
@@ -63,6 +69,8 @@ static action_result list_key(explorer_state *st, int key)
     } else {
         st->page.panel = PANEL_NONE;
     }
+
+    // the selection stays within the list
     const int last = s->input_count > 0 ? s->input_count - 1 : 0;
     st->change = st->change > last ? last : st->change;
     return result_done();

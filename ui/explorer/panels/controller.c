@@ -13,12 +13,16 @@ static void draw_modes(const explorer_state *st, screen *s, area a, double prese
 {
     const law_modes *m = &st->modes;
     int first = 0, width = -1, last = present >= 0 && present < m->count ? (int)present : 0;
+
+    // how wide all modes are; the first ones go where that is too much
     for (int i = 0; i < m->count; i++) {
         width += (int)strlen(m->names[i]) + 1 + 2 * (i == last);
     }
     for (; width > a.width && first < last; first++) {
         width -= (int)strlen(m->names[first]) + 1;
     }
+
+    // the present one in brackets
     for (int i = first, x = a.x; i < m->count; i++) {
         bool now = i == present;
         int length = (int)strlen(m->names[i]) + 2 * now;
@@ -117,6 +121,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     snprintf(title, sizeof title, "%s, %g Hz", control_law_table[p.control.law].word,
              p.control.rate);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+
+    // modes, lock and command always
     area line = {a.x + 2, a.y + 1, a.width - 4, 1};
     draw_modes(st, s, line, row->controller_mode);
     line.y++;
@@ -124,10 +130,14 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     line.y++;
     draw_command(s, line, &p, row->command);
     line.y++;
+
+    // the rest in brief where rows are few
     if (a.height < TALL) {
         draw_brief(s, line, row, &p);
         return;
     }
+
+    // what the law wants and reads
     const struct {
         const char *name, *unit;
         double value;

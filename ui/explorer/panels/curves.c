@@ -36,6 +36,8 @@ static bool gap_in_line(line_style style, long across)
 static void draw_rows(const plot_frame *f, const trace *t, int signal, double until)
 {
     double x0 = (double)NAN, y0 = (double)NAN;
+
+    // joined as long as they are visible and seen
     for (size_t r = trace_row_at(t, f->from); r < t->row_count; r++) {
         double x = plot_x(f, t->rows[r].time), y = plot_y(f, signal_value(&t->rows[r], signal));
         if (t->rows[r].time > until) {
@@ -68,6 +70,8 @@ static void draw_columns(const plot_frame *f, const trace *t, int signal, double
 {
     double low = (double)INFINITY, high = (double)-INFINITY, last = (double)NAN;
     long column = -1;
+
+    // row by row, or block by block where one lies within a column
     for (size_t r = trace_row_at(t, f->from); r < t->row_count && t->rows[r].time <= until;) {
         size_t end = r + EXTREMES_BLOCK, take = 1;
         long here = lround(plot_x(f, t->rows[r].time));
@@ -134,6 +138,8 @@ static pane_look look_of(const pane *p)
     static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT};
     bool colour_taken[COLOURS] = {false}, style_taken[STYLES] = {false};
     pane_look look;
+
+    // the table's colour and line unless an earlier signal of the pane has them
     for (int k = 0; k < p->count; k++) {
         const signal_info *info = &signal_table[p->signals[k]];
         int colour = info->colour, style = (int)info->style;
@@ -169,12 +175,16 @@ static void format_value(const explorer_state *st, int signal, bool briefly, cha
     double value = signal_value(row, signal);
     const controller *law = controller_of(st->session.effective.parameters.control.law);
     bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
+
+    // fewer digits where room is short
     draw_number(text, size, value);
     if (briefly && fabs(value) > 1e-12) {
         for (int digits = 3, length = 9; digits > 1 && length > 6; digits--) {
             length = snprintf(text, size, "%.*g", digits, value);
         }
     }
+
+    // a mode by its name
     for (int i = 0; is_mode && law != NULL && law->modes != NULL && law->modes[i] != NULL; i++) {
         if (value == i) {
             snprintf(text, size, "%s", law->modes[i]);
@@ -198,6 +208,8 @@ static int draw_legend(const explorer_state *st, screen *s, const pane *p, legen
 {
     int start = x, end = x + room;
     const pane_look look = look_of(p);
+
+    // each signal: its line, its name, its value at the cursor
     for (int k = 0; k < p->count; k++) {
         const signal_info *info = &signal_table[p->signals[k]];
         char value[48], text[128];
@@ -227,6 +239,8 @@ static void draw_pane_title(const explorer_state *st, screen *s, int index, area
     static const char *const axes[] = {"", "grows", "fixed"};
     bool focused = index == panes_focused(&st->panes);
     int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
+
+    // number, unit, and what the axis does
     screen_print(s, a.x, a.y, 2, focused ? INK_TITLE : INK_DIM, "%s%d", focused ? "\u25b8" : " ",
                  (index + 1) % 10);
     screen_print(s, a.x + 2, a.y, LABEL_WIDTH - 2, INK_DIM, "%*s", LABEL_WIDTH - 2, unit_of(p));
@@ -234,6 +248,8 @@ static void draw_pane_title(const explorer_state *st, screen *s, int index, area
         room -= 6;
         screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);
     }
+
+    // as many words as fit
     legend how = LEGEND_NAMES;
     while (how < LEGEND_BARE && draw_legend(st, s, p, how, x, a.y, 0) > room) {
         how++;
@@ -290,6 +306,8 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
         {"hub_angle", "wall.angle", false},
         {"hub_velocity", "control.speed_limit", true},
     };
+
+    // those whose signal the pane is about, and that the run knows
     const parameters now = state_parameters(st);
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
         const int signal = signal_find(levels[i].signal);
@@ -412,6 +430,7 @@ static bool point_at_plot(explorer_state *st, const panel_gesture *g)
 static bool point_at_time_axis(explorer_state *st, const panel_gesture *g)
 {
     const area a = g->hit.area;
+
     double from, to;
     switch (g->event.kind) {
     case POINTER_PRESS:
@@ -436,6 +455,7 @@ static bool point_at_labels(explorer_state *st, const panel_gesture *g)
 {
     const hit_area *h = &g->hit;
     const int rows = h->area.height > 0 ? h->area.height : 1;
+
     switch (g->event.kind) {
     case POINTER_PRESS:
         st->panes.focus = h->index;

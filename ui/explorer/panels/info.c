@@ -45,9 +45,13 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     static char lines[LINES][LINE_TEXT];
     area a = page_area(s, WIDE, s->height);
     const int count = write_lines(st, a.width - 4, lines);
+
+    // as high as the text, or scrolled
     a = page_area(s, WIDE, count + 2);
     const int shown = a.height - 2, beyond = count - shown;
     const int scroll = layout_keep_scroll(lay, PANEL_INFO, beyond > 0 ? beyond : 0);
+
+    // frame and lines
     char title[LINE_TEXT];
     snprintf(title, sizeof title, "%.180s (Esc closes)", st->session.base.name);
     lay->page_lines = shown > 1 ? shown - 1 : 1;

@@ -24,12 +24,16 @@ static void draw_entry(const explorer_state *st, screen *s, area a, const log_en
     const trace *t = &st->session.run.trace;
     char name[MODE_NAME_SIZE];
     area detail = {a.x + 20, a.y, a.width - 20, 1};
+
+    // a change of mode
     if (entry->event < 0) {
         law_mode_name(&st->modes, entry->mode, name, sizeof name);
         screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  mode", entry->time);
         screen_text(s, a.x + 18, a.y, a.width - 18, INK_EVENT, name);
         return;
     }
+
+    // an event with the number that tells most of it
     const event *v = &t->events[entry->event];
     screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  %s", v->time, event_name(v->kind));
     if (v->kind == EVENT_IMPACT || v->kind == EVENT_PUSH) {
@@ -103,6 +107,7 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
     const run_log *log = state_run_log(st);
     size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
     *result = result_done();
+
     switch (g->event.kind) {
     case POINTER_PRESS:
         if (index < log->count && log->entries[index].time <= st->session.seen) {

@@ -99,6 +99,8 @@ static void draw_heading(const explorer_state *st, layout *lay, screen *s, area 
     const bool filtered = st->filters.text[PANEL_PARAMETERS][0] != '\0';
     const bool folded = st->parameters.folded[parameter_group(parameter)] && !filtered;
     parameter_group_name(parameter, name, sizeof name);
+
+    // its name, and how many parameters are folded away
     int x = a.x + screen_print(s, a.x, a.y, a.width, INK_EVENT, "%s %s",
                                folded ? "\u25b8" : "\u25be", name);
     if (folded) {
@@ -177,6 +179,7 @@ static bool point_at_slider(explorer_state *st, const panel_gesture *g, action_r
     const hit_area *h = &g->hit;
     int cells = h->area.width;
     double share = cells > 1 ? (double)(g->event.x - h->area.x) / (cells - 1) : 0;
+
     switch (g->event.kind) {
     case POINTER_PRESS:
     case POINTER_DRAG:

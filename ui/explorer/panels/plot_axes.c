@@ -72,6 +72,8 @@ static void draw_instants(screen *s, area a, double from, double to)
     ticks t;
     int free = a.x;
     ticks_between(&t, from, to, a.width / 14 < 2 ? 2 : a.width / 14);
+
+    // each tick with its label below, unless that would touch the one before
     for (int i = 0; i < t.count; i++) {
         char text[TICK_TEXT + 16];
         double share = (t.value[i] - from) / (to - from);
@@ -80,9 +82,13 @@ static void draw_instants(screen *s, area a, double from, double to)
         if (i == t.count - 1) {
             strcat(text, " s");
         }
+
+        // kept within the axis
         int length = (int)strlen(text), start = x - length / 2;
         start = start + length > a.x + a.width ? a.x + a.width - length : start;
         start = start < a.x ? a.x : start;
+
+        // a tick on the line, where no bar is
         if (s->width > x && x < a.x + a.width) {
             cell *at = &s->cells[(long)a.y * s->width + x];
             at->glyph = at->glyph == 0x2500 ? 0x252c : at->glyph;

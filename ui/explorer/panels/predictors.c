@@ -87,6 +87,8 @@ static void predictor_line(screen *s, area a, int line, const char *label, const
         return;
     }
     screen_text(s, a.x + 2, y, a.width - 4, INK_TEXT, label);
+
+    // force and delay as far as they are known and there is room
     if (!known) {
         screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, "-");
     } else if (!p->holds) {
@@ -116,12 +118,16 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     bool touches = session_sample(e)->contact != 0;
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
                  touches ? "when it touched: peak" : "if it touched now: peak");
+
+    // what the predictors say
     static const predictor asked[] = {PREDICTOR_ENERGY, PREDICTOR_IMPACT_DYNAMICS,
                                       PREDICTOR_LINEARISED};
     for (int i = 0; i < 3; i++) {
         const prediction_answer answer = ask(st, lay, asked[i], r);
         predictor_line(s, a, i, answer.short_label, &answer.prediction, prediction_known(&answer));
     }
+
+    // and beside it what came
     prediction out;
     if (touches) {
         out = what_came(e, r);

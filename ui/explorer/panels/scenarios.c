@@ -116,6 +116,8 @@ static action_result filter_key(explorer_state *st, int key)
 static action_result list_key(explorer_state *st, int key)
 {
     scenario_menu *menu = &st->scenarios;
+
+    // the filter takes all keys while it is typed
     if (menu->filtering) {
         return filter_key(st, key);
     } else if (key == '/') {

@@ -1,70 +1,93 @@
 #include "ui/explorer/state/inert.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "src/rig/controller.h"
 #include "src/rig/rig.h"
 
-static bool begins_with(const char *text, const char *start)
+// Whether a parameter is a field of struct parameters, or one of a group that is.
+#define IS_OF(parameter, field)                                                                    \
+    lies_in(parameter, offsetof(parameters, field), sizeof(((parameters *)0)->field))
+
+static bool lies_in(int parameter, size_t from, size_t size)
 {
-    return strncmp(text, start, strlen(start)) == 0;
+    const size_t offset = parameter_table[parameter].offset;
+    return offset >= from && offset < from + size;
 }
 
-static bool is_one_of(const char *name, const char *const *names)
+// What the arm, its wall and the method leave aside.
+static const char *reason_of_arm(const parameters *p, int parameter)
 {
-    for (; *names != NULL; names++) {
-        if (strcmp(name, *names) == 0) {
+    const bool of_newmark = IS_OF(parameter, method.beta) || IS_OF(parameter, method.gamma);
+
+    // parts of the arm that this one does not have
+    if (IS_OF(parameter, printed) && p->arm.model != ARM_PRINTED) {
+        return "it belongs to arm.model = printed";
+    }
+    if (IS_OF(parameter, arm.k1) && p->arm.hub_joint != HUB_SPRING) {
+        return "the hub joint is rigid (arm.hub_joint)";
+    }
+    if (IS_OF(parameter, arm.link_inertia) && p->arm.links != 2) {
+        return "it is for two links";
+    }
+    if (IS_OF(parameter, arm.k2) && p->arm.links == 1) {
+        return "one link has no joint";
+    }
+    if (IS_OF(parameter, wall) && !IS_OF(parameter, wall.kind) && p->wall.kind == WALL_NONE) {
+        return "there is no wall (wall.kind)";
+    }
+
+    // numbers of other methods
+    if (of_newmark && p->method.name != METHOD_NEWMARK) {
+        return "it belongs to method.name = newmark";
+    }
+    if (IS_OF(parameter, method.spectral_radius) && p->method.name != METHOD_GENERALIZED_ALPHA) {
+        return "it belongs to method.name = generalized-alpha";
+    }
+    return NULL;
+}
+
+// Whether a parameter of the controller means the same under every law.
+static bool is_of_every_law(int parameter)
+{
+    const size_t fields[] = {offsetof(parameters, control.law),
+                             offsetof(parameters, control.settings),
+                             offsetof(parameters, control.rate),
+                             offsetof(parameters, control.delay),
+                             offsetof(parameters, control.delay_periods),
+                             offsetof(parameters, control.jitter),
+                             offsetof(parameters, control.seed),
+                             offsetof(parameters, control.force),
+                             offsetof(parameters, control.k2_table),
+                             offsetof(parameters, control.force_rate),
+                             offsetof(parameters, control.force_amplitude),
+                             offsetof(parameters, control.force_frequency)};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+        if (parameter_table[parameter].offset == fields[i]) {
             return true;
         }
     }
     return false;
 }
 
-// What the arm, its wall and the method leave aside.
-static const char *reason_of_arm(const parameters *p, const char *path)
+// What the control law does not read.
+static const char *reason_of_control(const parameters *p, int parameter)
 {
-    if (begins_with(path, "printed.") && p->arm.model != ARM_PRINTED) {
-        return "it belongs to arm.model = printed";
-    }
-    if (strcmp(path, "arm.k1") == 0 && p->arm.hub_joint != HUB_SPRING) {
-        return "the hub joint is rigid (arm.hub_joint)";
-    }
-    if (strcmp(path, "arm.link_inertia") == 0 && p->arm.links != 2) {
-        return "it is for two links";
-    }
-    if (strcmp(path, "arm.k2") == 0 && p->arm.links == 1) {
-        return "one link has no joint";
-    }
-    if (begins_with(path, "wall.") && strcmp(path, "wall.kind") != 0 && p->wall.kind == WALL_NONE) {
-        return "there is no wall (wall.kind)";
-    }
-    if ((strcmp(path, "method.beta") == 0 || strcmp(path, "method.gamma") == 0) &&
-        p->method.name != METHOD_NEWMARK) {
-        return "it belongs to method.name = newmark";
-    }
-    if (strcmp(path, "method.spectral_radius") == 0 && p->method.name != METHOD_GENERALIZED_ALPHA) {
-        return "it belongs to method.name = generalized-alpha";
-    }
-    return NULL;
-}
-
-// What the law that is on does not ask for.
-static const char *reason_of_control(const parameters *p, const char *name)
-{
-    static const char *const of_every_law[] = {
-        "law",   "settings", "rate",       "delay",           "delay_periods",   "jitter", "seed",
-        "force", "k2_table", "force_rate", "force_amplitude", "force_frequency", NULL};
     const controller *law = controller_of(p->control.law);
-    if (strcmp(name, "plugin") == 0) {
+    const char *name = strchr(parameter_table[parameter].path, '.') + 1;
+    if (IS_OF(parameter, control.plugin)) {
         return law == NULL ? NULL : "it belongs to control.law = plugin";
     }
-    if (law == NULL || is_one_of(name, of_every_law)) {
+    if (law == NULL || is_of_every_law(parameter)) {
         return NULL;
     }
-    if (strcmp(name, "lock") == 0) {
+    if (IS_OF(parameter, control.lock)) {
         return law->lockable ? NULL : "this law cannot be held in a mode";
     }
+
+    // what this one says it reads
     for (int i = 0; i < law->parameter_count; i++) {
         if (strcmp(law->parameters[i].name, name) == 0) {
             return NULL;
@@ -73,36 +96,47 @@ static const char *reason_of_control(const parameters *p, const char *name)
     return "the control law does not use it";
 }
 
-static const char *reason_of_sensor(const parameters *p, const char *name)
+// Whether a parameter is a fault of sensors or converters, which ideal ones do not have.
+static bool is_imperfection(int parameter)
 {
-    static const char *const imperfections[] = {"encoder_counts",
-                                                "tachometer_ripple",
-                                                "tachometer_ripple_count",
-                                                "tachometer_noise",
-                                                "fsr_noise",
-                                                "piezo_noise",
-                                                "film_noise",
-                                                "accelerometer_noise",
-                                                "adc_bits",
-                                                "dac_bits",
-                                                "fsr_rise_time",
-                                                "piezo_rise_time",
-                                                "piezo_leak_time",
-                                                "piezo_range",
-                                                "film_leak_time",
-                                                "accelerometer_rise_time",
-                                                "accelerometer_range",
-                                                NULL};
-    if (begins_with(name, "piezo_") && !p->sensor.piezo) {
+    return IS_OF(parameter, sensor.encoder_counts) || IS_OF(parameter, sensor.tachometer_ripple) ||
+           IS_OF(parameter, sensor.tachometer_ripple_count) ||
+           IS_OF(parameter, sensor.tachometer_noise) || IS_OF(parameter, sensor.fsr_noise) ||
+           IS_OF(parameter, sensor.piezo_noise) || IS_OF(parameter, sensor.film_noise) ||
+           IS_OF(parameter, sensor.accelerometer_noise) || IS_OF(parameter, sensor.adc_bits) ||
+           IS_OF(parameter, sensor.dac_bits) || IS_OF(parameter, sensor.fsr_rise_time) ||
+           IS_OF(parameter, sensor.piezo_rise_time) || IS_OF(parameter, sensor.piezo_leak_time) ||
+           IS_OF(parameter, sensor.piezo_range) || IS_OF(parameter, sensor.film_leak_time) ||
+           IS_OF(parameter, sensor.accelerometer_rise_time) ||
+           IS_OF(parameter, sensor.accelerometer_range);
+}
+
+// What sensors that are not fitted, or are ideal, make no use of.
+static const char *reason_of_sensor(const parameters *p, int parameter)
+{
+    const bool piezo = IS_OF(parameter, sensor.piezo_gain) ||
+                       IS_OF(parameter, sensor.piezo_rise_time) ||
+                       IS_OF(parameter, sensor.piezo_leak_time) ||
+                       IS_OF(parameter, sensor.piezo_range) || IS_OF(parameter, sensor.piezo_noise);
+    const bool film = IS_OF(parameter, sensor.film_gain) ||
+                      IS_OF(parameter, sensor.film_leak_time) ||
+                      IS_OF(parameter, sensor.film_noise);
+    const bool accelerometer = IS_OF(parameter, sensor.accelerometer_gain) ||
+                               IS_OF(parameter, sensor.accelerometer_rise_time) ||
+                               IS_OF(parameter, sensor.accelerometer_range) ||
+                               IS_OF(parameter, sensor.accelerometer_noise);
+
+    // not fitted, or without the fault
+    if (piezo && !p->sensor.piezo) {
         return "no piezo sensor is fitted (sensor.piezo)";
     }
-    if (begins_with(name, "film_") && !p->sensor.film) {
+    if (film && !p->sensor.film) {
         return "no piezo film is fitted (sensor.film)";
     }
-    if (begins_with(name, "accelerometer_") && !p->sensor.accelerometer) {
+    if (accelerometer && !p->sensor.accelerometer) {
         return "none is fitted (sensor.accelerometer)";
     }
-    if (p->sensor.ideal && is_one_of(name, imperfections)) {
+    if (p->sensor.ideal && is_imperfection(parameter)) {
         return "the sensors are ideal (sensor.ideal)";
     }
     return NULL;
@@ -111,17 +145,18 @@ static const char *reason_of_sensor(const parameters *p, const char *name)
 const char *inert_reason(const parameters *p, int parameter)
 {
     assert(p != NULL && parameter >= 0 && parameter < parameter_count);
-    const char *path = parameter_table[parameter].path, *name = strchr(path, '.') + 1;
-    const bool law = p->control.law != LAW_NONE, control = begins_with(path, "control.");
-    const bool sensor = begins_with(path, "sensor.");
-    const bool belief = begins_with(path, "belief.");
-    if ((sensor || belief || (control && strcmp(name, "law") != 0)) && !law) {
-        return "no control law is on (control.law)";
+    const bool law = p->control.law != LAW_NONE;
+    const bool control = IS_OF(parameter, control), sensor = IS_OF(parameter, sensor);
+    const bool of_rig = sensor || control || IS_OF(parameter, belief);
+
+    // without a law nothing of the rig matters, with one it has the voltage
+    if (of_rig && !law) {
+        return IS_OF(parameter, control.law) ? NULL : "no control law is on (control.law)";
     }
     if (law && parameter == PARAMETER_INDEX(motor.voltage)) {
         return "the control law commands the voltage";
     }
-    return control  ? (law ? reason_of_control(p, name) : NULL)
-           : sensor ? reason_of_sensor(p, name)
-                    : reason_of_arm(p, path);
+    return control  ? reason_of_control(p, parameter)
+           : sensor ? reason_of_sensor(p, parameter)
+                    : reason_of_arm(p, parameter);
 }

@@ -149,6 +149,8 @@ void key_name(int key, char *text, size_t size)
 {
     assert(text != NULL);
     char glyph[8];
+
+    // by name, as Ctrl with a letter, or as itself
     for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++) {
         // what a binding can hold needs no other name
         if (key_names[i].key == key && key != '<') {

@@ -66,6 +66,8 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
 {
     const char *usual = wishes->controlled ? "1352486" : "1342567";
     int shown = 0;
+
+    // none, then what is wished for
     for (int i = 0; i < PANES; i++) {
         set->pane[i].shown = false;
     }
@@ -74,6 +76,8 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
         show_signal(set, wishes->signals[i]);
         set->focus = i == 0 ? 0 : set->focus;
     }
+
+    // then the usual ones
     for (int i = 0; i < PANES; i++) {
         shown += set->pane[i].shown;
     }

@@ -107,6 +107,8 @@ int parameter_list_selected(const parameter_list *list, const parameter_line *li
     assert(list != NULL && lines != NULL);
     const int group = parameter_group(list->parameter);
     int heading = 0;
+
+    // itself, else its group's heading
     for (int i = 0; i < count; i++) {
         const bool own_group = parameter_group(lines[i].parameter) == group;
         if (lines[i].heading && own_group) {

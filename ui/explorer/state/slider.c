@@ -76,6 +76,8 @@ double slider_value(const slider_scale *scale, int parameter, double share, int 
     const parameter_info *info = &parameter_table[parameter];
     double value, step;
     share = fmax(0, fmin(1, share));
+
+    // the share on its scale, and the step that a cell can tell
     if (scale->logarithmic) {
         value = scale->low * pow(scale->high / scale->low, share);
         step = pow(10, floor(log10(value)) - 1);
@@ -84,6 +86,8 @@ double slider_value(const slider_scale *scale, int parameter, double share, int 
         value = scale->low + share * width;
         step = pow(10, floor(log10(width / (cells > 1 ? cells : 1))));
     }
+
+    // whole steps, within what the table allows
     step = info->type == PARAMETER_INTEGER ? 1 : step;
     value = step * round(value / step);
     return fmax(info->minimum, fmin(info->maximum, value));

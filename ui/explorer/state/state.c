@@ -33,20 +33,25 @@ static int main_parameter(const explorer_state *st)
 {
     const parameters *p = &st->session.effective.parameters;
     const controller *law = controller_of(p->control.law);
+
+    // without a law it is the voltage
     if (!state_has_law(st)) {
         return PARAMETER_INDEX(motor.voltage);
     }
+
+    // what it presses with, if it does
     for (int i = 0; law != NULL && i < law->parameter_count; i++) {
         if (strcmp(law->parameters[i].name, "force") == 0) {
             return PARAMETER_INDEX(control.force);
         }
     }
-    for (int i = 0; law != NULL && i < parameter_count; i++) {
-        const char *path = parameter_table[i].path;
-        const bool own = strncmp(path, "control.", 8) == 0 && law->parameter_count > 0;
-        if (own && strcmp(path + 8, law->parameters[0].name) == 0) {
-            return i;
-        }
+
+    // else the first number of its own
+    if (law != NULL && law->parameter_count > 0) {
+        char path[PARAMETER_NAME];
+        snprintf(path, sizeof path, "control.%s", law->parameters[0].name);
+        const int own = parameter_find(path);
+        return own >= 0 ? own : PARAMETER_INDEX(control.rate);
     }
     return PARAMETER_INDEX(control.rate);
 }

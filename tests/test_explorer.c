@@ -185,7 +185,7 @@ static void test_what_is_typed_is_completed(void **state)
     assert_string_equal(ex.state.prompt.text, "set motor.voltage");
     assert_shows(&ex, "motor.voltage_limit");
     press(&ex, "<Esc>:set motor.voltgae 2<Enter>");
-    assert_shows(&ex, "did you mean motor.voltage?");
+    assert_shows(&ex, "did you mean 'motor.voltage'?");
     press(&ex, ":brunch<Enter>");
     assert_shows(&ex, "did you mean branch?");
     explorer_finish(&ex);
