@@ -25,12 +25,12 @@ static double first_clamped_frequency(const arm *a)
     // the angles of a quadratic deflection are a fair first shape; Rayleigh's quotient after one
     // smoothing sweep is right to second order in the error of the shape
     double l = a->link_length, m = a->link_mass;
-    double frequency = 0;
     enum { LONGEST = 1024, SWEEPS = 6 };
-    double shape[LONGEST], next[LONGEST];
+    double shape[LONGEST], next[LONGEST], frequency = 0;
     for (int k = 0; k < a->links; k++) {
         shape[k] = a->root_bends ? k + 0.5 : k;
     }
+
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         // deflections of the links' ends
         double y = 0, moment_beyond = 0;
@@ -39,6 +39,7 @@ static double first_clamped_frequency(const arm *a)
             y += l * shape[k];
             tip_y[k] = y;
         }
+
         // M x as the moment on each joint, from the tip inwards
         double force = a->tip_mass * y;
         for (int k = a->links - 1; k >= (a->root_bends ? 0 : 1); k--) {
@@ -50,6 +51,8 @@ static double first_clamped_frequency(const arm *a)
             force += own_force;
             next[k] = moment / (k > 0 ? a->joint_stiffness : a->hub_stiffness); // bend of joint k
         }
+
+        // the next shape, and Rayleigh's quotient on the way
         double sum = 0, numerator = 0, denominator = 0;
         next[0] = a->root_bends ? next[0] : 0;
         for (int k = 0; k < a->links; k++) {
@@ -73,12 +76,16 @@ static double highest_frequency(const arm *source)
 {
     enum { LONGEST = 1025, SWEEPS = 60 };
     static const contact_state free_mode = {false, HUB_FORWARD};
+
+    // nothing but masses and springs
     arm a = *source;
     a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping = a.hub_joint_damping = 0;
     a.wall.kind = WALL_NONE;
     chain_link work[LONGEST];
     double q[LONGEST], w[LONGEST], alpha[LONGEST], value = 0;
     const double small = 1e-6; // small angles: the linear range
+
+    // a shape near the fastest mode's, then sweep after sweep until the quotient stands
     memset(w, 0, sizeof w);
     for (int k = 0; k < a.dof; k++) {
         q[k] = (k % 2 ? -small : small) * (1 + 0.1 * k / a.dof);
@@ -95,11 +102,13 @@ static double highest_frequency(const arm *source)
         if (size == 0) {
             return 0;
         }
+
         double last = value;
         value = sqrt(size / before);
         if (sweep >= 4 && fabs(value - last) < 1e-6 * value) {
             break;
         }
+
         for (int k = 0; k < a.dof; k++) {
             q[k] = -alpha[k] * small / sqrt(size);
         }
@@ -124,11 +133,15 @@ static double fastest_decay(const arm *a)
 void arm_init(arm *a, const parameters *p)
 {
     memset(a, 0, sizeof *a);
+
+    // degrees of freedom
     a->links = p->arm.links;
     a->hub_spring = p->arm.hub_joint != HUB_RIGID;
     a->root_bends = p->arm.hub_joint == HUB_BEAM;
     a->first = a->hub_spring ? 1 : 0;
     a->dof = a->links + a->first;
+
+    // links, hub, springs
     a->link_length = p->arm.length / a->links;
     a->link_mass = p->arm.mass / a->links;
     a->link_inertia = p->arm.link_inertia;
@@ -138,12 +151,16 @@ void arm_init(arm *a, const parameters *p)
     a->joint_stiffness = p->arm.k2 * a->links / 2;
     motor_init(&a->motor, &p->motor);
     wall_init(&a->wall, p);
+
+    // structural damping
     if (p->arm.damping_ratio > 0 && (a->links > 1 || a->root_bends)) {
         // torque c dot(bend) in each spring, c = 2 zeta k / w1, damps the first mode by zeta
         double per_stiffness = 2 * p->arm.damping_ratio / first_clamped_frequency(a);
         a->joint_damping = per_stiffness * a->joint_stiffness;
         a->hub_joint_damping = per_stiffness * a->hub_stiffness;
     }
+
+    // how fast it can be
     a->highest_frequency = highest_frequency(a);
     a->fastest_decay = fastest_decay(a);
     a->fastest_rate = fmax(a->highest_frequency, DECAY_WEIGHT * a->fastest_decay);

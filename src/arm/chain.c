@@ -32,6 +32,8 @@ static wall_contact contact_of(const arm *a, const double *q, const double *w, d
                                double *vy)
 {
     int last = a->first + a->links - 1;
+
+    // the last link's base
     double x = 0, y = 0;
     *vx = *vy = 0;
     for (int k = a->first; k < last; k++) {
@@ -41,6 +43,7 @@ static wall_contact contact_of(const arm *a, const double *q, const double *w, d
         *vx -= a->link_length * s * w[k];
         *vy += a->link_length * c * w[k];
     }
+
     return wall_contact_at(&a->wall, a->link_length, x, y, *vx, *vy, inline_cos(q[last]),
                            inline_sin(q[last]), w[last]);
 }
@@ -65,6 +68,7 @@ void chain_penetration(const arm *a, const double *q, const double *w, double *g
         }
         return;
     }
+
     double vx, vy;
     if (g != NULL) {
         *g = contact_of(a, q, w, &vx, &vy).penetration;
@@ -80,6 +84,8 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
                           double lever, bool hub_locked, double *response)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
+
+    // tip to hub: each link's answer if its base rested
     double pxx = a->tip_mass, pxy = 0, pyy = a->tip_mass, fx = ex, fy = ey;
     for (int k = a->links - 1; k >= 0; k--) {
         double c = inline_cos(q[a->first + k]), s = inline_sin(q[a->first + k]);
@@ -101,6 +107,8 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
         pxy -= ux * uy / d;
         pyy += m - uy * uy / d;
     }
+
+    // hub to tip: less what its base takes along
     double bx = 0, by = 0;
     response[0] = 0; // a hub behind a spring does not feel an impulse
     for (int k = 0; k < a->links; k++) {
@@ -129,6 +137,8 @@ void chain_tip_response(const arm *a, chain_link *work, const double *q, double 
 double chain_kinetic_energy(const arm *a, const double *q, const double *w)
 {
     double l = a->link_length, vx = 0, vy = 0, twice = a->hub_inertia * w[0] * w[0];
+
+    // each link about its centre, its base moving with the links before
     for (int k = a->first; k < a->dof; k++) {
         double s, c;
         inline_sincos(q[k], &s, &c);
@@ -138,6 +148,7 @@ double chain_kinetic_energy(const arm *a, const double *q, const double *w)
         vx += across_x;
         vy += across_y;
     }
+
     twice += a->tip_mass * (vx * vx + vy * vy);
     return twice / 2;
 }

@@ -100,6 +100,8 @@ static bool add_gradient(modal_basis *b, const arm *a, int start, double *factor
 {
     const int n = a->dof - start;
     const allowed all = {n, start, -1, a};
+
+    // M0 = L L', so that its length in M0 is that of L^-1 times the gradient
     reduce(&all, modal_mass_times, factor, x, y);
     if (!symmetric_factor(n, factor)) {
         return false;
@@ -113,11 +115,14 @@ static bool add_gradient(modal_basis *b, const arm *a, int start, double *factor
         square += y[i] * y[i];
     }
     symmetric_backward(n, factor, y);
+
     double *row = b->by_mode + (size_t)b->count * (size_t)a->dof;
     memset(row, 0, (size_t)a->dof * sizeof *row);
     for (int i = 0; i < n; i++) {
         row[start + i] = y[i] / sqrt(square);
     }
+
+    // what the modes and it itself pull at it
     modal_stiffness_times(a, row, y);
     for (int k = 0; k <= b->count; k++) {
         const double *mode = b->by_mode + (size_t)k * (size_t)a->dof;
@@ -190,6 +195,8 @@ status modal_basis_compute(modal_basis *b, const arm *a, bool contact, bool stuc
     if (contact && !add_gradient(b, a, w.start, mass, x, y)) {
         return STATUS_SINGULAR;
     }
+
+    // the same by degree of freedom
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < b->count; k++) {
             b->by_dof[(size_t)i * (size_t)n + (size_t)k] =
@@ -208,6 +215,8 @@ static void combine_rows(const double *matrix, int side, int rows, int width, in
     for (int c = 0; c < columns; c++) {
         memset(out + (size_t)c * (size_t)stride, 0, (size_t)width * sizeof *out);
     }
+
+    // four rows at a time, so that a sum is loaded and stored once for them
     int i = 0;
     for (; i + 4 <= rows; i += 4) {
         const double *restrict r0 = matrix + (size_t)i * (size_t)side;
@@ -221,6 +230,7 @@ static void combine_rows(const double *matrix, int side, int rows, int width, in
             }
         }
     }
+
     for (; i < rows; i++) {
         const double *restrict row = matrix + (size_t)i * (size_t)side;
         for (int c = 0; c < columns; c++) {

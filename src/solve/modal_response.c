@@ -25,7 +25,7 @@ static double decay(double x)
 // Small t: powers of t. g_m = -2 a g_{m-1} - w^2 g_{m-2} are the derivatives of G at 0.
 static void respond_by_series(double a, double w, double t, int powers, modal_response *r)
 {
-    // scaled: g_m t^m
+    // the derivatives, scaled: g_m t^m
     const double p = -2 * a * t, q = -w * w * t * t;
     double g[SERIES_TERMS + 1];
     g[0] = 1;
@@ -33,6 +33,7 @@ static void respond_by_series(double a, double w, double t, int powers, modal_re
     for (int i = 2; i <= SERIES_TERMS; i++) {
         g[i] = p * g[i - 1] + q * g[i - 2];
     }
+
     // F_j = t^(j+2) sum g_m t^m / (j + m + 2)!, and so on downwards to G' (j = -2)
     double scale = 1;
     for (int j = -2; j < powers; j++) {
@@ -71,6 +72,8 @@ static void climb(double a, double w, double t, int powers, modal_response *r)
 static void phi(double x, double t, int count, double *out)
 {
     const double z = x * t;
+
+    // near zero by their series
     if (z > -2) {
         double scale = 1;
         for (int k = 0; k < count; k++) {
@@ -83,6 +86,7 @@ static void phi(double x, double t, int count, double *out)
         }
         return;
     }
+
     double term = 1;
     out[0] = decay(z);
     for (int k = 1; k < count; k++) {
@@ -93,10 +97,13 @@ static void phi(double x, double t, int count, double *out)
 
 void modal_respond(double a, double w, double t, int powers, modal_response *r)
 {
+    // slow against t
     if (w * t <= 2 && a * t <= 1) {
         respond_by_series(a, w, t, powers, r);
         return;
     }
+
+    // vibrating
     if (a <= w) {
         double rate = sqrt((w - a) * (w + a)), s, c, e = decay(-a * t);
         inline_sincos(rate * t, &s, &c);
@@ -106,6 +113,8 @@ void modal_respond(double a, double w, double t, int powers, modal_response *r)
         climb(a, w, t, powers, r);
         return;
     }
+
+    // overdamped: two decays
     const double root = sqrt((a - w) * (a + w));
     const double slow = -w * w / (a + root), fast = -(a + root), per = 1 / (slow - fast);
     double one[MODAL_POWERS + 2], two[MODAL_POWERS + 2];

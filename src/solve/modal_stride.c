@@ -24,6 +24,8 @@ static size_t table_size(int n)
 size_t modal_stride_size(const arm *a)
 {
     const size_t n = (size_t)a->dof;
+
+    // bases and their scratch, tables, vectors
     size_t doubles = MODAL_CONTACT_STATES * modal_basis_size(a->dof) + modal_basis_scratch(a->dof);
     doubles += (MODAL_NODES + 1) * table_size(a->dof);
     doubles += n * (8 + 8 * MODAL_NODES + 3 * COLUMNS + 3);
@@ -52,10 +54,14 @@ void modal_stride_place(modal_stride *s, const arm *a)
     double *storage = (double *)(s + 1);
     memset(s, 0, sizeof *s);
     s->dof = a->dof;
+
+    // bases
     for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
         modal_basis_place(&s->basis[i], a->dof, take(&storage, modal_basis_size(a->dof)));
     }
     s->scratch = take(&storage, modal_basis_scratch(a->dof));
+
+    // what there is once a point of collocation
     for (int i = 0; i < MODAL_NODES; i++) {
         place_table(&s->at[i], &storage, n);
         s->point_angles[i] = take(&storage, n);
@@ -67,6 +73,8 @@ void modal_stride_place(modal_stride *s, const arm *a)
         s->drifts[i] = take(&storage, n);
         s->forces[i] = take(&storage, n);
     }
+
+    // what there is once a stride
     s->damping = take(&storage, n);
     s->viscous = take(&storage, n);
     s->start = take(&storage, n);
@@ -74,6 +82,8 @@ void modal_stride_place(modal_stride *s, const arm *a)
     s->columns = take(&storage, n * COLUMNS);
     s->more_columns = take(&storage, n * COLUMNS);
     s->modal = take(&storage, n * COLUMNS);
+
+    // what there is once an instant
     s->angles = take(&storage, n);
     s->velocities = take(&storage, n);
     s->rates = take(&storage, n);
@@ -106,12 +116,16 @@ static void fill_table(const modal_stride *s, double t, int powers, int count,
 static void state_across(const modal_stride *s, const modal_table *at, double *x, double *y)
 {
     const int e = s->modes->across;
+
+    // its own polynomials
     double place = 0, rate = s->start[e], lower = at->impulse[e];
     for (int j = 0; j < MODAL_NODES; j++) {
         place += s->drift[j][e] * lower;
         rate += s->force[j][e] * lower;
         lower = at->power[j][e];
     }
+
+    // what the modes pull
     for (int k = 0; k < e; k++) {
         const double twice = 2 * s->damping[k];
         double integral = s->start[k] * at->power[0][k];
@@ -128,6 +142,7 @@ static void state_across(const modal_stride *s, const modal_table *at, double *x
 // x and y of all modes.
 static void modal_state(const modal_stride *s, const modal_table *at, double *x, double *y)
 {
+    // every mode for itself: from its start, then what the polynomials do to it
     for (int k = 0; k < s->count; k++) {
         const double twice = 2 * s->damping[k], stiff = s->modes->rate[k] * s->modes->rate[k];
         double place = s->start[k] * at->impulse[k], rate = s->start[k] * at->impulse_rate[k];
@@ -141,6 +156,8 @@ static void modal_state(const modal_stride *s, const modal_table *at, double *x,
         x[k] = place;
         y[k] = rate;
     }
+
+    // across the constraint they add up
     if (s->modes->across >= 0) {
         state_across(s, at, x, y);
     }
@@ -170,10 +187,14 @@ void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double
 {
     const int n = s->dof;
     double *x = s->columns, *y = x + n, *turn = s->more_columns, *momentum = turn + n;
+
+    // of the modes
     modal_stride_modes(s, t);
     memcpy(x, s->place, (size_t)n * sizeof *x);
     memcpy(y, s->momenta, (size_t)n * sizeof *y);
     to_momenta(s, a, x, y);
+
+    // of the links
     modal_to_angles(s->modes, n, 2, x, turn, n);
     modal_mass_times(a, momentum, y);
     for (int i = 0; i < n; i++) {
@@ -190,10 +211,13 @@ static const modal_basis *basis_of(modal_stride *s, const arm *a, contact_state 
 {
     const double now[4] = {a->hub_stiffness, a->joint_stiffness, a->hub_joint_damping,
                            a->joint_damping};
+
+    // springs that changed make all bases wrong
     if (memcmp(now, s->stiffness, sizeof now) != 0) {
         memcpy(s->stiffness, now, sizeof now);
         memset(s->known, 0, sizeof s->known);
     }
+
     const bool stuck = mode.friction == HUB_STICK;
     const int i = mode.contact + 2 * stuck;
     if (!s->known[i]) {
@@ -212,6 +236,8 @@ static void prepare_remainders(modal_stride *s, const arm *a, const double *w, d
     const int n = s->dof;
     double *force = columns + n;
     modal_mass_times(a, w, columns);
+
+    // forces beyond the springs' at small angles: what the sweeps say, structural damping, motor
     modal_stiffness_times(a, s->angles, force);
     double inner = 0; // torque of structural damping in the joint before
     for (int k = 0; k < n; k++) {
@@ -230,12 +256,16 @@ static void take_remainders(const modal_stride *s, int point, const double *x, c
                             const double *modal)
 {
     const double *v = modal, *force = modal + s->dof;
+
+    // less what the modes' own equations have
     for (int k = 0; k < s->count; k++) {
         const double rate = s->modes->rate[k];
         s->drifts[point][k] = v[k] - y[k];
         s->forces[point][k] =
             force[k] - s->viscous[k] * v[k] + rate * rate * x[k] + 2 * s->damping[k] * y[k];
     }
+
+    // across the constraint there is only what the modes pull
     const int e = s->modes->across;
     if (e >= 0) {
         double sum = force[e];
@@ -307,6 +337,8 @@ static double fit_polynomials(modal_stride *s, double h)
     for (int k = 0; k < s->count; k++) {
         const double twice = 2 * s->damping[k], rate = s->modes->rate[k];
         double scale = 1, moved = 0, placed = 0, lower = end->impulse[k];
+
+        // power by power: the new coefficients, and what their change does until the end
         for (int j = 0; j < MODAL_NODES; j++) {
             double drift = 0, force = 0;
             for (int i = 0; i < MODAL_NODES; i++) {
@@ -324,6 +356,7 @@ static double fit_polynomials(modal_stride *s, double h)
             s->force[j][k] = force;
             scale *= (j + 1) / h;
         }
+
         square += moved * moved + rate * rate * placed * placed;
     }
     return sqrt(square);
@@ -334,6 +367,8 @@ static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, co
 {
     const int n = s->dof;
     const size_t pair = 2 * (size_t)n;
+
+    // the modes' places and momenta, as angles
     for (int i = 1; i < MODAL_NODES; i++) {
         double *x = s->columns + (size_t)(i - 1) * pair;
         modal_state(s, &s->at[i], x, x + n);
@@ -341,6 +376,8 @@ static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, co
         to_momenta(s, a, x, x + n);
     }
     modal_to_angles(s->modes, n, COLUMNS, s->columns, s->more_columns, n);
+
+    // velocities and forces there by the sweeps
     for (int i = 1; i < MODAL_NODES; i++) {
         double *turn = s->more_columns + (size_t)(i - 1) * pair;
         double *momentum = s->columns + (size_t)(i - 1) * pair, impulse;
@@ -355,6 +392,8 @@ static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, co
         memcpy(s->point_velocities[i], s->velocities, (size_t)n * sizeof *q);
         prepare_remainders(s, a, s->velocities, turn);
     }
+
+    // brought back to the modes
     modal_from_angles(s->modes, n, COLUMNS, s->more_columns, s->columns, n);
     for (int i = 1; i < MODAL_NODES; i++) {
         const double *x = s->modal + (size_t)(i - 1) * pair;
@@ -367,6 +406,8 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
 {
     const size_t size = (size_t)s->count * sizeof(double);
     s->length = length;
+
+    // first guess: what holds at the start
     double speed = 1e-30;
     for (int i = 1; i < MODAL_NODES; i++) {
         fill_table(s, points[i] * length, MODAL_NODES + 1, s->count, &s->at[i]);
@@ -377,6 +418,7 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
         speed += s->start[k] * s->start[k];
     }
 
+    // sweeps until nothing changes
     modal_fit fit = {0};
     fit_polynomials(s, length);
     for (int i = 0; i < MOST_SWEEPS; i++) {
@@ -386,6 +428,8 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
             break;
         }
     }
+
+    // what the highest power does
     for (int k = 0; k < s->count; k++) {
         const int top = MODAL_NODES - 1;
         double y = s->force[top][k] * s->at[top].power[top - 1][k];
@@ -405,6 +449,8 @@ void modal_walk_begin(modal_stride *s, int count)
     const int e = s->modes->across;
     w->count = count;
     w->step = w->time = 0;
+
+    // from rest at the stride's start, under its polynomials
     memset(w->x, 0, size);
     memcpy(w->y, s->start, size);
     for (int j = 0; j < MODAL_NODES; j++) {
@@ -429,6 +475,8 @@ void modal_walk_on(modal_stride *s)
     modal_walk *w = &s->walk;
     const double t = w->step, t2 = t * t / 2, t3 = t * t2 / 3;
     const modal_table *at = &w->at;
+
+    // the modes
     for (int k = 0; k < w->count; k++) {
         const double twice = 2 * s->damping[k], stiff = s->modes->rate[k] * s->modes->rate[k];
         const double x = w->x[k], y = w->y[k], g = at->impulse[k], gr = at->impulse_rate[k];
@@ -442,6 +490,8 @@ void modal_walk_on(modal_stride *s)
         w->x[k] = place;
         w->y[k] = rate;
     }
+
+    // the polynomials about the next instant
     for (int i = 0; i < 2; i++) {
         double **p = i == 0 ? w->force : w->drift;
         for (int k = 0; k < w->count; k++) {
@@ -478,7 +528,9 @@ static void moments(const modal_stride *s, int k, double t, double *of_x, double
 {
     const modal_table *at = &s->at[0];
     const double twice = 2 * s->damping[k];
-    double repeated[MODAL_NODES + 1]; // [i]: x integrated i times
+
+    // x integrated i times
+    double repeated[MODAL_NODES + 1];
     for (int i = 1; i <= MODAL_NODES; i++) {
         double sum = s->start[k] * at->power[i - 1][k];
         for (int j = 0; j < MODAL_NODES; j++) {
@@ -488,6 +540,8 @@ static void moments(const modal_stride *s, int k, double t, double *of_x, double
         }
         repeated[i] = sum;
     }
+
+    // by parts
     double term[MODAL_NODES] = {1};
     for (int j = 1; j < MODAL_NODES; j++) {
         term[j] = term[j - 1] * t / j;
@@ -508,6 +562,8 @@ static double hub_loss(modal_stride *s, const arm *a, double t, int low)
     const double *hub = s->modes->by_dof;
     double sum = 0, first_slope = 0, last_slope = 0;
     modal_walk *w = &s->walk;
+
+    // hub's velocity and its slope from step to step
     modal_walk_begin(s, low);
     modal_walk_set_step(s, t / HUB_STEPS);
     for (int i = 0; i <= HUB_STEPS; i++) {
@@ -525,6 +581,7 @@ static double hub_loss(modal_stride *s, const arm *a, double t, int low)
             modal_walk_on(s);
         }
     }
+
     return a->motor.damping * w->step * (sum + w->step * (first_slope - last_slope) / 12);
 }
 
@@ -532,10 +589,13 @@ modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t)
 {
     const int e = s->modes->across;
     modal_losses lost = {0};
+
+    // modes slow enough to be taken together
     int low = 0;
     while (low < s->count && low != e && s->modes->rate[low] * t < LOW_TURN) {
         low++;
     }
+
     for (int k = 0; k < s->count; k++) {
         const double rate = s->modes->rate[k], twice = 2 * s->damping[k];
         if (k == e || (twice == 0 && (e < 0 || s->per_stiffness == 0))) {
@@ -559,12 +619,16 @@ modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t)
             lost.damping += loss * s->per_stiffness * rate * rate / twice;
             lost.viscous += k >= low ? loss * s->viscous[k] / twice : 0;
         }
+
+        // between this mode and the vector across the constraint
         double with_across = 0;
         for (int j = 0; j < MODAL_NODES; j++) {
             with_across += e >= 0 ? s->drift[j][e] * of_v[j] : 0;
         }
         lost.damping += 2 * s->per_stiffness * s->modes->pull[k] * with_across;
     }
+
+    // that vector's own, and the slow modes' at the hub
     if (e >= 0) {
         double across[MODAL_NODES];
         for (int j = 0; j < MODAL_NODES; j++) {
