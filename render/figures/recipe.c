@@ -54,6 +54,7 @@ static void release(void *owner)
         free(s->x);
         free(s->y);
     }
+
     g_ptr_array_free(fig->owned, TRUE);
     recipe_finish(&fig->recipe);
     g_free(fig->path);
@@ -82,6 +83,7 @@ static status open_run(recipe_figure *fig, const recipe_source *s, opened_source
 {
     char *beside = path_of(fig, s->scenario);
     bool file = g_file_test(beside, G_FILE_TEST_IS_REGULAR);
+
     status code =
         run_begin_changed(&out->run, file ? beside : s->scenario, s->change, s->change_count, f);
     out->ran = code == STATUS_OK;
@@ -93,11 +95,14 @@ static status open_data(recipe_figure *fig, const recipe_source *s, opened_sourc
 {
     trace_panel shown[FIGURE_PANELS];
     int count = 0;
+
+    // the signals that a nameless column may lie over
     for (int i = 0; i < fig->recipe.panel_count; i++) {
         if (fig->recipe.panels[i].signal_count > 0) {
             shown[count++] = (trace_panel){.signals = {fig->recipe.panels[i].signals[0]}};
         }
     }
+
     char *path = path_of(fig, s->file), *name = NULL;
     status code =
         overlay_read_column(&out->data.trace, path, s->column, s->shift, shown, count, &name, f);
@@ -112,6 +117,7 @@ static status open_source(recipe_figure *fig, int index, fault *f)
     opened_source *out = &fig->sources[index];
     fault why = {0};
     status code = STATUS_OK;
+
     if (s->kind == SOURCE_RUN) {
         code = open_run(fig, s, out, &why);
     } else if (s->kind == SOURCE_DATA) {
@@ -121,6 +127,7 @@ static status open_source(recipe_figure *fig, int index, fault *f)
         code = sweep_table_read(path, s->x, s->y, &out->x, &out->y, &out->count, &why);
         g_free(path);
     }
+
     return code == STATUS_OK ? code : at_source(fig, s, code, &why, f);
 }
 
@@ -150,9 +157,12 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
     figure_panel *p = &fig->panels[panel];
     bool data = from->kind == SOURCE_DATA;
     int index = signal_index(fig->recipe.panels[panel].signals[signal]);
+
+    // no room, or nothing measured
     if (p->series_count == PANEL_SERIES || (data && !trace_has(trace_of(fig, source), index))) {
         return;
     }
+
     const opened_source *s = &fig->sources[source];
     const trace_run run = {
         .scenario = &s->run.scenario, .result = data ? &s->data : &s->run.result, .points = data};
@@ -168,6 +178,8 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
                                                       : g_strdup(symbol));
         g_free(symbol);
     }
+
+    // measured data are points without a line
     out->label = label;
     out->name = own(fig, g_strdup_printf("%s %s", from->name, signal_table[index].name));
     out->style = LINE_SOLID;
@@ -205,10 +217,13 @@ static void add_difference(recipe_figure *fig, int panel)
     int index = signal_index(from->signals[0]);
     double *x = own(fig, g_new(double, of->row_count + 1));
     double *y = own(fig, g_new(double, of->row_count + 1));
+
     for (size_t i = 0; i < of->row_count; i++) {
         x[i] = of->rows[i].time;
         y[i] = signal_value(&of->rows[i], index) - trace_value_at(less, index, x[i]);
     }
+
+    // points where data are compared, else a line
     bool data = fig->recipe.sources[from->of].kind == SOURCE_DATA;
     fig->series[panel][0] = (figure_series){.name = "difference",
                                             .x = x,
@@ -231,9 +246,12 @@ static void describe_axis(recipe_figure *fig, int panel)
                        .low = from->low,
                        .high = from->high,
                        .scale = from->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR};
+
+    // a signal, or a column of a table
     if (from->signal_count > 0) {
         const signal_info *signal = &signal_table[signal_index(from->signals[0])];
         char *symbol = trace_symbol(&fig->sources[0].run.scenario, signal_index(signal->name));
+
         y->name = signal->name;
         y->unit = signal->unit;
         y->symbol = from->signal_count == 1
@@ -254,6 +272,8 @@ static void describe_axis(recipe_figure *fig, int panel)
         y->room = 0.05;
         g_free(label);
     }
+
+    // the recipe's own word
     if (from->label != NULL) {
         y->label = from->label;
     }
@@ -264,15 +284,19 @@ static void describe_panel(recipe_figure *fig, int panel)
     const recipe_panel *from = &fig->recipe.panels[panel];
     figure_panel *p = &fig->panels[panel];
     describe_axis(fig, panel);
+
     p->heading = from->heading;
     p->weight = from->weight;
     p->series = fig->series[panel];
     p->notes = fig->notes[panel];
     p->note_count = from->note_count;
+
     for (int i = 0; i < from->note_count; i++) {
         const recipe_note *n = &from->notes[i];
         fig->notes[panel][i] = (figure_note){n->x, n->y, n->text};
     }
+
+    // curves
     if (from->of >= 0) {
         add_difference(fig, panel);
     }
@@ -307,6 +331,7 @@ static figure_axis horizontal_axis(recipe_figure *fig)
     const recipe *r = &fig->recipe;
     const recipe_source *first = &r->sources[0];
     figure_axis x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
+
     if (first->kind == SOURCE_TABLE) {
         int index = parameter_find(first->x);
         char *label =
@@ -317,6 +342,8 @@ static figure_axis horizontal_axis(recipe_figure *fig)
                           .room = 0.03};
         g_free(label);
     }
+
+    // what the recipe says of it
     x.label = r->x_label != NULL ? r->x_label : x.label;
     x.unit = r->x_unit != NULL ? r->x_unit : x.unit;
     x.low = r->from;
@@ -346,9 +373,11 @@ static void describe(recipe_figure *fig, const figure_options *o)
         describe_panel(fig, i);
         share_legend(fig, i);
     }
+
     for (int i = 0; i < r->mark_count; i++) {
         fig->marks[i] = (figure_mark){r->marks[i].x, r->marks[i].label};
     }
+
     fig->figure = (figure){.title = r->title,
                            .caption = r->caption,
                            .x = horizontal_axis(fig),
@@ -360,10 +389,13 @@ static void describe(recipe_figure *fig, const figure_options *o)
                            .mark_count = r->mark_count,
                            .software = own(fig, g_strconcat("impactlab ", lab_version(), NULL)),
                            .parameters = own(fig, parameters_of(fig))};
+
+    // the first run's contact
     if (r->contact && fig->sources[0].ran) {
         fig->figure.intervals = trace_contact(&fig->sources[0].run.result.trace,
                                               &fig->figure.interval_count, fig->owned);
     }
+
     figure_take_look(&fig->figure, &o->look);
     figure_take_range(&fig->figure, o);
 }
@@ -380,6 +412,8 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
         g_error_free(error);
         return STATUS_CANNOT_READ;
     }
+
+    // what it says
     recipe_figure *fig = g_new0(recipe_figure, 1);
     fig->path = g_strdup(path);
     fig->owned = g_ptr_array_new_with_free_func(g_free);
@@ -387,6 +421,8 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
                       ? STATUS_OK
                       : STATUS_BAD_SCENARIO;
     g_free(text);
+
+    // what it names
     for (int i = 0; i < fig->recipe.source_count && code == STATUS_OK; i++) {
         code = open_source(fig, i, f);
     }
@@ -394,6 +430,8 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
         release(fig);
         return code;
     }
+
+    // what it shows
     describe(fig, o);
     *out = artwork_of_figure(&fig->figure, fig, release);
     return STATUS_OK;

@@ -66,6 +66,7 @@ static void take_map(context *c, const tree_node *map, const char *what, const r
     if (!reader_expect_map(&c->reader, map, what, keys[0].example)) {
         return;
     }
+
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(&c->reader, map, child);
         const recipe_key *found = NULL;
@@ -74,6 +75,7 @@ static void take_map(context *c, const tree_node *map, const char *what, const r
             nearest_try(&near, keys[i].key);
             found = strcmp(keys[i].key, key) == 0 ? &keys[i] : found;
         }
+
         if (found != NULL) {
             found->take(c, child, into);
         } else if (key != NULL) {
@@ -148,11 +150,14 @@ TAKE(take_set, source)
     if (!reader_expect_map(&c->reader, node, "set", "arm.k2: 3")) {
         return;
     }
+
     for (const tree_node *child = node->first; child != NULL; child = child->next) {
         const char *path = reader_key(&c->reader, node, child);
         if (path == NULL) {
             continue;
         }
+
+        // a known path with a value, as on the command line
         if (parameter_find(path) < 0) {
             nearest_word near = nearest_begin(path);
             for (int i = 0; i < parameter_count; i++) {
@@ -191,13 +196,17 @@ static recipe_source *new_source(context *c, const tree_node *node, source_kind 
 static void check_source(context *c, const tree_node *node, recipe_source *s)
 {
     const char *needed = s->kind == SOURCE_RUN ? s->scenario : s->file;
+
     if (needed == NULL) {
         report_node(&c->reader, node, "there is no '%s' here",
                     s->kind == SOURCE_RUN ? "scenario" : "file");
     }
+
     if (s->kind == SOURCE_TABLE && (s->x == NULL || s->y == NULL)) {
         report_node(&c->reader, node, "a table needs 'x' and 'y', the names of its columns");
     }
+
+    // a name that only it has
     s->name = s->name != NULL ? s->name : needed != NULL ? needed : "";
     for (const recipe_source *other = c->recipe->sources; other != s; other++) {
         if (strcmp(other->name, s->name) == 0) {
@@ -261,6 +270,7 @@ static int find_source(context *c, const tree_node *node)
             return i;
         }
     }
+
     report_node(&c->reader, node, "no run, data or table is named '%.60s'%s%s%s",
                 node_is_scalar(node) ? node->text : "", near.best ? ", did you mean '" : "",
                 near.best ? near.best : "", near.best ? "'?" : "");
@@ -277,9 +287,12 @@ TAKE(take_signals, panel)
                     node_kind_name(node));
         return;
     }
+
     for (const tree_node *item = node->first; item != NULL; item = item->next) {
         const char *name = node_is_scalar(item) ? item->text : "";
         int index = signal_find(name);
+
+        // known, with room, and of the panel's unit
         if (index <= 0) {
             nearest_word near = nearest_begin(name);
             for (int i = 1; i < signal_count; i++) {
@@ -383,11 +396,13 @@ TAKE(take_notes, panel)
         report_node(&c->reader, node, "notes is %s, expected a list", node_kind_name(node));
         return;
     }
+
     for (const tree_node *item = node->first; item != NULL; item = item->next) {
         if (p->note_count == RECIPE_NOTES) {
             report_node(&c->reader, item, "a panel has at most %d notes", RECIPE_NOTES);
             return;
         }
+
         recipe_note *note = &p->notes[p->note_count];
         *note = (recipe_note){0};
         take_map(c, item, "a note", keys, note);
@@ -413,6 +428,7 @@ static void take_panel(context *c, const tree_node *node)
         report_node(&c->reader, node, "a figure has more than %d panels", FIGURE_PANELS);
         return;
     }
+
     recipe_panel *p = &r->panels[r->panel_count++];
     *p = (recipe_panel){.of = -1, .less = -1, .at = {node->line, node->column}};
     take_map(c, node, "a panel", keys, p);
@@ -422,6 +438,8 @@ static void take_panel(context *c, const tree_node *node)
         p->sources[i] = i;
     }
     p->source_count = p->source_count == 0 && p->of < 0 ? r->source_count : p->source_count;
+
+    // runs and data need a signal, a difference only one
     bool tables = p->source_count > 0;
     for (int i = 0; i < p->source_count; i++) {
         tables = tables && r->sources[p->sources[i]].kind == SOURCE_TABLE;
@@ -586,6 +604,7 @@ static void take_recipe(context *c, const tree_node *root)
                                       {"tables", NULL, NULL},
                                       {NULL, NULL, NULL}};
     recipe_key rest[G_N_ELEMENTS(keys)];
+
     if (!reader_expect_map(&c->reader, root, "a recipe", "panels:")) {
         return;
     }
@@ -597,11 +616,14 @@ static void take_recipe(context *c, const tree_node *root)
             sources[i].take(c, node, c->recipe);
         }
     }
+
+    // the rest, in any order
     memcpy(rest, keys, sizeof keys);
     for (size_t i = 0; rest[i].key != NULL; i++) {
         rest[i].take = rest[i].take != NULL ? rest[i].take : take_nothing;
     }
     take_map(c, root, "a recipe", rest, c->recipe);
+
     if (c->recipe->panel_count == 0 && c->reader.faults == 0) {
         report_node(&c->reader, root, "there are no panels here");
     }
@@ -618,6 +640,7 @@ bool recipe_read(recipe *r, const char *path, const char *text, size_t length, f
     context c = {.reader = {.path = path}, .recipe = r};
     *r = (recipe){.columns = 1, .contact = true};
     r->owned = g_ptr_array_new_with_free_func(g_free);
+
     tree_node *root = tree_parse(text, length, &f);
     if (root == NULL) {
         c.reader.no_memory = f.code == STATUS_NO_MEMORY;
@@ -626,6 +649,7 @@ bool recipe_read(recipe *r, const char *path, const char *text, size_t length, f
         take_recipe(&c, root);
         tree_free(root);
     }
+
     bool good = c.reader.faults == 0 && !c.reader.no_memory;
     reader_report_all(&c.reader, report, report_context);
     return good;

@@ -57,6 +57,7 @@ static void draw_minor_ticks(const drawing *d, const plane *p, const axis *x, co
         double place = plane_x(p, at[i]);
         draw_line(d->cr, place, bottom, place, bottom + MINOR_LENGTH);
     }
+
     count = axis_minor_ticks(y, p->box.height, at);
     for (int i = 0; i < count; i++) {
         double place = plane_y(p, at[i]);
@@ -95,6 +96,8 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
                              const axes_look *look)
 {
     double bottom = p->box.y + p->box.height, taken = -(double)INFINITY;
+
+    // below
     for (int i = 0; look->x_labels && i < x->count; i++) {
         double at = plane_x(p, x->at[i]), half = width_of(d, x->text[i], look->size) / 2;
         if (x->even.count > 0 || at - half > taken + LABEL_GAP) {
@@ -104,6 +107,8 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
             taken = at + half;
         }
     }
+
+    // at the left
     taken = (double)INFINITY;
     for (int i = 0; look->y_labels && i < y->count; i++) {
         double at = plane_y(p, y->at[i]);

@@ -60,6 +60,8 @@ static void choose_decades(axis *a, int wanted)
     while (decades / spacing > wanted) {
         spacing++;
     }
+
+    // all that lie on the axis
     for (int power = (int)floor(s->low); power <= (int)ceil(s->high); power++) {
         for (int i = 0; i < per_decade && power % spacing == 0 && a->count < TICKS_MOST; i++) {
             double at = power + log10(mantissas[i]);
@@ -103,6 +105,8 @@ static int minor_even(const axis *a, double length, double *at)
     if (t->count < 2 || t->minor < 2) {
         return 0;
     }
+
+    // inside the axis, between the major ones
     double part = t->step / t->minor, spacing = part / (a->scale.high - a->scale.low) * length;
     for (int k = -t->minor; k <= t->minor * t->count && spacing > MINOR_SPACING; k++) {
         double value = t->value[0] + k * part;

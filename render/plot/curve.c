@@ -106,6 +106,8 @@ static void pen_line(pen *p, point q)
 {
     point a = p->at;
     double from = 0, to = 1;
+
+    // the part inside
     if (narrow(a.x, q.x - a.x, p->left, p->right, &from, &to) &&
         narrow(a.y, q.y - a.y, p->top, p->bottom, &from, &to)) {
         if (!p->moved) {
@@ -167,9 +169,13 @@ static void column_flush(column *c, pen *p)
     if (c->count == 0) {
         return;
     }
+
+    // lowest and highest in their order
     bool low_first = c->low_at < c->high_at;
     const point middle[2] = {low_first ? c->low : c->high, low_first ? c->high : c->low};
     const size_t at[2] = {low_first ? c->low_at : c->high_at, low_first ? c->high_at : c->low_at};
+
+    // first, middle ones, last: each once
     size_t drawn = c->first_at;
     pen_to(p, c->first);
     for (int i = 0; i < 2; i++) {
@@ -207,8 +213,11 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
                .bottom = p->box.y + p->box.height + CLIP_SPACE,
                .sink = sink,
                .context = context};
+
+    // columns only where there are many more points than they
     bool columns = (double)s->count > 4 * p->box.width / COLUMN && x_ascends(s);
     column c = {.count = 0};
+
     for (size_t i = 0; i < s->count; i++) {
         double x = series_x(s, i), y = series_y(s, i);
         if (!isfinite(scale_coordinate(p->x.kind, x)) ||
@@ -217,6 +226,8 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
             pen_lift(&tip);
             continue;
         }
+
+        // into its column, or a new one
         point q = {plane_x(p, x), plane_y(p, y)};
         double index = floor((q.x - p->box.x) / COLUMN);
         if (columns && c.count > 0 && index == c.index) {

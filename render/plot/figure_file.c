@@ -123,6 +123,8 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
+    // the heading: panel, series, and both axes
     csv_writer csv = csv_begin(file.stream);
     csv_heading(&csv, "panel", NULL);
     csv_heading(&csv, "series", NULL);
@@ -133,6 +135,8 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
         csv_heading(&csv, "value", NULL);
     }
     csv_end_row(&csv);
+
+    // panel by panel, then what all share
     for (int p = 0; p < fig->panel_count; p++) {
         const figure_panel *panel = &fig->panels[p];
         for (int s = 0; s < panel->series_count; s++) {

@@ -40,6 +40,7 @@ static double sides_of(const figure *fig)
 static double wrapped_height(const figure *fig, const char *markup, double size, bool bold)
 {
     double width, height;
+
     PangoContext *context = text_context_create();
     text_block t = {.markup = markup,
                     .size = page_letters(fig->letters, size),
@@ -47,6 +48,7 @@ static double wrapped_height(const figure *fig, const char *markup, double size,
                     .bold = bold,
                     .width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM -
                              sides_of(fig)};
+
     text_measure(context, &t, &width, &height);
     g_object_unref(context);
     return height + 4;
@@ -64,12 +66,16 @@ void figure_size(const figure *fig, double *width, double *height)
     assert(fig != NULL && width != NULL && height != NULL);
     double points = 0;
     int columns = figure_columns(fig);
+
+    // rows of panels
     for (int i = 0; i < fig->panel_count; i += columns) {
         const figure_panel *p = &fig->panels[i];
         points += (p->weight > 0 ? p->weight : 1) * panel_height(fig) + PANEL_SPACE;
         points += p->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0;
         points += p->heading != NULL ? HEADING_ROW : 0;
     }
+
+    // the axis below, title and caption
     points += 2 * PAGE_MARGIN + 24;
     if (fig->title != NULL && !fig->bare) {
         char *title = text_escape(fig->title);
@@ -79,6 +85,7 @@ void figure_size(const figure *fig, double *width, double *height)
     if (fig->caption != NULL && !fig->bare) {
         points += wrapped_height(fig, fig->caption, SMALL_LETTERS, false);
     }
+
     *width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
     *height = fig->height > 0 ? fig->height * POINTS_PER_MM : points;
 }
@@ -117,20 +124,28 @@ static void draw_panel(drawing *d, int index)
                       .y_labels = has_y_labels(d, l),
                       .framed = l->panel->map != NULL,
                       .size = d->style.tick};
+
+    // data
     draw_impulses(d, l);
     draw_map(d, l);
     draw_levels(d, l);
     draw_series(d, l, &l->plane);
+
+    // axes and texts
     draw_axes(d, &l->plane, &d->x, &l->y, look);
     draw_y_title(d, l);
     draw_panel_texts(d, l);
     draw_colour_bar(d, l);
+
+    // what stands in the panel
     draw_notes(d, l);
     draw_inset(d, l);
     draw_legend(d, l);
     if (has_end_labels(l->panel)) {
         draw_end_labels(d, l);
     }
+
+    // where they went
     if (d->report != NULL) {
         d->report->panels[index] = l->plane.box;
         d->report->legends[index] = l->legend;
@@ -142,6 +157,8 @@ static void draw_frame_texts(drawing *d)
 {
     const figure *fig = d->fig;
     double left, width = frame_text_width(d, &left);
+
+    // the title above
     if (fig->title != NULL && !fig->bare) {
         char *title = text_escape(fig->title);
         text_block t = figure_text_of(d, title, d->style.title);
@@ -150,11 +167,14 @@ static void draw_frame_texts(drawing *d)
         draw_text(d, t, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
         g_free(title);
     }
+
+    // the caption below
     if (fig->caption != NULL && !fig->bare) {
         text_block t = figure_text_of(d, fig->caption, d->style.small);
         t.width = width;
         draw_text(d, t, left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
     }
+
     draw_x_titles(d);
 }
 
@@ -163,11 +183,16 @@ static void draw_all(drawing *d)
     if (!d->fig->transparent) {
         fill_box(d->cr, &d->page, d->style.colours->page);
     }
+
+    // behind the data
     for (int i = 0; i < d->fig->panel_count; i++) {
         draw_intervals(d, &d->panels[i].plane);
         draw_grid(d, &d->panels[i].plane, &d->x, &d->panels[i].y);
     }
+
     draw_marks(d);
+
+    // texts of the whole, then the panels
     draw_frame_texts(d);
     draw_common_legend(d);
     for (int i = 0; i < d->fig->panel_count; i++) {
@@ -181,6 +206,7 @@ static status check_description(const figure *fig, fault *f)
         return fault_set(f, STATUS_BAD_ARGUMENT, "a figure has %d panels, expected 1 to %d",
                          fig->panel_count, FIGURE_PANELS);
     }
+
     for (int i = 0; i < fig->panel_count; i++) {
         if (fig->panels[i].series_count < 0 || fig->panels[i].series_count > PANEL_SERIES) {
             return fault_set(f, STATUS_BAD_ARGUMENT,

@@ -46,6 +46,8 @@ static status choose_x_range(drawing *d, fault *f)
     if (has_own_ends(&fig->x, x)) {
         return STATUS_OK;
     }
+
+    // all that any panel shows
     for (int p = 0; p < fig->panel_count; p++) {
         const figure_panel *panel = &fig->panels[p];
         axis_scale unused = scale_empty(panel->y.scale);
@@ -56,6 +58,7 @@ static status choose_x_range(drawing *d, fault *f)
             map_include(panel->map, x, &unused);
         }
     }
+
     status code = check_range(x, &fig->x, f);
     scale_widen(x, fig->x.room);
     return code;
@@ -114,11 +117,14 @@ static double left_space(const drawing *d, const panel_layout *l)
     if (!has_y_labels(d, l)) {
         return SHARED_SPACE;
     }
+
+    // title, tick labels and ticks
     double left = axis_title_height(d, &l->y, l->plane.box.height + PANEL_SPACE) + LABEL_SPACE +
                   widest_tick(d, &l->y, d->style.tick) + TICK_SPACE + TICK_LENGTH;
     if (l->panel->impulse_count > 0 && l->panel->impulse_label != NULL) {
         left = fmax(left, width_of(d, l->panel->impulse_label, d->style.small) + LABEL_SPACE);
     }
+
     return left;
 }
 
@@ -135,15 +141,19 @@ static double right_space(const drawing *d, const panel_layout *l)
 static void place_columns(drawing *d)
 {
     double left[FIGURE_PANELS] = {0}, right[FIGURE_PANELS], between = 0;
+
+    // what stands beside the panels of each column
     double last_label = widest_tick(d, &d->x, d->style.tick) / 2;
     for (int c = 0; c < d->columns; c++) {
         right[c] = fmax(RIGHT_SPACE, last_label);
     }
+
     for (int i = 0; i < d->fig->panel_count; i++) {
         const panel_layout *l = &d->panels[i];
         left[l->column] = fmax(left[l->column], left_space(d, l));
         right[l->column] = fmax(right[l->column], right_space(d, l));
     }
+
     for (int c = 0; c + 1 < d->columns; c++) {
         between += right[c] + left[c + 1];
     }
@@ -158,6 +168,7 @@ static void place_columns(drawing *d)
             (column_layout){c == 0 ? PAGE_MARGIN : x - left[c], x, last ? d->right : x + width};
         x += width + right[c] + (last ? 0 : left[c + 1]);
     }
+
     for (int i = 0; i < d->fig->panel_count; i++) {
         panel_layout *l = &d->panels[i];
         const column_layout *c = &d->column[l->column];
@@ -205,6 +216,8 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
 {
     const figure *fig = d->fig;
     double left, y = PAGE_MARGIN, end = d->page.height - PAGE_MARGIN;
+
+    // from the top: title, legend, labels of marks
     d->title_y = y;
     if (fig->title != NULL && !fig->bare) {
         char *title = text_escape(fig->title);
@@ -214,6 +227,7 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
         y += height_of(d, t) + 3;
         g_free(title);
     }
+
     d->legend_y = y;
     y += common_legend_height(d);
     d->marks_bottom = y += MARK_ROW * mark_rows + 2;
@@ -226,6 +240,7 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
         d->caption_y = end;
         end -= 3;
     }
+
     double line = height_of(d, figure_text_of(d, "0", d->style.tick));
     end -= height_of(d, figure_text_of(d, "X", d->style.label));
     d->x_label_y = end;
@@ -239,14 +254,19 @@ static void place_rows(drawing *d, int mark_rows)
     double y, bottom, weights = 0, above, weight;
     place_texts(d, mark_rows, &y, &bottom);
     double free_height = bottom - y - PANEL_SPACE * (d->rows - 1);
+
+    // what the rows need above them
     for (int row = 0; row < d->rows; row++) {
         row_needs(d, row, &above, &weight);
         free_height -= above;
         weights += weight;
     }
+
+    // what is left, by weight
     for (int row = 0; row < d->rows; row++) {
         row_needs(d, row, &above, &weight);
         y += above;
+
         double height = free_height * weight / weights;
         for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns; i++) {
             panel_layout *l = &d->panels[i];
@@ -293,10 +313,15 @@ static bool fill_panels(drawing *d, placement *grid)
     bool moved = false;
     for (int i = 0; i < d->fig->panel_count; i++) {
         panel_layout *l = &d->panels[i];
+
+        // where curves run
         collect_ink(d, l, grid);
+
         for (int s = 0; s < l->panel->series_count; s++) {
             l->busy[s] = series_is_busy(&l->plane, &l->panel->series[s]);
         }
+
+        // marks, inset and legend take the places that are left
         if (i == 0 && d->marks_inside && !place_marks_inside(d, grid)) {
             d->marks_inside = false;
             moved = true;
@@ -307,6 +332,7 @@ static bool fill_panels(drawing *d, placement *grid)
             l->legend_row = moved = true;
         }
         moved = moved || l->legend_column != column;
+
         if (has_end_labels(l->panel)) {
             place_end_labels(d, l);
         }
@@ -332,12 +358,16 @@ static void place_all(drawing *d, int *mark_rows)
     // sides depend on heights through the ticks, and heights on sides through wrapped texts
     for (int pass = 0; pass < 3; pass++) {
         place_rows(d, *mark_rows);
+
+        // ticks of all axes
         for (int i = 0; i < d->fig->panel_count; i++) {
             choose_panel_ticks(&d->panels[i]);
         }
         place_columns(d);
         double width = d->column[0].right - d->column[0].left;
         axis_choose_ticks(&d->x, &d->fig->x, axis_wish(width, 42, 2, 12));
+
+        // labels of marks above the panels
         *mark_rows = d->marks_inside ? 0 : place_marks(d);
     }
 }
@@ -363,6 +393,7 @@ status layout_figure(drawing *d, fault *f)
     assert(d != NULL && d->fig != NULL && d->context != NULL);
     const figure *fig = d->fig;
     int mark_rows = 0;
+
     placement *grid = malloc(sizeof *grid);
     if (grid == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for the layout of a figure");
@@ -373,11 +404,14 @@ status layout_figure(drawing *d, fault *f)
     d->rows = (fig->panel_count + d->columns - 1) / d->columns;
     d->x.from = &fig->x;
     d->left = FIRST_LEFT;
+
     d->marks_inside = d->columns == 1 && fig->mark_count > 0 && !fig->marks_above;
     d->right = d->page.width - PAGE_MARGIN;
     status code = choose_x_range(d, f);
+
     for (int i = 0; i < fig->panel_count && code == STATUS_OK; i++) {
         panel_layout *l = &d->panels[i];
+
         l->panel = &fig->panels[i];
         l->row = i / d->columns;
         l->column = i % d->columns;
@@ -386,6 +420,7 @@ status layout_figure(drawing *d, fault *f)
             map_choose_scale(l);
         }
     }
+
     if (fig->shared_y && code == STATUS_OK) {
         share_y_ranges(d);
     }

@@ -60,10 +60,13 @@ static void legend_size(const drawing *d, const figure_panel *panel, bool row, d
         if (panel->series[i].label == NULL) {
             continue;
         }
+
         double w, h;
         text_block t = figure_text_of(d, entry(d, &panel->series[i]), d->style.tick);
         text_measure(d->context, &t, &w, &h);
         w += SWATCH + SWATCH_SPACE;
+
+        // entries add up along the row, or one above the other
         if (row) {
             *width += w + (*width > 0 ? 2 * SWATCH_SPACE : 0);
             *height = fmax(*height, h);
@@ -80,10 +83,13 @@ bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
     double width, height;
     l->legend = (figure_rect){0};
     l->legend_inside = false;
+
+    // nothing to tell apart
     if (d->fig->common_legend || l->panel->legend != LEGEND_AUTO || labelled_series(l->panel) < 2) {
         l->legend_row = l->legend_column = false;
         return true;
     }
+
     legend_size(d, l->panel, l->legend_row, &width, &height);
 
     // a row that is wider than the panel becomes a column
@@ -91,6 +97,8 @@ bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
         l->legend_column = true;
         legend_size(d, l->panel, false, &width, &height);
     }
+
+    // above the panel, at its right end
     if (l->legend_row) {
         l->legend = (figure_rect){d->column[l->column].right - width, l->plane.box.y - height - 1,
                                   width, height};
@@ -102,6 +110,7 @@ bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
         }
         return true;
     }
+
     l->legend_inside = true;
     return placement_find(grid, width, height, LEGEND_MARGIN, &l->legend) < INK_CURVE;
 }
@@ -113,6 +122,8 @@ static void spread(double *top, int count, double height, double highest, double
 {
     double mean[PANEL_SERIES];
     int size[PANEL_SERIES], blocks = 0;
+
+    // pool neighbours that descend
     for (int k = 0; k < count; k++) {
         mean[blocks] = top[k] - k * height;
         size[blocks++] = 1;
@@ -140,6 +151,7 @@ void place_end_labels(const drawing *d, panel_layout *l)
     double height = height_of(d, figure_text_of(d, "X<sub>1</sub>", d->style.tick)), y,
            top[PANEL_SERIES];
     const figure_rect *box = &l->plane.box;
+
     for (int i = 0; i < l->panel->series_count; i++) {
         l->end_label_y[i] = (double)NAN;
         if (l->panel->series[i].label == NULL || !series_end(d, &l->panel->series[i], &y)) {
@@ -173,16 +185,20 @@ void draw_legend(drawing *d, const panel_layout *l)
         // hairlines of marks do not cross it
         fill_box(d->cr, &l->legend, d->style.colours->page);
     }
+
+    // entry by entry, downwards or to the right
     for (int i = 0; i < l->panel->series_count && l->legend.width > 0; i++) {
         double width, height;
         const char *label = entry(d, &l->panel->series[i]);
         if (label == NULL) {
             continue;
         }
+
         text_block t = figure_text_of(d, label, d->style.tick);
         text_measure(d->context, &t, &width, &height);
         draw_swatch(d, l, i, x, y + 0.55 * height);
         draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
+
         if (l->legend_inside || l->legend_column) {
             y += height;
         } else {
@@ -199,14 +215,18 @@ void draw_end_labels(drawing *d, const panel_layout *l)
         if (isnan(l->end_label_y[i]) || !series_end(d, &l->panel->series[i], &y)) {
             continue;
         }
+
         text_block t = figure_text_of(d, entry(d, &l->panel->series[i]), d->style.tick);
         text_measure(d->context, &t, &width, &height);
+
+        // a thin line from the curve's end to its label
         double end = box->x + box->width, middle = l->end_label_y[i] + 0.55 * height;
         set_series(d, l, i);
         cairo_set_line_width(d->cr, SECONDARY_WIDTH);
         cairo_set_dash(d->cr, NULL, 0, 0);
         draw_line(d->cr, end + 2, fmax(box->y, fmin(box->y + box->height, plane_y(&l->plane, y))),
                   end + 10, middle);
+
         draw_text(d, t, end + 12, l->end_label_y[i], (anchor){0, 0}, d->style.colours->text);
     }
 }
@@ -225,17 +245,21 @@ static double common_legend(drawing *d, bool draw)
         if (t.markup == NULL) {
             continue;
         }
+
+        // a new row where this one is full
         text_measure(d->context, &t, &width, &height);
         width += SWATCH + SWATCH_SPACE;
         if (x > d->left && x + width > d->right) {
             x = d->left;
             y += line;
         }
+
         line = fmax(line, height);
         if (draw) {
             draw_swatch(d, &d->panels[0], i, x, y + 0.55 * height);
             draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
         }
+
         x += width + 2 * SWATCH_SPACE;
     }
     return y + line - d->legend_y;

@@ -18,6 +18,8 @@ static double cell_edge(scale_kind kind, const double *points, size_t count, siz
 {
     double before = scale_coordinate(kind, points[i > 0 ? i - 1 : 0]);
     double after = scale_coordinate(kind, points[i < count ? i : count - 1]);
+
+    // the outer ends are as far from the last points as the borders
     if (count == 1) {
         return i == 0 ? before - 0.5 : before + 0.5;
     }
@@ -27,6 +29,8 @@ static double cell_edge(scale_kind kind, const double *points, size_t count, siz
     if (i == count) {
         return after + 0.5 * (after - scale_coordinate(kind, points[count - 2]));
     }
+
+    // the middle between neighbours
     return 0.5 * (before + after);
 }
 
@@ -45,11 +49,14 @@ void map_choose_scale(panel_layout *l)
     const figure_axis *from = &panel->colours->axis;
     axis_scale *s = &l->colours.scale;
     *s = scale_empty(from->scale);
+
     if (from->low < from->high) {
         scale_include(s, from->low);
         scale_include(s, from->high);
         return;
     }
+
+    // the values of cells and markers
     for (size_t i = 0; panel->map != NULL && i < panel->map->columns * panel->map->rows; i++) {
         scale_include(s, panel->map->z[i]);
     }
@@ -58,6 +65,7 @@ void map_choose_scale(panel_layout *l)
             scale_include(s, series_shade(&panel->series[k], i));
         }
     }
+
     scale_widen(s, 0);
 }
 
@@ -79,9 +87,12 @@ static void fill_missing(const drawing *d, const figure_rect *r)
 {
     cairo_save(d->cr);
     clip_to(d->cr, r, 0);
+
     set_colour(d->cr, d->style.colours->grid);
     cairo_paint(d->cr);
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
+
+    // hatched
     set_plain_line(d->cr, d->style.colours->mark, GRID_WIDTH);
     // lines at fixed places of the page, so that they run on from cell to cell
     double from = floor((r->x + r->y) / HATCH) * HATCH, to = r->x + r->width + r->y + r->height;
@@ -109,6 +120,8 @@ static void draw_cells(const drawing *d, const panel_layout *l)
     // neighbours would show a hairline between them if edges were smoothed, or if a viewer smooths
     // them: every cell reaches a little under its later neighbours
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_NONE);
+
+    // column by column
     for (size_t i = 0; i < map->columns; i++) {
         double left = page_x(p, cell_edge(p->x.kind, map->x, map->columns, i));
         double right = page_x(p, cell_edge(p->x.kind, map->x, map->columns, i + 1));
@@ -141,6 +154,8 @@ static void draw_contour(const drawing *d, const panel_layout *l, double level)
 {
     const figure_map *map = l->panel->map;
     const plane *p = &l->plane;
+
+    // the pieces of every square of four points
     for (size_t i = 0; i + 1 < map->columns; i++) {
         for (size_t j = 0; j + 1 < map->rows; j++) {
             contour_piece pieces[2];
@@ -155,6 +170,7 @@ static void draw_contour(const drawing *d, const panel_layout *l, double level)
             }
         }
     }
+
     cairo_stroke(d->cr);
 }
 
@@ -166,11 +182,14 @@ void draw_map(drawing *d, const panel_layout *l)
     }
     cairo_save(d->cr);
     clip_to(d->cr, &l->plane.box, 0);
+
+    // cells, and contour lines at the ticks of the colours
     draw_cells(d, l);
     for (int i = 0; map->contours && i < l->colours.count; i++) {
         set_contour_line(d, l, l->colours.at[i]);
         draw_contour(d, l, l->colours.at[i]);
     }
+
     cairo_restore(d->cr);
 }
 
@@ -210,6 +229,7 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
     if (!has_bar(l)) {
         return;
     }
+
     const figure_rect bar = {box->x + box->width + BAR_DISTANCE, box->y, BAR_WIDTH, box->height};
     double right = bar.x + bar.width;
     fill_bar(d, l, &bar);
@@ -221,6 +241,7 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
             set_contour_line(d, l, l->colours.at[i]);
             draw_line(d->cr, bar.x, y, right, y);
         }
+
         set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
         draw_line(d->cr, right, y, right + TICK_LENGTH, y);
         draw_text(d, figure_text_of(d, l->colours.text[i], d->style.tick),

@@ -83,6 +83,8 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
     const figure_rect *box = &d->panels[0].plane.box;
     double x = plane_x(&d->panels[0].plane, d->fig->marks[index].x);
     double width = width_of(d, d->fig->marks[index].label, d->style.small);
+
+    // from above, at the right of its line, then at the left
     for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height; y += MARK_ROW) {
         for (int side = 0; side < 2; side++) {
             figure_rect r = {side == 0 ? x + 2 : x - 2 - width, y, width, MARK_ROW};
@@ -104,6 +106,8 @@ bool place_marks_inside(drawing *d, placement *grid)
 {
     figure_rect taken[INSIDE_MOST];
     int index[INSIDE_MOST], count = 0;
+
+    // a place for every label, or none
     for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
         if (d->fig->marks[i].label == NULL || !scale_holds(&d->x.scale, d->fig->marks[i].x)) {
             continue;
@@ -137,6 +141,8 @@ static figure_rect level_label(const drawing *d, const panel_layout *l, int inde
     const figure_rect *box = &l->plane.box;
     double y = plane_y(&l->plane, l->panel->levels[index].y);
     double width = width_of(d, l->panel->levels[index].label, d->style.small);
+
+    // the four places, the one with least ink under it
     figure_rect best = {0};
     for (int k = 0; k < 4; k++) {
         bool left = k / 2, below = k % 2;
@@ -157,6 +163,8 @@ static figure_rect note_place(const drawing *d, const panel_layout *l, const fig
     double x = plane_x(&l->plane, n->x), y = plane_y(&l->plane, n->y);
     double width = width_of(d, n->text, d->style.tick);
     double height = height_of(d, figure_text_of(d, n->text, d->style.tick));
+
+    // at the right, or at the left
     double left = x + NOTE_SPACE, top = y - height / 2;
     if (left + width > box->x + box->width) {
         left = x - NOTE_SPACE - width;
@@ -174,11 +182,15 @@ static figure_rect note_place(const drawing *d, const panel_layout *l, const fig
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
 {
     const figure_rect *box = &l->plane.box;
+
+    // labels of levels first: the lines themselves are no obstacle to them
     for (int i = 0; i < l->panel->level_count && i < LEVELS_LABELLED; i++) {
         if (l->panel->levels[i].label != NULL) {
             l->level_place[i] = level_label(d, l, i, grid);
         }
     }
+
+    // lines and labels of levels
     for (int i = 0; i < l->panel->level_count; i++) {
         double y = plane_y(&l->plane, l->panel->levels[i].y);
         placement_line(grid, box->x, y, box->x + box->width, y, INK_CURVE);
@@ -186,6 +198,8 @@ void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
             placement_block(grid, l->level_place[i], INK_CURVE);
         }
     }
+
+    // notes and marks
     for (int i = 0; i < l->panel->note_count; i++) {
         placement_block(grid, note_place(d, l, &l->panel->notes[i]), INK_CURVE);
     }
@@ -202,9 +216,12 @@ void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
 void draw_intervals(const drawing *d, const plane *p)
 {
     const figure_rect *box = &p->box;
+
     cairo_save(d->cr);
     clip_to(d->cr, box, 0);
     set_colour(d->cr, d->style.colours->shade);
+
+    // each as far as the axis shows it
     for (int i = 0; i < d->fig->interval_count; i++) {
         const figure_interval *v = &d->fig->intervals[i];
         double low = scale_value(p->x.kind, p->x.low), high = scale_value(p->x.kind, p->x.high);
@@ -213,6 +230,7 @@ void draw_intervals(const drawing *d, const plane *p)
             cairo_rectangle(d->cr, from, box->y, fmax(to - from, GRID_WIDTH), box->height);
         }
     }
+
     cairo_fill(d->cr);
     cairo_restore(d->cr);
 }
@@ -232,6 +250,8 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
         if (!scale_holds(&d->x.scale, m->x)) {
             continue;
         }
+
+        // its label, above the panels or inside the first
         double x = plane_x(first, m->x), top = first->box.y;
         if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
             text_block t = figure_text_of(d, m->label, d->style.small);
@@ -239,6 +259,8 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
             if (d->marks_inside) {
                 draw_text(d, t, d->mark_text_x[i], d->mark_text_y[i], (anchor){0, 0},
                           d->style.colours->text);
+
+                // its line
                 set_mark_line(d);
                 draw_line(d->cr, x, first->box.y, x, last->box.y + last->box.height);
                 continue;
@@ -272,8 +294,11 @@ void draw_levels(drawing *d, const panel_layout *l)
         if (!(y >= box->y && y <= box->y + box->height)) {
             continue;
         }
+
         set_mark_line(d);
         draw_line(d->cr, box->x, y, box->x + box->width, y);
+
+        // its label, where the layout found room
         if (level->label != NULL && i < LEVELS_LABELLED && l->level_place[i].width > 0) {
             const figure_rect *r = &l->level_place[i];
             draw_text(d, figure_text_of(d, level->label, d->style.small), r->x,
@@ -290,6 +315,8 @@ void draw_notes(drawing *d, const panel_layout *l)
         if (!scale_holds(&l->plane.x, n->x) || !scale_holds(&l->plane.y, n->y)) {
             continue;
         }
+
+        // a dot and its text
         figure_rect place = note_place(d, l, n);
         set_colour(d->cr, d->style.colours->text);
         cairo_new_path(d->cr);

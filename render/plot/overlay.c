@@ -19,9 +19,13 @@ typedef struct overlay_spec {
 static status read_spec(const char *text, overlay_spec *spec, fault *f)
 {
     *spec = (overlay_spec){.path = g_strdup(text)};
+
+    // a file of that very name
     if (g_file_test(text, G_FILE_TEST_EXISTS)) {
         return STATUS_OK;
     }
+
+    // else a shift and a column are cut off its end
     char *at = strrchr(spec->path, '@');
     const char *rest;
     if (at != NULL) {
@@ -32,6 +36,7 @@ static status read_spec(const char *text, overlay_spec *spec, fault *f)
                              text, at + 1);
         }
     }
+
     char *colon = strrchr(spec->path, ':');
     if (colon != NULL) {
         *colon = '\0';
@@ -52,6 +57,7 @@ static void split_heading(const char *heading, char name[64], char unit[32])
     g_strlcpy(name, heading, 64);
     size_t length = strcspn(name, "[");
     g_strlcpy(unit, name[length] == '[' ? name + length + 1 : "", 32);
+
     unit[strcspn(unit, "]")] = '\0';
     name[length] = '\0';
     g_strstrip(name);
@@ -75,10 +81,12 @@ static int signal_of(const char *heading, const overlay_spec *spec, const trace_
 {
     char name[64], unit[32];
     split_heading(heading, name, unit);
+
     int index = signal_find(name);
     if (index == 0 || spec->column == NULL) {
         return index;
     }
+
     if (strcmp(name, spec->column) != 0) {
         return -1;
     }
@@ -106,13 +114,17 @@ static int read_headings(const char *line, int *signals, const overlay_spec *spe
 {
     int count = 0, known = 0;
     bool has_time = false;
+
     char **headings = g_strsplit(line, ",", MOST_COLUMNS);
     for (; headings[count] != NULL; count++) {
         signals[count] = signal_of(headings[count], spec, panels, panel_count);
         has_time = has_time || signals[count] == 0;
         known += signals[count] > 0;
     }
+
     g_strfreev(headings);
+
+    // what is missing
     if (has_time && known == 0 && spec->column != NULL) {
         fault_set(f, STATUS_BAD_ARGUMENT,
                   "%s:1: there is no column '%s' with the unit of a signal that is shown",
@@ -126,6 +138,7 @@ static int read_headings(const char *line, int *signals, const overlay_spec *spe
                   spec->path);
         return 0;
     }
+
     return count;
 }
 
@@ -135,6 +148,8 @@ static status read_line(trace *t, const char *line, const int *signals, int colu
     status code = STATUS_OK;
     sample row = missing_row();
     char **cells = g_strsplit(line, ",", columns);
+
+    // cells of known columns that hold a number
     for (int i = 0; cells[i] != NULL && code == STATUS_OK; i++) {
         double value;
         const char *rest, *cell = g_strstrip(cells[i]);
@@ -147,6 +162,8 @@ static status read_line(trace *t, const char *line, const int *signals, int colu
             set_signal(&row, signals[i], value);
         }
     }
+
+    // a row needs a time
     g_strfreev(cells);
     if (code == STATUS_OK && isfinite(row.time)) {
         const double nothing = 0;
@@ -163,6 +180,8 @@ static status read_rows(trace *t, const char *text, const overlay_spec *spec,
     char **lines = g_strsplit(text, "\n", -1);
     int columns =
         lines[0] != NULL ? read_headings(lines[0], signals, spec, panels, panel_count, f) : 0;
+
+    // line by line
     status code = columns > 0 ? STATUS_OK : STATUS_BAD_ARGUMENT;
     for (int i = 1; code == STATUS_OK && lines[i] != NULL; i++) {
         char *where = g_strdup_printf("%s:%d", spec->path, i + 1);
@@ -171,6 +190,8 @@ static status read_rows(trace *t, const char *text, const overlay_spec *spec,
         }
         g_free(where);
     }
+
+    // as the clocks were apart
     g_strfreev(lines);
     for (size_t i = 0; i < t->row_count; i++) {
         t->rows[i].time += spec->shift;
@@ -188,8 +209,11 @@ static status read_file(trace *t, const overlay_spec *spec, const trace_panel *p
         g_error_free(error);
         return STATUS_CANNOT_READ;
     }
+
+    // named by its file
     char *file = g_path_get_basename(spec->path);
     *name = spec->column != NULL ? g_strdup_printf("%s: %s", file, spec->column) : g_strdup(file);
+
     status code = read_rows(t, content, spec, panels, panel_count, f);
     g_free(file);
     g_free(content);
@@ -203,6 +227,7 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     overlay_spec spec = {g_strdup(path), g_strdup(column), shift};
     trace_init(t, 0);
     *name = NULL;
+
     status code = read_file(t, &spec, panels, panel_count, name, f);
     spec_finish(&spec);
     return code;

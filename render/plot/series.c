@@ -18,8 +18,10 @@ static line_style free_style(const figure_series *series, int index)
 {
     // the orders in which styles give way keep the lines as plain as possible
     static const line_style others[] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT, LINE_DOTTED};
+
     bool taken[STYLES] = {false};
     line_style style = LINE_SOLID;
+
     for (int i = 0; i <= index; i++) {
         style = series[i].style;
         if (series[i].secondary) {
@@ -30,6 +32,7 @@ static line_style free_style(const figure_series *series, int index)
         }
         taken[style] = true;
     }
+
     return series[index].secondary ? LINE_DASHED : style;
 }
 
@@ -47,6 +50,7 @@ double set_series(const drawing *d, const panel_layout *l, int index)
 {
     const figure_series *s = &l->panel->series[index];
     double width = s->secondary ? SECONDARY_WIDTH : CURVE_WIDTH;
+
     if (l->busy[index]) {
         // no pattern shows in it; without colours a lighter and wider line does
         bool wide = d->style.theme == THEME_MONO && !s->secondary;
@@ -88,6 +92,7 @@ static void follow_pen(void *context, stroke_kind kind, double x, double y)
     } else {
         p->corner_y = y;
     }
+
     p->x = x;
     p->y = y;
 }
@@ -106,6 +111,7 @@ bool series_is_busy(const plane *p, const figure_series *s)
 
 static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double r)
 {
+    // closed outlines
     cairo_new_path(cr);
     switch (kind) {
     case MARKER_NONE:
@@ -134,6 +140,7 @@ static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double
         cairo_line_to(cr, x + r, y - r);
         return;
     }
+
     cairo_close_path(cr);
 }
 
@@ -152,17 +159,21 @@ static void draw_marker(const drawing *d, const panel_layout *l, const figure_se
         cairo_fill(d->cr);
         return;
     }
+
+    // inside the shade, outside a rim and an outline
     cairo_save(d->cr);
     cairo_set_dash(d->cr, NULL, 0, 0);
     if (isfinite(shade) && l != NULL) {
         set_shade(d, l, shade);
         cairo_fill_preserve(d->cr);
     }
+
     if (s->rim) {
         set_colour(d->cr, palette_of(THEME_COLOUR)->page);
         cairo_set_line_width(d->cr, CURVE_WIDTH + 2 * RIM);
         cairo_stroke_preserve(d->cr);
     }
+
     set_colour(d->cr, s->rim ? palette_of(THEME_COLOUR)->text : d->style.colours->axis);
     cairo_set_line_width(d->cr, s->rim ? CURVE_WIDTH : GRID_WIDTH);
     cairo_stroke(d->cr);
@@ -173,6 +184,8 @@ static void draw_markers(const drawing *d, const panel_layout *l, const plane *p
                          const figure_series *s)
 {
     const figure_rect *box = &p->box;
+
+    // only those on the panel
     for (size_t i = 0; s->marker != MARKER_NONE && i < s->count; i++) {
         double x = plane_x(p, series_x(s, i)), y = plane_y(p, series_y(s, i));
         if (x >= box->x && x <= box->x + box->width && y >= box->y && y <= box->y + box->height) {
@@ -227,6 +240,8 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
             curve_trace(p, s, stroke, &context);
             cairo_stroke(d->cr);
         }
+
+        // markers are not cut at the panel's edge
         cairo_restore(d->cr);
         set_series(d, l, i);
         draw_markers(d, l, p, s);

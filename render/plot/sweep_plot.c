@@ -56,6 +56,8 @@ static char *number_label(double value)
     if (exponent == NULL) {
         return g_strdup_printf("%s%s", sign, digits);
     }
+
+    // mantissa and power of ten
     int power = atoi(exponent + 1);
     *exponent = '\0';
     bool one = strcmp(digits, "1") == 0;
@@ -76,9 +78,12 @@ static void order_points(sweep_figure *s, varied *v)
     v->count = axis->count;
     v->place = own(s, g_new(double, v->count));
     v->order = own(s, g_new(size_t, v->count));
+
     for (size_t i = 0; i < v->count; i++) {
         v->order[i] = i;
     }
+
+    // numbers ascend
     if (!v->words) {
         g_qsort_with_data(v->order, (int)v->count, sizeof *v->order, compare_values, axis->values);
     }
@@ -93,6 +98,7 @@ static bool points_are_good_ticks(const varied *v)
     const sweep_axis *axis = v->axis;
     bool good =
         (axis->logarithmic || !axis->is_range) && v->count > 0 && v->count <= LABELLED_VALUES;
+
     for (size_t i = 0; i < v->count && good; i++) {
         char digits[32];
         decimal_print(digits, sizeof digits, "%.3g", axis->values[i]);
@@ -108,6 +114,8 @@ static char *point_label(const varied *v, size_t i)
     if (!v->words) {
         return number_label(value);
     }
+
+    // a word of the parameter table
     parameters p = {0};
     parameter_set_number(&p, v->axis->parameter, value, NULL);
     parameter_format(&p, v->axis->parameter, word, sizeof word);
@@ -128,11 +136,14 @@ static figure_axis describe_axis(sweep_figure *s, varied *v, const sweep_axis *a
     const parameter_info *info = &parameter_table[axis->parameter];
     *v = (varied){.axis = axis,
                   .words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
+
     figure_axis out = {.name = info->path,
                        .label = label_of(s, info->description),
                        .unit = info->unit,
                        .scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR,
                        .room = DOTS_ROOM};
+
+    // words are counted
     if (axis->values != NULL) {
         order_points(s, v);
     }
@@ -195,10 +206,13 @@ static void describe_line(sweep_figure *s, const sweep_picture *p)
     const varied *v = &s->varied[0];
     size_t count = from->run_count;
     bool grid = from->sampling == SWEEP_GRID;
+
     double *y = own(s, g_new(double, count));
     for (size_t i = 0; i < count; i++) {
         y[i] = p->values[grid ? v->order[i] : i];
     }
+
+    // one curve, or dots alone
     bool joined = grid && !v->words;
     s->series[0] =
         (figure_series){.name = p->key,
@@ -208,6 +222,7 @@ static void describe_line(sweep_figure *s, const sweep_picture *p)
                         .no_line = !joined,
                         .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE,
                         .radius = marker_radius(count)};
+
     s->panel.y = quantity_axis(s, p->key);
     s->panel.y.room = LINE_ROOM;
     s->panel.series = s->series;
@@ -222,6 +237,8 @@ static void describe_words(sweep_figure *s, const sweep_picture *p, int words, i
                                           MARKER_DIAMOND};
     const varied *word = &s->varied[words], *number = &s->varied[numbers];
     size_t inner = s->varied[1].count;
+
+    // a curve for each word
     for (size_t k = 0; k < word->count; k++) {
         double *y = own(s, g_new(double, number->count));
         for (size_t i = 0; i < number->count; i++) {
@@ -239,6 +256,7 @@ static void describe_words(sweep_figure *s, const sweep_picture *p, int words, i
                                                      : markers[k % G_N_ELEMENTS(markers)],
                                        .radius = marker_radius(number->count)};
     }
+
     s->panel.y = quantity_axis(s, p->key);
     s->panel.y.room = LINE_ROOM;
     s->panel.series = s->series;
@@ -263,6 +281,8 @@ static void describe_map(sweep_figure *s, const sweep_picture *p)
     const varied *x = &s->varied[0], *y = &s->varied[1];
     s->colours = (figure_colours){.axis = quantity_axis(s, p->key), .bar = true};
     s->panel.colours = &s->colours;
+
+    // values that were drawn are dots
     if (from->sampling != SWEEP_GRID) {
         s->series[0] = (figure_series){.name = p->key,
                                        .x = drawn_places(s, from, 0),
@@ -278,12 +298,15 @@ static void describe_map(sweep_figure *s, const sweep_picture *p)
         s->panel.series_count = 1;
         return;
     }
+
+    // a grid is a map
     double *z = own(s, g_new(double, x->count * y->count));
     for (size_t i = 0; i < x->count; i++) {
         for (size_t j = 0; j < y->count; j++) {
             z[i * y->count + j] = p->values[x->order[i] * y->count + y->order[j]];
         }
     }
+
     s->map = (figure_map){.x = x->place,
                           .y = y->place,
                           .columns = x->count,
@@ -305,6 +328,7 @@ static char *caption_of(const sweep_picture *p, size_t missing)
         g_string_append_printf(out, "%s%s", i > 0 ? ", " : "",
                                parameter_table[s->axes[i].parameter].path);
     }
+
     if (missing > 0) {
         g_string_append_printf(out, "; %zu %s without a value%s", missing,
                                missing == 1 ? "run" : "runs",
@@ -312,6 +336,7 @@ static char *caption_of(const sweep_picture *p, size_t missing)
                                : s->sampling == SWEEP_GRID ? " (hatched, or a gap)"
                                                            : " (empty)");
     }
+
     g_string_append_printf(out, ". impactlab %s.", lab_version());
     return g_string_free(out, FALSE);
 }
@@ -366,6 +391,7 @@ static void describe(sweep_figure *s, const sweep_picture *p)
     figure *fig = &s->figure;
     fig->panels = &s->panel;
     fig->panel_count = 1;
+
     const summary_info *quantity = &summary_table[summary_index(p->key)];
     fig->title = own(s, title_of(p, quantity->label));
     fig->caption = own(s, caption_of(p, missing));

@@ -91,6 +91,7 @@ static void try_starts(labelling l, const wish *w, labelling *best)
     double from = (floor(w->high / step) - (l.count - 1)) * l.j, to = ceil(w->low / step) * l.j;
     double slack = w->inside ? 1e-9 * (w->high - w->low) : (double)INFINITY;
     // whole multiples of the step alone: 0.04, 0.05 and never 0.045, 0.055
+
     for (l.start = from; l.start <= to; l.start += l.j) {
         double first = l.start * unit, last = first + step * (l.count - 1);
         l.score = combined(simplicity(&l), coverage(w->low, w->high, first, last),
@@ -106,6 +107,8 @@ static void try_powers(labelling l, const wish *w, labelling *best)
 {
     double nice = 0.1 * nice_tenths[l.nice];
     l.power = (int)ceil(log10((w->high - w->low) / (l.count + 1) / l.j / nice));
+
+    // until not even the best of this power could win
     for (;; l.power++) {
         double span = l.j * step_unit(&l) * (l.count - 1);
         double most = combined(simplicity_most(l.nice, l.j), coverage_most(w->low, w->high, span),
@@ -120,6 +123,8 @@ static void try_powers(labelling l, const wish *w, labelling *best)
 static labelling best_labelling(const wish *w)
 {
     labelling best = {.score = -2};
+
+    // ever rarer multiples of the nice numbers, while one could still win
     for (int j = 1;; j++) {
         for (int nice = 0; nice < NICE; nice++) {
             double simple = simplicity_most(nice, j);
@@ -145,6 +150,8 @@ static int minor_parts(const labelling *l)
 static int decimals_needed(const ticks *t)
 {
     double unit = pow(10, t->exponent);
+
+    // the first number of digits that leaves nothing behind
     for (int decimals = 0; decimals < 15; decimals++) {
         bool enough = true;
         for (int i = 0; i < t->count && enough; i++) {
@@ -183,12 +190,15 @@ static bool straighten(wish *w)
         w->low = w->high;
         w->high = other;
     }
+
+    // ends that are too near each other move apart
     double size = fmax(fabs(w->low), fabs(w->high));
     if (w->high - w->low <= 1e-10 * size || w->high == w->low) {
         double half = size > 0 ? 0.1 * size : 1;
         w->low -= half;
         w->high += half;
     }
+
     w->count = w->count < 2 ? 2 : w->count > TICKS_MOST / 2 ? TICKS_MOST / 2 : w->count;
     return isfinite(w->high - w->low);
 }
@@ -200,6 +210,7 @@ static void fill(ticks *t, const labelling *l, double first, int count)
         double value = tick_value(l, first + (double)i * l->j);
         t->value[i] = value == 0 ? 0 : value; // no minus zero
     }
+
     t->step = t->count > 1 ? tick_value(l, l->j) : 0;
     t->minor = minor_parts(l);
     choose_format(t);
@@ -211,6 +222,7 @@ void ticks_extended(ticks *t, double low, double high, int wanted)
     wish w = {low, high, wanted, false};
     memset(t, 0, sizeof *t);
     t->minor = 1;
+
     if (straighten(&w)) {
         labelling best = best_labelling(&w);
         fill(t, &best, best.start, best.count);
@@ -223,9 +235,12 @@ void ticks_between(ticks *t, double low, double high, int wanted)
     wish w = {low, high, wanted, true};
     memset(t, 0, sizeof *t);
     t->minor = 1;
+
     if (!straighten(&w)) {
         return;
     }
+
+    // the best labelling
     labelling best = best_labelling(&w);
     double unit = step_unit(&best), slack = 1e-9 * (w.high - w.low);
     double first = best.start;
@@ -233,6 +248,7 @@ void ticks_between(ticks *t, double low, double high, int wanted)
     while ((first - best.j) * unit >= w.low - slack) {
         first -= best.j;
     }
+
     fill(t, &best, first, (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1);
 }
 

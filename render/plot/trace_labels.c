@@ -1,0 +1,176 @@
+// What is written on figures of recorded runs: symbols, labels and captions.
+#include "render/plot/trace_parts.h"
+
+#include <glib.h>
+#include <math.h>
+#include <string.h>
+
+#include "render/page/text.h"
+#include "src/base/version.h"
+#include "src/rig/rig.h"
+
+// A quantity's symbol is set italic, its index upright, and so is a word. The index of the last
+// link is that of the body: 3 of two links, 21 of twenty.
+static char *symbol_markup(const scenario *s, const signal_info *signal)
+{
+    const char *symbol = signal->symbol, *index = strstr(symbol, "<sub>");
+    size_t letters = index ? (size_t)(index - symbol) : strlen(symbol);
+
+    // words stand upright, the last link bears the number of its body
+    if (index == NULL && g_utf8_strlen(symbol, -1) > 2) {
+        return g_strdup(symbol);
+    }
+    if (signal->body == BODY_LAST_LINK) {
+        return g_strdup_printf("<i>%.*s</i><sub>%d</sub>", (int)letters, symbol,
+                               s->parameters.arm.links + 1);
+    }
+    return g_strdup_printf("<i>%.*s</i>%s", (int)letters, symbol, symbol + letters);
+}
+
+bool trace_hub_is_first_link(const scenario *s)
+{
+    return s->parameters.arm.model == ARM_CORRECTED && s->parameters.arm.hub_joint == HUB_RIGID;
+}
+
+char *trace_symbol(const scenario *s, int index)
+{
+    return symbol_markup(s, &signal_table[index]);
+}
+
+// The first link's signal of the same quantity as the hub's, or -1.
+static int first_link_twin(int index)
+{
+    const signal_info *hub = &signal_table[index];
+    for (int i = 0; i < signal_count && hub->body == BODY_HUB; i++) {
+        if (signal_table[i].body == BODY_FIRST_LINK &&
+            strcmp(signal_table[i].quantity, hub->quantity) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+char *trace_series_label(const scenario *s, int index, bool joined)
+{
+    const signal_info *signal = &signal_table[index];
+    int twin = joined && trace_hub_is_first_link(s) ? first_link_twin(index) : -1;
+
+    char *symbol = symbol_markup(s, signal), *label;
+
+    if (twin >= 0) {
+        char *other = symbol_markup(s, &signal_table[twin]);
+        label = g_strdup_printf("%s = %s  hub and first link", symbol, other);
+        g_free(other);
+    } else {
+        // what belongs to no body is described as a whole
+        label = g_strdup_printf("%s  %s", symbol,
+                                signal->body != BODY_NONE ? signal_body_name(signal->body)
+                                                          : signal->description);
+    }
+
+    g_free(symbol);
+    return label;
+}
+
+char *trace_series_symbol(const scenario *s, int index)
+{
+    int twin = trace_hub_is_first_link(s) ? first_link_twin(index) : -1;
+    char *symbol = symbol_markup(s, &signal_table[index]);
+    if (twin >= 0) {
+        char *other = symbol_markup(s, &signal_table[twin]), *own = symbol;
+        symbol = g_strdup_printf("%s = %s", own, other);
+        g_free(other);
+        g_free(own);
+    }
+    return symbol;
+}
+
+char *trace_axis_label(const scenario *s, const signal_info *signal)
+{
+    char *symbol = symbol_markup(s, signal);
+    char *label = g_strdup_printf("%s %s", signal->quantity, symbol);
+    g_free(symbol);
+    return label;
+}
+
+static char *duration_text(double seconds)
+{
+    bool milli = seconds < 1 && seconds >= 1e-3, micro = seconds < 1e-3;
+
+    return text_printf("%g\u2009%s",
+                       seconds * (milli   ? 1e3
+                                  : micro ? 1e6
+                                          : 1),
+                       milli   ? "ms"
+                       : micro ? "\u00b5s"
+                               : "s");
+}
+
+bool trace_on_the_rig(const scenario *s)
+{
+    return s->parameters.control.law != LAW_NONE;
+}
+
+const char *trace_mode_name(const scenario *s, int mode)
+{
+    const controller *law = controller_of(s->parameters.control.law);
+    for (int i = 0; law != NULL && law->modes[i] != NULL; i++) {
+        if (i == mode) {
+            return law->modes[i];
+        }
+    }
+    return NULL;
+}
+
+// What drives the arm: a voltage, or a controller.
+static void add_drive(GString *out, const parameters *p)
+{
+    if (p->control.law == LAW_NONE) {
+        text_append(out, ", %g\u2009V; ", p->motor.voltage);
+        return;
+    }
+
+    // the law with its rate and what it is asked for
+    const char *law = control_law_table[p->control.law].word;
+    text_append(out, ", on the rig: %s at %g\u2009Hz", law, p->control.rate);
+    if (p->control.law == LAW_OPEN_LOOP) {
+        text_append(out, ", %g\u2009V; ", p->control.approach_voltage);
+    } else {
+        text_append(out, ", %g\u2009N commanded; ", p->control.force);
+    }
+}
+
+char *trace_caption(const trace_run *run, const char *shaded)
+{
+    static const char *const hub_texts[] = {
+        [HUB_RIGID] = "rigid", [HUB_SPRING] = "spring", [HUB_BEAM] = "beam's"};
+    const parameters *p = &run->scenario->parameters;
+
+    // the arm and what drives it
+    GString *out = g_string_new(p->arm.model == ARM_PRINTED ? "Printed model" : "Corrected model");
+    char *step = duration_text(p->method.step);
+    g_string_append_printf(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
+                           hub_texts[p->arm.hub_joint]);
+    add_drive(out, p);
+
+    // the method and its step
+    if (p->arm.model == ARM_PRINTED || p->method.name == METHOD_NEWMARK) {
+        text_append(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta, p->method.gamma);
+    } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
+        text_append(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g", p->method.spectral_radius);
+    } else {
+        g_string_append(out, "explicit steps, located events");
+    }
+    g_string_append_printf(out, ", <i>h</i> = %s. Shaded: %s. impactlab %s.", step, shaded,
+                           lab_version());
+
+    // what went wrong
+    if (run->result->summary.status != STATUS_OK) {
+        char *why = text_escape(run->result->summary.message);
+        g_string_append_printf(out, " <b>The run failed:</b> %s", why);
+        g_free(why);
+    }
+
+    g_free(step);
+    return g_string_free(out, FALSE);
+}
