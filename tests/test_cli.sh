@@ -358,6 +358,22 @@ expect 0 robust compare/observer --laws hybrid,observer --runs 6 --json two.json
 cmp one.json two.json || fail "robust gives other bytes the second time"
 [ "$(wc -l <robust.csv)" = 3 ] || fail "robust --csv has not a row for each law"
 [ -s robust-hybrid.sqlite ] && [ -s robust-observer.sqlite ] || fail "robust --db keeps no runs"
+
+# a table of cases, and a set of runs that is interrupted
+printf 'control.seed=1,2\ncase plain:\ncase another arm: arm.links=3\n' >two.set
+expect 0 robust compare/observer --over two.set --runs 2 --against hybrid --csv cases.csv
+says out "/hybrid"
+[ "$(wc -l <cases.csv)" = 3 ] || fail "robust --csv has not a row for each case"
+expect 2 robust compare/observer --against hybrid
+expect 2 robust compare/observer --over two.set --against nonsense
+"$lab" robust compare/twelve-links --runs 5000 --db long.sqlite --jobs 1 2>err &
+interrupted=$!
+until [ -s long-hybrid.sqlite ]; do sleep 0.05; done
+kill -TERM $interrupted
+code=0
+wait $interrupted || code=$?
+[ "$code" = 143 ] || fail "robust ended by a signal has status $code, expected 143"
+says err "are done and kept in 'long-hybrid.sqlite'"
 expect 2 robust compare/observer --laws nonsense
 expect 2 robust compare/observer --over press.yaml
 expect 2 robust corrected/first-impact

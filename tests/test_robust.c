@@ -39,6 +39,53 @@ static void a_set_is_its_lines(void **state)
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_CANNOT_READ);
 }
 
+static void cases_are_what_differs(void **state)
+{
+    (void)state;
+    char path[32];
+    robust_set set;
+    fault f;
+    write_set(path, "control.seed=1,2\ncase plain:\n"
+                    "case two at once : belief.k2_factor=0.5; arm.links=3 ;push=-0.05@0.8\n");
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(set.count, 1);
+    assert_int_equal(set.case_count, 2);
+    assert_string_equal(set.cases[1].title, "two at once");
+    unlink(path);
+
+    // the first is the scenario itself, the second differs in what it says
+    scenario derived,
+        base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))};
+    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
+    assert_int_equal(derived.action_count, 0);
+    assert_int_equal(derived.parameters.arm.links, 2);
+    robust_case_finish(&derived);
+    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[1], &f), STATUS_OK);
+    assert_int_equal(derived.parameters.arm.links, 3);
+    check_close(derived.parameters.belief.k2_factor, 0.5, 0);
+    assert_int_equal(derived.action_count, 1);
+    assert_int_equal(derived.actions[0].kind, ACTION_PUSH);
+    check_close(derived.actions[0].value, -0.05, 0);
+    check_close(derived.actions[0].time, 0.8, 0);
+    robust_case_finish(&derived);
+    robust_set_finish(&set);
+
+    // what is no case, and a case that cannot be
+    static const char *const wrong[] = {"control.seed=1,2\ncase no colon\n",
+                                        "control.seed=1,2\ncase a: push=0.05\n",
+                                        "control.seed=1,2\ncase a: nonsense\n", "case a:\n"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        write_set(path, wrong[i]);
+        assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+        unlink(path);
+    }
+    write_set(path, "control.seed=1,2\ncase a: arm.links=-3\n");
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_BAD_ARGUMENT);
+    robust_set_finish(&set);
+    unlink(path);
+}
+
 // Judges a law over a set, on so many threads; the table as JSON on the heap.
 static char *judged(int law, char *const *lines, int count, size_t runs, int jobs,
                     robust_law *found)
@@ -58,7 +105,7 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
     assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_OK);
     assert_int_equal(robust_law_of(found, "law", &s, store, &f), STATUS_OK);
 
-    robust_table table = {"test", found, 1};
+    robust_table table = {"test", found, 1, NULL};
     json_t *json = robust_json(&table);
     char *text = json_dumps(json, JSON_INDENT(2));
     json_decref(json);
@@ -135,6 +182,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_set_is_its_lines),
+        cmocka_unit_test(cases_are_what_differs),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(one_run_is_all_its_quantiles),
         cmocka_unit_test(quantiles_rise_and_the_observer_law_stands_the_set),

@@ -5,20 +5,8 @@
 #include <jansson.h>
 #include <stdio.h>
 
+#include "src/study/robust_set.h"
 #include "src/study/sweep_store.h"
-
-// What is drawn from: the lines of a set file, each PATH=a:b or PATH=v1,v2 as a sweep takes them;
-// empty lines and those that begin with # say nothing.
-typedef struct robust_set {
-    char *text;   // owned; the lines point into it
-    char **lines; // owned
-    int count;
-} robust_set;
-
-// Reads a set file. STATUS_CANNOT_READ, STATUS_BAD_ARGUMENT (no line, or too long) or
-// STATUS_NO_MEMORY, with a sentence in f that names it; then nothing is to be freed.
-status robust_set_read(robust_set *set, const char *path, fault *f);
-void robust_set_finish(robust_set *set);
 
 // The quantiles that tables show: half of all runs, nine tenths, and the worst.
 enum { ROBUST_MEDIAN, ROBUST_NINE_TENTHS, ROBUST_WORST, ROBUST_QUANTILES };
@@ -31,12 +19,16 @@ extern const double robust_levels[ROBUST_QUANTILES];
 // What the runs of one law come to. A run that failed, or never settled, has the worst of all
 // values: NaN in a quantile that reaches so far.
 typedef struct robust_law {
-    const char *law; // its word, borrowed
+    const char *law;        // its word, borrowed
+    const char *case_title; // of a case, borrowed; NULL without cases
     size_t runs, failed;
     double settled, separated, exceeded; // shares of the runs
     double overshoot[ROBUST_QUANTILES];  // peak over the command (more than two links: of its mean
                                          // over 5 ms, smoothed_over_command_N) [%]
-    double settling[ROBUST_QUANTILES];   // [s]
+    double settling[ROBUST_QUANTILES];   // from first contact, or the last push after it [s]
+    double from_start[ROBUST_QUANTILES]; // until it has settled, from the run's start;
+                                         // NaN where the tip is pushed [s]
+    double against;                      // worst of from_start over that of another law; NaN: none
     double error[ROBUST_QUANTILES];      // steady error either way, of the command [%]
     double *overshoots;                  // of all runs, ascending, NaN last; owned [%]
 } robust_law;
@@ -52,10 +44,11 @@ typedef struct robust_table {
     const char *scenario; // its name
     const robust_law *laws;
     int count;
+    const char *against; // the law that `against` of each is held against; NULL if there is none
 } robust_table;
 
-// A line a law: for people, of a Markdown page, as CSV, and {"scenario": ..., "laws": [...]}, NULL
-// without memory.
+// A line a law, or a law in a case, the latter with the worst of all runs only: for people, of a
+// Markdown page, as CSV, and {"scenario": ..., "laws": [...]}, NULL without memory.
 void robust_text(FILE *stream, const robust_table *t);
 void robust_markdown(FILE *stream, const robust_table *t);
 void robust_csv(FILE *stream, const robust_table *t);

@@ -4,26 +4,27 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "render/plot/robust_plot.h"
 #include "src/study/robust.h"
-#include "src/study/sweep_run.h"
+#include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"
 
-enum { MOST_LAWS = LAW_COUNT, DEFAULT_RUNS = 200 };
+enum { DEFAULT_RUNS = 200, DEFAULT_CASE_RUNS = 4 };
 
 // The shipped set, in the folder of the scenarios.
 static const char default_set[] = "sets/robust.set";
 
-// What the command line asks for, and what was found for each law.
+// What the command line asks for, and what was found: by case, in it by law.
 typedef struct robustness {
     const arguments *arguments;
     scenario scenario;
     robust_set set;
-    int laws[MOST_LAWS]; // control_law
-    int count;
-    robust_law found[MOST_LAWS];
+    int laws[LAW_COUNT + 1]; // control_law; behind the last the one of --against, if it is given
+    int count;               // of laws, that one left out
+    int against;             // its place, -1: none
+    size_t runs;             // of each law, in each case
+    robust_law *found;
     int judged;
 } robustness;
 
@@ -32,8 +33,48 @@ static void finish(robustness *r)
     for (int i = 0; i < r->judged; i++) {
         robust_law_finish(&r->found[i]);
     }
+    free(r->found);
     robust_set_finish(&r->set);
     scenario_finish(&r->scenario);
+}
+
+// The law of a word of a certain length; LAW_NONE if there is none.
+static int find_law(const char *text, size_t length)
+{
+    for (int i = LAW_NONE + 1; i < LAW_COUNT; i++) {
+        const char *word = control_law_table[i].word;
+        if (strlen(word) == length && strncmp(word, text, length) == 0) {
+            return i;
+        }
+    }
+    return LAW_NONE;
+}
+
+// The law of --against: one of those that are judged, or one more.
+static int read_against(robustness *r)
+{
+    const char *word = r->arguments->against;
+    r->against = -1;
+    if (word == NULL) {
+        return EXIT_DONE;
+    }
+    int law = find_law(word, strlen(word));
+    if (law == LAW_NONE) {
+        return complain("--against %s: no control law, expected one of control.law", word);
+    }
+    if (r->set.case_count == 0) {
+        return complain("--against %s: the set has no cases, expected lines case TITLE: ... in it",
+                        word);
+    }
+
+    for (int i = 0; i < r->count; i++) {
+        r->against = r->laws[i] == law ? i : r->against;
+    }
+    if (r->against < 0) {
+        r->against = r->count;
+        r->laws[r->count] = law;
+    }
+    return EXIT_DONE;
 }
 
 // The laws of --laws, or the scenario's own.
@@ -43,20 +84,20 @@ static int read_laws(robustness *r)
     if (rest == NULL) {
         r->laws[r->count++] = r->scenario.parameters.control.law;
     }
+
+    // each of the words between commas
     while (rest != NULL) {
         size_t length = strcspn(rest, ",");
-        int law = LAW_NONE;
-        for (int i = 0; i < LAW_COUNT; i++) {
-            const char *word = control_law_table[i].word;
-            law = strlen(word) == length && strncmp(word, rest, length) == 0 ? i : law;
-        }
-        if (law == LAW_NONE || r->count == MOST_LAWS) {
+        int law = find_law(rest, length);
+        if (law == LAW_NONE || r->count == LAW_COUNT) {
             return complain("--laws %s: '%.*s' is no control law, expected those of control.law",
                             r->arguments->laws, (int)length, rest);
         }
         r->laws[r->count++] = law;
         rest = rest[length] == ',' ? rest + length + 1 : NULL;
     }
+
+    // what cannot be run, or not be shown
     if (r->laws[0] == LAW_NONE) {
         return complain("%s has no control law, expected one or --laws", r->scenario.name);
     }
@@ -66,70 +107,92 @@ static int read_laws(robustness *r)
     return EXIT_DONE;
 }
 
+// The set, and room for what will be found.
 static int read_set(robustness *r)
 {
+    const arguments *a = r->arguments;
     fault f = {0};
-    status code;
-    if (r->arguments->over != NULL) {
-        code = robust_set_read(&r->set, r->arguments->over, &f);
-    } else {
-        char *path = scenario_folder_file(default_set);
-        code = path != NULL ? robust_set_read(&r->set, path, &f) : fault_no_memory(&f);
-        free(path);
+    char *path = a->over == NULL ? scenario_folder_file(default_set) : NULL;
+    const char *read = a->over != NULL ? a->over : path;
+    status code = read != NULL ? robust_set_read(&r->set, read, &f) : fault_no_memory(&f);
+    free(path);
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
     }
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    if (r->set.case_count > 0 && a->plot != NULL) {
+        return complain("--plot shows laws, not the cases of %s", a->over);
+    }
+
+    bool cases = r->set.case_count > 0;
+    r->runs = a->runs > 0 ? (size_t)a->runs : cases ? DEFAULT_CASE_RUNS : DEFAULT_RUNS;
+    r->found =
+        calloc((size_t)(cases ? r->set.case_count : 1) * (size_t)(r->count + 1), sizeof *r->found);
+    return r->found != NULL ? EXIT_DONE : (fault_no_memory(&f), complain_fault(&f));
 }
 
-// "a/b-LAW.sqlite" for --db a/b.sqlite, on the heap; NULL without memory.
-static char *place_of(const char *db, const char *law)
+// "a/b-LAW.sqlite" for --db a/b.sqlite, of case k (from 0) "a/b-LAW-3.sqlite" with its number from
+// 1, on the heap; NULL without memory.
+static char *place_of(const char *db, const char *law, int k)
 {
     const char *slash = strrchr(db, '/'), *dot = strrchr(db, '.');
     bool ends = dot != NULL && (slash == NULL || dot > slash);
     int stem = (int)(ends ? (size_t)(dot - db) : strlen(db));
-    char *path;
-    int length = asprintf(&path, "%.*s-%s%s", stem, db, law, ends ? dot : "");
+    char *path, number[16] = "";
+    if (k >= 0) {
+        snprintf(number, sizeof number, "-%d", k + 1);
+    }
+    int length = asprintf(&path, "%.*s-%s%s%s", stem, db, law, number, ends ? dot : "");
     return length < 0 ? NULL : path;
 }
 
 // The runs of a law that are not in the store yet, and their judgement.
-static int judge_law(robustness *r, int which, const sweep *s)
+static int judge_law(robustness *r, const char *law, int k, const sweep *s)
 {
     const arguments *a = r->arguments;
-    const char *word = control_law_table[r->laws[which]].word;
     fault f = {0};
+    char word[64], *db = a->db != NULL ? place_of(a->db, law, k) : NULL;
     sweep_store *store = NULL;
-    sweep_progress progress;
-    sweep_options options = {.jobs = 1};
-    long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    options.jobs = a->jobs > 0                    ? (int)a->jobs
-                   : processors > SWEEP_MOST_JOBS ? SWEEP_MOST_JOBS
-                   : processors > 1               ? (int)processors
-                                                  : 1;
+    sweep_progress progress = {0};
+    bool bar = many_runs_shows_progress(a);
+    snprintf(word, sizeof word, "%-16.40s", law);
+    sweep_options options = {.jobs = many_runs_jobs(a),
+                             .stop = many_runs_catch_signals(),
+                             .report = bar ? many_runs_progress : NULL,
+                             .context = word};
 
-    char *db = a->db != NULL ? place_of(a->db, word) : NULL;
+    // the runs
     status code =
         a->db != NULL && db == NULL ? fault_no_memory(&f) : sweep_store_open(&store, db, s, &f);
     code = code == STATUS_OK ? sweep_run(s, store, &options, &progress, &f) : code;
-    if (code == STATUS_OK) {
-        r->judged++;
-        code = robust_law_of(&r->found[which], word, s, store, &f);
+    if (bar) {
+        many_runs_clear_progress();
+    }
+
+    // all of them are there, or what there is stays in the store
+    bool stopped = code == STATUS_OK && progress.done < progress.total;
+    if (code == STATUS_OK && !stopped) {
+        robust_law *found = &r->found[r->judged++];
+        code = robust_law_of(found, law, s, store, &f);
+        found->case_title = k >= 0 ? r->set.cases[k].title : NULL;
     }
     sweep_store_close(store);
+    int result = code != STATUS_OK ? complain_fault(&f)
+                 : stopped         ? many_runs_stopped(db, progress.done, progress.total)
+                                   : EXIT_DONE;
     free(db);
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    return result;
 }
 
-// The same draws for every law.
-static int run_law(robustness *r, int which)
+// A law under case k of the set, -1: under the scenario as it is. The same draws for every law.
+static int run_law(robustness *r, const scenario *base, int which, int k)
 {
     fault f = {0};
     sweep s;
-    scenario under = r->scenario; // borrows all but its parameters
+    scenario under = *base; // borrows all but its parameters
     sweep_request request = {.vary = r->set.lines,
                              .vary_count = r->set.count,
                              .sampling = SWEEP_LATIN,
-                             .runs =
-                                 r->arguments->runs > 0 ? (size_t)r->arguments->runs : DEFAULT_RUNS,
+                             .runs = r->runs,
                              .seed = r->arguments->seed};
     under.parameters.control.law = r->laws[which];
     under.parameters.set[PARAMETER_INDEX(control.law)] = 1;
@@ -137,8 +200,39 @@ static int run_law(robustness *r, int which)
         sweep_init(&s, &under, &request, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    int code = judge_law(r, which, &s);
+
+    int code = judge_law(r, control_law_table[r->laws[which]].word, k, &s);
     sweep_finish(&s);
+    return code;
+}
+
+// All laws under case k, and how they compare with that of --against.
+static int run_case(robustness *r, int k)
+{
+    fault f = {0};
+    scenario base;
+    const int first = r->judged, laws = r->count + (r->against == r->count);
+    const robust_case *c = k >= 0 ? &r->set.cases[k] : NULL;
+    if (robust_case_scenario(&base, &r->scenario, c, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+
+    int code = EXIT_DONE;
+    for (int i = 0; i < laws && code == EXIT_DONE; i++) {
+        code = run_law(r, &base, i, k);
+    }
+    robust_case_finish(&base);
+
+    // its own line is shown only where it was asked for
+    if (code == EXIT_DONE && r->against >= 0) {
+        double other = r->found[first + r->against].from_start[ROBUST_WORST];
+        for (int i = 0; i < r->count; i++) {
+            r->found[first + i].against = r->found[first + i].from_start[ROBUST_WORST] / other;
+        }
+        if (r->against == r->count) {
+            robust_law_finish(&r->found[--r->judged]);
+        }
+    }
     return code;
 }
 
@@ -155,8 +249,10 @@ static void write_csv(FILE *stream, const void *table)
 static int write_results(const robustness *r)
 {
     const arguments *a = r->arguments;
-    robust_table table = {r->scenario.name, r->found, r->count};
+    robust_table table = {r->scenario.name, r->found, r->judged, r->arguments->against};
     int code = EXIT_DONE;
+
+    // to files
     if (a->json != NULL) {
         code = worse(code, write_json(a->json, robust_json(&table)));
     }
@@ -171,6 +267,8 @@ static int write_results(const robustness *r)
         code = worse(code, publish_figure(a, robust_figure_of(drawn)));
         robust_figure_destroy(drawn);
     }
+
+    // and for people
     if (summary_wanted(a)) {
         robust_text(stdout, &table);
     }
@@ -184,10 +282,15 @@ static int robust(const arguments *a)
     if (code != EXIT_DONE) {
         return code;
     }
+
     code = read_laws(&r);
     code = code == EXIT_DONE ? read_set(&r) : code;
-    for (int i = 0; i < r.count && code == EXIT_DONE; i++) {
-        code = run_law(&r, i);
+    code = code == EXIT_DONE ? read_against(&r) : code;
+
+    // case by case, or the scenario as it is
+    int last = r.set.case_count > 0 ? r.set.case_count - 1 : -1;
+    for (int k = last < 0 ? -1 : 0; k <= last && code == EXIT_DONE; k++) {
+        code = run_case(&r, k);
     }
     code = code == EXIT_DONE ? write_results(&r) : code;
     finish(&r);
@@ -205,31 +308,15 @@ static const option_row rows[] = {
      .value = "SET",
      .help = "file of what is drawn, a line PATH=a:b each (sets/robust.set)",
      PLACE(over)},
-    {.name = "runs",
-     .type = OPTION_WHOLE,
-     .value = "N",
-     .help = "number of runs of each law (200)",
-     PLACE(runs),
-     .low = 1,
-     .high = SWEEP_MOST_RUNS},
-    {.name = "seed",
-     .type = OPTION_WHOLE,
-     .value = "S",
-     .help = "start of the random numbers (0)",
-     PLACE(seed),
-     .high = HUGE_VAL},
-    {.name = "jobs",
-     .type = OPTION_WHOLE,
-     .value = "J",
-     .help = "number of runs at a time (as many as processors)",
-     PLACE(jobs),
-     .low = 1,
-     .high = SWEEP_MOST_JOBS},
-    {.name = "db",
-     .type = OPTION_PLACE,
-     .value = "FILE.sqlite",
-     .help = "keep every run, in FILE-LAW.sqlite; go on where they end",
-     PLACE(db)},
+    {.name = "against",
+     .type = OPTION_TEXT,
+     .value = "LAW",
+     .help = "of cases: a law whose time from the start the others are held against",
+     PLACE(against)},
+    RUNS_OPTION("number of runs of each law (200; in each case 4)"),
+    SEED_OPTION,
+    JOBS_OPTION,
+    DB_OPTION("keep every run, in FILE-LAW.sqlite; go on where they end"),
     {.name = "csv",
      .type = OPTION_RESULT,
      .value = "FILE|-",
@@ -254,7 +341,10 @@ const command robust_command = {
         "from a set (a Latin\nhypercube, the same draws for every law), and says which share "
         "of the runs settles, leaves the wall\nand exceeds control.force_limit (without one, "
         "1.3 times the command), and the median, the 90 %\nquantile and the worst of overshoot, "
-        "settling time and steady error. '-': that many do not settle.\n",
+        "settling time and steady error. '-': that many do not settle.\n\n"
+        "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with the "
+        "worst of the\nruns of each. Ctrl-C finishes the runs in hand (exit status 130); with "
+        "--db they are kept.\n",
     .least = 1,
     .most = 1,
     .takes_scenarios = true,

@@ -2,51 +2,15 @@
 #include "ui/commands/command.h"
 
 #include <math.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "render/plot/sweep_plot.h"
+#include "ui/commands/many_runs.h"
+#include "ui/commands/pictures.h"
 #include "ui/commands/sweep_report.h"
 
-enum { BAR_LENGTH = 24 };
-
-static volatile sig_atomic_t signal_caught;
-static volatile time_t time_caught;
-
-// The first signal lets the runs in hand finish; one that comes a second or more later ends the
-// program. One that follows at once is the same again: timeout and some shells send it both to the
-// program and to its group.
-static void catch_signal(int number)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    if (signal_caught == 0) {
-        signal_caught = number;
-        time_caught = now.tv_sec;
-    } else if (now.tv_sec > time_caught + 1) {
-        signal(number, SIG_DFL);
-        raise(number);
-    }
-}
-
-static void catch_signals(void)
-{
-    struct sigaction caught = {.sa_handler = catch_signal};
-    sigemptyset(&caught.sa_mask);
-    sigaction(SIGINT, &caught, NULL);
-    sigaction(SIGTERM, &caught, NULL);
-}
-
 // --- the request ----------------------------------------------------------------------------
-
-static int processors(void)
-{
-    long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : count > SWEEP_MOST_JOBS ? SWEEP_MOST_JOBS : (int)count;
-}
 
 static sweep_sampling sampling_of(const char *name)
 {
@@ -62,7 +26,7 @@ static sweep_order order_of(const arguments *a)
 {
     return (sweep_order){.arguments = a,
                          .quantity = a->quantity != NULL ? a->quantity : "peak_force_N",
-                         .jobs = a->jobs > 0 ? (int)a->jobs : processors(),
+                         .jobs = many_runs_jobs(a),
                          .request = {.vary = a->varies.items,
                                      .vary_count = a->varies.count,
                                      .sampling = sampling_of(a->sampling),
@@ -120,91 +84,28 @@ static int prepare(sweep_order *o, const arguments *a)
     return code;
 }
 
-// --- progress -------------------------------------------------------------------------------
-
-// "0:07", "3:20:00"
-static void format_duration(char *text, size_t size, double seconds)
-{
-    long whole = seconds < 3.6e8 ? lround(seconds) : 359999999;
-    if (whole < 3600) {
-        snprintf(text, size, "%ld:%02ld", whole / 60, whole % 60);
-    } else {
-        snprintf(text, size, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
-    }
-}
-
-// The progress bar: a line on the terminal that is written over.
-static void show_progress(void *context, const sweep_progress *p)
-{
-    char bar[BAR_LENGTH + 1], left[32] = "", failed[32] = "", line[160];
-    (void)context;
-
-    int filled = p->total > 0 ? (int)(BAR_LENGTH * p->done / p->total) : 0;
-    for (int i = 0; i < BAR_LENGTH; i++) {
-        bar[i] = i < filled ? '=' : ' ';
-    }
-    bar[BAR_LENGTH] = '\0';
-
-    if (p->done_now > 0) {
-        char time[24];
-        double rate = (double)p->done_now / p->elapsed_s;
-        format_duration(time, sizeof time, (double)(p->total - p->done) / rate);
-        snprintf(left, sizeof left, ", %s left", time);
-    }
-
-    if (p->failed > 0) {
-        snprintf(failed, sizeof failed, ", %zu failed", p->failed);
-    }
-
-    snprintf(line, sizeof line, "[%s] %3zu %%  %zu of %zu runs%s%s", bar, 100 * p->done / p->total,
-             p->done, p->total, failed, left);
-    fprintf(stderr, "\r%-78.78s", line);
-}
-
-static void clear_progress(void)
-{
-    fprintf(stderr, "\r%78s\r", "");
-}
-
 // --- the runs -------------------------------------------------------------------------------
-
-// Ended by a signal: says what there is and how to go on.
-static int report_stop(const sweep_order *o, const sweep_progress *p)
-{
-    const char *db = o->arguments->db;
-    if (db != NULL) {
-        complain("stopped: %zu of %zu runs are done and kept in '%s'; the same command goes on "
-                 "from there",
-                 p->done, p->total, db);
-    } else {
-        complain("stopped: %zu of %zu runs were done, nothing is kept; with --db FILE.sqlite a "
-                 "sweep can be continued",
-                 p->done, p->total);
-    }
-    return 128 + signal_caught;
-}
 
 static int compute(const sweep_order *o, sweep_store *store)
 {
     fault f = {0};
     sweep_progress progress;
-    bool bar = isatty(STDERR_FILENO) && !o->arguments->quiet;
+    bool bar = many_runs_shows_progress(o->arguments);
     sweep_options options = {.share = o->share,
                              .jobs = o->jobs,
-                             .stop = &signal_caught,
-                             .report = bar ? show_progress : NULL};
-    catch_signals();
+                             .stop = many_runs_catch_signals(),
+                             .report = bar ? many_runs_progress : NULL};
     status code = sweep_run(&o->sweep, store, &options, &progress, &f);
 
     if (bar) {
-        clear_progress();
+        many_runs_clear_progress();
     }
 
     if (code != STATUS_OK) {
         return complain_fault(&f);
     }
     if (progress.done < progress.total) {
-        return report_stop(o, &progress);
+        return many_runs_stopped(o->arguments->db, progress.done, progress.total);
     }
     if (o->share.parts == 0) {
         return report_sweep(o, store, &progress);
@@ -245,31 +146,10 @@ static const option_row rows[] = {
      .value = "grid|random|latin",
      .help = "how the values are combined (grid)",
      PLACE(sampling)},
-    {.name = "runs",
-     .type = OPTION_WHOLE,
-     .value = "N",
-     .help = "number of runs at random or of a Latin hypercube",
-     PLACE(runs),
-     .low = 1,
-     .high = SWEEP_MOST_RUNS},
-    {.name = "seed",
-     .type = OPTION_WHOLE,
-     .value = "S",
-     .help = "start of the random numbers (0)",
-     PLACE(seed),
-     .high = HUGE_VAL},
-    {.name = "jobs",
-     .type = OPTION_WHOLE,
-     .value = "J",
-     .help = "number of runs at a time (as many as processors)",
-     PLACE(jobs),
-     .low = 1,
-     .high = SWEEP_MOST_JOBS},
-    {.name = "db",
-     .type = OPTION_PLACE,
-     .value = "FILE.sqlite",
-     .help = "keep every run in a database; go on where it ends",
-     PLACE(db)},
+    RUNS_OPTION("number of runs at random or of a Latin hypercube"),
+    SEED_OPTION,
+    JOBS_OPTION,
+    DB_OPTION("keep every run in a database; go on where it ends"),
     {.name = "part",
      .type = OPTION_TEXT,
      .value = "K/N",
@@ -280,11 +160,7 @@ static const option_row rows[] = {
      .value = "FILE|-",
      .help = "write a row for each run",
      PLACE(csv)},
-    {.name = "plot",
-     .type = OPTION_PICTURE,
-     .value = "FILE.{png,pdf,svg}",
-     .help = "draw the quantity over one or two parameters",
-     PLACE(plot)},
+    PLOT_OPTION("draw the quantity over one or two parameters"),
     {.name = "quantity",
      .type = OPTION_QUANTITY,
      .value = "KEY",

@@ -1,0 +1,264 @@
+// Tables of what control laws make of what they were not told.
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/csv.h"
+#include "src/base/json.h"
+#include "src/base/numbers.h"
+#include "src/study/robust.h"
+
+enum {
+    SETTLED,
+    SEPARATED,
+    EXCEEDED,
+    OVER,
+    SETTLING = OVER + ROBUST_QUANTILES,
+    ERROR = SETTLING + ROBUST_QUANTILES,
+    FROM_START = ERROR + ROBUST_QUANTILES,
+    AGAINST = FROM_START + ROBUST_QUANTILES,
+    COLUMNS
+};
+
+typedef struct column {
+    const char *key;  // in JSON, its unit at the end
+    const char *name; // in CSV
+    const char *unit; // in CSV
+} column;
+
+static const column columns[COLUMNS] = {
+    {"settled_percent", "settled", "%"},
+    {"separated_percent", "separated", "%"},
+    {"exceeded_percent", "exceeded", "%"},
+    {"overshoot_median_percent", "overshoot_median", "%"},
+    {"overshoot_nine_tenths_percent", "overshoot_nine_tenths", "%"},
+    {"overshoot_worst_percent", "overshoot_worst", "%"},
+    {"settling_median_s", "settling_median", "s"},
+    {"settling_nine_tenths_s", "settling_nine_tenths", "s"},
+    {"settling_worst_s", "settling_worst", "s"},
+    {"error_median_percent", "error_median", "%"},
+    {"error_nine_tenths_percent", "error_nine_tenths", "%"},
+    {"error_worst_percent", "error_worst", "%"},
+    {"from_start_median_s", "from_start_median", "s"},
+    {"from_start_nine_tenths_s", "from_start_nine_tenths", "s"},
+    {"from_start_worst_s", "from_start_worst", "s"},
+    {"from_start_share", "from_start_share", ""},
+};
+
+// What people see, of the laws and of cases.
+typedef struct shown_column {
+    int column;
+    const char *heading;
+} shown_column;
+
+static const shown_column of_laws[] = {
+    {SETTLED, "settled/%"},
+    {SEPARATED, "separated/%"},
+    {EXCEEDED, "exceeded/%"},
+    {OVER + ROBUST_MEDIAN, "over/%"},
+    {OVER + ROBUST_NINE_TENTHS, "90 %"},
+    {OVER + ROBUST_WORST, "worst"},
+    {SETTLING + ROBUST_MEDIAN, "settling/s"},
+    {SETTLING + ROBUST_NINE_TENTHS, "90 %"},
+    {SETTLING + ROBUST_WORST, "worst"},
+    {ERROR + ROBUST_MEDIAN, "error/%"},
+    {ERROR + ROBUST_NINE_TENTHS, "90 %"},
+    {ERROR + ROBUST_WORST, "worst"},
+};
+static const shown_column of_cases[] = {
+    {SEPARATED, "separated/%"},
+    {OVER + ROBUST_WORST, "over/%"},
+    {SETTLING + ROBUST_WORST, "settling/s"},
+    {ERROR + ROBUST_WORST, "error/%"},
+    {FROM_START + ROBUST_WORST, "from start/s"},
+    {AGAINST, ""}, // headed by the law
+};
+
+// The columns that a table shows, and how many.
+static int shown_columns(const robust_table *t, const shown_column **shown)
+{
+    bool cases = t->laws[0].case_title != NULL;
+    *shown = cases ? of_cases : of_laws;
+    return cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
+                 : (int)(sizeof of_laws / sizeof of_laws[0]);
+}
+
+static void format_heading(char *text, size_t size, const robust_table *t, const shown_column *c)
+{
+    if (c->column == AGAINST) {
+        snprintf(text, size, "/%s", t->against);
+    } else {
+        snprintf(text, size, "%s", c->heading);
+    }
+}
+
+// A law's numbers in the order of the columns.
+static void values_of(const robust_law *law, double *values)
+{
+    values[SETTLED] = 100 * law->settled;
+    values[SEPARATED] = 100 * law->separated;
+    values[EXCEEDED] = 100 * law->exceeded;
+    values[AGAINST] = law->against;
+    for (int i = 0; i < ROBUST_QUANTILES; i++) {
+        values[OVER + i] = law->overshoot[i];
+        values[SETTLING + i] = law->settling[i];
+        values[ERROR + i] = law->error[i];
+        values[FROM_START + i] = law->from_start[i];
+    }
+}
+
+static void format_value(char *text, size_t size, double value)
+{
+    if (isnan(value)) {
+        snprintf(text, size, "-");
+    } else {
+        decimal_print(text, size, fabs(value) >= 1000 ? "%.0f" : "%.3g", value);
+    }
+}
+
+void robust_text(FILE *stream, const robust_table *t)
+{
+    assert(stream != NULL && t != NULL && t->count > 0);
+    const shown_column *shown;
+    const int count = shown_columns(t, &shown);
+    char text[64];
+    int width = 0;
+
+    // headings
+    for (int i = 0; i < t->count; i++) {
+        int length = t->laws[i].case_title != NULL ? (int)strlen(t->laws[i].case_title) : -2;
+        width = length > width ? length : width;
+    }
+    if (width > 0) {
+        fprintf(stream, "%-*s  ", width, "case");
+    }
+    fprintf(stream, "%-16s  %5s", "law", "runs");
+    for (int k = 0; k < count; k++) {
+        format_heading(text, sizeof text, t, &shown[k]);
+        fprintf(stream, "  %12s", text);
+    }
+    fputc('\n', stream);
+
+    // a line a law
+    for (int i = 0; i < t->count; i++) {
+        const robust_law *law = &t->laws[i];
+        double values[COLUMNS];
+        values_of(law, values);
+        if (width > 0) {
+            fprintf(stream, "%-*s  ", width, law->case_title);
+        }
+        fprintf(stream, "%-16s  %5zu", law->law, law->runs);
+        for (int k = 0; k < count; k++) {
+            format_value(text, sizeof text, values[shown[k].column]);
+            fprintf(stream, "  %12s", text);
+        }
+        if (law->failed > 0) {
+            fprintf(stream, "  %zu failed", law->failed);
+        }
+        fputc('\n', stream);
+    }
+}
+
+void robust_markdown(FILE *stream, const robust_table *t)
+{
+    assert(stream != NULL && t != NULL && t->count > 0);
+    const shown_column *shown;
+    const int count = shown_columns(t, &shown);
+    const bool cases = t->laws[0].case_title != NULL;
+    char text[64];
+
+    // headings
+    fputs(cases ? "| case | law | runs |" : "| law | runs |", stream);
+    for (int k = 0; k < count; k++) {
+        format_heading(text, sizeof text, t, &shown[k]);
+        fprintf(stream, " %s |", text);
+    }
+    fputs(cases ? "\n|---|---|---|" : "\n|---|---|", stream);
+    for (int k = 0; k < count; k++) {
+        fputs("---|", stream);
+    }
+    fputc('\n', stream);
+
+    // a line a law
+    for (int i = 0; i < t->count; i++) {
+        const robust_law *law = &t->laws[i];
+        double values[COLUMNS];
+        values_of(law, values);
+        if (cases) {
+            fprintf(stream, "| %s ", law->case_title);
+        }
+        fprintf(stream, "| %s | %zu |", law->law, law->runs);
+        for (int k = 0; k < count; k++) {
+            format_value(text, sizeof text, values[shown[k].column]);
+            fprintf(stream, " %s |", text);
+        }
+        fputc('\n', stream);
+    }
+}
+
+void robust_csv(FILE *stream, const robust_table *t)
+{
+    assert(stream != NULL && t != NULL && t->count > 0);
+    const bool cases = t->laws[0].case_title != NULL;
+
+    // headings
+    csv_writer csv = csv_begin(stream);
+    if (cases) {
+        csv_heading(&csv, "case", "");
+    }
+    csv_heading(&csv, "law", "");
+    csv_heading(&csv, "runs", "");
+    csv_heading(&csv, "failed", "");
+    for (int k = 0; k < COLUMNS; k++) {
+        csv_heading(&csv, columns[k].name, columns[k].unit);
+    }
+    csv_end_row(&csv);
+
+    // a row a law
+    for (int i = 0; i < t->count; i++) {
+        const robust_law *law = &t->laws[i];
+        double values[COLUMNS];
+        values_of(law, values);
+        if (cases) {
+            csv_text(&csv, law->case_title);
+        }
+        csv_text(&csv, law->law);
+        csv_number(&csv, (double)law->runs);
+        csv_number(&csv, (double)law->failed);
+        for (int k = 0; k < COLUMNS; k++) {
+            csv_number(&csv, values[k]);
+        }
+        csv_end_row(&csv);
+    }
+}
+
+json_t *robust_json(const robust_table *t)
+{
+    assert(t != NULL);
+    json_t *whole = json_object(), *laws = json_array();
+    for (int i = 0; i < t->count; i++) {
+        const robust_law *found = &t->laws[i];
+        json_t *law = json_object();
+        double values[COLUMNS];
+        values_of(found, values);
+
+        // which, then its numbers
+        if (found->case_title != NULL) {
+            json_object_set_new(law, "case", json_text(found->case_title));
+        }
+        json_object_set_new(law, "law", json_text(found->law));
+        json_object_set_new(law, "runs", json_integer((json_int_t)found->runs));
+        json_object_set_new(law, "failed", json_integer((json_int_t)found->failed));
+        for (int k = 0; k < COLUMNS; k++) {
+            json_object_set_new(law, columns[k].key, json_number(values[k]));
+        }
+        json_array_append_new(laws, law);
+    }
+
+    json_object_set_new(whole, "scenario", json_text(t->scenario));
+    if (t->against != NULL) {
+        json_object_set_new(whole, "against", json_text(t->against));
+    }
+    json_object_set_new(whole, "laws", laws);
+    return whole;
+}

@@ -1,0 +1,48 @@
+// What the commands of many runs share: their options, ^C, and the progress line.
+#pragma once
+
+#include <signal.h>
+
+#include "src/study/sweep_run.h"
+#include "ui/commands/command.h"
+
+// Threads that --jobs asks for, or as many as there are processors.
+int many_runs_jobs(const arguments *a);
+
+// From now on SIGINT and SIGTERM let the runs in hand finish. Returns what becomes true then; a
+// second signal, a second or more later, ends the program.
+const volatile sig_atomic_t *many_runs_catch_signals(void);
+
+// Whether to show progress: on a terminal, without --quiet.
+bool many_runs_shows_progress(const arguments *a);
+
+// A sweep_options.report: the progress bar, a line on the terminal that is written over. `context`
+// is a word that stands before it (const char *), or NULL.
+void many_runs_progress(void *context, const sweep_progress *p);
+void many_runs_clear_progress(void);
+
+// Ended by a signal: says what there is of the runs and how to go on, `db` being where they are
+// kept, or NULL. Returns the exit status, 130 after ^C.
+int many_runs_stopped(const char *db, size_t done, size_t total);
+
+// Options that they take, with the words of the command.
+#define RUNS_OPTION(what)                                                                          \
+    {                                                                                              \
+        .name = "runs", .type = OPTION_WHOLE, .value = "N", .help = (what), PLACE(runs), .low = 1, \
+        .high = SWEEP_MOST_RUNS                                                                    \
+    }
+#define SEED_OPTION                                                                                \
+    {                                                                                              \
+        .name = "seed", .type = OPTION_WHOLE, .value = "S",                                        \
+        .help = "start of the random numbers (0)", PLACE(seed), .high = HUGE_VAL                   \
+    }
+#define JOBS_OPTION                                                                                \
+    {                                                                                              \
+        .name = "jobs", .type = OPTION_WHOLE, .value = "J",                                        \
+        .help = "number of runs at a time (as many as processors)", PLACE(jobs), .low = 1,         \
+        .high = SWEEP_MOST_JOBS                                                                    \
+    }
+#define DB_OPTION(what)                                                                            \
+    {                                                                                              \
+        .name = "db", .type = OPTION_PLACE, .value = "FILE.sqlite", .help = (what), PLACE(db)      \
+    }
