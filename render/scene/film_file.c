@@ -91,6 +91,8 @@ static status check_folder(const char *path, fault *f)
         // made later; its own folder must take it
         return whole_file_check(path, f);
     }
+
+    // a folder, and an empty one
     if (!S_ISDIR(found.st_mode)) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "%s is a file: expected the name of a folder, or one that ends in .mp4, "

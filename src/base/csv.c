@@ -44,6 +44,7 @@ static void write_field(csv_writer *w, const char *name, const char *unit)
                                  unit != NULL ? "]" : ""};
     bool quoted = needs_quotes(name) || (unit != NULL && needs_quotes(unit));
 
+    // the name and its unit are one field
     begin_field(w);
     fputs(quoted ? "\"" : "", w->stream);
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {

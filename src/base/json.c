@@ -61,6 +61,8 @@ static void write_object(FILE *stream, const json_t *object, int depth)
     const char *key, *separator = "";
     json_t *member;
     fputc('{', stream);
+
+    // a line a member
     json_object_foreach((json_t *)object, key, member)
     {
         fputs(separator, stream);
@@ -84,6 +86,8 @@ static void write_array(FILE *stream, const json_t *array, int depth)
     bool nested = false;
 
     fputc('[', stream);
+
+    // values stand side by side, what has parts of its own on lines of its own
     for (size_t i = 0; i < length; i++) {
         const json_t *element = json_array_get(array, i);
         nested = json_is_object(element) || json_is_array(element);

@@ -161,6 +161,8 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
 {
     assert(least > 0 && least <= most);
     shared_array_init(a, size);
+
+    // half as much where the address space has no room for the most
     for (; most >= least; most /= 2) {
         size_t reserved = whole_chunks(most, size);
         void *base =
@@ -258,6 +260,8 @@ void shared_array_merge(shared_array *a, const shared_array *with, size_t chunks
         if (old == shared) {
             continue;
         }
+
+        // the chunk of the other takes the place of an equal one of its own
         if (!map_chunk(a, i, shared)) {
             return; // it goes on with its own
         }

@@ -15,10 +15,14 @@ static void tridiagonalise(int n, double *matrix, double *diagonal, double *besi
         for (int i = k + 1; i < n; i++) {
             size += v[i] * v[i];
         }
+
+        // the reflection that leaves only the first of these entries
         size = sqrt(size);
         diagonal[k] = v[k];
         beside[k + 1] = v[k + 1] > 0 ? -size : size;
         v[k + 1] -= beside[k + 1];
+
+        // 2 / v'v without forming v'v, which might cancel
         double square = size * (size + fabs(v[k + 1] + beside[k + 1]));
         norms[k] = square > 0 ? 1 / square : 0;
         if (square == 0) {
@@ -37,6 +41,8 @@ static void tridiagonalise(int n, double *matrix, double *diagonal, double *besi
             w[i - k - 1] = sum * norms[k];
             along += w[i - k - 1] * v[i];
         }
+
+        // w, and both rank-one terms at once
         along *= norms[k] / 2;
         for (int i = k + 1; i < n; i++) {
             w[i - k - 1] -= along * v[i];
@@ -72,6 +78,8 @@ static void accumulate(int n, double *matrix, const double *norms, double *v)
             }
             row[k] = 0;
         }
+
+        // row k itself has only its diagonal so far
         memset(matrix + (long)k * n, 0, (size_t)n * sizeof *matrix);
         matrix[(long)k * n + k] = 1;
     }
@@ -83,8 +91,12 @@ static void ql_sweep(int n, int l, int m, double *d, double *e, double *rows)
     double g = (d[l + 1] - d[l]) / (2 * e[l]), r = sqrt(g * g + 1);
     g = d[m] - d[l] + e[l] / (g + copysign(r, g));
     double s = 1, c = 1, p = 0;
+
+    // rotations chase the bulge from the bottom of the block to its top
     for (int i = m - 1; i >= l; i--) {
         double f = s * e[i], b = c * e[i];
+
+        // the rotation that removes it here; none is needed where it has vanished
         r = sqrt(f * f + g * g);
         e[i + 1] = r;
         if (r == 0) {
@@ -92,6 +104,8 @@ static void ql_sweep(int n, int l, int m, double *d, double *e, double *rows)
             e[m] = 0;
             return;
         }
+
+        // both diagonal entries follow the rotation
         s = f / r;
         c = g / r;
         g = d[i + 1] - p;
@@ -99,6 +113,8 @@ static void ql_sweep(int n, int l, int m, double *d, double *e, double *rows)
         p = s * r;
         d[i + 1] = g + p;
         g = c * r - b;
+
+        // and so do the eigenvectors
         double *lower = rows + (long)i * n, *upper = lower + n;
         for (int k = 0; k < n; k++) {
             double u = upper[k], w = lower[k];
@@ -120,6 +136,8 @@ static void sort_rows(int n, double *values, double *rows, double *spare)
         for (int j = i + 1; j < n; j++) {
             least = values[j] < values[least] ? j : least;
         }
+
+        // both change places, value and row
         if (least != i) {
             double value = values[i];
             values[i] = values[least];
@@ -133,6 +151,7 @@ static void sort_rows(int n, double *values, double *rows, double *spare)
 
 bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
 {
+    // tridiagonal form, and the rotation that leads there
     double *e = scratch, *norms = scratch + n;
     tridiagonalise(n, matrix, values, e, norms);
     for (int i = 1; i < n; i++) { // e[i] couples i and i + 1 from here on
@@ -142,6 +161,7 @@ bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
     double first[1024 + 8];
     accumulate(n, matrix, norms, first);
 
+    // eigenvalue by eigenvalue: sweeps over the block that still couples with it
     for (int l = 0; l < n; l++) {
         for (int shifts = 0;; shifts++) {
             int m = l;
@@ -168,9 +188,13 @@ bool symmetric_factor(int n, double *matrix)
         for (int j = 0; j <= i; j++) {
             const double *other = matrix + (long)j * n;
             double sum = row[j];
+
+            // what the columns before have taken already
             for (int k = 0; k < j; k++) {
                 sum -= row[k] * other[k];
             }
+
+            // a pivot that is not positive: the matrix is not positive definite
             if (i == j && !(sum > 0)) {
                 return false;
             }

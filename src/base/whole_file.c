@@ -76,6 +76,8 @@ static char *folder_of(const char *path)
 static char *target_of(const char *path)
 {
     char *target = strdup(path);
+
+    // link by link
     for (int links = 0; target != NULL && links < MOST_LINKS; links++) {
         char link[PATH_MAX];
         ssize_t length = readlink(target, link, sizeof link - 1);
@@ -180,6 +182,7 @@ static int create_temporary(whole_file *w, mode_t mode)
 // Opens the target or its temporary; 0 or the reason why not.
 static int open_target(whole_file *w)
 {
+    // what hinders it is known before anything is created
     bool in_place;
     mode_t mode;
     int reason = obstacle(w->path, &in_place, &mode);
@@ -187,6 +190,7 @@ static int open_target(whole_file *w)
         return reason;
     }
 
+    // a file stands under a name of its own until it is whole
     int descriptor = in_place ? open(w->path, O_WRONLY | O_CLOEXEC) : create_temporary(w, mode);
     if (descriptor < 0) {
         return errno;
@@ -215,6 +219,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
         return w->path ? STATUS_OK : cannot_write(f, path, ENOMEM);
     }
 
+    // a file: where the path leads in the end
     w->path = target_of(path);
     int reason = w->path ? open_target(w) : ENOMEM;
     if (reason != 0) {

@@ -18,6 +18,8 @@ int edit_distance(const char *a, const char *b, int limit)
     size_t la = strlen(a), lb = strlen(b);
     int rows[3][LONGEST + 1];
     int *before = rows[0], *last = rows[1], *row = rows[2];
+
+    // words that nobody types are all equally far
     if (la > LONGEST || lb > LONGEST) {
         return limit;
     }

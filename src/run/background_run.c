@@ -5,8 +5,8 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "src/base/clock.h"
 #include "src/run/resume.h"
 
 struct background_run {
@@ -95,17 +95,7 @@ bool background_run_wait(background_run *c, double seconds)
 {
     assert(c != NULL && seconds >= 0);
 
-    // the instant at which waiting ends
-    struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    double whole = floor(seconds);
-    until.tv_sec += (time_t)whole;
-    until.tv_nsec += (long)(1e9 * (seconds - whole));
-    if (until.tv_nsec >= 1000000000) {
-        until.tv_sec++;
-        until.tv_nsec -= 1000000000;
-    }
-
+    struct timespec until = clock_after(seconds);
     pthread_mutex_lock(&c->lock);
     int late = 0;
     while (!c->over && late == 0) {

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "src/base/clock.h"
 #include "src/base/numbers.h"
 #include "src/run/corrected.h"
 #include "src/run/printed.h"
@@ -18,13 +18,6 @@ static void summary_start(summary *s)
     summary_init(s);
     s->impacts = s->separations = s->steps = s->max_penetration_m = 0;
     s->motor_work_J = s->energy_residual_J = 0;
-}
-
-static double seconds_of(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 status run_scenario(const scenario *s, bool keep_trace, run_result *result)
@@ -40,7 +33,7 @@ typedef struct time_used {
 
 static time_used clocks(void)
 {
-    return (time_used){seconds_of(CLOCK_THREAD_CPUTIME_ID), seconds_of(CLOCK_MONOTONIC)};
+    return (time_used){clock_seconds(CLOCK_THREAD_CPUTIME_ID), clock_seconds(CLOCK_MONOTONIC)};
 }
 
 static time_used since(time_used start)

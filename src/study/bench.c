@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "src/study/batch.h"
@@ -12,6 +11,7 @@
 #include "src/study/thesis_tables.h"
 #include "src/predict/linearised.h"
 #include "src/solve/contact_machine.h"
+#include "src/base/clock.h"
 #include "src/base/json.h"
 
 #define LEAST_TIME    0.01 // of one measurement [s]
@@ -22,9 +22,7 @@
 
 double bench_computing_time(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 double bench_seconds_per_call(status (*work)(void *context), void *context, double least,
@@ -392,13 +390,6 @@ static void make_batch_run(void *context, size_t i, scenario *made)
     made->parameters.motor.voltage = 0.5 + (double)i / BATCH_RUNS;
 }
 
-static double clock_on_the_wall(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 // Time steps of all runs together for a second by the clock, on as many threads as processors.
 static status measure_batch(double *value, fault *f)
 {
@@ -413,10 +404,10 @@ static status measure_batch(double *value, fault *f)
     }
 
     // all of it, by the clock
-    double start = clock_on_the_wall(), steps = 0;
+    double start = clock_seconds(CLOCK_MONOTONIC), steps = 0;
     int threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     code = batch_run(make_batch_run, &s, BATCH_RUNS, threads, summaries);
-    double elapsed = clock_on_the_wall() - start;
+    double elapsed = clock_seconds(CLOCK_MONOTONIC) - start;
 
     // the steps that were made
     for (int i = 0; i < BATCH_RUNS && code == STATUS_OK; i++) {

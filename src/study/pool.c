@@ -4,7 +4,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "src/base/clock.h"
 
 #define TICK_INTERVAL 0.1 // [s]
 
@@ -56,6 +57,8 @@ static void *work_on_pieces(void *argument)
     pool *p = self->pool;
     const pool_work *w = p->work;
     size_t piece;
+
+    // computing goes without the lock
     pthread_mutex_lock(&p->mutex);
     while (next_piece(p, &piece)) {
         pthread_mutex_unlock(&p->mutex);
@@ -81,14 +84,7 @@ static void *work_on_pieces(void *argument)
 // and nothing is left.
 static bool fetch_finished(pool *p, bool stop)
 {
-    struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    until.tv_nsec += (long)(1e9 * TICK_INTERVAL);
-    if (until.tv_nsec >= 1000000000) {
-        until.tv_sec++;
-        until.tv_nsec -= 1000000000;
-    }
-
+    struct timespec until = clock_after(TICK_INTERVAL);
     pthread_mutex_lock(&p->mutex);
     p->stop = p->stop || stop;
     int waited = 0;
@@ -107,13 +103,6 @@ static bool fetch_finished(pool *p, bool stop)
     return more;
 }
 
-static double monotonic_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static bool asked_to_stop(const pool_work *w)
 {
     return w->stop != NULL && *w->stop;
@@ -124,7 +113,7 @@ static status collect_results(pool *p, fault *f)
 {
     const pool_work *w = p->work;
     status code = STATUS_OK;
-    double ticked = monotonic_seconds();
+    double ticked = clock_seconds(CLOCK_MONOTONIC);
     for (bool more = true; more;) {
         more = fetch_finished(p, code != STATUS_OK || asked_to_stop(w));
         for (int i = 0; i < p->taken.count && code == STATUS_OK; i++) {
@@ -133,7 +122,7 @@ static status collect_results(pool *p, fault *f)
         }
 
         // a tick now and then, and one at the end
-        double now = monotonic_seconds();
+        double now = clock_seconds(CLOCK_MONOTONIC);
         if (code == STATUS_OK && w->tick != NULL && (!more || now - ticked >= TICK_INTERVAL)) {
             code = w->tick(w->context, !more, f);
             ticked = now;

@@ -25,6 +25,7 @@ static status find_parameter(const sweep *s, sweep_axis *axis, const char *path,
         return STATUS_BAD_ARGUMENT;
     }
 
+    // texts have no values between
     if (sweep_axis_parameter(axis)->type == PARAMETER_TEXT) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "%s is a text, only numbers and words are varied",
                          path);
@@ -107,6 +108,7 @@ static status draw_latin(sweep *s, random_generator *g, fault *f)
 // As many as were asked for, or as the grid has.
 static status count_runs(sweep *s, size_t runs, fault *f)
 {
+    // drawn ones: as many as were asked for
     if (s->sampling != SWEEP_GRID) {
         if (runs < 1 || runs > SWEEP_MOST_RUNS) {
             return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -149,6 +151,7 @@ static status draw_values(sweep *s, fault *f)
         return fault_no_memory(f);
     }
 
+    // the same seed gives the same values
     random_seed(&g, s->seed);
     if (s->sampling == SWEEP_LATIN) {
         return draw_latin(s, &g, f);
@@ -211,6 +214,7 @@ static status check_combinations(const sweep *s, fault *f)
                                            i > 0 ? ", " : "",
                                            sweep_axis_parameter(&s->axes[i])->path, text);
             }
+
             return fault_set_at(f, STATUS_BAD_ARGUMENT, why.path, "run %zu (%s): %.400s", run + 1,
                                 values, why.text);
         }

@@ -77,6 +77,7 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
     }
     axis->count = n;
 
+    // a range may leave what the parameter allows at either end
     for (size_t i = 0; i < n; i++) {
         parameters scratch = {0};
         axis->values[i] = range_point(axis, i, n);
@@ -85,6 +86,7 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
             return code;
         }
 
+        // whole numbers too close together
         if (i > 0 && axis->values[i] == axis->values[i - 1]) {
             char text[128];
             sweep_axis_format(axis, axis->values[i], text, sizeof text);

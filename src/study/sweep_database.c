@@ -59,6 +59,8 @@ status database_recognise(sweep_store *store, bool *empty, fault *f)
     long long tables, mark = 0, layout = 0;
     status code = database_query_number(store, "SELECT count(*) FROM sqlite_master", &tables, f);
     *empty = tables == 0;
+
+    // one that holds something must hold a sweep
     if (code == STATUS_OK && !*empty) {
         code = database_query_number(store, "PRAGMA application_id", &mark, f);
         code = code == STATUS_OK ? database_query_number(store, "PRAGMA user_version", &layout, f)
@@ -78,6 +80,7 @@ static status create_run_table(sweep_store *store, fault *f)
     sqlite3_str *sql = sqlite3_str_new(store->database);
     sqlite3_str_appendall(sql, "CREATE TABLE run (run INTEGER PRIMARY KEY");
 
+    // what is varied
     for (int i = 0; i < s->axis_count; i++) {
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
         bool words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN;
@@ -87,12 +90,14 @@ static status create_run_table(sweep_store *store, fault *f)
                                                               : "REAL");
     }
 
+    // how it ended, and with what numbers
     sqlite3_str_appendall(sql, ", status TEXT NOT NULL, message TEXT NOT NULL");
     for (int i = 0; i < summary_count; i++) {
         sqlite3_str_appendf(sql, ", \"%w\" REAL", summary_table[i].key);
     }
     sqlite3_str_appendall(sql, ")");
 
+    // NULL without memory
     char *text = sqlite3_str_finish(sql);
     status code = text ? database_execute(store, text, f) : fault_no_memory(f);
     sqlite3_free(text);
@@ -115,6 +120,8 @@ status database_prepare_insert(sweep_store *store, sqlite3_stmt **insert, fault 
 {
     assert(store != NULL && store->sweep != NULL && insert != NULL);
     sqlite3_str *sql = sqlite3_str_new(store->database);
+
+    // as many question marks as columns
     int columns = RUN_FIRST_VALUE + store->sweep->axis_count + RUN_OUTCOME_COLUMNS + summary_count;
     sqlite3_str_appendall(sql, "INSERT INTO run VALUES (?");
     for (int i = 1; i < columns; i++) {
@@ -148,6 +155,7 @@ status database_check_columns(sweep_store *store, fault *f)
     status code = database_prepare(store, &rows, "SELECT * FROM run", f);
     int found = code == STATUS_OK ? sqlite3_column_count(rows) : 0;
 
+    // name by name, in their order
     for (int i = 0; i < columns && code == STATUS_OK; i++) {
         const char *name = i < found ? sqlite3_column_name(rows, i) : NULL;
         if (name == NULL || strcmp(name, column_name(s, i)) != 0) {
@@ -157,6 +165,8 @@ status database_check_columns(sweep_store *store, fault *f)
                              column_name(s, i));
         }
     }
+
+    // and none beyond
     if (code == STATUS_OK && found != columns) {
         code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' has %d columns of runs, expected %d",
                          store->path, found, columns);

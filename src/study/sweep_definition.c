@@ -17,11 +17,13 @@ __attribute__((format(printf, 3, 4))) static void define(definition *d, const ch
     va_list list;
     definition_line *line = &d->lines[d->count];
 
+    // more lines than any sweep has count as too much
     if (d->count == sizeof d->lines / sizeof d->lines[0]) {
         d->out_of_memory = true;
         return;
     }
 
+    // a value may be long: it has memory of its own
     snprintf(line->key, sizeof line->key, "%s", key);
     va_start(list, format);
     line->value = decimal_vtext(format, list);
@@ -54,6 +56,7 @@ static void define_parameters(definition *d, const sweep *s)
             continue;
         }
 
+        // its value, and that it was given
         parameter_format(p, i, text, sizeof text);
         define(d, parameter_table[i].path, "%s", text);
         if (p->set[i]) {
@@ -76,6 +79,7 @@ static void define_script(definition *d, const scenario *s)
         return;
     }
 
+    // action by action, in their order
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
         bool push = a->kind == ACTION_PUSH;
@@ -87,6 +91,7 @@ static void define_script(definition *d, const scenario *s)
                 push ? "push" : parameter_table[a->parameter].path, text_valued ? a->text : value);
     }
 
+    // closing it shows whether there was memory
     if (fclose(stream) == 0) {
         define(d, "script", "%s", text);
     } else {
@@ -143,6 +148,8 @@ status definition_read(sweep_store *store, definition *d, fault *f)
     assert(store != NULL && d != NULL);
     sqlite3_stmt *rows;
     memset(d, 0, sizeof *d);
+
+    // as it was written, line by line
     status code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
     while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
         const char *key = (const char *)sqlite3_column_text(rows, 0);
@@ -154,6 +161,8 @@ status definition_read(sweep_store *store, definition *d, fault *f)
         }
         define(d, key, "%s", value);
     }
+
+    // a damaged file shows at the end
     if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
         code = database_fault(store, f);
     }
@@ -164,6 +173,8 @@ status definition_write(sweep_store *store, const definition *d, fault *f)
 {
     assert(store != NULL && d != NULL);
     sqlite3_stmt *insert;
+
+    // in the order in which they were defined
     status code =
         database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
 

@@ -38,12 +38,15 @@ static status shape_of(const char *path, const definition *d, sweep *shape, faul
     char key[16];
     *shape = (sweep){.run_count = runs != NULL ? strtoull(runs, NULL, 10) : 0};
 
+    // each names the parameter before its equals sign
     for (int i = 0; i < SWEEP_MOST_AXES; i++) {
         char name[64] = "";
         snprintf(key, sizeof key, "vary %d", i + 1);
         if ((varied = definition_value(d, key)) == NULL) {
             break;
         }
+
+        // which this version must know
         snprintf(name, sizeof name, "%.*s", (int)strcspn(varied, "="), varied);
         shape->axes[i].parameter = parameter_find(name);
         if (shape->axes[i].parameter < 0) {
@@ -106,6 +109,7 @@ static status add_rows(merging *m, sweep_store *part, fault *f)
         return code;
     }
 
+    // row by row; only the last step may find nothing more
     int step = SQLITE_DONE;
     code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
     while (code == STATUS_OK && (step = sqlite3_step(rows)) == SQLITE_ROW) {
@@ -125,6 +129,7 @@ static status add_part(merging *m, char *path, bool first, fault *f)
     sweep_store part;
     definition *d = first ? &m->definition : &own;
 
+    // its definition, then its rows
     status code = open_part(&part, path, d, f);
     if (code == STATUS_OK) {
         code = first ? begin(m, path, f) : definition_compare(path, d, &m->definition, f);
@@ -143,12 +148,15 @@ static status write_database(merging *m, const char *output, fault *f)
     if (code != STATUS_OK) {
         return code;
     }
+
+    // its bytes, as a file would have them
     sqlite3_int64 size = 0;
     unsigned char *bytes = sqlite3_serialize(m->store.database, "main", &size, 0);
     if (bytes == NULL) {
         return fault_no_memory(f);
     }
 
+    // into the file
     whole_file file;
     code = whole_file_open(&file, output, f);
     if (code == STATUS_OK) {
@@ -167,6 +175,7 @@ status sweep_merge(char *const *files, int count, const char *output, sweep_merg
     status code = STATUS_OK;
     *merged = (sweep_merged){0};
 
+    // the first part decides what the others must be
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         code = add_part(&m, files[i], i == 0, f);
     }

@@ -81,6 +81,7 @@ status sweep_store_put(sweep_store *store, size_t run, const summary *result, fa
         store->in_transaction = true;
     }
 
+    // the row, within a transaction that is committed every now and then
     bind_row(store, run, result);
     int done = sqlite3_step(store->insert);
     status code = done == SQLITE_DONE ? STATUS_OK : database_fault(store, f);
@@ -134,6 +135,8 @@ static void write_headings(csv_writer *csv, const sweep *s)
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
         csv_heading(csv, info->path, info->unit);
     }
+
+    // how it ended, and with what numbers
     csv_heading(csv, "status", "");
     csv_heading(csv, "message", "");
     for (int i = 0; i < summary_count; i++) {

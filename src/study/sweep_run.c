@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "src/base/clock.h"
 #include "src/run/run.h"
 #include "src/study/sweep_rows.h"
 
@@ -20,13 +20,6 @@ typedef struct sweep_execution {
     sweep_progress *progress;
     double start, committed; // instants by the clock [s]
 } sweep_execution;
-
-static double seconds(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // The summary of a run that could not begin.
 static void summarise_refusal(summary *s, const fault *why)
@@ -46,7 +39,8 @@ static void compute_run(void *context, size_t run, void *scratch, void *result)
     (void)scratch;
 
     // the times of this thread, deriving the scenario included
-    const double start = seconds(CLOCK_MONOTONIC), start_cpu = seconds(CLOCK_THREAD_CPUTIME_ID);
+    const double start = clock_seconds(CLOCK_MONOTONIC),
+                 start_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     if (sweep_scenario(e->sweep, run, &derived, &f) == STATUS_OK) {
         run_result computed;
         run_scenario(&derived, false, &computed);
@@ -55,8 +49,8 @@ static void compute_run(void *context, size_t run, void *scratch, void *result)
     } else {
         summarise_refusal(s, &f);
     }
-    s->cpu_time_s = seconds(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
-    s->wall_time_s = seconds(CLOCK_MONOTONIC) - start;
+    s->cpu_time_s = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
+    s->wall_time_s = clock_seconds(CLOCK_MONOTONIC) - start;
 }
 
 static status store_run(void *context, size_t run, const void *result, fault *f)
@@ -67,6 +61,8 @@ static status store_run(void *context, size_t run, const void *result, fault *f)
         // says nothing about the scenario: the run has to be done again
         return fault_set(f, STATUS_NO_MEMORY, "run %zu: %s", run + 1, s->message);
     }
+
+    // stored, and counted once it is
     status code = sweep_store_put(e->store, run, s, f);
     if (code == STATUS_OK) {
         e->progress->done++;
@@ -78,7 +74,7 @@ static status store_run(void *context, size_t run, const void *result, fault *f)
 
 static void report(const sweep_execution *e)
 {
-    e->progress->elapsed_s = seconds(CLOCK_MONOTONIC) - e->start;
+    e->progress->elapsed_s = clock_seconds(CLOCK_MONOTONIC) - e->start;
     if (e->options->report != NULL) {
         e->options->report(e->options->context, e->progress);
     }
@@ -89,9 +85,9 @@ static status commit_and_report(void *context, bool over, fault *f)
 {
     sweep_execution *e = context;
     status code = STATUS_OK;
-    if (over || seconds(CLOCK_MONOTONIC) - e->committed >= COMMIT_INTERVAL) {
+    if (over || clock_seconds(CLOCK_MONOTONIC) - e->committed >= COMMIT_INTERVAL) {
         code = sweep_store_commit(e->store, f);
-        e->committed = seconds(CLOCK_MONOTONIC);
+        e->committed = clock_seconds(CLOCK_MONOTONIC);
     }
     if (!over) {
         report(e); // the end is reported in any case, see sweep_run
@@ -138,7 +134,7 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
     assert(options != NULL && options->jobs >= 1 && options->jobs <= SWEEP_MOST_JOBS);
     assert(options->share.part >= (options->share.parts > 0) &&
            options->share.part <= options->share.parts);
-    double now = seconds(CLOCK_MONOTONIC);
+    double now = clock_seconds(CLOCK_MONOTONIC);
     sweep_execution e = {s, store, options, progress, .start = now, .committed = now};
     *progress = (sweep_progress){.total = s->run_count};
 
@@ -147,6 +143,8 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
     if (present == NULL) {
         return fault_no_memory(f);
     }
+
+    // the rest is computed
     size_t stored;
     status code = sweep_store_present(store, present, &stored, f);
     if (code == STATUS_OK) {

@@ -36,6 +36,7 @@ static status adopt(sweep_store *store, fault *f)
         return code;
     }
 
+    // a new file is given the definition, another one must have the same
     definition_init(&now, store->sweep);
     if (now.out_of_memory) {
         code = fault_no_memory(f);
@@ -128,6 +129,8 @@ void sweep_store_close(sweep_store *store)
     if (store->in_transaction) {
         sweep_store_commit(store, NULL);
     }
+
+    // the database before the lock that guards it
     sqlite3_finalize(store->insert);
     sqlite3_close(store->database);
     if (store->lock >= 0) {

@@ -10,6 +10,7 @@ static status read_rows(sqlite3_stmt *rows, double **x, double **y, size_t *coun
 {
     size_t room = 0;
     while (sqlite3_step(rows) == SQLITE_ROW) {
+        // both grow together; what was had is kept for the caller to free
         if (*count == room) {
             room = room > 0 ? 2 * room : 64;
             double *more_x = realloc(*x, room * sizeof **x);
@@ -20,6 +21,7 @@ static status read_rows(sqlite3_stmt *rows, double **x, double **y, size_t *coun
                 return fault_no_memory(f);
             }
         }
+
         (*x)[*count] = sqlite3_column_double(rows, 0);
         (*y)[(*count)++] = sqlite3_column_double(rows, 1);
     }
@@ -43,6 +45,7 @@ static bool has_column(sqlite3 *database, const char *key)
 static status query(sqlite3 *database, const char *path, const char *x_key, const char *y_key,
                     sqlite3_stmt **rows, fault *f)
 {
+    // both columns must be there
     const char *const keys[] = {x_key, y_key};
     for (int i = 0; i < 2; i++) {
         if (!has_column(database, keys[i])) {
@@ -51,6 +54,8 @@ static status query(sqlite3 *database, const char *path, const char *x_key, cons
                              keys[i]);
         }
     }
+
+    // runs that have both numbers
     char *sql = sqlite3_mprintf("SELECT \"%w\", \"%w\" FROM run WHERE typeof(\"%w\") IN ('real', "
                                 "'integer') AND typeof(\"%w\") IN ('real', 'integer') ORDER BY 1",
                                 x_key, y_key, x_key, y_key);
@@ -69,6 +74,8 @@ status sweep_table_read(const char *path, const char *x_key, const char *y_key, 
     sqlite3_stmt *rows = NULL;
     *x = *y = NULL;
     *count = 0;
+
+    // read only: nothing is created where no file is
     status code = STATUS_OK;
     if (sqlite3_open_v2(path, &database, SQLITE_OPEN_READONLY, NULL) != SQLITE_OK) {
         code = fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", path,
@@ -80,6 +87,8 @@ status sweep_table_read(const char *path, const char *x_key, const char *y_key, 
     if (code == STATUS_OK) {
         code = read_rows(rows, x, y, count, f);
     }
+
+    // all or nothing
     sqlite3_finalize(rows);
     sqlite3_close(database);
     if (code != STATUS_OK) {

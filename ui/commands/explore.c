@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "src/base/clock.h"
 #include "ui/explorer/commands.h"
 #include "ui/explorer/keys.h"
 #include "ui/explorer/mouse.h"
@@ -17,13 +17,6 @@
 #define LONGEST_FRAME 0.25       // a longer pause (suspended, dragged about) counts as this [s]
 
 static const char first_scenario[] = "corrected/first-impact";
-
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // --- without a terminal -----------------------------------------------------------------------
 
@@ -123,11 +116,11 @@ static void run_on_terminal(explorer *ex)
 {
     screen s = {0};
     bool dirty = true, leave = false;
-    double drawn = 0, last = seconds_now();
+    double drawn = 0, last = clock_seconds(CLOCK_MONOTONIC);
 
     while (!ex->state.quit && !leave) {
         // draw, though not more often than frames
-        double now = seconds_now();
+        double now = clock_seconds(CLOCK_MONOTONIC);
         if (dirty && now - drawn >= FRAME) {
             show(ex, &s);
             drawn = now;
@@ -136,9 +129,9 @@ static void run_on_terminal(explorer *ex)
 
         bool waits = dirty || explorer_is_busy(ex);
         // a picture that took longer than a frame leaves nothing to wait for
-        double left = fmax(0, dirty ? FRAME - (seconds_now() - drawn) : FRAME);
+        double left = fmax(0, dirty ? FRAME - (clock_seconds(CLOCK_MONOTONIC) - drawn) : FRAME);
         terminal_input in = terminal_wait(waits ? left : -1);
-        now = seconds_now();
+        now = clock_seconds(CLOCK_MONOTONIC);
 
         // what was computed, and time going on
         dirty |= explorer_follow(ex);

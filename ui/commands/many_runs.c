@@ -2,25 +2,25 @@
 
 #include <assert.h>
 #include <math.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "src/base/clock.h"
 
 enum { BAR_LENGTH = 24 };
 
 static volatile sig_atomic_t signal_caught;
-static volatile time_t time_caught;
+static volatile double time_caught; // [s]
 
 // The first signal lets the runs in hand finish; one that comes a second or more later ends the
 // program. One that follows at once is the same again: timeout and some shells send it both to the
 // program and to its group.
 static void catch_signal(int number)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    const double now = clock_seconds(CLOCK_MONOTONIC);
     if (signal_caught == 0) {
         signal_caught = number;
-        time_caught = now.tv_sec;
-    } else if (now.tv_sec > time_caught + 1) {
+        time_caught = now;
+    } else if (now > time_caught + 1) {
         signal(number, SIG_DFL);
         raise(number);
     }
@@ -74,6 +74,7 @@ void many_runs_progress(void *context, const sweep_progress *p)
     }
     bar[BAR_LENGTH] = '\0';
 
+    // at the rate so far
     if (p->done_now > 0) {
         char time[24];
         double rate = (double)p->done_now / p->elapsed_s;
@@ -81,6 +82,7 @@ void many_runs_progress(void *context, const sweep_progress *p)
         snprintf(left, sizeof left, ", %s left", time);
     }
 
+    // failures are told at once
     if (p->failed > 0) {
         snprintf(failed, sizeof failed, ", %zu failed", p->failed);
     }

@@ -3,8 +3,9 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "src/base/clock.h"
 
 #define FIRST_NOTE 1.0 // after this a run is worth a word [s]
 #define NEXT_NOTE  0.2 // [s]
@@ -24,22 +25,12 @@ static void on_interrupt(int number)
     atomic_store_explicit(&watched.stop, true, memory_order_relaxed);
 }
 
-static struct timespec time_after(double seconds)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_REALTIME, &t);
-    t.tv_nsec += (long)(1e9 * seconds);
-    t.tv_sec += t.tv_nsec / 1000000000;
-    t.tv_nsec %= 1000000000;
-    return t;
-}
-
 // Tells now and then how far the run is, and takes its words away at the end.
 static void *tick(void *argument)
 {
     ticker *t = argument;
     bool told = false;
-    struct timespec next = time_after(FIRST_NOTE);
+    struct timespec next = clock_after(FIRST_NOTE);
     pthread_mutex_lock(&t->lock);
 
     // a note now and then until the run is over
@@ -53,7 +44,7 @@ static void *tick(void *argument)
                 t->duration);
         fflush(stderr);
         told = true;
-        next = time_after(NEXT_NOTE);
+        next = clock_after(NEXT_NOTE);
     }
 
     pthread_mutex_unlock(&t->lock);
@@ -75,12 +66,16 @@ status run_with_progress(const scenario *s, bool keep_trace, run_result *result)
     ticker t = {.duration = s->parameters.run.duration};
     struct sigaction act = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND}, before;
     sigset_t interrupt, mask;
+    pthread_condattr_t steady;
     pthread_t thread;
 
     // an interrupt ends the run in order; where it is ignored it stays so
     atomic_store(&watched.stop, false);
     pthread_mutex_init(&t.lock, NULL);
-    pthread_cond_init(&t.ended, NULL);
+    pthread_condattr_init(&steady);
+    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC);
+    pthread_cond_init(&t.ended, &steady);
+    pthread_condattr_destroy(&steady);
     sigaction(SIGINT, &act, &before);
     if (before.sa_handler == SIG_IGN) {
         sigaction(SIGINT, &before, NULL);

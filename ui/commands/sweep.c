@@ -39,13 +39,19 @@ static int read_share(const arguments *a, sweep_share *share)
 {
     char rest;
     *share = (sweep_share){0, 0};
+
+    // the whole sweep
     if (a->part == NULL) {
         return EXIT_DONE;
     }
+
+    // which part of how many
     if (sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 || share->part < 1 ||
         share->parts < share->part) {
         return complain("--part '%.40s' is no part, expected K/N with K from 1 to N", a->part);
     }
+
+    // a part alone can only be kept
     if (a->db == NULL) {
         return complain("--part %s keeps its runs in a database, expected --db FILE.sqlite",
                         a->part);
@@ -101,6 +107,7 @@ static int compute(const sweep_order *o, sweep_store *store)
         many_runs_clear_progress();
     }
 
+    // what it came to: an error, a stop, the whole sweep or a part of it
     if (code != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -128,6 +135,7 @@ static int sweep_command_run(const arguments *a)
         return code;
     }
 
+    // the rows, in the file or in memory
     if (sweep_store_open(&store, a->db, &o.sweep, &f) == STATUS_OK) {
         code = compute(&o, store);
         sweep_store_close(store);

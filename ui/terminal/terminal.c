@@ -9,7 +9,6 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <termios.h>
-#include <time.h>
 #include <unistd.h>
 #include <wchar.h>
 
@@ -17,6 +16,7 @@
 #include <curses.h>
 #include <term.h>
 
+#include "src/base/clock.h"
 #include "ui/terminal/escape_sequence.h"
 #include "ui/terminal/ink_colours.h"
 #include "ui/terminal/paint.h"
@@ -317,13 +317,6 @@ static int key_of_curses(int key)
     return 0;
 }
 
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 // Goes on with a sequence by the next character. False if that is a key of its own; *in is then the
 // escape before it, if that stood alone.
 static bool take_sequence(wint_t key, int kind, terminal_input *in)
@@ -331,10 +324,11 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
     bool escaped = tty.sequence.state == SEQUENCE_ESCAPED;
     sequence_result result = SEQUENCE_OTHER_KEY;
 
-    if (kind == OK && (escaped || seconds_now() - tty.sequence_time < SEQUENCE_TIME)) {
+    if (kind == OK &&
+        (escaped || clock_seconds(CLOCK_MONOTONIC) - tty.sequence_time < SEQUENCE_TIME)) {
         result = escape_sequence_take(&tty.sequence, (int)key, &in->pointer);
     }
-    tty.sequence_time = seconds_now();
+    tty.sequence_time = clock_seconds(CLOCK_MONOTONIC);
 
     // a key after the escape: it was no sequence, and the escape a key of its own
     if (result == SEQUENCE_OTHER_KEY) {
