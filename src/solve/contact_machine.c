@@ -96,6 +96,8 @@ static double violation(const arm *a, const motion *m, const double *state, bool
 {
     contact_state now = contact_state_of(state);
     double worst = 0;
+
+    // the wall: no tension, no acceleration into it
     if (m->wall_gives) {
         worst = 0;
     } else if (now.contact) {
@@ -103,6 +105,8 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     } else if (touching) {
         worst = fmax(worst, -state[SLOT_GAP_ACCELERATION]);
     }
+
+    // the hub: within stiction, or sliding the way it was taken to
     if (now.friction == HUB_STICK) {
         worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction);
     } else if (hub_rests) {
@@ -125,7 +129,9 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     double hub_velocity = state_velocities(m, state)[0];
     bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
     hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
+
     int choices = hub_rests ? 3 : 1, ways = touching && !m->wall_gives ? 2 : 1;
+
     // what the event itself has ended would violate something an instant later: what it left for is
     // taken although rounding speaks against it
     int preferred = event == MOTION_RELEASE ? choices : event == MOTION_SLIP ? 2 : 0;
@@ -210,11 +216,14 @@ static void impact(const arm *a, motion *m, motion_report *report)
         report->chatter = e > 0;
         e = 0;
     }
+
+    // the jump it would be in an instant
     impact_result result = impact_velocity_increments(a, m->links, q, w, e, increment);
     report->speed = result.speed;
     report->impulse = result.impulse;
     report->loss = result.loss;
     assert(!(result.loss < 0)); // 7
+
     if (motion_unresolved(a, m) && e == 0) {
         // the impact happens within the next step, whose own damping takes the loss (after Moreau)
         m->state[SLOT_CONTACT] = 1;

@@ -22,6 +22,7 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
     double from = lo.time, to = hi.time;
     double t = from + (to - from) * lo.at.value / (lo.at.value - hi.at.value);
     double width = to - from;
+
     for (int i = 0; i < MOST_ITERATIONS; i++) {
         if (!(t > from && t < to)) {
             t = 0.5 * (from + to);
@@ -32,11 +33,14 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
         } else {
             to = t;
         }
+
+        // it has settled, or the bracket has closed
         double next = t - g.value / g.slope;
         double resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
         if (fabs(next - t) <= resolution || to - from <= resolution) {
             return fmin(fmax(next, lo.time), hi.time);
         }
+
         // three steps that do not halve the bracket are followed by one that does
         if (i % 3 == 2) {
             next = to - from > 0.5 * width ? 0.5 * (from + to) : next;
@@ -58,6 +62,8 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
     if (fmin(lo.at.value, hi.at.value) > room) {
         return -1;
     }
+
+    // one root at most, or none that matters
     const bool falls = hi.at.value < 0;
     const bool steady = fmax(lo.at.slope, hi.at.slope) + bend * length / 2 < 0;
     const bool flat = cuts == 0 || room <= watch_tolerance(w);
@@ -65,6 +71,7 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
         return falls ? root_between(a, m, w, lo, hi) : -1;
     }
 
+    // each half by itself, the earlier one first
     double time = 0.5 * (lo.time + hi.time);
     point middle = {time, m->engine->look(a, m, w, time)};
     if (middle.at.value < 0) {
@@ -76,12 +83,16 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
 
 void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
 {
+    // an engine's own way
     if (m->engine->first_event != NULL) {
         m->engine->first_event(a, m, h, first, any);
         return;
     }
+
     *any = false;
     *first = WATCH_GAP;
+
+    // each function that is watched, as far as the first fall so far
     for (watch w = WATCH_GAP; w <= WATCH_STICTION; w++) {
         if (!watch_active(a, m, w)) {
             continue;
@@ -96,8 +107,7 @@ void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *a
     }
 }
 
-// --- the largest force
-// ----------------------------------------------------------------------------
+// --- the largest force -------------------------------------------------------------------------
 
 static void note_force(motion *m, point p)
 {
@@ -112,10 +122,14 @@ static void note_force(motion *m, point p)
 static point summit(const arm *a, const motion *m, point lo, point hi)
 {
     point top = lo.at.value > hi.at.value ? lo : hi;
+
     double resolution = 1e-9 * (hi.time - lo.time);
+
     for (int i = 0; i < MOST_ITERATIONS && hi.time - lo.time > resolution; i++) {
         double share = lo.at.slope / (lo.at.slope - hi.at.slope);
         share = i % 3 == 2 ? 0.5 : fmin(fmax(share, 1e-3), 1 - 1e-3);
+
+        // which side of the summit it is on
         double time = lo.time + share * (hi.time - lo.time);
         double last = top.time;
         top = (point){time, m->engine->force_at(a, m, time)};
@@ -142,12 +156,15 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts)
         fmax(lo.at.slope, hi.at.slope) < -change) {
         return;
     }
+
     if (cuts == 0) {
         if (lo.at.slope > 0 && hi.at.slope < 0) {
             note_force(m, summit(a, m, lo, hi));
         }
         return;
     }
+
+    // each half by itself
     double time = 0.5 * (lo.time + hi.time);
     point middle = {time, m->engine->force_at(a, m, time)};
     note_force(m, middle);
@@ -162,6 +179,8 @@ void dense_peak(const arm *a, motion *m, double h)
         m->engine->peak(a, m, h);
         return;
     }
+
+    // both ends, and what may rise between them
     point start = {0, m->engine->force_at(a, m, 0)}, end = {h, m->engine->force_at(a, m, h)};
     note_force(m, start);
     note_force(m, end);

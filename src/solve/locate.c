@@ -82,6 +82,7 @@ static double cubic_dip(double v0, double v1, double d0, double d1)
         return -1;
     }
     // derivative of the Hermite cubic: d0 + 2 b s + 3 c s^2
+
     double c = d0 + d1 - 2 * (v1 - v0), b = 3 * (v1 - v0) - 2 * d0 - d1;
     double root = sqrt(fmax(b * b - 3 * c * d0, 0));
     return b + root != 0 ? -d0 / (b + root) : -1;
@@ -92,7 +93,10 @@ static double cubic_dip(double v0, double v1, double d0, double d1)
 static bool watch_slopes(const arm *a, const motion *m, double h, watch w, double *d0, double *d1)
 {
     const double *state = m->state, *trial = m->trial;
+
     const int within = within_wall(m, state);
+
+    // the states carry the slopes of gap and hub velocity, a giving wall's law has its own
     if (w == WATCH_GAP) {
         double sign = within != 0 ? -1 : 1;
         *d0 = sign * state[SLOT_GAP_VELOCITY] * h;
@@ -128,10 +132,13 @@ static double cubic(double s, double v0, double v1, double d0, double d1)
 static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
 {
     double d0, d1;
+
     if (!watch_slopes(a, m, h, w, &d0, &d1)) {
         // near the limit of friction the middle of the step is worth a look
         return fmin(v0, v1) < 0.2 * a->motor.stiction ? 0.5 : -1;
     }
+
+    // the least value of the cubic, if it comes near zero
     double s = cubic_dip(v0, v1, d0, d1);
     if (s <= 1e-6 || s >= 1) { // a dip right at the start is the edge it starts from
         return -1;
@@ -144,9 +151,12 @@ static double suspected_dip(const arm *a, const motion *m, double h, watch w, do
 static double guess_crossing(const arm *a, const motion *m, double h, watch w, double v0, double v1)
 {
     double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
+
     if (!watch_slopes(a, m, h, w, &d0, &d1)) {
         return s;
     }
+
+    // false position, the end that stays halved
     for (int i = 0; i < 12; i++) {
         double v = cubic(s, v0, v1, d0, d1);
         if (v > 0) {
@@ -168,6 +178,7 @@ static status narrow(const arm *a, motion *m, watch w, double s, double lo, doub
     // the velocities of an implicit step are differences of angles over it: it must not be tiny
     const double least = motion_unresolved(a, m) ? 1e-6 * m->nominal_step : LOCATION_TIME;
     const double resolution = fmax(least, LOCATION_TIME * m->state[SLOT_TIME]);
+
     double evaluated = -1;
     for (int i = 0; i < 200 && *hi - lo > resolution; i++) {
         s = fmin(fmax(s, lo + 0.5 * resolution), *hi - 0.5 * resolution);
@@ -176,6 +187,8 @@ static status narrow(const arm *a, motion *m, watch w, double s, double lo, doub
             return failed;
         }
         evaluated = s;
+
+        // the bracket, and the end that the new point replaces
         double v = watch_value(a, m, m->trial, w), other, v_other, old, v_old;
         if (v > 0) {
             old = lo, v_old = v_lo, other = *hi, v_other = v_hi;
@@ -184,6 +197,8 @@ static status narrow(const arm *a, motion *m, watch w, double s, double lo, doub
             old = *hi, v_old = v_hi, other = lo, v_other = v_lo;
             *hi = s, v_hi = v;
         }
+
+        // where the three values let an inverse parabola go, else the middle
         double xi = (s - other) / (old - other), phi = (v - v_other) / (v_old - v_other);
         double t = 0.5;
         if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
@@ -204,6 +219,8 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
     double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
     double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(a, m, *h, w, v0, v1) : 0.5 * *h;
     double lo = 0, hi = *h, tolerance = watch_tolerance(w);
+
+    // admissible at the end: only a dip in between can matter
     *found = false;
     if (v1 >= -tolerance) {
         double dip = v0 > 0 && v1 > 0 ? suspected_dip(a, m, *h, w, v0, v1) : -1;
@@ -218,8 +235,9 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
         hi = dip * *h;
         guess = 0.5 * hi;
     }
+
+    // it starts on the edge (a release, a breakaway): find where it is well admissible
     if (v0 <= tolerance) {
-        // it starts on the edge (a release, a breakaway): find where it is well admissible
         double s = hi;
         for (int i = 0; i < 20; i++) {
             s /= 2;
@@ -238,8 +256,11 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
         }
         guess = 0.5 * (lo + hi);
     }
+
+    // narrowed to the width that time resolves
     *found = true;
     status s = narrow(a, m, w, guess, lo, v0, &hi, v1);
+
     // an unresolved impact happens within its step: nothing is located inside its first part
     double least = fmin(*h, UNRESOLVED_IMPACT * m->nominal_step);
     bool within_impact = m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
@@ -277,6 +298,8 @@ static status locate_depth(const arm *a, motion *m, double h)
     if (!(m->wall_gives && v0 > 0 && v1 < 0)) {
         return STATUS_OK;
     }
+
+    // false position on the rate, the end that stays halved
     memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
     for (int i = 0; i < MOST_LOOKS && hi - lo > 1e-9 * h; i++) {
         double s = lo + (hi - lo) * v0 / (v0 - v1); // false position, the end that stays halved
@@ -295,6 +318,8 @@ static status locate_depth(const arm *a, motion *m, double h)
             break;
         }
     }
+
+    // the step's end, as it was
     memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
     return STATUS_OK;
 }
@@ -305,6 +330,8 @@ status locate_peak(const arm *a, motion *m, double h)
     if (looked != STATUS_OK) {
         return looked;
     }
+
+    // the ends
     double f0 = m->state[SLOT_FORCE], f1 = m->trial[SLOT_FORCE], t0 = m->state[SLOT_TIME];
     if (f0 > m->pulse_peak) {
         m->pulse_peak = f0;
@@ -314,6 +341,8 @@ status locate_peak(const arm *a, motion *m, double h)
         m->pulse_peak = f1;
         m->pulse_peak_time = t0 + h;
     }
+
+    // the summit of the parabola through both ends and the mean, if there is one inside
     double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
                    state_quadratures(m, m->state)[QUADRATURE_FORCE]) /
                   h;
@@ -325,6 +354,8 @@ status locate_peak(const arm *a, motion *m, double h)
     if (top <= m->pulse_peak * (1 + 1e-12)) {
         return STATUS_OK;
     }
+
+    // closer and closer around it, the parabola through three steps
     memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
     for (double width = h / 8; width > h / 1000; width /= 16) {
         double f[3];
@@ -347,6 +378,7 @@ status locate_peak(const arm *a, motion *m, double h)
         double move = 0.5 * (f[0] - f[2]) / second;
         s += fmin(fmax(move, -1), 1) * width;
     }
+
     memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
     return STATUS_OK;
 }

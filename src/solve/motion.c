@@ -19,8 +19,12 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
 {
     double rho = method->spectral_radius;
     m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall);
+
+    // how many explicit substeps a step would take
     int most = a->fastest_rate > a->highest_frequency ? MOST_SUBSTEPS_DAMPED : MOST_SUBSTEPS;
     bool too_stiff = a->fastest_rate * method->step > EXPLICIT_RESOLUTION * most;
+
+    // the engine, and its coefficients
     if (method->name == METHOD_NEWMARK) {
         m->engine = &newmark_engine;
         m->beta = method->beta;
@@ -54,6 +58,7 @@ motion *motion_create(const arm *a, const method_parameters *method)
     m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT;
     choose_engine(a, m, method);
 
+    // its storage
     size_t size = (size_t)m->size, n = (size_t)a->dof, links = (size_t)a->links;
     size_t sweeps = links * m->engine->link_scratch;
     m->state = calloc(size, sizeof(double));
@@ -64,6 +69,7 @@ motion *motion_create(const arm *a, const method_parameters *method)
     m->scratch = calloc(4 * n, sizeof(double));
     m->links = calloc(links, sizeof(chain_link));
     m->sweeps = sweeps > 0 ? calloc(1, sweeps) : NULL;
+
     const engine *e = m->engine;
     size_t memory = e->memory_for != NULL ? e->memory_for(a) : e->memory_size;
     m->memory = memory > 0
@@ -72,6 +78,8 @@ motion *motion_create(const arm *a, const method_parameters *method)
     if (m->memory != NULL) {
         memset(m->memory, 0, memory);
     }
+
+    // all of it or none
     if (!m->state || !m->trial || !m->between || !m->stages || !m->scratch || !m->links ||
         (sweeps > 0 && !m->sweeps) || (memory > 0 && !m->memory)) {
         motion_destroy(m);

@@ -135,14 +135,18 @@ static void leave_edge(polynomial *p, double value)
 {
     int edge = 0;
     double limit = value;
+
+    // how many coefficients are
     while (edge < 3 && fabs(p->terms[edge]) <= limit) {
         limit = edge == 0 ? EDGE_RATE : EDGE_MORE;
         edge++;
     }
+
     // falling to its edge rather than from it, it is left as it is: its root is what matters
     if (edge > 0 && p->terms[edge] < 0 && p->terms[0] > 0) {
         return;
     }
+
     if (edge > 0) {
         memmove(p->terms, p->terms + edge, (size_t)(p->count - edge) * sizeof(double));
         memset(p->terms + p->count - edge, 0, (size_t)edge * sizeof(double));
@@ -195,6 +199,7 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
         double reach;
     } orders[] = {{8, 0.1}, {10, 0.25}, {12, 0.5}, {14, 0.8}};
 
+    // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
     const double *w = state_velocities(m, m->state);
     double rate = fmax(a->highest_frequency, 1e-3);
     for (int i = 0; i < m->dof; i++) {
@@ -204,6 +209,8 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
     if (a->fastest_decay * wanted > LONGEST_DECAY) {
         wanted = LONGEST_DECAY / a->fastest_decay;
     }
+
+    // and the lowest order that reaches so far
     *order = TAYLOR_MOST;
     for (int i = 3; i >= 0; i--) {
         *order = wanted * rate <= orders[i].reach ? orders[i].order : *order;
@@ -302,14 +309,19 @@ static void measure_gap(const arm *a, const motion *m, double *state)
 {
     const double *q = state_angles(m, state) + a->first, *w = state_velocities(m, state) + a->first;
     const double l = a->link_length;
+
+    // where the tip is, and how it moves
     double s1, c1, s2, c2;
     inline_sincos(q[0], &s1, &c1);
     inline_sincos(q[1], &s2, &c2);
     const double vx = -l * s1 * w[0], vy = l * c1 * w[0];
     wall_contact at = wall_contact_at(&a->wall, l, l * c1, l * s1, vx, vy, c2, s2, w[1]);
+
     state[SLOT_GAP] = -at.penetration;
     const double lever = wall_last_lever(&at, l, c2, s2);
     state[SLOT_GAP_VELOCITY] = -wall_penetration_rate(&at, vx, vy, lever, w[1]);
+
+    // what follows from the accelerations
     if (state[SLOT_CONTACT] != 0) {
         state[SLOT_GAP_ACCELERATION] = 0;
         return;

@@ -56,8 +56,10 @@ static void compute_block(double *block, int width, taylor_form form)
 void taylor_compute(const taylor_request *requests, int count)
 {
     const int width = count == 1 ? 1 : taylor_width();
+
     const taylor_form form = requests[0].form;
     assert(count >= 1 && count <= taylor_width());
+
     if (width == 1) {
         taylor_series_1(requests[0].block, form);
         return;

@@ -26,11 +26,14 @@ static void compute(void *context, size_t piece, void *scratch, void *result)
     summary *summaries = result;
     run_result runs[RUN_TOGETHER];
     const size_t length = piece_length(b, piece);
+
+    // each made from the one before
     for (size_t i = 0; i < length; i++) {
         // filled with that of the call before: the last one of a piece is, as pieces are full
         made[i] = made[i > 0 ? i - 1 : RUN_TOGETHER - 1];
         b->make(b->context, piece * RUN_TOGETHER + i, &made[i]);
     }
+
     run_together(made, (int)length, runs);
     for (size_t i = 0; i < length; i++) {
         summaries[i] = runs[i].summary;
