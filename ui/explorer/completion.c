@@ -93,7 +93,8 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
     // names of one kind, by the command and which of its words it is
     if (p->word == 0) {
         name = i < explorer_command_count ? explorer_command_table[i].name : NULL;
-    } else if (strcmp(p->command, "set") == 0 && p->word == 1) {
+    } else if (p->word == 1 &&
+               (strcmp(p->command, "set") == 0 || strcmp(p->command, "edit") == 0)) {
         name = i < parameter_count ? parameter_table[i].path : NULL;
     } else if (strcmp(p->command, "set") == 0) {
         return p->word == 2 && parameter_value(parameter_of_name(p->argument), i, text);

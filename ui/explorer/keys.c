@@ -32,14 +32,53 @@ bool explorer_keys(explorer *ex, const char *text, fault *f)
     return true;
 }
 
+// Carries out what a line of the prompt or the selected entry of the palette says.
+static void enter_prompt(explorer *ex)
+{
+    explorer_state *st = &ex->state;
+    prompt *p = &st->prompt;
+    char line[LINE_TEXT];
+    bool goes_on = false;
+
+    // a copy: the command may open the prompt again
+    if (!palette_shows(p) || !act_line_of_palette(st, line, &goes_on)) {
+        snprintf(line, sizeof line, "%s", p->text);
+    }
+    p->open = false;
+    message_clear(&st->message);
+    if (goes_on) {
+        prompt_open(p, "%s", line);
+        return;
+    }
+    snprintf(p->history, sizeof p->history, "%s", line);
+    explorer_carry_out(ex, line);
+}
+
+// Whether a key moved in the palette that the prompt shows: Up leaves it at its top.
+static bool key_in_palette(explorer_state *st, int key)
+{
+    const bool down = key == KEY_CODE_DOWN || key == ('n' & 0x1f);
+    const bool up = key == KEY_CODE_UP || key == ('p' & 0x1f);
+    if (!palette_shows(&st->prompt) || (!down && !up)) {
+        return false;
+    }
+    if (up && st->palette.selected < 0) {
+        return false;
+    }
+    act_move_in_palette(st, down ? 1 : -1);
+    return true;
+}
+
 static void key_in_prompt(explorer *ex, int key)
 {
     prompt *p = &ex->state.prompt;
     message_line *message = &ex->state.message;
-    char line[LINE_TEXT];
 
-    // only Tab after Tab goes through what fits
+    // only Tab after Tab goes through what fits; words are not completed
     p->cycling = p->cycling && key == KEY_CODE_TAB;
+    if (key_in_palette(&ex->state, key) || (p->searches && key == KEY_CODE_TAB)) {
+        return;
+    }
     switch (key) {
     case KEY_CODE_ESCAPE:
     case 'c' & 0x1f:
@@ -48,13 +87,16 @@ static void key_in_prompt(explorer *ex, int key)
         break;
     case KEY_CODE_ENTER:
     case '\n':
-        // a copy: the command may open the prompt again
-        p->open = false;
-        message_clear(message);
-        snprintf(line, sizeof line, "%s", p->text);
-        snprintf(p->history, sizeof p->history, "%s", line);
-        explorer_carry_out(ex, line);
+        enter_prompt(ex);
         break;
+    case 'p' & 0x1f: {
+        // what was typed so far is searched for everywhere
+        char words[LINE_TEXT];
+        snprintf(words, sizeof words, "%s", p->text);
+        const action_result opened = act_open_palette(&ex->state, words);
+        result_show(&opened, message);
+        break;
+    }
     case KEY_CODE_TAB: {
         action_result completed = complete_prompt(&ex->state);
         result_show(&completed, message);
@@ -64,7 +106,18 @@ static void key_in_prompt(explorer *ex, int key)
         prompt_open(p, "%s", p->history);
         break;
     default:
+        // other words, another list
         prompt_type(p, key);
+        ex->state.palette.selected = p->searches ? 0 : -1;
+    }
+}
+
+void explorer_take_picked(explorer *ex)
+{
+    assert(ex != NULL);
+    if (ex->state.palette.picked && ex->state.prompt.open) {
+        ex->state.palette.picked = false;
+        enter_prompt(ex);
     }
 }
 
@@ -155,6 +208,7 @@ void explorer_key(explorer *ex, int key)
         key_in_filter(ex, key);
     } else if (key == ':') {
         prompt_open(&st->prompt, "%s", "");
+        st->palette.selected = -1;
         message_clear(&st->message);
     } else if (st->page.panel != PANEL_NONE && !leaves) {
         action_result result = panel_of(st->page.panel)->key(st, key);

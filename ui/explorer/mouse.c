@@ -14,13 +14,14 @@ static bool give(explorer *ex, const panel_gesture *g)
     }
     bool taken = panel_of(g->hit.panel)->point(&ex->state, g, &result);
     result_show(&result, &ex->state.message);
+    explorer_take_picked(ex);
     return taken;
 }
 
 // Whether a page is open and a part is not of it.
 static bool is_behind_page(const explorer_state *st, panel_id id)
 {
-    return st->page.panel != PANEL_NONE && (id == PANEL_NONE || panel_place_of(id) != PLACE_PAGE);
+    return st->page.panel != PANEL_NONE && (id == PANEL_NONE || panel_place_of(id) < PLACE_PAGE);
 }
 
 static void press(explorer *ex, pointer_event e)
@@ -75,7 +76,8 @@ static void turn_wheel(explorer *ex, pointer_event e)
 {
     const explorer_state *st = &ex->state;
     hit_area hit = layout_hit(&ex->layout, e.x, e.y);
-    if (st->prompt.open || is_behind_page(st, hit.panel)) {
+    const bool typing = st->prompt.open && hit.panel != PANEL_PALETTE;
+    if (typing || is_behind_page(st, hit.panel)) {
         return;
     }
 

@@ -57,6 +57,16 @@ void act_pan_by(explorer_state *st, double seconds);
 // through.
 void act_settle_filter(explorer_state *st, panel_id panel);
 
+// --- the palette -------------------------------------------------------------------------------
+
+// Moves the selection up (-1) or down (1), kept within the list; without words to search for it may
+// leave the list at its top.
+void act_move_in_palette(explorer_state *st, int direction);
+
+// The line that does what the selected entry is for; false if none is selected. *goes_on: an
+// argument is to be typed behind it.
+bool act_line_of_palette(const explorer_state *st, char line[LINE_TEXT], bool *goes_on);
+
 // --- axes of values ---------------------------------------------------------------------------
 
 // Makes a pane's axis longer or shorter round a share of its height from the top, or moves it up by

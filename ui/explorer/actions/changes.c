@@ -76,20 +76,31 @@ action_result act_adjust(explorer_state *st, int parameter, double value)
     return tell_change(st);
 }
 
+// The parameter of a path, of its last part or of a beginning of either.
+static action_result find_parameter(const char *name, int *parameter)
+{
+    fault f = {0};
+    *parameter = parameter_of_name(name);
+    if (*parameter == -2) {
+        return result_refused("several parameters begin with '%s' (Tab lists them)", name);
+    }
+    if (*parameter < 0 && parameter_look_up(name, &f) < 0) {
+        return result_of(STATUS_BAD_ARGUMENT, &f);
+    }
+    return result_done();
+}
+
 action_result act_set(explorer_state *st, const char *argument)
 {
     // the path, and the value after blanks or an equals sign
     char path[LINE_TEXT];
+    int parameter;
     size_t length = strcspn(argument, " =");
     snprintf(path, sizeof path, "%.*s", (int)length, argument);
     const char *value = argument + length + strspn(argument + length, " =");
-    int parameter = parameter_of_name(path);
-    if (parameter == -2) {
-        return result_refused("several parameters begin with '%s' (Tab lists them)", path);
-    }
-    fault f = {0};
-    if (parameter < 0 && parameter_look_up(path, &f) < 0) {
-        return result_of(STATUS_BAD_ARGUMENT, &f);
+    const action_result found = find_parameter(path, &parameter);
+    if (!result_ok(&found)) {
+        return found;
     }
 
     // without a value it is only selected
@@ -154,7 +165,15 @@ action_result act_nudge(explorer_state *st, const char *argument)
 
 action_result act_edit(explorer_state *st, const char *argument)
 {
-    (void)argument;
+    // a parameter by name is selected first
+    if (argument[0] != '\0') {
+        int parameter;
+        const action_result found = find_parameter(argument, &parameter);
+        if (!result_ok(&found)) {
+            return found;
+        }
+        parameter_list_select(&st->parameters, (parameter_line){parameter, false});
+    }
     if (st->parameters.on_heading) {
         parameter_list_fold(&st->parameters, st->parameters.parameter);
         return result_done();

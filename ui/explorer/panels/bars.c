@@ -157,7 +157,8 @@ static int draw_prompt(const explorer_state *st, screen *s)
         glyph_decode(&text);
     }
     blank_row(s, y);
-    int x = screen_print(s, 0, y, room, INK_TITLE, ":%s", text);
+    int x =
+        screen_print(s, 0, y, room, INK_TITLE, "%s%s", st->prompt.searches ? "find " : ":", text);
     screen_put(s, x, y, ' ', INK_SELECTED);
 
     // a value that typing replaces looks selected

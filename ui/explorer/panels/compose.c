@@ -97,4 +97,8 @@ void compose_screen(const explorer_state *st, layout *lay, screen *s)
     }
     int rows = draw_bottom(st, s);
     draw_status(st, s, s->height - 1 - rows);
+    if (palette_shows(&st->prompt)) {
+        const area above = {0, 1, s->width, s->height - 2 - rows};
+        panel_of(PANEL_PALETTE)->draw(st, lay, s, above);
+    }
 }

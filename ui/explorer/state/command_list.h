@@ -13,7 +13,7 @@
     X("", "restart", "", "play from the start", act_restart)                                       \
     X("Changing the run", "set", "PATH VALUE", "another value, from now on or from the start",     \
       act_set)                                                                                     \
-    X("", "edit", "", "type a new value of the selected parameter", act_edit)                      \
+    X("", "edit", "[PATH]", "type a new value, of the selected parameter or another", act_edit)    \
     X("", "nudge", "[-1]", "selected parameter a little up or down", act_nudge)                    \
     X("", "select", "[-1]", "next or previous parameter", act_select_parameter)                    \
     X("", "fold", "[GROUP|all|none]", "fold a group of parameters, or show it", act_fold)          \
@@ -50,7 +50,9 @@
     X("", "save", "FILE", ".png .pdf .svg .csv .yaml .txt", act_save)                              \
     X("", "save!", "FILE", "the same over a file that is there", act_save_over)                    \
     X("", "scene", "FILE.png", "picture of the arm at this instant", act_save_scene)               \
-    X("The lab", "glyphs", "braille|blocks|ascii", "characters to draw with", act_set_glyphs)      \
+    X("The lab", "palette", "[WORDS]", "find anything by words: commands, values, scenarios",      \
+      act_open_palette)                                                                            \
+    X("", "glyphs", "braille|blocks|ascii", "characters to draw with", act_set_glyphs)      \
     X("", "theme", "dark|light|mono", "colours for that ground", act_set_theme)                    \
     X("", "colours", "auto|true|256|16|mono", "how many the terminal has", act_set_colours)        \
     X("", "mouse", "on|off", "off lets the terminal select text", act_set_mouse)                   \

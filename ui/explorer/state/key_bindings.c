@@ -88,6 +88,7 @@ static const binding bindings[] = {
     {"[", "open -1"},
     {"s", "save"},
     {"S", "scene"},
+    {"C-p", "palette"},
     {"C-l", "redraw"},
     {"?", "help"},
     {"F1", "help"},

@@ -11,7 +11,8 @@ typedef enum panel_place {
     PLACE_MAIN,  // below that
     PLACE_SIDE,  // on the right; Tab chooses one of these
     PLACE_STACK, // below the chosen one, as many as there is room for
-    PLACE_PAGE   // opens over the others
+    PLACE_PAGE,  // opens over the others
+    PLACE_PROMPT // above the prompt while that is open
 } panel_place;
 
 // identity, place, description; side panels in the order of Tab, stacked ones from top to bottom
@@ -27,7 +28,8 @@ typedef enum panel_place {
     X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                                \
     X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)                                              \
     X(PANEL_CHANGES, PLACE_PAGE, changes_panel)                                                    \
-    X(PANEL_INFO, PLACE_PAGE, info_panel)
+    X(PANEL_INFO, PLACE_PAGE, info_panel)                                                          \
+    X(PANEL_PALETTE, PLACE_PROMPT, palette_panel)
 
 typedef enum panel_id {
     PANEL_NONE,

@@ -18,7 +18,7 @@ void prompt_open(prompt *p, const char *format, ...)
     va_end(list);
     p->open = true;
     p->fixed = 0;
-    p->replaces = p->cycling = false;
+    p->replaces = p->cycling = p->searches = false;
 }
 
 void prompt_open_value(prompt *p, const char *text, const char *value)

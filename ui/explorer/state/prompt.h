@@ -9,6 +9,7 @@ typedef struct prompt {
     bool open; // keys go to it
     char text[LINE_TEXT];
     int fixed;               // bytes of it that stand before a value
+    bool searches;           // it takes words for the palette, not a command
     bool replaces;           // the value is as it was, and what is typed takes its place
     bool cycling;            // Tab goes through what fits to `stem`
     int cycle;               // number of the one that is shown, -1 for none

@@ -79,6 +79,12 @@ const char *scenario_menu_description(const scenario_menu *menu, int index)
                : "";
 }
 
+bool scenario_menu_is_lesson(const scenario_menu *menu, int index)
+{
+    assert(menu != NULL && index >= 0 && index < menu->count);
+    return menu->lessons != NULL && menu->lessons[index];
+}
+
 bool scenario_menu_shows(const scenario_menu *menu, int index)
 {
     assert(menu != NULL && index >= 0 && index < menu->count);

@@ -10,6 +10,7 @@ typedef struct scenario_menu {
     char **names;  // of all scenarios
     char **titles; // theirs, where there is one; NULL before they are wanted
     char **descriptions;
+    bool *lessons; // whether each is a lesson; NULL before that is wanted
     int count;
     char filter[LINE_TEXT];
     bool filtering; // keys go to the filter
@@ -29,6 +30,8 @@ int scenario_menu_find(const scenario_menu *menu, const char *name);
 const char *scenario_menu_title(const scenario_menu *menu, int index);
 // What a scenario is about, "" if it does not say or none was read.
 const char *scenario_menu_description(const scenario_menu *menu, int index);
+// Whether a scenario is a lesson, as far as it was read.
+bool scenario_menu_is_lesson(const scenario_menu *menu, int index);
 // Whether the filter lets a scenario through, by words of its name or title.
 bool scenario_menu_shows(const scenario_menu *menu, int index);
 // The index of the scenario in a line of those shown, -1 beyond them.

@@ -9,6 +9,7 @@
 #include "ui/explorer/state/law_modes.h"
 #include "ui/explorer/state/looks.h"
 #include "ui/explorer/state/message.h"
+#include "ui/explorer/state/palette.h"
 #include "ui/explorer/state/panel_list.h"
 #include "ui/explorer/state/panes.h"
 #include "ui/explorer/state/parameter_list.h"
@@ -71,6 +72,7 @@ typedef struct explorer_state {
     // what is said and typed
     message_line message;
     prompt prompt;
+    palette_view palette;
     key_bindings keys;
     char last_law[LINE_TEXT];    // the one that was on when it was switched off, "" for none
     bool settings_broken;        // the settings file has faults

@@ -1,0 +1,119 @@
+// The palette: everything is found by words, and what is found is what happens.
+#include "tests/explorer_on_screen.h"
+
+static void test_words_find_things_of_every_kind(void **state)
+{
+    (void)state;
+    static palette_entry entries[PALETTE_ENTRIES];
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "<C-p>");
+    const scenario_menu *menu = &ex.state.scenarios;
+    const key_bindings *keys = &ex.state.keys;
+    static const struct {
+        const char *words, *first;
+        palette_kind kind;
+    } cases[] = {{"branch", "branch", PALETTE_COMMAND},
+                 {"motor.stiction", "motor.stiction", PALETTE_PARAMETER},
+                 {"stic", "motor.stiction", PALETTE_PARAMETER},
+                 {"energy_residual", "energy_residual", PALETTE_SIGNAL},
+                 {"fig-3-4", "thesis/fig-3-4", PALETTE_SCENARIO}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        assert_true(palette_find(menu, keys, cases[i].words, entries) > 0);
+        const palette_text text = palette_describe(menu, keys, entries[0]);
+        assert_string_equal(text.name, cases[i].first);
+        assert_int_equal(entries[0].kind, cases[i].kind);
+    }
+
+    // words that stand only in what is said of a thing, in any order; and none
+    assert_true(palette_find(menu, keys, "frict COULOMB", entries) > 0);
+    assert_int_equal(palette_find(menu, keys, "no such thing at all", entries), 0);
+
+    // all of it without words, each once
+    const int all = palette_find(menu, keys, "", entries);
+    assert_int_equal(all, explorer_command_count + parameter_count + signal_count + menu->count);
+    explorer_finish(&ex);
+}
+
+static void test_enter_does_what_the_entry_is_for(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+
+    // a parameter opens the prompt for its value, which typing replaces
+    press(&ex, ":seek 0.2<Enter><C-p>stiction<Enter>");
+    assert_string_equal(ex.state.prompt.text, "set motor.stiction 0.045");
+    press(&ex, "0.01<Enter>");
+    const parameters p = state_parameters(&ex.state);
+    check_close(p.motor.stiction, 0.01, 0);
+
+    // a command that takes something waits for it, another is carried out
+    press(&ex, "<C-p>seek<Enter>");
+    assert_string_equal(ex.state.prompt.text, "seek ");
+    press(&ex, "0.1<Enter>");
+    check_close(ex.state.session.now, 0.1, 1e-12);
+    press(&ex, "<C-p>branch<Enter>");
+    assert_true(ex.state.session.has_other);
+
+    // a signal gets a pane, a scenario opens
+    press(&ex, "<C-p>energy_residual<Enter>");
+    assert_int_equal(ex.state.panes.pane[PANES - 1].signals[0], SIGNAL_INDEX(energy_residual));
+    press(&ex, "<C-p>fig-3-4<Enter>");
+    assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
+    explorer_finish(&ex);
+}
+
+static void test_the_prompt_has_it_too(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":bra");
+    assert_shows(&ex, ":branch");
+    assert_shows(&ex, "keep this run");
+
+    // nothing is selected until Down is pressed, Up leaves the list again
+    press(&ex, "<Down>");
+    assert_int_equal(ex.state.palette.selected, 0);
+    press(&ex, "<Up>");
+    assert_int_equal(ex.state.palette.selected, -1);
+    press(&ex, "<Down><Enter>");
+    assert_true(ex.state.session.has_other);
+
+    // what was typed goes on as words
+    press(&ex, ":voltage_limit<C-p><Enter>");
+    assert_string_equal(ex.state.prompt.text, "set motor.voltage_limit 10");
+    press(&ex, "<Esc>");
+    assert_false(ex.state.prompt.open);
+    explorer_finish(&ex);
+}
+
+static void test_a_click_takes_an_entry(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "<C-p>forget");
+    free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
+    for (int i = 0; i < ex.layout.hit_count; i++) {
+        const hit_area h = ex.layout.hits[i];
+        if (h.panel == PANEL_PALETTE && h.part == PART_LINES) {
+            const pointer_event down = {POINTER_PRESS, h.area.x + 3, h.area.y, false, false};
+            explorer_point(&ex, down);
+        }
+    }
+    assert_false(ex.state.prompt.open);
+    explorer_finish(&ex);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_words_find_things_of_every_kind),
+        cmocka_unit_test(test_enter_does_what_the_entry_is_for),
+        cmocka_unit_test(test_the_prompt_has_it_too),
+        cmocka_unit_test(test_a_click_takes_an_entry),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
