@@ -394,7 +394,7 @@ static void test_a_long_run_is_drawn_while_it_is_computed(void **state)
     press(&ex, ":save never-written.csv<Enter>");
     assert_shows(&ex, "wait for its end, or stop it with Esc");
     press(&ex, "b");
-    assert_shows(&ex, "the run is still being computed");
+    assert_shows(&ex, "wait for its end, or stop it");
     press(&ex, "<Esc>");
     assert_null(ex.state.session.computing);
     assert_shows(&ex, "stopped at");

@@ -268,3 +268,33 @@ status session_drop_input(session *s, int index, fault *f)
     }
     return code;
 }
+
+status session_take_inputs(session *s, const session_input *inputs, int count, fault *f)
+{
+    assert(s != NULL && count >= 0 && (inputs != NULL || count == 0));
+    session_input *taken = calloc((size_t)count + 1, sizeof *taken);
+    if (taken == NULL) {
+        return fault_no_memory(f);
+    }
+    if (count > 0) {
+        memcpy(taken, inputs, (size_t)count * sizeof *taken);
+    }
+
+    // the old ones come back if their run cannot be computed
+    session_input *const old = s->inputs;
+    const int old_count = s->input_count, old_total = s->input_total, old_room = s->input_capacity;
+    s->inputs = taken;
+    s->input_count = s->input_total = count;
+    s->input_capacity = count + 1;
+    const status code = session_compute(s, f);
+    if (code != STATUS_OK) {
+        s->inputs = old;
+        s->input_count = old_count;
+        s->input_total = old_total;
+        s->input_capacity = old_room;
+        free(taken);
+        return code;
+    }
+    free(old);
+    return STATUS_OK;
+}

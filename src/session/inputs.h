@@ -21,6 +21,10 @@ status session_change_input(session *s, int index, const char *text, fault *f);
 // Takes inputs[index] out; it is the next that session_redo puts in, at the end.
 status session_drop_input(session *s, int index, fault *f);
 
+// Puts other inputs in the place of all there are, and computes their run; nothing can be redone
+// then. On failure nothing changes and f says why.
+status session_take_inputs(session *s, const session_input *inputs, int count, fault *f);
+
 // Takes back the last input, or puts it in again; the cursor goes to where it was, or to where the
 // input takes effect. STATUS_BAD_ARGUMENT if there is none.
 status session_undo(session *s, fault *f);

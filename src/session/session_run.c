@@ -269,6 +269,20 @@ status session_branch(session *s, fault *f)
     return STATUS_OK;
 }
 
+status session_keep_beside(session *s, const run_result *run, fault *f)
+{
+    assert(s != NULL && run != NULL);
+    run_result kept;
+    if (run_share(run, run->trace.row_count, &kept) != STATUS_OK) {
+        return fault_no_memory(f);
+    }
+    session_forget_other(s);
+    s->other = kept;
+    s->has_other = true;
+    s->version++;
+    return STATUS_OK;
+}
+
 void session_forget_other(session *s)
 {
     assert(s != NULL);

@@ -21,6 +21,8 @@ parameters session_parameters_at(const session *s, double time);
 // Keeps the present run for comparison; changes then make another one beside it.
 // STATUS_BAD_ARGUMENT while it is being computed.
 status session_branch(session *s, fault *f);
+// Keeps another run for comparison, in the place of the one there is: its rows are shared.
+status session_keep_beside(session *s, const run_result *run, fault *f);
 // Forgets the run kept for comparison.
 void session_forget_other(session *s);
 // Forgets the run before the value that was adjusted last.

@@ -50,7 +50,7 @@ static bool parameter_value(int parameter, int i, char *text)
 static bool command_word(const char *command, int i, char *text)
 {
     static const char *const choosing[] = {"glyphs", "theme", "colours", "mouse", "axis",
-                                           "zoom",   "pan",   "speed",   NULL};
+                                           "zoom",   "pan",   "speed",   "lanes", NULL};
     const int index = explorer_command_find(command);
     for (int k = 0; choosing[k] != NULL && index >= 0; k++) {
         const explorer_command *c = &explorer_command_table[index];
@@ -98,6 +98,10 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
         name = i < parameter_count ? parameter_table[i].path : NULL;
     } else if (strcmp(p->command, "set") == 0) {
         return p->word == 2 && parameter_value(parameter_of_name(p->argument), i, text);
+    } else if (strcmp(p->command, "sweep") == 0) {
+        name = i < parameter_count ? parameter_table[i].path : NULL;
+    } else if (strcmp(p->command, "metric") == 0) {
+        name = i < summary_count ? summary_table[i].key : NULL;
     } else if (strcmp(p->command, "trace") == 0) {
         name = i < signal_count ? signal_table[i].name : NULL;
     } else if (strcmp(p->command, "law") == 0) {

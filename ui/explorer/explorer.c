@@ -29,6 +29,14 @@ bool explorer_follow(explorer *ex)
 {
     assert(ex != NULL);
     session *s = &ex->state.session;
+
+    // a run of a sweep, or more of the present one
+    if (!lab_sweep_is_done(&ex->state.sweep)) {
+        const action_result next = act_continue_sweep(&ex->state);
+        result_show(&next, &ex->state.message);
+        session_follow(s);
+        return true;
+    }
     if (!session_follow(s)) {
         return false;
     }
@@ -49,7 +57,8 @@ void explorer_advance(explorer *ex, double seconds)
 bool explorer_is_busy(const explorer *ex)
 {
     assert(ex != NULL);
-    return ex->state.playback.playing || ex->state.session.computing != NULL;
+    return ex->state.playback.playing || ex->state.session.computing != NULL ||
+           !lab_sweep_is_done(&ex->state.sweep);
 }
 
 void explorer_draw(explorer *ex, screen *s)

@@ -163,6 +163,8 @@ static void escape(explorer *ex)
     }
     if (filter[0] != '\0') {
         filter[0] = '\0';
+    } else if (st->side.panel == PANEL_SWEEP) {
+        explorer_carry_out(ex, "sweep off");
     } else {
         st->mark.set = false;
     }

@@ -9,8 +9,8 @@
 #include "src/base/whole_file.h"
 #include "ui/explorer/commands.h"
 
-static const char *const remembered[] = {"theme", "glyphs", "colours", "mouse", "speed",
-                                         "panes", "axis",   "key",     "unkey"};
+static const char *const remembered[] = {"theme", "glyphs", "colours", "mouse", "lanes",
+                                         "speed", "panes",  "axis",    "key",   "unkey"};
 
 // The folder's path ($XDG_CONFIG_HOME/impactlab or ~/.config/impactlab); false if there is none.
 static bool settings_folder(char *path, size_t size, bool make)
@@ -142,9 +142,9 @@ static void write_settings(const explorer_state *st, FILE *stream)
 {
     const looks *l = &st->looks;
     fprintf(stream, "# settings of the terminal lab, written by :remember\n");
-    fprintf(stream, "theme %s\nglyphs %s\ncolours %s\nmouse %s\nspeed %g\n",
+    fprintf(stream, "theme %s\nglyphs %s\ncolours %s\nmouse %s\nlanes %s\nspeed %g\n",
             colour_theme_words[l->theme], glyph_set_words[l->glyphs], colour_depth_words[l->depth],
-            mouse_words[l->mouse], st->playback.speed);
+            mouse_words[l->mouse], lane_choice_words[l->lanes], st->playback.speed);
 
     // panes that nobody chose are the ones that suit the scenario
     fputs(st->panes.chosen ? "panes " : "", stream);

@@ -251,7 +251,7 @@ static uint32_t ascii_glyph(uint32_t glyph)
                  {0x25cf, 'o'}, {0x25c6, '*'}, {0x2592, '%'}, {0x0394, 'd'}, {0x2016, '='},
                  {0x00d7, 'x'}, {0x2025, '~'}, {0x25b8, '>'}, {0x2506, ':'}, {0x2524, '+'},
                  {0x252c, '+'}, {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'}, {0x25be, 'v'},
-                 {0x25cb, '.'}};
+                 {0x25cb, '.'}, {0x2191, '^'}, {0x2193, 'v'}};
 
     for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++) {
         if (twins[i].glyph == glyph) {

@@ -57,6 +57,17 @@ void act_pan_by(explorer_state *st, double seconds);
 // through.
 void act_settle_filter(explorer_state *st, panel_id panel);
 
+// --- sweeps -----------------------------------------------------------------------------------
+
+// Computes the next run of a sweep that is not complete.
+action_result act_continue_sweep(explorer_state *st);
+
+// Moves the selection among a sweep's runs.
+void act_select_swept(explorer_state *st, int direction);
+
+// Makes the present run that of the selected value, by a change from the start.
+action_result act_take_swept(explorer_state *st);
+
 // --- the palette -------------------------------------------------------------------------------
 
 // Moves the selection up (-1) or down (1), kept within the list; without words to search for it may

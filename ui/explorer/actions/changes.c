@@ -173,6 +173,8 @@ action_result act_edit(explorer_state *st, const char *argument)
             return found;
         }
         parameter_list_select(&st->parameters, (parameter_line){parameter, false});
+    } else if (st->side.panel == PANEL_SWEEP) {
+        return act_take_swept(st);
     }
     if (st->parameters.on_heading) {
         parameter_list_fold(&st->parameters, st->parameters.parameter);
@@ -232,27 +234,6 @@ action_result act_redo(explorer_state *st, const char *argument)
     fault f = {0};
     status code = session_redo(&st->session, &f);
     return code != STATUS_OK ? result_of(code, &f) : result_news("put in again");
-}
-
-action_result act_branch(explorer_state *st, const char *argument)
-{
-    session_forget_ghost(&st->session);
-    (void)argument;
-    fault f = {0};
-    status code = session_branch(&st->session, &f);
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
-    }
-    return result_news("branched at %.4f s: change something, the old run stays beside it "
-                       "(c compares, B forgets it)",
-                       st->session.now);
-}
-
-action_result act_forget(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    session_forget_other(&st->session);
-    return result_done();
 }
 
 action_result act_exchange_model(explorer_state *st, const char *argument)

@@ -12,6 +12,10 @@ action_result act_select_parameter(explorer_state *st, const char *argument)
         st->scroll[PANEL_VALUES] += direction;
         return result_done();
     }
+    if (st->side.panel == PANEL_SWEEP) {
+        act_select_swept(st, direction);
+        return result_done();
+    }
     const int count = state_parameter_lines(st, lines);
     const int next = parameter_list_selected(&st->parameters, lines, count) + direction;
     if (next >= 0 && next < count) {
@@ -101,6 +105,9 @@ action_result act_other_side(explorer_state *st, const char *argument)
     (void)argument;
     bool narrow = st->size.width > 0 && st->size.width < SIDE_WIDTH;
     panel_id next = panel_next_on_side(st->side.panel);
+    while (next == PANEL_SWEEP && !lab_sweep_is_on(&st->sweep)) {
+        next = panel_next_on_side(next);
+    }
 
     // a narrow screen: curves, each panel of the side, curves again
     if (narrow && (!st->side.in_front || next == PANEL_NONE)) {
@@ -240,6 +247,19 @@ action_result act_set_mouse(explorer_state *st, const char *argument)
     st->looks.mouse = value;
     return result_news("%s",
                        value ? "clicks move the cursor" : "the mouse is off: the terminal selects");
+}
+
+action_result act_set_lanes(explorer_state *st, const char *argument)
+{
+    int value = (int)(st->looks.lanes + 1) % LANE_CHOICES;
+    if (argument[0] != '\0') {
+        action_result read = read_choice(st, argument, lane_choice_words, LANE_CHOICES, &value);
+        if (!result_ok(&read)) {
+            return read;
+        }
+    }
+    st->looks.lanes = (lane_choice)value;
+    return result_news("lanes: %s", lane_choice_words[value]);
 }
 
 action_result act_redraw(explorer_state *st, const char *argument)

@@ -5,14 +5,16 @@
 #include <string.h>
 
 #include "src/rig/controller.h"
+#include "ui/explorer/panels/lanes.h"
 #include "ui/explorer/panels/plot_axes.h"
+#include "ui/explorer/panels/run_lines.h"
 
 // A pane's place, time window and range.
 typedef struct plot_frame {
     canvas canvas;
     double from, to; // [s]
     value_range axis;
-    line_style style; // of the curve that is drawn
+    unsigned pattern; // of the curve that is drawn, as in run_lines.h
     ink colour;
 } plot_frame;
 
@@ -26,12 +28,6 @@ static double plot_y(const plot_frame *f, double value)
     return (f->axis.high - value) / (f->axis.high - f->axis.low) * (4.0 * f->canvas.height - 1);
 }
 
-static bool gap_in_line(line_style style, long across)
-{
-    return (style == LINE_DASHED && across % 8 >= 5) || (style == LINE_DOTTED && across % 4 >= 2) ||
-           (style == LINE_DASH_DOT && across % 8 == 4);
-}
-
 // Every row joined to the next one by a line.
 static void draw_rows(const plot_frame *f, const trace *t, int signal, double until)
 {
@@ -43,7 +39,7 @@ static void draw_rows(const plot_frame *f, const trace *t, int signal, double un
         if (t->rows[r].time > until) {
             break;
         }
-        if (!gap_in_line(f->style, lround(x))) {
+        if (line_has_dot(f->pattern, lround(x))) {
             canvas_line(&f->canvas, x0, y0, x, y, f->colour);
         }
         x0 = x;
@@ -57,7 +53,7 @@ static void draw_rows(const plot_frame *f, const trace *t, int signal, double un
 // One column of dots.
 static void draw_column(const plot_frame *f, long column, double low, double high)
 {
-    bool drawn = high >= low && (high - low > 4 || !gap_in_line(f->style, column));
+    bool drawn = high >= low && (high - low > 4 || line_has_dot(f->pattern, column));
     if (drawn) {
         canvas_line(&f->canvas, (double)column, low, (double)column, high, f->colour);
     }
@@ -171,8 +167,8 @@ static uint32_t line_glyph(line_style style)
 static void format_value(const explorer_state *st, int signal, bool briefly, char *text,
                          size_t size)
 {
-    const sample *row = session_sample(&st->session);
-    double value = signal_value(row, signal);
+    const trace *t = state_run(st, 0).trace;
+    double value = signal_value(&t->rows[trace_row_at(t, st->session.now)], signal);
     const controller *law = controller_of(st->session.effective.parameters.control.law);
     bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
 
@@ -237,6 +233,7 @@ static void draw_pane_title(const explorer_state *st, screen *s, int index, area
 {
     const pane *p = &st->panes.pane[index];
     static const char *const axes[] = {"", "grows", "fixed"};
+    const bool difference = state_run(st, 0).kind == SHOWN_DIFFERENCE;
     bool focused = index == panes_focused(&st->panes);
     int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
 
@@ -248,6 +245,10 @@ static void draw_pane_title(const explorer_state *st, screen *s, int index, area
         room -= 6;
         screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);
     }
+    if (difference && room > 40) {
+        room -= 15;
+        screen_text(s, x + room + 1, a.y, 14, INK_EVENT, "minus baseline");
+    }
 
     // as many words as fit
     legend how = LEGEND_NAMES;
@@ -257,22 +258,42 @@ static void draw_pane_title(const explorer_state *st, screen *s, int index, area
     draw_legend(st, s, p, how, x, a.y, room);
 }
 
-// The curves of one run in a pane: 0 is the present one, as far as it was seen.
-static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int run)
+// How a run's curves differ from those of others: the present one has the signals' colours and
+// lines, a single pinned one their lines in one colour, several have their own lines.
+static void set_look(const explorer_state *st, plot_frame *f, const shown_run *run,
+                     const pane_look *look, int k)
 {
-    const trace *t = &state_run(st, run)->trace;
+    f->pattern = style_pattern(look->style[k]);
+    f->colour = look->colour[k];
+    if (run->kind == SHOWN_PINNED && state_visible_pins(st) == 1) {
+        f->colour = INK_OTHER;
+    } else if (run->kind == SHOWN_PINNED) {
+        f->pattern = run_pattern(run->index);
+    } else if (run->kind == SHOWN_SWEPT) {
+        f->colour = run->index == st->sweep.selected ? INK_OTHER : INK_FRAME;
+    } else if (run->kind == SHOWN_BEFORE) {
+        f->colour = INK_FRAME;
+    }
+}
+
+// The curves of one run in a pane: 0 is the present one, as far as it was seen.
+static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int number)
+{
+    const shown_run run = state_run(st, number);
     const pane_look look = look_of(p);
-    for (int k = 0; k < p->count; k++) {
+
+    // of many runs a pane shows what it is about
+    const bool first_only =
+        run.kind == SHOWN_SWEPT || (run.kind == SHOWN_PINNED && state_visible_pins(st) > 1);
+    const int count = first_only && p->count > 1 ? 1 : p->count;
+    for (int k = 0; k < count; k++) {
         const double *pairs =
-            extremes_pairs(&st->extremes[run], state_run_id(st), t, p->signals[k]);
-        f.style = look.style[k];
-        f.colour = run == 0                        ? look.colour[k]
-                   : t == &st->session.other.trace ? INK_OTHER
-                                                   : INK_FRAME;
+            extremes_pairs(&st->extremes[number], run.id, run.trace, p->signals[k]);
+        set_look(st, &f, &run, &look, k);
 
         // while a value is adjusted the whole future is shown
-        const bool hidden = run == 0 && !st->session.has_ghost;
-        draw_signal(&f, t, p->signals[k], hidden ? st->session.seen : f.to, pairs);
+        const bool hidden = number == 0 && !st->session.has_ghost;
+        draw_signal(&f, run.trace, p->signals[k], hidden ? st->session.seen : f.to, pairs);
     }
 }
 
@@ -324,6 +345,12 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
     }
 }
 
+// Whether panes show differences instead of runs.
+static bool showing_difference(const explorer_state *st)
+{
+    return state_run(st, 0).kind == SHOWN_DIFFERENCE;
+}
+
 static void draw_pane(const explorer_state *st, layout *lay, screen *s, int index, area a)
 {
     plot_frame f = {
@@ -344,7 +371,12 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     for (int run = state_run_count(st); run-- > 0;) {
         draw_run(st, f, &st->panes.pane[index], run);
     }
-    draw_levels(st, &f, s, &st->panes.pane[index]);
+    if (!showing_difference(st)) {
+        draw_levels(st, &f, s, &st->panes.pane[index]);
+    } else if (st->difference.tolerance > 0) {
+        draw_level(&f, s, st->difference.tolerance, "tolerance");
+        draw_level(&f, s, -st->difference.tolerance, "tolerance");
+    }
     if (st->mark.set) {
         draw_cursor(&f, s, st->mark.time);
     }
@@ -355,6 +387,12 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
     enum { LEAST_PANE = 3, AXIS = 2 };
     int shown = 0;
+
+    // the lanes take the lowest rows
+    lanes_survey(st, &lay->lanes);
+    const int lanes = lanes_rows(st, &lay->lanes, a.height);
+    a.height -= lanes;
+    const area beneath = {a.x, a.y + a.height, a.width, lanes};
     for (int i = 0; i < PANES; i++) {
         shown += st->panes.pane[i].shown;
     }
@@ -384,6 +422,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const area below = {a.x, a.y + a.height - AXIS, a.width, AXIS};
     const area axis = draw_time_axis(st, s, below);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_TIME_AXIS, 0, axis});
+    draw_lanes(st, lay, s, beneath);
 }
 
 // --- the mouse --------------------------------------------------------------------------------
@@ -482,6 +521,9 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
         return point_at_plot(st, g);
     case PART_TIME_AXIS:
         return point_at_time_axis(st, g);
+    case PART_LANES:
+    case PART_MAP:
+        return lanes_point(st, g);
     default:
         return point_at_labels(st, g);
     }

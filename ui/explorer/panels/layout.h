@@ -15,12 +15,14 @@ typedef struct area {
 
 // What a part of a panel is to the mouse.
 typedef enum hit_part {
-    PART_BODY,     // the panel itself, or its plot
-    PART_LINES,    // its lines; index: the first one shown, or the line's own
-    PART_HEADING,  // of a group of lines; index: its first parameter
-    PART_SLIDER,   // index: the parameter
-    PART_LABELS,   // an axis of values; index: the pane
-    PART_TIME_AXIS // below curves
+    PART_BODY,      // the panel itself, or its plot
+    PART_LINES,     // its lines; index: the first one shown, or the line's own
+    PART_HEADING,   // of a group of lines; index: its first parameter
+    PART_SLIDER,    // index: the parameter
+    PART_LABELS,    // an axis of values; index: the pane
+    PART_TIME_AXIS, // below curves
+    PART_LANES,     // bands below that
+    PART_MAP        // of the whole run
 } hit_part;
 
 // A part of the screen that the mouse can point at.
@@ -48,6 +50,13 @@ typedef struct linearised_answer {
     prediction_answer answer;
 } linearised_answer;
 
+// What a run has for the lanes below its curves.
+typedef struct lane_survey {
+    unsigned long run; // 0: nothing is known
+    size_t rows;       // looked at
+    bool sticks, saturates;
+} lane_survey;
+
 typedef struct layout {
     hit_area hits[HIT_AREAS]; // the upper ones behind
     int hit_count;
@@ -58,6 +67,7 @@ typedef struct layout {
     int first_scenario;           // line of the list of scenarios that is shown first
     arm_extent extent;            // remembered
     linearised_answer linearised; // remembered
+    lane_survey lanes;            // remembered
 } layout;
 
 // Begins a picture: nothing is drawn yet, scrolling is as the state has it.

@@ -25,8 +25,20 @@
     X("", "changes", "", "all changes: edit them, take single ones out", act_show_changes)         \
     X("", "change", "N VALUE", "another value for the N-th change", act_edit_change)               \
     X("", "drop", "N", "take the N-th change out", act_drop_change)                                \
-    X("Two runs, undo", "branch", "", "keep this run and make another beside it", act_branch)      \
-    X("", "forget", "", "drop the run kept for comparison", act_forget)                            \
+    X("Several runs, undo", "branch", "", "pin this run and make another beside it", act_branch)   \
+    X("", "pin", "[NAME]", "the same under a name; up to seven runs are kept", act_pin)            \
+    X("", "runs", "", "the pinned runs: open, hide, rename, drop, compare", act_show_runs)         \
+    X("", "take", "N", "go on with the N-th pinned run; this one is pinned", act_take_run)         \
+    X("", "hide", "N", "hide the N-th pinned run, or show it", act_hide_run)                       \
+    X("", "baseline", "N", "compare with the N-th pinned run", act_set_baseline)                   \
+    X("", "rename", "N NAME", "another name for it", act_rename_run)                               \
+    X("", "unpin", "N", "drop the N-th pinned run", act_unpin)                                     \
+    X("", "forget", "", "drop the run that is compared with", act_forget)                          \
+    X("", "difference", "[TOLERANCE|off]", "this run minus the baseline, in all panes",            \
+      act_show_difference)                                                                         \
+    X("", "sweep", "[PATH=A:B:N|off]", "runs with other values: a fan of curves and a metric",     \
+      act_sweep)                                                                                   \
+    X("", "metric", "[KEY]", "what the sweep compares by; alone: the next one", act_set_metric)    \
     X("", "stop", "", "compute no further; Space at its end goes on", act_stop)                    \
     X("", "compare", "", "both runs in numbers", act_compare)                                      \
     X("", "undo", "", "take the last change back", act_undo)                                       \
@@ -44,6 +56,8 @@
     X("", "axis", "auto|grow|LOW HIGH [PANE]", "range: what is visible, was seen, or yours",       \
       act_axis)                                                                                    \
     X("", "trace", "1-9|SIGNAL...", "show or hide a pane of curves", act_trace_pane)               \
+    X("", "lanes", "auto|all|off", "contact, modes, changes... below the curves; alone: next",     \
+      act_set_lanes)                                                                               \
     X("Scenarios and files", "open", "[NAME|+1|-1]", "another scenario, from a list",              \
       act_open_scenario_by)                                                                        \
     X("", "find", "[TEXT]", "the list, filtered by what is typed", act_find_scenario)              \
@@ -52,7 +66,7 @@
     X("", "scene", "FILE.png", "picture of the arm at this instant", act_save_scene)               \
     X("The lab", "palette", "[WORDS]", "find anything by words: commands, values, scenarios",      \
       act_open_palette)                                                                            \
-    X("", "glyphs", "braille|blocks|ascii", "characters to draw with", act_set_glyphs)      \
+    X("", "glyphs", "braille|blocks|ascii", "characters to draw with", act_set_glyphs)             \
     X("", "theme", "dark|light|mono", "colours for that ground", act_set_theme)                    \
     X("", "colours", "auto|true|256|16|mono", "how many the terminal has", act_set_colours)        \
     X("", "mouse", "on|off", "off lets the terminal select text", act_set_mouse)                   \

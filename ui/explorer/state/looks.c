@@ -12,4 +12,7 @@ const char *const colour_depth_words[COLOUR_DEPTHS] = {[DEPTH_AUTO] = "auto",
                                                        [DEPTH_16] = "16",
                                                        [DEPTH_MONO] = "mono"};
 
+const char *const lane_choice_words[LANE_CHOICES] = {
+    [LANES_AUTO] = "auto", [LANES_ALL] = "all", [LANES_OFF] = "off"};
+
 const char *const mouse_words[2] = {"off", "on"};

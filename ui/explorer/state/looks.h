@@ -3,10 +3,19 @@
 
 #include "ui/terminal/screen.h"
 
+// Which lanes are shown below the curves.
+typedef enum lane_choice {
+    LANES_AUTO, // as many as there is room for
+    LANES_ALL,
+    LANES_OFF,
+    LANE_CHOICES
+} lane_choice;
+
 typedef struct looks {
     glyph_set glyphs;
     colour_theme theme;
     colour_depth depth;
+    lane_choice lanes;
     bool mouse;  // it reports to the explorer
     bool redraw; // the whole screen is to be drawn anew
 } looks;
@@ -15,4 +24,5 @@ typedef struct looks {
 extern const char *const glyph_set_words[GLYPH_SETS];
 extern const char *const colour_theme_words[COLOUR_THEMES];
 extern const char *const colour_depth_words[COLOUR_DEPTHS];
+extern const char *const lane_choice_words[LANE_CHOICES];
 extern const char *const mouse_words[2];

@@ -21,6 +21,8 @@ typedef enum panel_place {
     X(PANEL_CURVES, PLACE_MAIN, curves_panel)                                                      \
     X(PANEL_PARAMETERS, PLACE_SIDE, parameters_panel)                                              \
     X(PANEL_VALUES, PLACE_SIDE, values_panel)                                                      \
+    X(PANEL_SWEEP, PLACE_SIDE, sweep_panel)                                                        \
+    X(PANEL_RUNS, PLACE_STACK, runs_panel)                                                         \
     X(PANEL_CONTROLLER, PLACE_STACK, controller_panel)                                             \
     X(PANEL_PREDICTORS, PLACE_STACK, predictors_panel)                                             \
     X(PANEL_LOG, PLACE_STACK, log_panel)                                                           \
@@ -28,6 +30,7 @@ typedef enum panel_place {
     X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                                \
     X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)                                              \
     X(PANEL_CHANGES, PLACE_PAGE, changes_panel)                                                    \
+    X(PANEL_RUN_LIST, PLACE_PAGE, run_list_panel)                                                  \
     X(PANEL_INFO, PLACE_PAGE, info_panel)                                                          \
     X(PANEL_PALETTE, PLACE_PROMPT, palette_panel)
 

@@ -60,6 +60,9 @@ static int main_parameter(const explorer_state *st)
 static void look_afresh(explorer_state *st)
 {
     st->opened++;
+    if (st->side.panel == PANEL_SWEEP) {
+        st->side.panel = panel_first_on_side();
+    }
     parameter_list_arrange(&st->parameters, &st->session.effective.parameters, main_parameter(st));
     st->mark.set = false;
     time_window_show_all(&st->window);
@@ -75,6 +78,8 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
         return code;
     }
 
+    st->pinned.baseline = -1;
+    st->sweep.metric = SUMMARY_INDEX(peak_force_N);
     st->playback.speed = 0.2;
     st->looks.mouse = true;
     st->side.panel = panel_first_on_side();
@@ -93,6 +98,9 @@ void state_finish(explorer_state *st)
     }
     run_log_forget(&st->log);
     scenario_menu_finish(&st->scenarios);
+    difference_finish(&st->difference);
+    lab_sweep_end(&st->sweep);
+    run_list_clear(&st->pinned);
     session_finish(&st->session);
     memset(st, 0, sizeof *st);
 }
@@ -100,6 +108,9 @@ void state_finish(explorer_state *st)
 void state_take_session(explorer_state *st, session *fresh)
 {
     assert(st != NULL && fresh != NULL);
+    difference_finish(&st->difference);
+    lab_sweep_end(&st->sweep);
+    run_list_clear(&st->pinned);
     session_finish(&st->session);
     st->session = *fresh;
     look_afresh(st);
@@ -113,17 +124,66 @@ unsigned long state_run_id(const explorer_state *st)
     return ((unsigned long)st->opened << 32) | st->session.version;
 }
 
+int state_visible_pins(const explorer_state *st)
+{
+    assert(st != NULL);
+    int count = 0;
+    for (int i = 0; i < st->pinned.count; i++) {
+        count += !st->pinned.runs[i].hidden;
+    }
+    return count;
+}
+
 int state_run_count(const explorer_state *st)
 {
     assert(st != NULL);
-    return 1 + st->session.has_other + st->session.has_ghost;
+    if (st->difference.on && st->session.has_other) {
+        return 1;
+    }
+    return 1 + state_visible_pins(st) + st->sweep.count + st->session.has_ghost;
 }
 
-const run_result *state_run(const explorer_state *st, int index)
+// The number of a pinned run by its number among those that are not hidden.
+static int visible_pin(const explorer_state *st, int wanted)
+{
+    int index = 0;
+    for (; st->pinned.runs[index].hidden || wanted > 0; index++) {
+        wanted -= !st->pinned.runs[index].hidden;
+    }
+    return index;
+}
+
+shown_run state_run(const explorer_state *st, int index)
 {
     assert(index >= 0 && index < state_run_count(st));
     const session *s = &st->session;
-    return index == 0 ? &s->run : index == 1 && s->has_other ? &s->other : &s->ghost;
+    const int pins = state_visible_pins(st);
+    const unsigned long pinned_id = 1ul << 62, swept_id = 1ul << 63, difference_id = 3ul << 62;
+
+    // the present one, the pinned ones, the sweep's, the one before
+    if (index == 0 && st->difference.on && s->has_other) {
+        return (shown_run){SHOWN_DIFFERENCE, 0, &st->difference.trace,
+                           difference_id | st->difference.built};
+    }
+    if (index == 0) {
+        return (shown_run){SHOWN_PRESENT, 0, &s->run.trace, state_run_id(st)};
+    }
+    if (index <= pins) {
+        const int pin = visible_pin(st, index - 1);
+        const pinned_run *p = &st->pinned.runs[pin];
+        return (shown_run){SHOWN_PINNED, pin, &p->run.trace, pinned_id | p->id};
+    }
+    if (index <= pins + st->sweep.count) {
+        const swept_run *r = &st->sweep.runs[index - 1 - pins];
+        return (shown_run){SHOWN_SWEPT, index - 1 - pins, &r->run.trace, swept_id | r->id};
+    }
+    return (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, state_run_id(st)};
+}
+
+const char *state_run_name(const explorer_state *st, int index)
+{
+    const shown_run r = state_run(st, index);
+    return r.kind == SHOWN_PINNED ? st->pinned.runs[r.index].name : "";
 }
 
 parameters state_parameters(const explorer_state *st)
@@ -228,14 +288,14 @@ static value_range range_of_rows(const trace *t, int signal, const double *pairs
 static value_range range_between(const explorer_state *st, const pane *p, double from, double to,
                                  int runs)
 {
-    const unsigned long id = state_run_id(st);
     value_range found = value_range_empty;
     for (int run = 0; run < runs; run++) {
-        const trace *t = &state_run(st, run)->trace;
+        const shown_run shown = state_run(st, run);
+        const trace *t = shown.trace;
         // one row more at the end: the line goes on to it
         const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
         for (int k = 0; k < p->count; k++) {
-            const double *pairs = extremes_pairs(&st->extremes[run], id, t, p->signals[k]);
+            const double *pairs = extremes_pairs(&st->extremes[run], shown.id, t, p->signals[k]);
             value_range_widen(&found, range_of_rows(t, p->signals[k], pairs, first, last));
         }
     }
@@ -271,12 +331,12 @@ bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
 // The blocks of all signals that are shown.
 static void update_extremes(explorer_state *st)
 {
-    const unsigned long id = state_run_id(st);
-    for (int i = 0; i < PANES; i++) {
-        const pane *p = &st->panes.pane[i];
-        for (int k = 0; p->shown && k < p->count; k++) {
-            for (int run = 0; run < state_run_count(st); run++) {
-                extremes_update(&st->extremes[run], id, &state_run(st, run)->trace, p->signals[k]);
+    for (int run = 0; run < state_run_count(st); run++) {
+        const shown_run shown = state_run(st, run);
+        for (int i = 0; i < PANES; i++) {
+            const pane *p = &st->panes.pane[i];
+            for (int k = 0; p->shown && k < p->count; k++) {
+                extremes_update(&st->extremes[run], shown.id, shown.trace, p->signals[k]);
             }
         }
     }
@@ -301,6 +361,7 @@ void state_update(explorer_state *st)
         define_panes(st);
         st->panes_height = st->size.height;
     }
+    difference_update(&st->difference, state_run_id(st), &st->session);
     update_extremes(st);
     grow_axes(st);
     time_window_follow(&st->window, duration_of(st), st->session.now);

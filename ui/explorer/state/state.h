@@ -6,6 +6,8 @@
 #include "ui/explorer/state/extremes.h"
 #include "ui/explorer/state/filters.h"
 #include "ui/explorer/state/key_bindings.h"
+#include "ui/explorer/state/difference.h"
+#include "ui/explorer/state/lab_sweep.h"
 #include "ui/explorer/state/law_modes.h"
 #include "ui/explorer/state/looks.h"
 #include "ui/explorer/state/message.h"
@@ -15,13 +17,23 @@
 #include "ui/explorer/state/parameter_list.h"
 #include "ui/explorer/state/playback.h"
 #include "ui/explorer/state/prompt.h"
+#include "ui/explorer/state/run_list.h"
 #include "ui/explorer/state/run_log.h"
 #include "ui/explorer/state/scenario_menu.h"
 #include "ui/explorer/state/slider.h"
 #include "ui/explorer/state/time_window.h"
 
 enum { SIDE_WIDTH = 72 }; // of a screen that has room for the side beside the curves [cells]
-enum { SHOWN_RUNS = 8 };  // the present run and those kept for comparison
+// The present run, those pinned, those of a sweep, and the one before a value that is adjusted.
+enum { SHOWN_RUNS = 1 + PINNED_RUNS + SWEPT_RUNS + 1 };
+
+// A run whose curves are shown.
+typedef struct shown_run {
+    enum { SHOWN_PRESENT, SHOWN_DIFFERENCE, SHOWN_PINNED, SHOWN_SWEPT, SHOWN_BEFORE } kind;
+    int index; // among those of its kind
+    const trace *trace;
+    unsigned long id; // of its rows, never 0
+} shown_run;
 
 // Second cursor.
 typedef struct time_mark {
@@ -48,6 +60,9 @@ typedef struct screen_size {
 typedef struct explorer_state {
     // the runs
     session session;
+    run_list pinned;
+    lab_sweep sweep;
+    run_difference difference;
     unsigned opened; // counts the scenarios that were opened
 
     // the instants that are looked at
@@ -100,9 +115,14 @@ void state_update(explorer_state *st);
 
 // Identifies the present run among all of all sessions opened here; never 0.
 unsigned long state_run_id(const explorer_state *st);
-// The runs that are shown: 0 is the present one, the others are kept for comparison.
+// The runs whose curves are shown: 0 is the present one (or its difference from the baseline,
+// alone), the others are kept for comparison.
 int state_run_count(const explorer_state *st);
-const run_result *state_run(const explorer_state *st, int index);
+shown_run state_run(const explorer_state *st, int index);
+// What a run is called, "" for the present one and for those that have no name.
+const char *state_run_name(const explorer_state *st, int index);
+// Pinned runs that are not hidden.
+int state_visible_pins(const explorer_state *st);
 // The parameters at the cursor.
 parameters state_parameters(const explorer_state *st);
 

@@ -1,0 +1,116 @@
+// The lanes below the curves: what they hold is what the rows hold.
+#include "tests/explorer_on_screen.h"
+
+// The part of a kind that was drawn last, of width 0 if none was.
+static area find_part(const explorer *ex, hit_part part)
+{
+    for (int i = 0; i < ex->layout.hit_count; i++) {
+        if (ex->layout.hits[i].panel == PANEL_CURVES && ex->layout.hits[i].part == part) {
+            return ex->layout.hits[i].area;
+        }
+    }
+    return (area){0};
+}
+
+// Draws an explorer and returns its cells, to be finished.
+static screen drawn(explorer *ex, int width, int height)
+{
+    screen s = {0};
+    assert_true(screen_resize(&s, width, height));
+    explorer_draw(ex, &s);
+    return s;
+}
+
+static void test_the_contact_lane_is_where_rows_touch(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "<End>");
+    screen s = drawn(&ex, 120, 50);
+    const area lanes = find_part(&ex, PART_LANES);
+    assert_true(lanes.width > 20 && lanes.height >= 2);
+
+    // every column: filled if and only if a row in it is in contact
+    const trace *t = &ex.state.session.run.trace;
+    const double duration = ex.state.session.effective.parameters.run.duration;
+    int filled = 0;
+    for (int i = 0; i < lanes.width; i++) {
+        const double from = duration * i / lanes.width, to = duration * (i + 1) / lanes.width;
+        bool touches = false;
+        for (size_t r = trace_row_at(t, from); r <= trace_row_at(t, to); r++) {
+            touches = touches || t->rows[r].contact != 0;
+        }
+        const cell c = s.cells[lanes.y * s.width + lanes.x + i];
+        assert_int_equal(c.glyph == 0x2592, touches);
+        filled += touches;
+    }
+    assert_true(filled > 5 && filled < lanes.width - 5);
+    screen_finish(&s);
+    explorer_finish(&ex);
+}
+
+static void test_modes_are_named_and_changes_told(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":seek 0.2<Enter>:set control.force 2<Enter><End>");
+    char *text = picture(&ex, 120, 50, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "│approach───"));
+    assert_non_null(strstr(text, "│impact──"));
+    assert_non_null(strstr(text, "●force 2"));
+    free(text);
+
+    // nothing of the future is told
+    press(&ex, ":seek 0.1<Enter>:restart<Enter><Space>:wait 0.5<Enter>");
+    text = picture(&ex, 120, 50, GLYPHS_BRAILLE);
+    assert_null(strstr(text, "│impact"));
+    assert_non_null(strstr(text, "○force 2"));
+    free(text);
+
+    // off, and all where there is little room
+    press(&ex, ":lanes off<Enter>");
+    free(picture(&ex, 120, 50, GLYPHS_BRAILLE));
+    assert_int_equal(find_part(&ex, PART_LANES).height, 0);
+    press(&ex, ":lanes all<Enter>");
+    free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
+    assert_true(find_part(&ex, PART_LANES).height >= 3);
+    explorer_finish(&ex);
+}
+
+static void test_a_click_moves_the_cursor_or_the_window(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "<End>");
+    free(picture(&ex, 120, 50, GLYPHS_BRAILLE));
+    const area lanes = find_part(&ex, PART_LANES);
+    explorer_point(
+        &ex, (pointer_event){POINTER_PRESS, lanes.x + lanes.width / 2, lanes.y, false, false});
+    check_close(ex.state.session.now, 0.5, 0.02);
+    explorer_point(&ex, (pointer_event){POINTER_RELEASE, lanes.x, lanes.y, false, false});
+
+    // the map is there while a part is visible, and moves it
+    assert_int_equal(find_part(&ex, PART_MAP).width, 0);
+    press(&ex, ":zoom 0.1 0.2<Enter>");
+    free(picture(&ex, 120, 50, GLYPHS_BRAILLE));
+    const area map = find_part(&ex, PART_MAP);
+    assert_true(map.width > 20);
+    explorer_point(&ex,
+                   (pointer_event){POINTER_PRESS, map.x + map.width * 3 / 4, map.y, false, false});
+    check_close(ex.state.window.to - ex.state.window.from, 0.1, 1e-9);
+    check_close((ex.state.window.to + ex.state.window.from) / 2, 0.75, 0.02);
+    explorer_finish(&ex);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_contact_lane_is_where_rows_touch),
+        cmocka_unit_test(test_modes_are_named_and_changes_told),
+        cmocka_unit_test(test_a_click_moves_the_cursor_or_the_window),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,179 @@
+// Several runs: pinning, comparing, going on with one of them, differences and sweeps.
+#include "tests/explorer_on_screen.h"
+
+#include <math.h>
+
+static double peak(const explorer *ex)
+{
+    return ex->state.session.run.summary.peak_force_N;
+}
+
+static void test_runs_are_pinned_with_what_was_changed(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    const run_list *list = &ex.state.pinned;
+    press(&ex, "b:seek 0.1<Enter>:set motor.voltage 0.5<Enter>b");
+    assert_int_equal(list->count, 2);
+    assert_string_equal(list->runs[0].name, "as opened");
+    assert_string_equal(list->runs[1].name, "voltage 0.5 from 0.1 s");
+
+    // the same run is not pinned twice, another is the baseline again
+    press(&ex, "b");
+    assert_int_equal(list->count, 2);
+    assert_int_equal(list->baseline, 1);
+    press(&ex, ":baseline 1<Enter>");
+    check_close(ex.state.session.other.summary.peak_force_N, list->runs[0].run.summary.peak_force_N,
+                0);
+
+    // what differs, in both directions
+    char text[LINE_TEXT];
+    press(&ex, ":seek 0<Enter>:set arm.k2 5<Enter>");
+    run_list_differences(&list->runs[1], &ex.state.session, text, sizeof text);
+    assert_string_equal(text, "(now: k2 5)");
+    press(&ex, "uu");
+    run_list_differences(&list->runs[1], &ex.state.session, text, sizeof text);
+    assert_string_equal(text, "voltage 0.5 from 0.1 s");
+    explorer_finish(&ex);
+}
+
+static void test_no_more_than_seven_and_none_is_lost(void **state)
+{
+    (void)state;
+    explorer ex;
+    char keys[64];
+    open_explorer(&ex, "corrected/first-impact");
+    for (int i = 0; i < PINNED_RUNS; i++) {
+        snprintf(keys, sizeof keys, ":set arm.k2 %d<Enter>b", 4 + i);
+        press(&ex, keys);
+    }
+    assert_int_equal(ex.state.pinned.count, PINNED_RUNS);
+    press(&ex, ":set arm.k2 20<Enter>b");
+    assert_int_equal(ex.state.pinned.count, PINNED_RUNS);
+    assert_true(ex.state.message.warning);
+    assert_shows(&ex, "7 runs are pinned already");
+
+    // dropping the baseline leaves another one, dropping all leaves none
+    for (int i = 0; i < PINNED_RUNS; i++) {
+        assert_true(ex.state.session.has_other);
+        press(&ex, "B");
+    }
+    assert_int_equal(ex.state.pinned.count, 0);
+    assert_false(ex.state.session.has_other);
+    explorer_finish(&ex);
+}
+
+static void test_taking_a_run_brings_all_of_it_back(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    const double opened = peak(&ex);
+    press(&ex, ":seek 0.1<Enter>b:set motor.voltage 0.5<Enter>");
+    const double halved = peak(&ex);
+    assert_true(fabs(halved - opened) > 0.1);
+
+    // the other way round: the present one is pinned and compared with
+    press(&ex, ":take 1<Enter>");
+    check_close(peak(&ex), opened, 0);
+    check_close(ex.state.session.other.summary.peak_force_N, halved, 0);
+    assert_int_equal(ex.state.session.input_count, 0);
+    press(&ex, ":take 2<Enter>");
+    check_close(peak(&ex), halved, 0);
+    press(&ex, "u");
+    check_close(peak(&ex), opened, 0);
+    explorer_finish(&ex);
+}
+
+static void test_hidden_runs_are_not_drawn(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "b:set arm.k2 5<Enter>b:set arm.k2 6<Enter>");
+    assert_int_equal(state_run_count(&ex.state), 3);
+    press(&ex, ":hide 1<Enter>");
+    assert_int_equal(state_run_count(&ex.state), 2);
+    assert_string_equal(state_run_name(&ex.state, 1), "k2 5");
+
+    // by keys on the page, and back
+    press(&ex, "R<Up><Up> <Esc>");
+    assert_int_equal(state_run_count(&ex.state), 3);
+    press(&ex, ":rename 1 soft arm<Enter>");
+    assert_string_equal(state_run_name(&ex.state, 1), "soft arm");
+    explorer_finish(&ex);
+}
+
+static void test_the_difference_is_that_of_the_runs(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.1<Enter>b");
+
+    // of the run from itself nothing
+    press(&ex, "D");
+    free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
+    check_close(difference_first_beyond(&ex.state.difference, SIGNAL_INDEX(force), 0), -1, 0);
+
+    // rows are the same up to a change, and then as far apart as the voltages
+    press(&ex, ":set motor.voltage 0.5<Enter>");
+    free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
+    const run_difference *d = &ex.state.difference;
+    const int voltage = SIGNAL_INDEX(voltage), angle = SIGNAL_INDEX(hub_angle);
+    check_close(difference_first_beyond(d, voltage, 0.1), 0.1, 1e-9);
+    assert_true(difference_first_beyond(d, angle, 0) > 0.1);
+    const trace *t = &d->trace;
+    check_close(signal_value(&t->rows[t->row_count - 1], voltage), -0.5, 1e-15);
+    assert_shows(&ex, "minus baseline");
+    press(&ex, "D");
+    assert_int_equal(state_run_count(&ex.state), 2);
+    explorer_finish(&ex);
+}
+
+static void test_a_sweep_gives_what_single_runs_give(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":sweep motor.voltage=0.5:2:4<Enter>");
+    const lab_sweep *sweep = &ex.state.sweep;
+    assert_int_equal(sweep->count, 4);
+    assert_int_equal(state_run_count(&ex.state), 5);
+    assert_shows(&ex, "sweep motor.voltage, 4 of 4");
+
+    // the run of a row, opened, is that run; u leads back
+    const double opened = peak(&ex);
+    press(&ex, "<Down><Down><Enter>");
+    check_close(sweep->runs[2].value, 1.5, 1e-15);
+    check_close(peak(&ex), sweep->runs[2].run.summary.peak_force_N, 0);
+    press(&ex, "u");
+    check_close(peak(&ex), opened, 0);
+
+    // another metric, and the end
+    press(&ex, ":metric contact_impulse_Ns<Enter>");
+    assert_int_equal(sweep->metric, SUMMARY_INDEX(contact_impulse_Ns));
+    press(&ex, "<Esc>");
+    assert_int_equal(state_run_count(&ex.state), 1);
+
+    // what cannot be run says so
+    press(&ex, ":sweep motor.voltage=1:2:40<Enter>");
+    assert_true(ex.state.message.warning);
+    press(&ex, ":sweep motor.volts=1:2:4<Enter>");
+    assert_shows(&ex, "did you mean");
+    explorer_finish(&ex);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_runs_are_pinned_with_what_was_changed),
+        cmocka_unit_test(test_no_more_than_seven_and_none_is_lost),
+        cmocka_unit_test(test_taking_a_run_brings_all_of_it_back),
+        cmocka_unit_test(test_hidden_runs_are_not_drawn),
+        cmocka_unit_test(test_the_difference_is_that_of_the_runs),
+        cmocka_unit_test(test_a_sweep_gives_what_single_runs_give),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,338 @@
+#include "ui/explorer/panels/lanes.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    MOST_LANES = 16,
+    FEWEST_CURVES = 14, // rows of curves from which on lanes show by themselves
+    LEAST_CURVES = 6,   // that lanes leave where they are asked for
+    LOOKS = 32          // rows of a run that a column looks at
+};
+
+typedef enum lane_kind {
+    LANE_CONTACT,
+    LANE_MODE,
+    LANE_CHANGES,
+    LANE_SATURATION,
+    LANE_STICKING,
+    LANE_LOCK
+} lane_kind;
+
+typedef struct lane {
+    lane_kind kind;
+    int run; // of those shown
+} lane;
+
+// What a lane holds at an instant: nothing, or one of a few things.
+typedef struct lane_band {
+    int value; // negative: nothing; the same value is one band
+    ink colour;
+    char name[MODE_NAME_SIZE]; // "" for a band that its lane's label names
+} lane_band;
+
+// --- which lanes there are --------------------------------------------------------------------
+
+void lanes_survey(const explorer_state *st, lane_survey *known)
+{
+    assert(st != NULL && known != NULL);
+    const trace *t = &st->session.run.trace;
+    const unsigned long run = state_run_id(st);
+
+    // a run that grew is looked at from where it ended
+    if (known->run != run || known->rows > t->row_count) {
+        *known = (lane_survey){.run = run};
+    }
+    const double limit = st->session.effective.parameters.motor.voltage_limit;
+    for (; known->rows < t->row_count; known->rows++) {
+        const sample *row = &t->rows[known->rows];
+        known->sticks = known->sticks || row->sticking != 0;
+        known->saturates = known->saturates || fabs(row->command) > limit;
+    }
+}
+
+static bool has_lock(const explorer_state *st)
+{
+    const scenario *s = &st->session.effective;
+    bool found = strcmp(s->parameters.control.lock, "none") != 0;
+    for (int i = 0; i < s->action_count; i++) {
+        found = found || (s->actions[i].kind == ACTION_SET &&
+                          s->actions[i].parameter == PARAMETER_INDEX(control.lock));
+    }
+    return found && state_has_law(st);
+}
+
+// The lanes of the runs that are shown, the ones that tell most first; returns how many.
+static int find_lanes(const explorer_state *st, const lane_survey *known, lane lanes[MOST_LANES])
+{
+    int count = 0;
+    lanes[count++] = (lane){LANE_CONTACT, 0};
+    if (state_has_law(st)) {
+        lanes[count++] = (lane){LANE_MODE, 0};
+    }
+    if (st->session.effective.action_count > 0) {
+        lanes[count++] = (lane){LANE_CHANGES, 0};
+    }
+    if (known->saturates) {
+        lanes[count++] = (lane){LANE_SATURATION, 0};
+    }
+    if (has_lock(st)) {
+        lanes[count++] = (lane){LANE_LOCK, 0};
+    }
+    for (int run = 1; run < state_run_count(st) && count < MOST_LANES - 1; run++) {
+        if (state_run_name(st, run)[0] != '\0') {
+            lanes[count++] = (lane){LANE_CONTACT, run};
+        }
+    }
+    if (known->sticks) {
+        lanes[count++] = (lane){LANE_STICKING, 0};
+    }
+    return count;
+}
+
+// Whether only a part of the run is visible.
+static bool has_map(const explorer_state *st)
+{
+    return st->window.to > st->window.from;
+}
+
+int lanes_rows(const explorer_state *st, const lane_survey *known, int height)
+{
+    assert(st != NULL && known != NULL);
+    lane lanes[MOST_LANES];
+    const int wanted = find_lanes(st, known, lanes) + has_map(st);
+    const int spare = st->looks.lanes == LANES_ALL ? height - LEAST_CURVES
+                      : height > FEWEST_CURVES     ? (height - FEWEST_CURVES) / 2
+                                                   : 0;
+    const int rows = st->looks.lanes == LANES_OFF ? 0 : spare < wanted ? spare : wanted;
+    return rows < 0 ? 0 : rows;
+}
+
+// --- what is in them --------------------------------------------------------------------------
+
+// Whether any of the rows from an instant to another one is in contact, sticks, and so on; a few of
+// many are looked at.
+static bool any_row(const trace *t, double from, double to, size_t offset, double above)
+{
+    const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
+    const size_t stride = (last - first) / LOOKS + 1;
+    for (size_t r = first; r <= last; r += stride) {
+        double value;
+        memcpy(&value, (const char *)&t->rows[r] + offset, sizeof value);
+        if (fabs(value) > above) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// What a lane holds between two instants [s].
+static lane_band band_between(const explorer_state *st, lane l, double from, double to)
+{
+    static const ink mode_colours[] = {INK_SERIES_0,     INK_SERIES_0 + 1, INK_SERIES_0 + 2,
+                                       INK_SERIES_0 + 3, INK_SERIES_0 + 4, INK_SERIES_0 + 5};
+    enum { COLOURS = sizeof mode_colours / sizeof mode_colours[0] };
+    const trace *t = state_run(st, l.run).trace;
+    lane_band band = {-1, INK_FORCE, ""};
+    switch (l.kind) {
+    case LANE_CONTACT:
+        band.value = any_row(t, from, to, offsetof(sample, contact), 0) ? 1 : -1;
+        break;
+    case LANE_STICKING:
+        band.value = any_row(t, from, to, offsetof(sample, sticking), 0) ? 1 : -1;
+        band.colour = INK_HUB;
+        break;
+    case LANE_SATURATION: {
+        const parameters p = session_parameters_at(&st->session, to);
+        const bool beyond = any_row(t, from, to, offsetof(sample, command), p.motor.voltage_limit);
+        band.value = beyond ? 1 : -1;
+        band.colour = INK_WARNING;
+        break;
+    }
+    case LANE_MODE: {
+        const double mode = t->rows[trace_row_at(t, to)].controller_mode;
+        if (mode >= 0) {
+            band.value = (int)mode;
+            band.colour = mode_colours[(int)mode % COLOURS];
+            law_mode_name(&st->modes, mode, band.name, sizeof band.name);
+        }
+        break;
+    }
+    case LANE_LOCK: {
+        const parameters p = session_parameters_at(&st->session, to);
+        for (int i = 0; i < st->modes.count; i++) {
+            band.value = strcmp(st->modes.names[i], p.control.lock) == 0 ? i : band.value;
+        }
+        snprintf(band.name, sizeof band.name, "%.*s", (int)sizeof band.name - 1, p.control.lock);
+        band.colour = INK_EVENT;
+        break;
+    }
+    case LANE_CHANGES:
+        break;
+    }
+    return band;
+}
+
+// --- drawing ----------------------------------------------------------------------------------
+
+// The instant at the left edge of a column [s].
+static double column_time(const explorer_state *st, area line, int column)
+{
+    double from, to;
+    state_window(st, &from, &to);
+    return from + (to - from) * column / line.width;
+}
+
+static void draw_label(const explorer_state *st, screen *s, area a, lane l)
+{
+    static const char *const labels[] = {"contact",   "mode",   "changes",
+                                         "saturated", "sticks", "locked"};
+    if (l.run > 0) {
+        screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "\u2592 %s", state_run_name(st, l.run));
+        return;
+    }
+    screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, labels[l.kind]);
+}
+
+// A name in a band, as far as that is long enough to tell it.
+static void name_band(screen *s, int start, int end, int y, const lane_band *band)
+{
+    const int length = (int)strlen(band->name), room = end - start - 1;
+    if (length > 0 && room >= (length < 3 ? length : 3)) {
+        screen_text(s, start + 1, y, room, band->colour, band->name);
+    }
+}
+
+// A lane of bands, as far as the run has been seen.
+static void draw_bands(const explorer_state *st, screen *s, area line, lane l)
+{
+    const bool future = st->session.has_ghost || l.run > 0;
+    lane_band before = {.value = -1};
+    int start = 0;
+    for (int i = 0; i <= line.width; i++) {
+        const double from = column_time(st, line, i), to = column_time(st, line, i + 1);
+        const bool known = i < line.width && (future || from <= st->session.seen);
+        const lane_band band =
+            known ? band_between(st, l, from, future ? to : fmin(to, st->session.seen))
+                  : (lane_band){.value = -1};
+
+        // a band ends where the next one begins
+        if (band.value != before.value) {
+            name_band(s, line.x + start, line.x + i, line.y, &before);
+            start = i;
+        }
+        const bool begins = band.name[0] != '\0' && start == i;
+        if (band.value >= 0) {
+            const uint32_t fill = band.name[0] == '\0' ? 0x2592 : 0x2500;
+            screen_put(s, line.x + i, line.y, begins ? 0x2502 : fill, band.colour);
+        }
+        before = band;
+    }
+}
+
+// What was changed, at its instant, with as much of its text as there is room for.
+static void draw_changes(const explorer_state *st, screen *s, area line)
+{
+    const scenario *scripted = &st->session.effective;
+    double from, to;
+    state_window(st, &from, &to);
+    for (int i = 0; i < scripted->action_count; i++) {
+        const action *c = &scripted->actions[i];
+        const int at = (int)floor((c->time - from) / (to - from) * line.width);
+        char text[LINE_TEXT], value[PARAMETER_TEXT_SIZE];
+        if (c->time < from || at < 0 || at >= line.width) {
+            continue;
+        }
+        const bool seen = c->time <= st->session.now;
+        if (c->kind == ACTION_PUSH) {
+            snprintf(text, sizeof text, "push %g", c->value);
+        } else {
+            action_format_value(c, value, sizeof value);
+            snprintf(text, sizeof text, "%s %s",
+                     strchr(parameter_table[c->parameter].path, '.') + 1, value);
+        }
+        const ink colour = seen ? INK_EVENT : INK_DIM;
+        screen_put(s, line.x + at, line.y, seen ? 0x25cf : 0x25cb, colour);
+        screen_text(s, line.x + at + 1, line.y, line.width - at - 1, colour, text);
+    }
+}
+
+// The whole run in a row: the visible part, impacts, the cursor.
+static void draw_map(const explorer_state *st, layout *lay, screen *s, area a, area line)
+{
+    const session *e = &st->session;
+    const trace *t = &e->run.trace;
+    const double whole = e->effective.parameters.run.duration;
+    double from, to;
+    state_window(st, &from, &to);
+    const int left = (int)(from / whole * line.width), right = (int)(to / whole * line.width);
+    screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "whole run");
+    for (int i = 0; i < line.width; i++) {
+        const bool visible = i >= left && i <= right;
+        screen_put(s, line.x + i, line.y, visible ? 0x2592 : 0x2500,
+                   visible ? INK_CURSOR : INK_FRAME);
+    }
+
+    // impacts and changes that have been seen, the cursor over them
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
+        const event *v = &t->events[i];
+        const int at = (int)(v->time / whole * line.width);
+        const bool impact = v->kind == EVENT_IMPACT;
+        const bool change = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
+        if ((impact || change) && at < line.width) {
+            screen_put(s, line.x + at, line.y, impact ? 0x25b2 : 0x25cf, INK_EVENT);
+        }
+    }
+    const int now = (int)(e->now / whole * line.width);
+    screen_put(s, line.x + (now < line.width ? now : line.width - 1), line.y, 0x2506, INK_TITLE);
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_MAP, 0, line});
+}
+
+void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    assert(st != NULL && lay != NULL && s != NULL);
+    lane lanes[MOST_LANES];
+    const int count = find_lanes(st, &lay->lanes, lanes);
+    area line = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1, 1};
+    int left = a.height;
+
+    // the map first, then as many lanes as have a row
+    if (left > 0 && has_map(st)) {
+        draw_map(st, lay, s, a, line);
+        left--;
+        a.y++;
+        line.y++;
+    }
+    const area all = {line.x, line.y, line.width, left};
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LANES, 0, all});
+    for (int i = 0; i < count && left > 0; i++, left--, a.y++, line.y++) {
+        draw_label(st, s, a, lanes[i]);
+        if (lanes[i].kind == LANE_CHANGES) {
+            draw_changes(st, s, line);
+        } else {
+            draw_bands(st, s, line, lanes[i]);
+        }
+    }
+}
+
+bool lanes_point(explorer_state *st, const panel_gesture *g)
+{
+    assert(st != NULL && g != NULL);
+    const area line = g->hit.area;
+    const double share = (g->event.x - line.x + 0.5) / (line.width > 0 ? line.width : 1);
+    if (g->event.kind != POINTER_PRESS && g->event.kind != POINTER_DRAG) {
+        return false;
+    }
+    double from, to;
+    state_window(st, &from, &to);
+
+    // on the map the visible part comes to where the mouse is
+    if (g->hit.part == PART_MAP) {
+        const double at = share * st->session.effective.parameters.run.duration;
+        act_pan_by(st, at - (from + to) / 2);
+    } else {
+        act_scrub(st, from + fmax(0, fmin(1, share)) * (to - from));
+    }
+    return true;
+}

@@ -1,0 +1,17 @@
+// The lines of curves: which dots of them are drawn, so that signals and runs are told apart where
+// colours do not.
+#pragma once
+
+#include "src/quantities/signals.h"
+#include "ui/terminal/screen.h"
+
+// Sixteen dots, repeated: bit i is dot i.
+unsigned style_pattern(line_style style);
+// The line of a pinned run, different for each.
+unsigned run_pattern(int index);
+
+// Whether a line has a dot at a column of dots.
+bool line_has_dot(unsigned pattern, long across);
+
+// A short piece of a line for a legend, as many cells wide.
+void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink colour);

@@ -1,0 +1,135 @@
+// The panel of a sweep: its metric over its parameter, and its runs.
+#include "ui/explorer/panels/panel.h"
+
+#include <math.h>
+
+enum { VALUE = 14, LEAST_CHART = 4 };
+
+// The least and the largest number among the runs; false without any.
+static bool range_of_metric(const lab_sweep *sweep, value_range *range)
+{
+    *range = value_range_empty;
+    for (int i = 0; i < sweep->count; i++) {
+        const double value = summary_value(&sweep->runs[i].run.summary, sweep->metric);
+        if (isfinite(value)) {
+            value_range_widen(range, (value_range){value, value});
+        }
+    }
+    if (!(range->high >= range->low)) {
+        return false;
+    }
+    if (range->high - range->low < 1e-12) {
+        *range = (value_range){range->low - 0.5, range->high + 0.5};
+    }
+    return true;
+}
+
+// Where the value of a run lies on the axis, 0 to 1: values of a list stand side by side.
+static double share_of(const lab_sweep *sweep, int index)
+{
+    const sweep_axis *axis = &sweep->axis;
+    const double last = (double)axis->count - 1, value = axis->values[index];
+    if (!axis->is_range || axis->high == axis->low) {
+        return last > 0 ? index / last : 0.5;
+    }
+    return axis->logarithmic ? log(value / axis->low) / log(axis->high / axis->low)
+                             : (value - axis->low) / (axis->high - axis->low);
+}
+
+// The metric over the parameter, points joined, the selected one marked.
+static void draw_chart(const explorer_state *st, screen *s, area a)
+{
+    const lab_sweep *sweep = &st->sweep;
+    value_range range;
+    char low[32], high[32];
+    if (!range_of_metric(sweep, &range)) {
+        screen_text(s, a.x, a.y, a.width, INK_DIM, "no run has this number");
+        return;
+    }
+    draw_number(low, sizeof low, range.low);
+    draw_number(high, sizeof high, range.high);
+    screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%8s", high);
+    screen_print(s, a.x, a.y + a.height - 1, LABEL_WIDTH, INK_DIM, "%8s", low);
+
+    // from point to point
+    const canvas c = {s, a.x + LABEL_WIDTH, a.y, a.width - LABEL_WIDTH, a.height};
+    double x0 = (double)NAN, y0 = (double)NAN;
+    for (int i = 0; i < sweep->count; i++) {
+        const double value = summary_value(&sweep->runs[i].run.summary, sweep->metric);
+        const double x = share_of(sweep, i) * (2.0 * c.width - 1);
+        const double y = (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
+        canvas_line(&c, x0, y0, x, y, INK_SERIES_0);
+        x0 = x;
+        y0 = y;
+    }
+    const int chosen = sweep->selected;
+    const double value = summary_value(&sweep->runs[chosen].run.summary, sweep->metric);
+    if (chosen < sweep->count && isfinite(value)) {
+        const double y = (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
+        screen_put(s, c.x + (int)(share_of(sweep, chosen) * (2.0 * c.width - 1) / 2),
+                   c.y + (int)(y / 4), 0x25cf, INK_EVENT);
+    }
+}
+
+// The runs: value and metric, from the one on that lets the selected one be seen.
+static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    const lab_sweep *sweep = &st->sweep;
+    const int first = draw_first_line(sweep->selected, sweep->count, a.height);
+    layout_add_hit(lay, (hit_area){PANEL_SWEEP, PART_LINES, first, a});
+    for (int i = first; i < sweep->count && i - first < a.height; i++) {
+        const swept_run *r = &sweep->runs[i];
+        const int y = a.y + i - first;
+        char value[SWEEP_VALUE_TEXT], metric[32];
+        sweep_axis_format(&sweep->axis, r->value, value, sizeof value);
+        draw_number(metric, sizeof metric, summary_value(&r->run.summary, sweep->metric));
+        screen_print(s, a.x, y, VALUE, INK_TITLE, "%.12s", value);
+        screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s", metric,
+                     r->run.summary.status == STATUS_OK ? summary_table[sweep->metric].unit
+                                                        : "stopped");
+        if (i == sweep->selected) {
+            screen_tint(s, a.x - 1, y, a.width + 2, 1, INK_SELECTED);
+        }
+    }
+}
+
+static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    const lab_sweep *sweep = &st->sweep;
+    char title[LINE_TEXT];
+    if (!lab_sweep_is_on(sweep)) {
+        screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "no sweep (:sweep begins one)");
+        return;
+    }
+    snprintf(title, sizeof title, "sweep %.60s, %d of %zu",
+             parameter_table[sweep->axis.parameter].path, sweep->count, sweep->axis.count);
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s (M: next)",
+                 summary_table[sweep->metric].label);
+
+    // the chart where there is room beside a few runs
+    const int inner = a.height - 3, chart = inner / 2 >= LEAST_CHART ? inner / 2 : 0;
+    if (chart > 0 && sweep->count > 0) {
+        draw_chart(st, s, (area){a.x + 2, a.y + 2, a.width - 4, chart});
+    }
+    if (inner - chart > 0) {
+        draw_runs(st, lay, s, (area){a.x + 2, a.y + 2 + chart, a.width - 4, inner - chart});
+    }
+}
+
+// A click selects a run, the wheel goes through them.
+static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+{
+    *result = result_done();
+    if (g->event.kind == POINTER_WHEEL_UP || g->event.kind == POINTER_WHEEL_DOWN) {
+        act_select_swept(st, pointer_wheel(g->event));
+        return true;
+    }
+    if (g->event.kind == POINTER_PRESS) {
+        act_select_swept(st, g->hit.index + g->event.y - g->hit.area.y - st->sweep.selected);
+        return true;
+    }
+    return false;
+}
+
+const panel sweep_panel = {.name = "sweep", .draw = draw, .point = point};
