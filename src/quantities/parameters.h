@@ -179,6 +179,8 @@ typedef struct parameters {
     control_parameters control;
     belief_parameters belief;
     sensor_parameters sensor;
+    bool code_allowed;      // the user lets the scenario start a program or load a plug-in; no file
+                            // can say so
     unsigned char set[128]; // set[i] is 1 if parameter i was given, 0 if it is a default
 } parameters;
 

@@ -8,6 +8,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // Version of this interface; a controller carries the one it was compiled with.
 enum { CONTROLLER_INTERFACE = 4 };
 
@@ -92,3 +96,7 @@ typedef struct controller {
 // A shared object named in control.plugin exports this function under this name.
 #define CONTROLLER_ENTRY "impactlab_controller"
 typedef const controller *(*controller_entry)(void);
+
+#ifdef __cplusplus
+}
+#endif

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "src/arm/arm.h"
 #include "src/quantities/k2_table.h"
@@ -60,7 +61,7 @@ controller_setup rig_believed_setup(const rig *r, const parameters *p)
 }
 
 // Memory, values and the controller's own start, once it is known which controller it is.
-static status start_controller(rig *r, const parameters *p, fault *f)
+static status start_controller(rig *r, const parameters *p, const given_law *given, fault *f)
 {
     // at least one of each, as nothing allocated would look like no memory
     size_t count = (size_t)(r->law->parameter_count > 0 ? r->law->parameter_count : 1);
@@ -73,6 +74,10 @@ static status start_controller(rig *r, const parameters *p, fault *f)
     status s = controller_values(r->law, p, r->values, f);
     if (s != STATUS_OK) {
         return s;
+    }
+    if (given != NULL) {
+        assert(r->law->memory_size >= sizeof given->context);
+        memcpy(r->memory, &given->context, sizeof given->context);
     }
 
     controller_setup setup = rig_believed_setup(r, p);
@@ -104,7 +109,13 @@ static controller_output no_answer(void)
 
 status rig_create(rig **created, const parameters *p, fault *f)
 {
-    assert(created != NULL && p != NULL && p->control.law != LAW_NONE && p->control.rate > 0);
+    return rig_create_with(created, p, NULL, f);
+}
+
+status rig_create_with(rig **created, const parameters *p, const given_law *given, fault *f)
+{
+    assert(created != NULL && p != NULL && p->control.rate > 0);
+    assert(given != NULL || p->control.law != LAW_NONE);
     rig *r = calloc(1, sizeof *r);
     *created = NULL;
     if (r == NULL) {
@@ -119,19 +130,20 @@ status rig_create(rig **created, const parameters *p, fault *f)
     r->jitter = p->control.jitter;
     r->voltage_limit = p->motor.voltage_limit;
     r->effect_time = HUGE_VAL;
+    r->read_time = -1;
     r->output = no_answer();
     sensors_init(&r->sensors, &p->sensor, p->control.seed);
     random_seed(&r->clock, ~(uint64_t)p->control.seed);
 
     // the controller, which may refuse the lock, its settings or the arm
     status s = STATUS_OK;
-    r->law = controller_of(p->control.law);
-    if (p->control.law == LAW_PLUGIN) {
+    r->law = given != NULL ? given->law : controller_of(p->control.law);
+    if (given == NULL && p->control.law == LAW_PLUGIN) {
         s = plugin_open(&r->plugin, p->control.plugin, f);
         r->law = r->plugin.law;
     }
     s = s == STATUS_OK ? rig_lock(r, p->control.lock, f) : s;
-    s = s == STATUS_OK ? start_controller(r, p, f) : s;
+    s = s == STATUS_OK ? start_controller(r, p, given, f) : s;
     if (s == STATUS_OK && p->control.force_amplitude > 0 && r->law->tune == NULL) {
         s = fault_set(f, STATUS_BAD_SCENARIO,
                       "control.force_amplitude: the controller '%s' takes its force at the start "
@@ -195,7 +207,10 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     if (followed != STATUS_OK) {
         return followed;
     }
-    r->reading = sensors_read(&r->sensors, now);
+    if (r->read_time != time) {
+        r->reading = sensors_read(&r->sensors, now);
+        r->read_time = time;
+    }
     controller_input input = input_of(r, time);
     controller_output *out = &r->output;
     *out = no_answer();
@@ -216,6 +231,15 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     r->samples++;
     r->sample_time = sampling_instant(r);
     return STATUS_OK;
+}
+
+void rig_read(rig *r, double time, const sensed_motion *now)
+{
+    assert(r != NULL && now != NULL);
+    if (!instant_after(r->sample_time, time) && r->read_time != time) {
+        r->reading = sensors_read(&r->sensors, now);
+        r->read_time = time;
+    }
 }
 
 status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f)

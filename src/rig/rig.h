@@ -10,6 +10,13 @@
 #include "src/rig/sensors.h"
 #include "src/base/fault.h"
 
+// A controller that a program gives in the place of control.law. The rig leaves `context` at the
+// beginning of the controller's memory, before its start.
+typedef struct given_law {
+    const controller *law;
+    void *context;
+} given_law;
+
 typedef struct rig {
     const controller *law;
     plugin plugin;  // the law comes from, else empty
@@ -31,6 +38,7 @@ typedef struct rig {
     random_generator clock;       // of the jitter
     double voltage;               // command in effect [V]
     sensor_reading reading;       // of the last sample
+    double read_time;             // when it was taken, -1 before the first [s]
     controller_output output;     // of the last sample
     double largest_command;       // in magnitude, as put out [V]
     int lock;                     // mode that the controller is to be in, -1 if it chooses
@@ -40,6 +48,8 @@ typedef struct rig {
 // that cannot be loaded, a setting that is not known, a controller that refuses) f says why and
 // nothing is to be freed.
 status rig_create(rig **created, const parameters *p, fault *f);
+// The same with a law that a program gives; NULL: that of control.law.
+status rig_create_with(rig **created, const parameters *p, const given_law *given, fault *f);
 void rig_destroy(rig *r); // r may be NULL
 
 // The index of the mode that a value of control.lock names, -1 for "none". STATUS_BAD_SCENARIO,
@@ -75,6 +85,10 @@ double rig_next_time(const rig *r);
 // r->voltage, or the controller went into another mode. STATUS_NOT_FINITE, with a sentence in f, if
 // the controller answers with a command that is not finite.
 status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f);
+
+// Takes the reading of the sample that is due at `time` [s] before the sample itself, which then
+// finds it taken. What is not due changes nothing.
+void rig_read(rig *r, double time, const sensed_motion *now);
 
 // The built-in controller of a law; NULL for LAW_NONE and LAW_PLUGIN.
 const controller *controller_of(int law);

@@ -92,7 +92,7 @@ static double next_cut(const recording *r, double window, double now)
     return instant_after(window, now) ? fmin(window, cut) : cut;
 }
 
-// Puts the arm where it starts, and records the row of that instant.
+// Puts the arm where it starts.
 static status begin(corrected_run *c, fault *f)
 {
     recording *r = c->recording;
@@ -116,9 +116,16 @@ static status begin(corrected_run *c, fault *f)
     }
 
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
-    failed = corrected_run_rig(c, f);
+    return STATUS_OK;
+}
+
+// The rig's first sample, and the row of the start.
+static status record_start(corrected_run *c, fault *f)
+{
+    recording *r = c->recording;
+    status failed = corrected_run_rig(c, f);
     r->state.grid_row = 1;
-    return failed == STATUS_OK ? corrected_record_row(c, m->state, 0) : failed;
+    return failed == STATUS_OK ? corrected_record_row(c, c->motion->state, 0) : failed;
 }
 
 status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
@@ -127,7 +134,7 @@ status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
     motion *m = c->motion;
     const parameters *p = &r->scenario->parameters;
     const double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
-    status failed = STATUS_OK;
+    status failed = r->state.grid_row == 0 ? record_start(c, f) : STATUS_OK;
     *ended = false;
 
     // script and rig act between stretches of motion, each ending where one of them is due
@@ -200,9 +207,9 @@ static void judge(const corrected_run *c)
     }
 }
 
-// Sums up what is known of a run, also of one that failed.
-static void sum_up(corrected_run *c, status failed)
+void corrected_sum_up(corrected_run *c, status failed)
 {
+    assert(c != NULL && c->motion != NULL);
     recording *r = c->recording;
     motion *m = c->motion;
     summary *s = &r->result->summary;
@@ -258,7 +265,7 @@ status corrected_open(corrected_run *c, recording *r, fault *f)
 void corrected_close(corrected_run *c, status failed)
 {
     if (c->motion != NULL) {
-        sum_up(c, failed);
+        corrected_sum_up(c, failed);
         motion_destroy(c->motion);
     }
 }

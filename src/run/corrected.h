@@ -20,5 +20,9 @@ status corrected_approach_stride(corrected_run *c, bool *ended, fault *f);
 // One stride and the event at its end, recorded.
 status corrected_stride(corrected_run *c, fault *f);
 
+// Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
+// then says so). What it has recorded is then that of a run that ended here.
+void corrected_sum_up(corrected_run *c, status failed);
+
 // Sums the run up and frees it; `failed` is what ended it.
 void corrected_close(corrected_run *c, status failed);

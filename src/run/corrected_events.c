@@ -166,12 +166,10 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
     return failed;
 }
 
-// Carries out one action and records it; the rows on its both sides show what it changed.
-static status run_action(corrected_run *c, int index, fault *f)
+status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    const action *todo = &r->scenario->actions[index];
     motion_report report = {.event = MOTION_REACHED};
     event e = {.time = m->state[SLOT_TIME], .kind = EVENT_CHANGE, .index = index};
     const double work = m->state[SLOT_EXTERNAL_WORK];
@@ -211,7 +209,7 @@ status corrected_run_script(corrected_run *c, fault *f)
     status failed = STATUS_OK;
     while (failed == STATUS_OK && *next < s->action_count &&
            !instant_after(s->actions[*next].time, now)) {
-        failed = run_action(c, *next, f);
+        failed = corrected_act(c, &s->actions[*next], *next, f);
         *next += failed == STATUS_OK;
     }
     return failed;

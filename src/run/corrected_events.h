@@ -13,6 +13,10 @@ void corrected_close_first_pulse(corrected_run *c);
 // Applies an event that the motion stopped at and records the rows on its both sides.
 status corrected_pass_event(corrected_run *c, motion_report *report);
 
+// Carries out one action now and records it as that of a number of the script (-1: of nobody's);
+// the rows on its both sides show what it changed.
+status corrected_act(corrected_run *c, const action *todo, int index, fault *f);
+
 // Carries out the script's actions that are due. What fails says why in f, or has a code only.
 status corrected_run_script(corrected_run *c, fault *f);
 

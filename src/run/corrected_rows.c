@@ -31,14 +31,10 @@ status corrected_audit(corrected_run *c)
     return wrong > WRONG_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
 }
 
-status corrected_record_row(corrected_run *c, double *state, double impulse)
+sample corrected_row(const corrected_run *c, double *state, double impulse)
 {
-    recording *r = c->recording;
     const arm *a = &c->arm;
     const motion *m = c->motion;
-    if (!r->options->keep_trace) {
-        return STATUS_OK;
-    }
 
     // the state's parts, and the links that the signals name
     double *q = state_angles(m, state), *w = state_velocities(m, state);
@@ -82,8 +78,19 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
         .wall_loss = m->wall_gives ? quadrature[QUADRATURE_WALL] : (double)NAN,
     };
 
-    recording_add_rig_signals(r, &row);
-    return recording_add_row(r, &row, q, w);
+    recording_add_rig_signals(c->recording, &row);
+    return row;
+}
+
+status corrected_record_row(corrected_run *c, double *state, double impulse)
+{
+    recording *r = c->recording;
+    const motion *m = c->motion;
+    if (!r->options->keep_trace) {
+        return STATUS_OK;
+    }
+    const sample row = corrected_row(c, state, impulse);
+    return recording_add_row(r, &row, state_angles(m, state), state_velocities(m, state));
 }
 
 sensed_motion corrected_sensed_motion(const corrected_run *c, double *state)

@@ -19,6 +19,9 @@ typedef struct corrected_run {
 // energy.
 status corrected_audit(corrected_run *c);
 
+// The row of a state of the motion, at which an impulse [N s] acts or none.
+sample corrected_row(const corrected_run *c, double *state, double impulse);
+
 // Adds a row of a state of the motion, at which an impulse [N s] acts or none, if the run keeps
 // rows. STATUS_NO_MEMORY.
 status corrected_record_row(corrected_run *c, double *state, double impulse);

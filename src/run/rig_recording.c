@@ -14,13 +14,13 @@ status recording_start_rig(recording *r, fault *f)
 {
     assert(r != NULL && r->rig == NULL);
     const parameters *p = &r->scenario->parameters;
-    if (p->control.law == LAW_NONE) {
+    if (p->control.law == LAW_NONE && r->options->law == NULL) {
         return STATUS_OK;
     }
 
     r->command = (recorded_command){.hub_angle = p->initial.angle};
     r->result->summary.electrical_energy_J = 0;
-    status s = rig_create(&r->rig, p, f);
+    status s = rig_create_with(&r->rig, p, r->options->law, f);
     return s == STATUS_OK ? scenario_check_locks(r->scenario, r->rig->law, f) : s;
 }
 

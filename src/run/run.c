@@ -5,20 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/clock.h"
 #include "src/base/numbers.h"
 #include "src/run/corrected.h"
 #include "src/run/printed.h"
-#include "src/run/rig_recording.h"
+#include "src/run/recording_frame.h"
 #include "src/solve/taylor_engine.h"
-
-// What a run counts and adds up begins with nothing.
-static void summary_start(summary *s)
-{
-    summary_init(s);
-    s->impacts = s->separations = s->steps = s->max_penetration_m = 0;
-    s->motor_work_J = s->energy_residual_J = 0;
-}
 
 status run_scenario(const scenario *s, bool keep_trace, run_result *result)
 {
@@ -26,67 +17,17 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
     return run_scenario_with(s, &options, result);
 }
 
-// Computing time of the thread and time by the clock [s].
-typedef struct time_used {
-    double cpu, wall;
-} time_used;
-
-static time_used clocks(void)
-{
-    return (time_used){clock_seconds(CLOCK_THREAD_CPUTIME_ID), clock_seconds(CLOCK_MONOTONIC)};
-}
-
-static time_used since(time_used start)
-{
-    time_used now = clocks();
-    return (time_used){now.cpu - start.cpu, now.wall - start.wall};
-}
-
-// What begins every run, whatever the model: its result, and the rig if a law is chosen.
-static status open_recording(recording *r, const scenario *s, const run_options *options,
-                             run_result *result, fault *f)
-{
-    *r = (recording){.scenario = s, .result = result, .options = options, .now = s->parameters};
-    *f = (fault){.text = "", .path = ""};
-    if (!options->resume) {
-        memset(result, 0, sizeof *result);
-        summary_start(&result->summary);
-    }
-    return recording_start_rig(r, f);
-}
-
-// What ends it.
-static void close_recording(recording *r, status code, const fault *f, time_used used)
-{
-    run_result *result = r->result;
-    rig_destroy(r->rig);
-
-    // what stopped it
-    result->summary.status = code;
-    if (code != STATUS_OK) {
-        const char *why = f->code != STATUS_OK ? f->text : status_text(code);
-        snprintf(result->summary.message, sizeof result->summary.message, "%s", why);
-        result->summary.path = f->path;
-    }
-
-    result->summary.cpu_time_s = used.cpu;
-    result->summary.wall_time_s = used.wall;
-    if (result->history.forces.array.reserved == 0) {
-        force_history_finish(&result->history.forces); // needed until here only
-    }
-}
-
 status run_scenario_with(const scenario *s, const run_options *options, run_result *result)
 {
     assert(s != NULL && options != NULL && result != NULL);
-    const time_used start = clocks();
+    const time_used start = time_now();
     recording r;
     fault f;
-    status code = open_recording(&r, s, options, result, &f);
+    status code = recording_begin(&r, s, options, result, &f);
     if (code == STATUS_OK) {
         code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
     }
-    close_recording(&r, code, &f, since(start));
+    recording_end(&r, code, &f, time_since(start));
     return code;
 }
 
@@ -137,7 +78,7 @@ static bool go_on(side_by_side *group, int place)
     }
 
     corrected_close(&one->run, failed);
-    close_recording(&one->recording, failed, &one->fault, (time_used){0});
+    recording_end(&one->recording, failed, &one->fault, (time_used){0});
     return false;
 }
 
@@ -150,7 +91,7 @@ static bool stride_and_go_on(side_by_side *group, int place)
         return go_on(group, place);
     }
     corrected_close(&one->run, failed);
-    close_recording(&one->recording, failed, &one->fault, (time_used){0});
+    recording_end(&one->recording, failed, &one->fault, (time_used){0});
     return false;
 }
 
@@ -171,7 +112,7 @@ static void begin_next(side_by_side *group, int place)
 
         // the next corrected run, up to its first wait
         *one = (side_run){0};
-        status failed = open_recording(&one->recording, s, &summary_only, result, &one->fault);
+        status failed = recording_begin(&one->recording, s, &summary_only, result, &one->fault);
         if (failed == STATUS_OK) {
             failed = corrected_open(&one->run, &one->recording, &one->fault);
         }
@@ -179,7 +120,7 @@ static void begin_next(side_by_side *group, int place)
             waits = go_on(group, place);
         } else {
             corrected_close(&one->run, failed);
-            close_recording(&one->recording, failed, &one->fault, (time_used){0});
+            recording_end(&one->recording, failed, &one->fault, (time_used){0});
         }
     }
 }
@@ -237,7 +178,7 @@ void run_together(const scenario *scenarios, int count, run_result *results)
 {
     assert(scenarios != NULL && results != NULL && count >= 0);
     side_by_side *group = calloc(1, sizeof *group);
-    const time_used start = clocks();
+    const time_used start = time_now();
     if (group == NULL || taylor_width() == 1) {
         for (int i = 0; i < count; i++) {
             run_scenario_with(&scenarios[i], &summary_only, &results[i]);
@@ -258,7 +199,7 @@ void run_together(const scenario *scenarios, int count, run_result *results)
     free(group);
 
     // nobody can say whose time it was
-    const time_used all = since(start);
+    const time_used all = time_since(start);
     for (int i = 0; i < count; i++) {
         results[i].summary.cpu_time_s = all.cpu / count;
         results[i].summary.wall_time_s = all.wall / count;

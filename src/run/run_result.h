@@ -37,7 +37,8 @@ typedef struct run_options {
     run_monitor *monitor; // NULL: nobody looks on
     size_t rows_expected; // if not 0, rows and events stay where they are and can be shared, and
                           // the result has a history; needs keep_trace
-    bool resume;          // *result was prepared by run_resume: go on from there
+    const struct given_law *law; // that a program gives in the place of control.law; NULL: none
+    bool resume;                 // *result was prepared by run_resume: go on from there
 } run_options;
 
 // Frees what the result holds; one of zeroes is allowed.

@@ -80,6 +80,33 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
     return STATUS_OK;
 }
 
+status trace_copy(trace *t, const trace *from)
+{
+    assert(t != NULL && from != NULL);
+    const size_t angles = from->row_count * (size_t)from->angle_count * sizeof *from->angles;
+    trace_init(t, from->angle_count);
+    if (!shared_array_grow(&t->row_array, from->row_count + 1) ||
+        !shared_array_grow(&t->angle_array, from->row_count + 1) ||
+        !shared_array_grow(&t->velocity_array, from->row_count + 1) ||
+        !shared_array_grow(&t->event_array, from->event_count + 1)) {
+        trace_finish(t);
+        return STATUS_NO_MEMORY;
+    }
+
+    find_places(t);
+    if (from->row_count > 0) {
+        memcpy(t->rows, from->rows, from->row_count * sizeof *from->rows);
+        memcpy(t->angles, from->angles, angles);
+        memcpy(t->velocities, from->velocities, angles);
+    }
+    if (from->event_count > 0) {
+        memcpy(t->events, from->events, from->event_count * sizeof *from->events);
+    }
+    t->row_count = from->row_count;
+    t->event_count = from->event_count;
+    return STATUS_OK;
+}
+
 // Room for one more row; the places of plain arrays may change.
 static bool make_room(trace *t)
 {

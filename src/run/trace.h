@@ -47,6 +47,9 @@ void trace_init(trace *t, int angle_count);
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most);
 void trace_finish(trace *t);
 
+// A copy of one's own in plain arrays; STATUS_NO_MEMORY, and then it is empty.
+status trace_copy(trace *t, const trace *from);
+
 // Lets a reserved trace, still empty, begin with the first rows and events of another one, without
 // a copy. STATUS_NO_MEMORY if there is no room.
 status trace_share(trace *t, const trace *from, size_t rows, size_t events);

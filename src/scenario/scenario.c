@@ -19,6 +19,47 @@ void scenario_finish(scenario *s)
     *s = (scenario){0};
 }
 
+// A text of one's own; one that is not there stays so. False without memory.
+static bool copy_text(char **copy, const char *text)
+{
+    *copy = text != NULL ? strdup(text) : NULL;
+    return text == NULL || *copy != NULL;
+}
+
+// Likewise an array.
+static bool copy_array(void **copy, const void *array, size_t size)
+{
+    *copy = array != NULL ? malloc(size > 0 ? size : 1) : NULL;
+    if (array == NULL) {
+        return true;
+    }
+    if (*copy != NULL) {
+        memcpy(*copy, array, size);
+    }
+    return *copy != NULL;
+}
+
+status scenario_copy(scenario *copy, const scenario *s)
+{
+    assert(copy != NULL && s != NULL);
+    void *actions = NULL, *expectations = NULL;
+    *copy = *s;
+    bool good = copy_text(&copy->name, s->name);
+    good = copy_text(&copy->file, s->file) && good;
+    good = copy_text(&copy->title, s->title) && good;
+    good = copy_text(&copy->description, s->description) && good;
+    good = copy_array(&actions, s->actions, (size_t)s->action_count * sizeof *s->actions) && good;
+    good = copy_array(&expectations, s->expectations,
+                      (size_t)s->expectation_count * sizeof *s->expectations) &&
+           good;
+    copy->actions = actions;
+    copy->expectations = expectations;
+    if (!good) {
+        scenario_finish(copy);
+    }
+    return good ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
 // Gives one parameter of p its value; f holds the sentence without its beginning.
 static status assign(parameters *p, const char *assignment, fault *f)
 {
@@ -52,6 +93,17 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
                                "the printed model takes no pushes, but the script has one at %g s",
                                s->actions[i].time);
         }
+    }
+    return result;
+}
+
+status scenario_take_parameters(scenario *s, const parameters *changed, fault *f)
+{
+    assert(s != NULL && changed != NULL);
+    parameters p = *changed;
+    status result = resolve_changed(s, &p, f);
+    if (result == STATUS_OK) {
+        s->parameters = p;
     }
     return result;
 }

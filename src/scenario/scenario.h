@@ -74,9 +74,16 @@ status scenario_parse(scenario *s, const char *text, size_t length, const char *
 
 void scenario_finish(scenario *s);
 
+// A copy of one's own; STATUS_NO_MEMORY, and then nothing is to be freed.
+status scenario_copy(scenario *copy, const scenario *s);
+
 // Writes a file that reads back with the same title, description, parameters and script. What it
 // expects is not written: with other parameters it would not hold. Errors stay in the stream.
 void scenario_write(FILE *stream, const scenario *s);
+
+// Gives the scenario other parameters, changed but not yet resolved: resolves them and checks that
+// its script goes with them. If that fails nothing changes and f says why.
+status scenario_take_parameters(scenario *s, const parameters *changed, fault *f);
 
 // Applies "PATH=VALUE" (--set) and resolves the parameters anew. If that fails nothing changes and
 // f says why, beginning with "--set PATH=VALUE: ". A run.duration that ends before an action of the

@@ -3,41 +3,8 @@
 #include <math.h>
 
 #include "src/base/json.h"
-#include "src/predict/predictors.h"
+#include "src/run/first_contact.h"
 #include "ui/commands/pictures.h"
-
-// The last row in free flight before the first contact, or NULL if there was no contact.
-static const sample *last_free_row(const trace *t)
-{
-    for (size_t i = 0; i < t->row_count; i++) {
-        bool touches = t->rows[i].contact != 0 || t->rows[i].impulse != 0;
-        if (touches) {
-            return i > 0 ? &t->rows[i - 1] : NULL;
-        }
-    }
-    return NULL;
-}
-
-static three_body_state state_of(const sample *row)
-{
-    return (three_body_state){
-        .angle = {row->hub_angle, row->first_angle, row->last_angle},
-        .velocity = {row->hub_velocity, row->first_velocity, row->last_velocity},
-    };
-}
-
-static void ask_predictors(const scenario *s, const run_result *result, const sample *row,
-                           prediction_answer answers[PREDICTOR_COUNT])
-{
-    parameters now = scenario_parameters_at(s, row->time);
-    const double *all = result->before_impact;
-    int half = (int)(result->before_impact_size / sizeof *all / 2);
-    prediction_question question = {.parameters = &now,
-                                    .bodies = state_of(row),
-                                    .angles = all,
-                                    .velocities = all != NULL ? all + half : NULL};
-    predict_all(&question, answers);
-}
 
 static json_t *prediction_object(const prediction_answer *answer)
 {
@@ -172,15 +139,13 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
 static int report(const arguments *a, const scenario *s, const run_result *result)
 {
     prediction_answer answers[PREDICTOR_COUNT];
-    const sample *row = last_free_row(&result->trace);
-
+    const sample *row = predict_first_contact(s, result, answers);
     if (row == NULL) {
         complain("%s has no free flight that ends in a contact, there is nothing to predict",
                  s->name);
         return EXIT_FAILED;
     }
 
-    ask_predictors(s, result, row, answers);
     int code = EXIT_DONE;
     if (a->json != NULL) {
         code = write_json(a->json, predict_object(s, row, answers, &result->summary));

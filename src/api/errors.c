@@ -1,0 +1,125 @@
+#include "src/api/handles.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+#include "src/base/words.h"
+
+// The public numbers are those of the program.
+#define SAME_CODE(code) _Static_assert((int)IMPACTLAB_##code == (int)STATUS_##code, #code)
+SAME_CODE(OK);
+SAME_CODE(BAD_ARGUMENT);
+SAME_CODE(BAD_SCENARIO);
+SAME_CODE(NOT_FINITE);
+SAME_CODE(UNSTABLE);
+SAME_CODE(NEWTON_FAILED);
+SAME_CODE(NO_PROGRESS);
+SAME_CODE(SINGULAR);
+SAME_CODE(NO_MEMORY);
+SAME_CODE(CANNOT_WRITE);
+SAME_CODE(CANNOT_READ);
+SAME_CODE(EXPECTATION_FAILED);
+SAME_CODE(STOPPED);
+
+const char *impactlab_status_text(int code)
+{
+    return code >= STATUS_OK && code <= STATUS_STOPPED ? status_text((status)code)
+                                                       : "not a status of impactlab";
+}
+
+// Copies a text, cut to fit.
+static void copy_text(char *to, size_t size, const char *from)
+{
+    size_t length = strnlen(from, size - 1);
+    memcpy(to, from, length);
+    to[length] = '\0';
+}
+
+int api_error(impactlab_error *error, const fault *f)
+{
+    if (error != NULL) {
+        *error = (impactlab_error){.status = (int)f->code, .line = f->line, .column = f->column};
+        copy_text(error->parameter, sizeof error->parameter, f->path != NULL ? f->path : "");
+        const char *sentence = f->text[0] != '\0' ? f->text : status_text(f->code);
+        copy_text(error->sentence, sizeof error->sentence, sentence);
+    }
+    return (int)f->code;
+}
+
+int api_fail(impactlab_error *error, status code, const char *format, ...)
+{
+    fault f = {.code = code, .text = "", .path = ""};
+    va_list values;
+    va_start(values, format);
+    decimal_vprint(f.text, sizeof f.text, format, values);
+    va_end(values);
+    return api_error(error, &f);
+}
+
+int api_done(impactlab_error *error)
+{
+    if (error != NULL) {
+        *error = (impactlab_error){.status = IMPACTLAB_OK};
+    }
+    return IMPACTLAB_OK;
+}
+
+int api_missing(impactlab_error *error, const char *argument)
+{
+    return api_fail(error, STATUS_BAD_ARGUMENT,
+                    "the argument %s is NULL, expected what it points to", argument);
+}
+
+void api_keep_first(void *context, const char *sentence)
+{
+    api_first_fault *first = context;
+    if (first->count++ == 0 && first->error != NULL) {
+        copy_text(first->error->sentence, sizeof first->error->sentence, sentence);
+    }
+}
+
+int api_parameter(const char *path, impactlab_error *error)
+{
+    fault f = {.code = STATUS_BAD_ARGUMENT, .text = "", .path = ""};
+    int index = parameter_look_up(path, &f);
+    if (index < 0) {
+        f.code = STATUS_BAD_ARGUMENT;
+        api_error(error, &f);
+    }
+    return index;
+}
+
+int api_signal(const char *name, impactlab_error *error)
+{
+    int index = signal_find(name);
+    if (index >= 0) {
+        return index;
+    }
+    nearest_word near = nearest_begin(name);
+    for (int i = 0; i < signal_count; i++) {
+        nearest_try(&near, signal_table[i].name);
+    }
+    api_fail(error, STATUS_BAD_ARGUMENT, "there is no signal '%.200s'%s%s%s", name,
+             near.best ? ", did you mean '" : "", near.best ? near.best : "",
+             near.best ? "'?" : "");
+    return -1;
+}
+
+int api_close_text(FILE *stream, char **text, impactlab_error *error)
+{
+    bool failed = ferror(stream) != 0;
+    failed = fclose(stream) != 0 || failed;
+    if (failed) {
+        free(*text);
+        *text = NULL;
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    }
+    return api_done(error);
+}
+
+void impactlab_text_free(char *text)
+{
+    free(text);
+}

@@ -1,0 +1,54 @@
+// What the handles of libimpactlab hold, and how its functions say what was wrong.
+#pragma once
+
+#include "src/api/impactlab/impactlab.h"
+#include "src/run/loop.h"
+#include "src/run/run.h"
+
+struct impactlab_scenario {
+    scenario scenario;
+};
+
+struct impactlab_run {
+    scenario scenario; // as it was run
+    run_result result;
+};
+
+struct impactlab_loop {
+    run_loop *loop;
+    bool commanded;
+};
+
+// Writes a fault into the caller's error (may be NULL). Returns its code.
+int api_error(impactlab_error *error, const fault *f);
+
+// The same with a sentence; "no error" clears it.
+int api_fail(impactlab_error *error, status code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+int api_done(impactlab_error *error);
+
+// A call without something that it cannot do without.
+int api_missing(impactlab_error *error, const char *argument);
+#define API_NEEDS(error, argument) API_NEEDS_CALLED(error, argument, #argument)
+#define API_NEEDS_CALLED(error, argument, name)                                                    \
+    do {                                                                                           \
+        if ((argument) == NULL) {                                                                  \
+            return api_missing(error, name);                                                       \
+        }                                                                                          \
+    } while (0)
+
+// A fault_handler that keeps the first sentence in an impactlab_error (may be NULL).
+typedef struct api_first_fault {
+    impactlab_error *error;
+    int count;
+} api_first_fault;
+void api_keep_first(void *context, const char *sentence);
+
+// Index of a parameter as people write it, -1 with an error that names the nearest.
+int api_parameter(const char *path, impactlab_error *error);
+
+// Index of a signal, likewise.
+int api_signal(const char *name, impactlab_error *error);
+
+// What a stream in memory wrote, from open_memstream: closes it. IMPACTLAB_NO_MEMORY if it failed.
+int api_close_text(FILE *stream, char **text, impactlab_error *error);

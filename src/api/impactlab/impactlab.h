@@ -1,0 +1,367 @@
+// libimpactlab: runs of a flexible robot arm that hits a wall, for programs in C and C++.
+//
+//     impactlab_error error;
+//     impactlab_scenario *scenario;
+//     impactlab_run *run;
+//     double peak;
+//     if (impactlab_scenario_open(&scenario, "corrected/first-impact", &error) == IMPACTLAB_OK &&
+//         impactlab_scenario_set(scenario, "motor.voltage", "2 V", &error) == IMPACTLAB_OK &&
+//         impactlab_run_create(&run, scenario, IMPACTLAB_KEEP_ROWS, &error) == IMPACTLAB_OK &&
+//         impactlab_run_quantity(run, "peak_force_N", &peak, &error) == IMPACTLAB_OK) {
+//         printf("%.17g N\n", peak);
+//     }
+//
+// Everything is SI; names and paths are those of scenario files and of the program's results.
+// Functions that can fail return a status and fill in `error`, which may be NULL. Nothing here
+// prints, ends the program or looks at the locale. Handles are independent of one another: several
+// threads may use the library at once, each with handles of its own, and several may read one
+// handle. A handle that was not created is NULL; destroying NULL does nothing.
+//
+// What may change and what may not: docs/library.md, "What stays".
+#ifndef IMPACTLAB_IMPACTLAB_H
+#define IMPACTLAB_IMPACTLAB_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined __GNUC__
+#define IMPACTLAB_EXPORT __attribute__((visibility("default")))
+#else
+#define IMPACTLAB_EXPORT
+#endif
+
+// --- errors -----------------------------------------------------------------------------------
+
+typedef enum impactlab_status {
+    IMPACTLAB_OK = 0,
+    IMPACTLAB_BAD_ARGUMENT = 1,        // of the call, or a name that is not known
+    IMPACTLAB_BAD_SCENARIO = 2,        // a file or a combination of parameters that is wrong
+    IMPACTLAB_NOT_FINITE = 3,          // a state or command became infinite or not a number
+    IMPACTLAB_UNSTABLE = 4,            // the energy ledger does not close
+    IMPACTLAB_NEWTON_FAILED = 5,       // an iteration did not converge
+    IMPACTLAB_NO_PROGRESS = 6,         // events follow one another without time passing
+    IMPACTLAB_SINGULAR = 7,            // equations without a single solution
+    IMPACTLAB_NO_MEMORY = 8,           //
+    IMPACTLAB_CANNOT_WRITE = 9,        //
+    IMPACTLAB_CANNOT_READ = 10,        // a file that is not there, or cannot be read
+    IMPACTLAB_EXPECTATION_FAILED = 11, //
+    IMPACTLAB_STOPPED = 12             // before its end
+} impactlab_status;
+
+typedef struct impactlab_error {
+    int status;          // impactlab_status
+    int line, column;    // where it stands in the file that was read, from 1; 0 if there is none
+    char parameter[64];  // path of the parameter at fault, "" if there is none
+    char sentence[1024]; // for people: what was wrong, where, and what was expected
+} impactlab_error;
+
+// "0.2.0", of the library that runs.
+IMPACTLAB_EXPORT const char *impactlab_version(void);
+
+// The general text of a status, never NULL.
+IMPACTLAB_EXPORT const char *impactlab_status_text(int status);
+
+// --- tables of what there is ------------------------------------------------------------------
+
+// A parameter of a scenario. Rows are constants of the library.
+typedef struct impactlab_parameter {
+    const char *path;        // "arm.k2"
+    const char *type;        // "real", "integer", "boolean", "choice" or "text"
+    const char *unit;        // "N m/rad", "" for a pure number
+    const char *choices;     // "rigid|spring|beam" of a choice, else ""
+    const char *description; // one sentence without a full stop
+    double initial;          // default under the corrected model; of a choice its index
+    double minimum, maximum; // both included; 0, 0 of a text
+    int timed;               // 1 if it may change during a run
+} impactlab_parameter;
+
+// A recorded signal.
+typedef struct impactlab_signal {
+    const char *name;        // "contact_force"
+    const char *symbol;      // in ASCII
+    const char *unit;        // "N"
+    const char *description; // one sentence without a full stop
+} impactlab_signal;
+
+// A number that a run comes to.
+typedef struct impactlab_quantity {
+    const char *key;         // "peak_force_N"
+    const char *label;       // "peak force"
+    const char *unit;        // "N"
+    const char *description; // one sentence without a full stop
+    int timing;              // 1 if it depends on the machine, not on the scenario
+} impactlab_quantity;
+
+// The row of an index; NULL behind the last one.
+IMPACTLAB_EXPORT const impactlab_parameter *impactlab_parameter_at(size_t index);
+IMPACTLAB_EXPORT const impactlab_signal *impactlab_signal_at(size_t index);
+IMPACTLAB_EXPORT const impactlab_quantity *impactlab_quantity_at(size_t index);
+
+// --- scenarios --------------------------------------------------------------------------------
+
+typedef struct impactlab_scenario impactlab_scenario;
+
+// The names of all scenarios that ship and of those in the folders of IMPACTLAB_SCENARIOS, sorted;
+// to be freed by impactlab_names_free.
+IMPACTLAB_EXPORT int impactlab_scenario_names(char ***names, size_t *count, impactlab_error *error);
+IMPACTLAB_EXPORT void impactlab_names_free(char **names, size_t count);
+
+// Opens a scenario by its name or file; reads one from a text (`length` bytes of YAML); makes one
+// of defaults. The error says the first fault.
+IMPACTLAB_EXPORT int impactlab_scenario_open(impactlab_scenario **scenario,
+                                             const char *name_or_file, impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_scenario_parse(impactlab_scenario **scenario, const char *text,
+                                              size_t length, impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_scenario_create(impactlab_scenario **scenario,
+                                               impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_scenario_copy(impactlab_scenario **scenario,
+                                             const impactlab_scenario *from,
+                                             impactlab_error *error);
+IMPACTLAB_EXPORT void impactlab_scenario_destroy(impactlab_scenario *scenario);
+
+// Its name, title and description: good until it is destroyed.
+IMPACTLAB_EXPORT const char *impactlab_scenario_name(const impactlab_scenario *scenario);
+IMPACTLAB_EXPORT const char *impactlab_scenario_title(const impactlab_scenario *scenario);
+IMPACTLAB_EXPORT const char *impactlab_scenario_description(const impactlab_scenario *scenario);
+
+// Gives a parameter another value, as a text ("2 V", "plane") or as a number (of a choice its
+// index, of a boolean 0 or 1). What follows from it is resolved anew; on failure nothing changes.
+IMPACTLAB_EXPORT int impactlab_scenario_set(impactlab_scenario *scenario, const char *path,
+                                            const char *text, impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_scenario_set_number(impactlab_scenario *scenario, const char *path,
+                                                   double value, impactlab_error *error);
+// Several of them as "PATH=VALUE", in any order that makes sense together.
+IMPACTLAB_EXPORT int impactlab_scenario_set_all(impactlab_scenario *scenario,
+                                                const char *const *assignments, size_t count,
+                                                impactlab_error *error);
+
+// The value of a parameter, as a number (NaN where an optional one has none, 0 of a text) or as a
+// text of at most `size` bytes with its end.
+IMPACTLAB_EXPORT int impactlab_scenario_number(const impactlab_scenario *scenario, const char *path,
+                                               double *value, impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_scenario_text(const impactlab_scenario *scenario, const char *path,
+                                             char *text, size_t size, impactlab_error *error);
+// 1 if the parameter was given, 0 if it has its default.
+IMPACTLAB_EXPORT int impactlab_scenario_is_set(const impactlab_scenario *scenario,
+                                               const char *path);
+
+// Adds to its script: at `time` [s] a parameter gets another value, the tip a push [N s].
+IMPACTLAB_EXPORT int impactlab_scenario_add_change(impactlab_scenario *scenario, double time,
+                                                   const char *path, const char *text,
+                                                   impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_scenario_add_push(impactlab_scenario *scenario, double time,
+                                                 double impulse, impactlab_error *error);
+
+// Lets the scenario start the program or load the plug-in that it names (0: not, as at first).
+IMPACTLAB_EXPORT void impactlab_scenario_allow_code(impactlab_scenario *scenario, int allowed);
+
+// The scenario as a file would have it, without what it expects; impactlab_text_free frees it.
+IMPACTLAB_EXPORT int impactlab_scenario_yaml(const impactlab_scenario *scenario, char **yaml,
+                                             impactlab_error *error);
+IMPACTLAB_EXPORT void impactlab_text_free(char *text);
+
+// --- runs -------------------------------------------------------------------------------------
+
+typedef struct impactlab_run impactlab_run;
+struct controller; // of <impactlab/controller.h>
+
+enum {
+    IMPACTLAB_KEEP_ROWS = 1, // rows of signals are kept, not only events and summary
+    IMPACTLAB_COMMAND = 2    // of a loop: the rig puts out what impactlab_loop_command says
+};
+
+// Numbers that lie `stride` bytes apart, in memory that belongs to their handle.
+typedef struct impactlab_series {
+    const double *values;
+    size_t count;
+    size_t stride; // [bytes]
+} impactlab_series;
+
+// The same for several numbers a row, which lie beside one another.
+typedef struct impactlab_table {
+    const double *values;
+    size_t rows, columns;
+} impactlab_table;
+
+typedef struct impactlab_event {
+    double time;      // [s]
+    const char *kind; // "impact", "contact", "release", "stick", "reversal", "slip", "change",
+                      // "push" or "chatter"
+    double impulse;   // of an impact or push [N s], else 0
+    double speed;     // of approach at an impact [m/s], else 0
+    double loss;      // of energy at an impact [J], else 0
+} impactlab_event;
+
+// Runs the scenario to its end. A run that was stopped on the way has what it came to until then,
+// and returns why; only where *run is NULL there is none.
+IMPACTLAB_EXPORT int impactlab_run_create(impactlab_run **run, const impactlab_scenario *scenario,
+                                          int flags, impactlab_error *error);
+// The same with a controller in the place of control.law. The rig gives the controller memory of
+// law->memory_size bytes, at least a pointer's, in whose beginning `context` stands.
+IMPACTLAB_EXPORT int impactlab_run_create_with(impactlab_run **run,
+                                               const impactlab_scenario *scenario, int flags,
+                                               const struct controller *law, void *context,
+                                               impactlab_error *error);
+IMPACTLAB_EXPORT void impactlab_run_destroy(impactlab_run *run);
+
+// "ok", "inaccurate" (the energy ledger lacks more than method.residual_bound) or "failed", and
+// what stopped the run or a remark.
+IMPACTLAB_EXPORT const char *impactlab_run_status(const impactlab_run *run);
+IMPACTLAB_EXPORT const char *impactlab_run_message(const impactlab_run *run);
+
+// A number by its key, NaN if it did not occur; all of them in the order of their table: at most
+// `count` are written, and how many there are is returned.
+IMPACTLAB_EXPORT int impactlab_run_quantity(const impactlab_run *run, const char *key,
+                                            double *value, impactlab_error *error);
+IMPACTLAB_EXPORT size_t impactlab_run_quantities(const impactlab_run *run, double *values,
+                                                 size_t count);
+
+// A signal by its name ("time", "contact_force"), without a copy; NaN where it was not recorded.
+// Angles [rad] and velocities [rad/s] of all degrees of freedom, the hub's first if it has one.
+IMPACTLAB_EXPORT int impactlab_run_signal(const impactlab_run *run, const char *name,
+                                          impactlab_series *series, impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_run_angles(const impactlab_run *run, impactlab_table *table,
+                                          impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_run_velocities(const impactlab_run *run, impactlab_table *table,
+                                              impactlab_error *error);
+
+// Its events in their order: how many, and one of them (1; 0 behind the last).
+IMPACTLAB_EXPORT size_t impactlab_run_event_count(const impactlab_run *run);
+IMPACTLAB_EXPORT int impactlab_run_event(const impactlab_run *run, size_t index,
+                                         impactlab_event *event);
+
+// What `impactlab run --json` and `--csv` write; impactlab_text_free frees it.
+IMPACTLAB_EXPORT int impactlab_run_json(const impactlab_run *run, char **json,
+                                        impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_run_csv(const impactlab_run *run, char **csv,
+                                       impactlab_error *error);
+
+// --- step by step -----------------------------------------------------------------------------
+
+typedef struct impactlab_loop impactlab_loop;
+
+// What the sensors read, in the units of the recorded signals; NaN where one is not fitted.
+typedef struct impactlab_reading {
+    double time;          // of the present instant [s]
+    double encoder;       // hub angle [rad]
+    double tachometer;    // hub velocity [rad/s]
+    double force;         // contact force, FSR [N]
+    double piezo_force;   // contact force, piezoelectric sensor [N]
+    double film;          // bending, piezo film [rad]
+    double accelerometer; // hub acceleration [rad/s2]
+} impactlab_reading;
+
+// A run of the corrected model that stands at its start. With IMPACTLAB_COMMAND the caller is the
+// controller on the rig; else control.law is, or, where it is none, the bare arm moves under
+// motor.voltage.
+IMPACTLAB_EXPORT int impactlab_loop_create(impactlab_loop **loop,
+                                           const impactlab_scenario *scenario, int flags,
+                                           impactlab_error *error);
+IMPACTLAB_EXPORT void impactlab_loop_destroy(impactlab_loop *loop);
+
+// Goes on: to the next sample of the rig (without a rig by method.step), or to an instant [s]; at
+// most to run.duration. What stopped a run stays, every further step returns it again.
+IMPACTLAB_EXPORT int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_loop_step_until(impactlab_loop *loop, double time,
+                                               impactlab_error *error);
+
+// Where it is [s], and 1 if that is the end.
+IMPACTLAB_EXPORT double impactlab_loop_time(const impactlab_loop *loop);
+IMPACTLAB_EXPORT int impactlab_loop_ended(const impactlab_loop *loop);
+
+// The command [V] that goes out at the sample due now or next, and is held until another one is
+// given. IMPACTLAB_BAD_ARGUMENT without IMPACTLAB_COMMAND.
+IMPACTLAB_EXPORT int impactlab_loop_command(impactlab_loop *loop, double volts,
+                                            impactlab_error *error);
+// Gives a parameter that may change during a run another value now; pushes the tip now [N s].
+IMPACTLAB_EXPORT int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double value,
+                                              impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_loop_push(impactlab_loop *loop, double impulse,
+                                         impactlab_error *error);
+
+// What the sensors read: of the sample due now, else of the last one. IMPACTLAB_BAD_ARGUMENT
+// without a rig (control.law is none and no IMPACTLAB_COMMAND).
+IMPACTLAB_EXPORT int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading,
+                                                 impactlab_error *error);
+
+// The true value of a signal now; angles and then velocities of all degrees of freedom, as a table
+// of two rows, good until the loop goes on.
+IMPACTLAB_EXPORT int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
+                                           impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table,
+                                          impactlab_error *error);
+
+// The whole state as one block of bytes: how many, writing them, and going back (or forth) to them
+// to the last bit. They are good for loops of the same scenario made by the same version on the
+// same kind of machine; of a plug-in's or a process's controller only for the loop itself, and not
+// at all where a process would have to go on from its own past. Rows are not part of a state: going
+// back drops those that are later. Bytes must come from impactlab_loop_save_state.
+IMPACTLAB_EXPORT size_t impactlab_loop_state_size(const impactlab_loop *loop);
+IMPACTLAB_EXPORT int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t size,
+                                               impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_loop_restore_state(impactlab_loop *loop, const void *bytes,
+                                                  size_t size, impactlab_error *error);
+
+// What the loop has come to so far, as a run of its own (rows are copied).
+IMPACTLAB_EXPORT int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run,
+                                        impactlab_error *error);
+
+// --- many runs --------------------------------------------------------------------------------
+
+// How one run of a batch went; good during the call.
+typedef struct impactlab_outcome {
+    size_t index;             // of the run
+    int status;               // impactlab_status
+    const char *word;         // "ok", "inaccurate" or "failed"
+    const char *message;      // "" if there is nothing to say
+    const double *quantities; // in the order of their table, NaN where one did not occur
+    size_t quantity_count;
+} impactlab_outcome;
+
+// Takes an outcome, in the order of the runs, on the calling thread. Anything but 0 ends the batch.
+typedef int (*impactlab_outcome_taker)(void *context, const impactlab_outcome *outcome);
+
+// Runs the scenario `count` times on `jobs` threads (0: as many as there are processors): in run i
+// parameter paths[k] has the value values[i * path_count + k]. Each outcome is the same to the last
+// bit as that of a run by itself, whatever the number of threads. IMPACTLAB_STOPPED if `take` ended
+// it. Values are looked at before anything is run.
+IMPACTLAB_EXPORT int impactlab_batch(const impactlab_scenario *scenario, const char *const *paths,
+                                     size_t path_count, const double *values, size_t count,
+                                     int jobs, impactlab_outcome_taker take, void *context,
+                                     impactlab_error *error);
+
+// --- predictors and modes ---------------------------------------------------------------------
+
+// What a predictor says of the instant before the first contact.
+typedef struct impactlab_prediction {
+    const char *method;  // "energy", "impact_dynamics", "impact_quadratic" or "linearised"
+    int known;           // 1 if it has an answer
+    int holds;           // 1 if the touch would hold
+    double peak;         // of the first pulse [N], NaN if there is none
+    double time_to_peak; // from contact on [s], NaN where the method gives none
+    double impulse;      // of the impact [N s], NaN where the method gives none
+    char message[1024];  // why there is no answer or no pulse, else ""
+} impactlab_prediction;
+
+// Asks all predictors about the run's state before its first contact; the run must have rows. At
+// most `count` are written, *written says how many. IMPACTLAB_BAD_ARGUMENT if there was no contact.
+IMPACTLAB_EXPORT int impactlab_run_predictions(const impactlab_run *run,
+                                               impactlab_prediction *predictions, size_t count,
+                                               size_t *written, impactlab_error *error);
+
+// Natural frequencies [rad/s] and shapes of the straight arm without damping, with the hub locked
+// (else free) and the tip pinned (else free). Room for `most` modes of impactlab_freedoms() angles
+// each; *count says how many there are. `shapes` may be NULL.
+IMPACTLAB_EXPORT size_t impactlab_freedoms(const impactlab_scenario *scenario);
+IMPACTLAB_EXPORT int impactlab_modes(const impactlab_scenario *scenario, int hub_locked,
+                                     int tip_pinned, double *frequencies, double *shapes,
+                                     size_t most, size_t *count, impactlab_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,219 @@
+// Loops of libimpactlab: a run that a program steps.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/api/handles.h"
+
+int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handle, int flags,
+                          impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    *loop = NULL;
+    API_NEEDS_CALLED(error, handle, "scenario");
+    if ((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "a loop knows no other flags than KEEP_ROWS and COMMAND");
+    }
+    impactlab_loop *made = calloc(1, sizeof *made);
+    if (made == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a loop");
+    }
+
+    fault f = {.text = "", .path = ""};
+    const loop_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
+                                  .commanded = (flags & IMPACTLAB_COMMAND) != 0};
+    if (loop_create(&made->loop, &handle->scenario, &options, &f) != STATUS_OK) {
+        free(made);
+        return api_error(error, &f);
+    }
+    made->commanded = options.commanded;
+    *loop = made;
+    return api_done(error);
+}
+
+void impactlab_loop_destroy(impactlab_loop *loop)
+{
+    if (loop != NULL) {
+        loop_destroy(loop->loop);
+        free(loop);
+    }
+}
+
+// --- going on ---------------------------------------------------------------------------------
+
+// What a call of the loop came to; nothing is written where all is well, for the sake of speed.
+static int came_to(status code, const fault *f, impactlab_error *error)
+{
+    if (code == STATUS_OK) {
+        if (error != NULL) {
+            error->status = IMPACTLAB_OK;
+            error->sentence[0] = error->parameter[0] = '\0';
+        }
+        return IMPACTLAB_OK;
+    }
+    return api_error(error, f);
+}
+
+int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    fault f;
+    return came_to(loop_step(loop->loop, &f), &f, error);
+}
+
+int impactlab_loop_step_until(impactlab_loop *loop, double time, impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    fault f;
+    if (!isfinite(time)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT, "the instant is not finite, expected seconds");
+    }
+    return came_to(loop_until(loop->loop, time, &f), &f, error);
+}
+
+double impactlab_loop_time(const impactlab_loop *loop)
+{
+    return loop != NULL ? loop_time(loop->loop) : (double)NAN;
+}
+
+int impactlab_loop_ended(const impactlab_loop *loop)
+{
+    return loop == NULL || loop_ended(loop->loop);
+}
+
+// --- inputs -----------------------------------------------------------------------------------
+
+int impactlab_loop_command(impactlab_loop *loop, double volts, impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    if (!loop->commanded) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the loop was created without COMMAND: control.law commands the rig, or "
+                        "motor.voltage the bare arm");
+    }
+    if (!isfinite(volts)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT, "the command is not finite, expected volts");
+    }
+    loop_command(loop->loop, volts);
+    return came_to(STATUS_OK, NULL, error);
+}
+
+int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double value,
+                             impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    API_NEEDS(error, path);
+    fault f;
+    int index = api_parameter(path, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    return came_to(loop_set_number(loop->loop, index, value, &f), &f, error);
+}
+
+int impactlab_loop_push(impactlab_loop *loop, double impulse, impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    fault f;
+    if (!isfinite(impulse)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s");
+    }
+    return came_to(loop_push(loop->loop, impulse, &f), &f, error);
+}
+
+// --- what is known ----------------------------------------------------------------------------
+
+int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading,
+                                impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    API_NEEDS(error, reading);
+    sensor_reading read;
+    if (!loop_sense(loop->loop, &read)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the bare arm has no sensors, expected a control.law or COMMAND");
+    }
+    *reading = (impactlab_reading){.time = loop_time(loop->loop),
+                                   .encoder = read.encoder,
+                                   .tachometer = read.tachometer,
+                                   .force = read.force_reading,
+                                   .piezo_force = read.piezo_force,
+                                   .film = read.film,
+                                   .accelerometer = read.accelerometer};
+    return came_to(STATUS_OK, NULL, error);
+}
+
+int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
+                          impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    API_NEEDS(error, name);
+    API_NEEDS(error, value);
+    int index = api_signal(name, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    const sample row = loop_row(loop->loop);
+    *value = signal_value(&row, index);
+    return came_to(STATUS_OK, NULL, error);
+}
+
+int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table, impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    API_NEEDS(error, table);
+    int freedoms;
+    const double *angles = loop_state(loop->loop, &freedoms);
+    *table = (impactlab_table){angles, 2, (size_t)freedoms};
+    return came_to(STATUS_OK, NULL, error);
+}
+
+int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    *run = NULL;
+    API_NEEDS(error, loop);
+    impactlab_run *made = calloc(1, sizeof *made);
+    if (made == NULL || scenario_copy(&made->scenario, loop_scenario(loop->loop)) != STATUS_OK) {
+        free(made);
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a run");
+    }
+    if (trace_copy(&made->result.trace, &loop_result(loop->loop)->trace) != STATUS_OK) {
+        impactlab_run_destroy(made);
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the rows of a run");
+    }
+    made->result.summary = loop_summary(loop->loop);
+    *run = made;
+    return came_to(STATUS_OK, NULL, error);
+}
+
+// --- states -----------------------------------------------------------------------------------
+
+size_t impactlab_loop_state_size(const impactlab_loop *loop)
+{
+    return loop != NULL ? loop_saved_size(loop->loop) : 0;
+}
+
+int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t size,
+                              impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    API_NEEDS(error, bytes);
+    if (size < loop_saved_size(loop->loop)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "a state of this loop has %zu bytes, but there is room for %zu",
+                        loop_saved_size(loop->loop), size);
+    }
+    loop_save(loop->loop, bytes);
+    return came_to(STATUS_OK, NULL, error);
+}
+
+int impactlab_loop_restore_state(impactlab_loop *loop, const void *bytes, size_t size,
+                                 impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    API_NEEDS(error, bytes);
+    fault f;
+    return came_to(loop_restore(loop->loop, bytes, size, &f), &f, error);
+}

@@ -1,0 +1,229 @@
+// Runs of libimpactlab, and what they leave behind.
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/api/handles.h"
+#include "src/base/json.h"
+#include "src/base/words.h"
+#include "src/rig/controller.h"
+#include "src/run/export.h"
+#include "src/run/first_contact.h"
+
+// Whether the rig can call a controller that a program gives.
+static int check_law(const controller *law, impactlab_error *error)
+{
+    if (law->interface != CONTROLLER_INTERFACE) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the controller was made for version %d of the interface, expected %d",
+                        law->interface, CONTROLLER_INTERFACE);
+    }
+    if (law->name == NULL || law->modes == NULL || law->sample == NULL ||
+        law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
+        (law->parameter_count > 0 && law->parameters == NULL)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the controller is not whole, expected a name, modes ended by NULL, "
+                        "`sample`, and memory for at least a pointer");
+    }
+    return IMPACTLAB_OK;
+}
+
+int impactlab_run_create(impactlab_run **run, const impactlab_scenario *handle, int flags,
+                         impactlab_error *error)
+{
+    return impactlab_run_create_with(run, handle, flags, NULL, NULL, error);
+}
+
+int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *handle, int flags,
+                              const struct controller *law, void *context, impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    *run = NULL;
+    API_NEEDS_CALLED(error, handle, "scenario");
+    if ((flags & ~IMPACTLAB_KEEP_ROWS) != 0) {
+        return api_fail(error, STATUS_BAD_ARGUMENT, "a run knows no other flag than KEEP_ROWS");
+    }
+    if (law != NULL && check_law(law, error) != IMPACTLAB_OK) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+
+    impactlab_run *made = calloc(1, sizeof *made);
+    if (made == NULL || scenario_copy(&made->scenario, &handle->scenario) != STATUS_OK) {
+        free(made);
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a run");
+    }
+
+    const given_law given = {law, context};
+    const run_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
+                                 .law = law != NULL ? &given : NULL};
+    status code = run_scenario_with(&made->scenario, &options, &made->result);
+    *run = made;
+    if (code == STATUS_OK) {
+        return api_done(error);
+    }
+    fault f = {.text = "", .path = ""};
+    summary_fault(&made->result.summary, &f);
+    return api_error(error, &f);
+}
+
+void impactlab_run_destroy(impactlab_run *run)
+{
+    if (run != NULL) {
+        run_finish(&run->result);
+        scenario_finish(&run->scenario);
+        free(run);
+    }
+}
+
+// --- what it came to --------------------------------------------------------------------------
+
+const char *impactlab_run_status(const impactlab_run *run)
+{
+    return run != NULL ? summary_status(&run->result.summary) : "failed";
+}
+
+const char *impactlab_run_message(const impactlab_run *run)
+{
+    return run != NULL ? run->result.summary.message : "";
+}
+
+int impactlab_run_quantity(const impactlab_run *run, const char *key, double *value,
+                           impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    API_NEEDS(error, key);
+    API_NEEDS(error, value);
+    int index = summary_find(key);
+    if (index < 0) {
+        const char *near = summary_suggest(key);
+        return api_fail(error, STATUS_BAD_ARGUMENT, "there is no quantity '%.200s'%s%s%s", key,
+                        near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+    }
+    *value = summary_value(&run->result.summary, index);
+    return api_done(error);
+}
+
+size_t impactlab_run_quantities(const impactlab_run *run, double *values, size_t count)
+{
+    for (size_t i = 0; run != NULL && values != NULL && i < count && i < (size_t)summary_count;
+         i++) {
+        values[i] = summary_value(&run->result.summary, (int)i);
+    }
+    return (size_t)summary_count;
+}
+
+int impactlab_run_signal(const impactlab_run *run, const char *name, impactlab_series *series,
+                         impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    API_NEEDS(error, name);
+    API_NEEDS(error, series);
+    int index = api_signal(name, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    const trace *t = &run->result.trace;
+    *series = (impactlab_series){.count = t->row_count, .stride = sizeof(sample)};
+    if (t->row_count > 0) {
+        const char *row = (const char *)t->rows;
+        series->values = (const double *)(const void *)(row + signal_table[index].offset);
+    }
+    return api_done(error);
+}
+
+int impactlab_run_angles(const impactlab_run *run, impactlab_table *table, impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    API_NEEDS(error, table);
+    const trace *t = &run->result.trace;
+    *table = (impactlab_table){t->angles, t->row_count, (size_t)t->angle_count};
+    return api_done(error);
+}
+
+int impactlab_run_velocities(const impactlab_run *run, impactlab_table *table,
+                             impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    API_NEEDS(error, table);
+    const trace *t = &run->result.trace;
+    *table = (impactlab_table){t->velocities, t->row_count, (size_t)t->angle_count};
+    return api_done(error);
+}
+
+size_t impactlab_run_event_count(const impactlab_run *run)
+{
+    return run != NULL ? run->result.trace.event_count : 0;
+}
+
+int impactlab_run_event(const impactlab_run *run, size_t index, impactlab_event *told)
+{
+    if (told == NULL || index >= impactlab_run_event_count(run)) {
+        return 0;
+    }
+    const event *e = &run->result.trace.events[index];
+    *told = (impactlab_event){e->time, event_name(e->kind), e->impulse, e->speed, e->loss};
+    return 1;
+}
+
+// --- as texts ---------------------------------------------------------------------------------
+
+int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    API_NEEDS(error, json);
+    size_t size;
+    *json = NULL;
+    json_t *object = export_run(&run->scenario, &run->result);
+    FILE *stream = object != NULL ? open_memstream(json, &size) : NULL;
+    if (stream == NULL) {
+        json_decref(object);
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    }
+    json_write(stream, object);
+    json_decref(object);
+    return api_close_text(stream, json, error);
+}
+
+int impactlab_run_csv(const impactlab_run *run, char **csv, impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    API_NEEDS(error, csv);
+    size_t size;
+    *csv = NULL;
+    FILE *stream = open_memstream(csv, &size);
+    if (stream == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    }
+    export_csv(stream, &run->result.trace, run->scenario.parameters.arm.links);
+    return api_close_text(stream, csv, error);
+}
+
+// --- what was predicted -----------------------------------------------------------------------
+
+int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *predictions,
+                              size_t count, size_t *written, impactlab_error *error)
+{
+    API_NEEDS(error, run);
+    API_NEEDS(error, predictions);
+    API_NEEDS(error, written);
+    prediction_answer answers[PREDICTOR_COUNT];
+    *written = 0;
+    if (run->result.trace.row_count == 0) {
+        return api_fail(error, STATUS_BAD_ARGUMENT, "the run kept no rows, expected KEEP_ROWS");
+    }
+    if (predict_first_contact(&run->scenario, &run->result, answers) == NULL) {
+        return api_fail(error, STATUS_BAD_ARGUMENT, "the arm did not touch the wall in this run");
+    }
+
+    for (size_t i = 0; i < count && i < PREDICTOR_COUNT; i++) {
+        const prediction_answer *a = &answers[i];
+        predictions[i] = (impactlab_prediction){.method = a->name,
+                                                .known = prediction_known(a),
+                                                .holds = a->outcome == PREDICTION_HOLDS,
+                                                .peak = a->prediction.force,
+                                                .time_to_peak = a->prediction.delay,
+                                                .impulse = a->prediction.impulse};
+        snprintf(predictions[i].message, sizeof predictions[i].message, "%s", prediction_reason(a));
+        *written = i + 1;
+    }
+    return api_done(error);
+}

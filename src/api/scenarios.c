@@ -1,0 +1,355 @@
+// Scenarios of libimpactlab: opened or made, changed and asked.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/api/handles.h"
+#include "src/rig/rig.h"
+
+// --- opening ----------------------------------------------------------------------------------
+
+int impactlab_scenario_names(char ***names, size_t *count, impactlab_error *error)
+{
+    API_NEEDS(error, names);
+    API_NEEDS(error, count);
+    fault f = {.text = "", .path = ""};
+    int found = 0;
+    *count = 0;
+    if (scenario_list(names, &found, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
+    *count = (size_t)found;
+    return api_done(error);
+}
+
+void impactlab_names_free(char **names, size_t count)
+{
+    for (size_t i = 0; names != NULL && i < count; i++) {
+        free(names[i]);
+    }
+    free(names);
+}
+
+// A handle for a scenario to be read into; NULL, with an error, without memory.
+static impactlab_scenario *new_handle(impactlab_scenario **handle, impactlab_error *error)
+{
+    *handle = calloc(1, sizeof **handle);
+    if (*handle == NULL) {
+        api_fail(error, STATUS_NO_MEMORY, "no memory for a scenario");
+    }
+    return *handle;
+}
+
+// What reading came to: nothing is left of a handle that could not be filled.
+static int finish_reading(impactlab_scenario **handle, status code, impactlab_error *error)
+{
+    if (code == STATUS_OK) {
+        return api_done(error);
+    }
+    free(*handle);
+    *handle = NULL;
+    if (error != NULL) {
+        error->status = (int)code;
+        error->line = error->column = 0;
+        error->parameter[0] = '\0';
+    }
+    return (int)code;
+}
+
+int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_file,
+                            impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    *handle = NULL;
+    API_NEEDS(error, name_or_file);
+    if (new_handle(handle, error) == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
+    api_first_fault first = {.error = error};
+    status code = scenario_open(&(*handle)->scenario, name_or_file, api_keep_first, &first);
+    return finish_reading(handle, code, error);
+}
+
+int impactlab_scenario_parse(impactlab_scenario **handle, const char *text, size_t length,
+                             impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    *handle = NULL;
+    API_NEEDS(error, text);
+    if (new_handle(handle, error) == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
+    api_first_fault first = {.error = error};
+    status code =
+        scenario_parse(&(*handle)->scenario, text, length, "text", NULL, api_keep_first, &first);
+    return finish_reading(handle, code, error);
+}
+
+int impactlab_scenario_create(impactlab_scenario **handle, impactlab_error *error)
+{
+    static const char empty[] = "title: made by a program\n";
+    return impactlab_scenario_parse(handle, empty, sizeof empty - 1, error);
+}
+
+int impactlab_scenario_copy(impactlab_scenario **handle, const impactlab_scenario *from,
+                            impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    *handle = NULL;
+    API_NEEDS(error, from);
+    if (new_handle(handle, error) == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
+    if (scenario_copy(&(*handle)->scenario, &from->scenario) != STATUS_OK) {
+        free(*handle);
+        *handle = NULL;
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a scenario");
+    }
+    return api_done(error);
+}
+
+void impactlab_scenario_destroy(impactlab_scenario *handle)
+{
+    if (handle != NULL) {
+        scenario_finish(&handle->scenario);
+        free(handle);
+    }
+}
+
+void impactlab_scenario_allow_code(impactlab_scenario *handle, int allowed)
+{
+    if (handle != NULL) {
+        handle->scenario.parameters.code_allowed = allowed != 0;
+    }
+}
+
+// --- asking -----------------------------------------------------------------------------------
+
+const char *impactlab_scenario_name(const impactlab_scenario *handle)
+{
+    return handle != NULL && handle->scenario.name != NULL ? handle->scenario.name : "";
+}
+
+const char *impactlab_scenario_title(const impactlab_scenario *handle)
+{
+    return handle != NULL && handle->scenario.title != NULL ? handle->scenario.title : "";
+}
+
+const char *impactlab_scenario_description(const impactlab_scenario *handle)
+{
+    const bool known = handle != NULL && handle->scenario.description != NULL;
+    return known ? handle->scenario.description : "";
+}
+
+int impactlab_scenario_number(const impactlab_scenario *handle, const char *path, double *value,
+                              impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, path);
+    API_NEEDS(error, value);
+    int index = api_parameter(path, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    *value = parameter_get(&handle->scenario.parameters, index);
+    return api_done(error);
+}
+
+int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, char *text,
+                            size_t size, impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, path);
+    API_NEEDS(error, text);
+    int index = api_parameter(path, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+
+    // whole or not at all
+    char whole[PARAMETER_TEXT_SIZE];
+    parameter_format(&handle->scenario.parameters, index, whole, sizeof whole);
+    size_t length = strlen(whole) + 1;
+    if (length > size) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the value of %s takes %zu bytes, but there is room for %zu", path, length,
+                        size);
+    }
+    memcpy(text, whole, length);
+    return api_done(error);
+}
+
+int impactlab_scenario_is_set(const impactlab_scenario *handle, const char *path)
+{
+    int index = handle != NULL && path != NULL ? parameter_find(path) : -1;
+    return index >= 0 && handle->scenario.parameters.set[index] != 0;
+}
+
+int impactlab_scenario_yaml(const impactlab_scenario *handle, char **yaml, impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, yaml);
+    size_t size;
+    *yaml = NULL;
+    FILE *stream = open_memstream(yaml, &size);
+    if (stream == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    }
+    scenario_write(stream, &handle->scenario);
+    return api_close_text(stream, yaml, error);
+}
+
+// --- changing ---------------------------------------------------------------------------------
+
+int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *assignments,
+                               size_t count, impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    if (count == 0) {
+        return api_done(error);
+    }
+    API_NEEDS(error, assignments);
+    char **given = calloc(count, sizeof *given);
+    if (given == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for %zu assignments", count);
+    }
+    bool whole = true;
+    for (size_t i = 0; i < count; i++) {
+        given[i] = (char *)assignments[i];
+        whole = whole && given[i] != NULL;
+    }
+
+    // nothing is changed if one of them is wrong
+    const parameters before = handle->scenario.parameters;
+    api_first_fault first = {.error = error};
+    status code =
+        whole ? scenario_override_all(&handle->scenario, given, (int)count, api_keep_first, &first)
+              : STATUS_BAD_ARGUMENT;
+    free(given);
+    if (code == STATUS_OK) {
+        return api_done(error);
+    }
+    handle->scenario.parameters = before;
+    if (!whole) {
+        return api_missing(error, "assignments[i]");
+    }
+    if (error != NULL) {
+        error->status = (int)code;
+        error->line = error->column = 0;
+        error->parameter[0] = '\0';
+    }
+    return (int)code;
+}
+
+int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const char *text,
+                           impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, path);
+    API_NEEDS(error, text);
+    parameters p = handle->scenario.parameters;
+    fault f = {.text = "", .path = ""};
+    int index = api_parameter(path, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    if (parameter_set_text(&p, index, text, &f) != STATUS_OK ||
+        scenario_take_parameters(&handle->scenario, &p, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
+    return api_done(error);
+}
+
+int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, double value,
+                                  impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, path);
+    parameters p = handle->scenario.parameters;
+    fault f = {.text = "", .path = ""};
+    int index = api_parameter(path, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    if (parameter_set_number(&p, index, value, &f) != STATUS_OK ||
+        scenario_take_parameters(&handle->scenario, &p, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
+    return api_done(error);
+}
+
+// Room for one more action of the script.
+static bool make_room(scenario *s)
+{
+    action *grown = realloc(s->actions, (size_t)(s->action_count + 1) * sizeof *grown);
+    if (grown != NULL) {
+        s->actions = grown;
+    }
+    return grown != NULL;
+}
+
+static int check_instant(const scenario *s, double time, impactlab_error *error)
+{
+    if (!(time >= 0 && time <= s->parameters.run.duration)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the instant %g s is not within the run, expected 0 to %g s", time,
+                        s->parameters.run.duration);
+    }
+    return IMPACTLAB_OK;
+}
+
+int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const char *path,
+                                  const char *text, impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, path);
+    API_NEEDS(error, text);
+    scenario *s = &handle->scenario;
+    int index = api_parameter(path, error);
+    if (index < 0 || check_instant(s, time, error) != IMPACTLAB_OK) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    if (!rig_can_change(&s->parameters, index)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "%s holds from the start and cannot change during a run", path);
+    }
+
+    // the value as the parameter takes it
+    fault f = {.text = "", .path = ""};
+    parameters p = scenario_parameters_at(s, time);
+    if (parameter_set_text(&p, index, text, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
+    action a = {
+        .time = time, .kind = ACTION_SET, .parameter = index, .value = parameter_get(&p, index)};
+    if (parameter_table[index].type == PARAMETER_TEXT) {
+        parameter_format(&p, index, a.text, sizeof a.text);
+    }
+
+    if (!make_room(s)) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
+    }
+    scenario_insert_action(s, a);
+    return api_done(error);
+}
+
+int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double impulse,
+                                impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    scenario *s = &handle->scenario;
+    if (check_instant(s, time, error) != IMPACTLAB_OK) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    if (!isfinite(impulse)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s");
+    }
+    if (s->parameters.arm.model == ARM_PRINTED) {
+        return api_fail(error, STATUS_BAD_SCENARIO, "the printed model takes no pushes");
+    }
+    if (!make_room(s)) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
+    }
+    scenario_insert_action(s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse});
+    return api_done(error);
+}

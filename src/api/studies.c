@@ -1,0 +1,184 @@
+// Many runs and linear analysis through libimpactlab.
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/api/handles.h"
+#include "src/arm/modes.h"
+#include "src/study/batch.h"
+#include "src/study/pool.h"
+
+// So many runs a thread are computed before their outcomes are handed over.
+enum { RUNS_A_TURN = 16 * RUN_TOGETHER };
+
+// A batch in hand.
+typedef struct varied {
+    const scenario *base;
+    const int *parameters; // indices of those varied
+    const double *values;  // row by row
+    size_t parameter_count;
+    size_t first; // of this turn
+} varied;
+
+// The scenario of a run; `f` says what is wrong with it.
+static status vary(const varied *v, size_t run, scenario *made, fault *f)
+{
+    *made = *v->base;
+    parameters p = v->base->parameters;
+    status code = STATUS_OK;
+    for (size_t k = 0; k < v->parameter_count && code == STATUS_OK; k++) {
+        const double value = v->values[run * v->parameter_count + k];
+        code = parameter_set_number(&p, v->parameters[k], value, f);
+    }
+    return code == STATUS_OK ? scenario_take_parameters(made, &p, f) : code;
+}
+
+// Values were looked at before.
+static void make_varied(void *context, size_t i, scenario *made)
+{
+    const varied *v = context;
+    vary(v, v->first + i, made, NULL);
+}
+
+static int count_processors(void)
+{
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : count > POOL_MOST_THREADS ? POOL_MOST_THREADS : (int)count;
+}
+
+// Tells an outcome to the caller. False if that is enough.
+static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker take, void *context)
+{
+    double quantities[64];
+    for (int i = 0; i < summary_count; i++) {
+        quantities[i] = summary_value(s, i);
+    }
+    const impactlab_outcome outcome = {.index = index,
+                                       .status = (int)s->status,
+                                       .word = summary_status(s),
+                                       .message = s->message,
+                                       .quantities = quantities,
+                                       .quantity_count = (size_t)summary_count};
+    return take(context, &outcome) == 0;
+}
+
+// Runs all in turns, each handed over before the next begins.
+static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker take,
+                      void *context, impactlab_error *error)
+{
+    const size_t turn = (size_t)jobs * RUNS_A_TURN;
+    summary *summaries = calloc(count < turn ? count : turn, sizeof *summaries);
+    if (summaries == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the outcomes");
+    }
+
+    status code = STATUS_OK;
+    for (v->first = 0; code == STATUS_OK && v->first < count; v->first += turn) {
+        const size_t now = count - v->first < turn ? count - v->first : turn;
+        code = batch_run(make_varied, v, now, jobs, summaries);
+        for (size_t i = 0; code == STATUS_OK && i < now; i++) {
+            code =
+                hand_over(&summaries[i], v->first + i, take, context) ? STATUS_OK : STATUS_STOPPED;
+        }
+    }
+    free(summaries);
+    return code == STATUS_OK ? api_done(error) : api_fail(error, code, "%s", status_text(code));
+}
+
+int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, size_t path_count,
+                    const double *values, size_t count, int jobs, impactlab_outcome_taker take,
+                    void *context, impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    if (take == NULL) {
+        return api_missing(error, "take");
+    }
+    if (path_count > 0) {
+        API_NEEDS(error, paths);
+    }
+    if (path_count > 0 && count > 0) {
+        API_NEEDS(error, values);
+    }
+    jobs = jobs < 1 ? count_processors() : jobs > POOL_MOST_THREADS ? POOL_MOST_THREADS : jobs;
+
+    // which parameters
+    int *indices = calloc(path_count + 1, sizeof *indices);
+    if (indices == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a batch");
+    }
+    for (size_t k = 0; k < path_count; k++) {
+        indices[k] = paths[k] != NULL ? api_parameter(paths[k], error) : -1;
+        if (indices[k] < 0) {
+            free(indices);
+            return paths[k] != NULL ? IMPACTLAB_BAD_ARGUMENT : api_missing(error, "paths[i]");
+        }
+    }
+
+    // all values before anything is run
+    varied v = {.base = &handle->scenario,
+                .parameters = indices,
+                .values = values,
+                .parameter_count = path_count};
+    fault f = {.text = "", .path = ""};
+    scenario tried;
+    for (size_t i = 0; i < count; i++) {
+        if (vary(&v, i, &tried, &f) != STATUS_OK) {
+            free(indices);
+            return api_fail(error, f.code, "run %zu: %.900s", i, f.text);
+        }
+    }
+
+    int code = run_varied(&v, count, jobs, take, context, error);
+    free(indices);
+    return code;
+}
+
+// --- modes ------------------------------------------------------------------------------------
+
+size_t impactlab_freedoms(const impactlab_scenario *handle)
+{
+    arm a;
+    if (handle == NULL || handle->scenario.parameters.arm.model == ARM_PRINTED) {
+        return 0;
+    }
+    arm_init(&a, &handle->scenario.parameters);
+    return (size_t)a.dof;
+}
+
+int impactlab_modes(const impactlab_scenario *handle, int hub_locked, int tip_pinned,
+                    double *frequencies, double *shapes, size_t most, size_t *count,
+                    impactlab_error *error)
+{
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, frequencies);
+    API_NEEDS(error, count);
+    const size_t n = impactlab_freedoms(handle);
+    *count = 0;
+    if (n == 0) {
+        return api_fail(error, STATUS_BAD_SCENARIO,
+                        "the printed equations have no symmetric stiffness and so no natural "
+                        "frequencies, expected arm.model = corrected");
+    }
+
+    arm a;
+    arm_init(&a, &handle->scenario.parameters);
+    double *all = calloc(n + n * n, sizeof *all);
+    int found = 0;
+    if (all == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the modes of %zu angles", n);
+    }
+    status code = modes_compute(&a, hub_locked ? HUB_LOCKED : HUB_FREE,
+                                tip_pinned ? TIP_PINNED : TIP_FREE, &found, all, all + n);
+
+    // as many as there is room for
+    if (code == STATUS_OK) {
+        const size_t copied = (size_t)found < most ? (size_t)found : most;
+        memcpy(frequencies, all, copied * sizeof *all);
+        if (shapes != NULL) {
+            memcpy(shapes, all + n, copied * n * sizeof *all);
+        }
+        *count = (size_t)found;
+    }
+    free(all);
+    return code == STATUS_OK ? api_done(error) : api_fail(error, code, "%s", status_text(code));
+}

@@ -1,0 +1,72 @@
+// The tables of parameters, signals and quantities as the library shows them.
+#include <pthread.h>
+
+#include "src/api/handles.h"
+#include "src/base/version.h"
+#include "src/quantities/summary.h"
+
+enum { PARAMETERS_AT_MOST = sizeof((parameters *)0)->set };
+
+static impactlab_parameter parameter_rows[PARAMETERS_AT_MOST];
+static impactlab_signal signal_rows[SIGNALS_AT_MOST];
+static impactlab_quantity quantity_rows[64];
+static pthread_once_t filled = PTHREAD_ONCE_INIT;
+
+static impactlab_parameter parameter_row(const parameter_info *info)
+{
+    static const char *const types[] = {[PARAMETER_REAL] = "real",
+                                        [PARAMETER_INTEGER] = "integer",
+                                        [PARAMETER_BOOLEAN] = "boolean",
+                                        [PARAMETER_CHOICE] = "choice",
+                                        [PARAMETER_TEXT] = "text"};
+    const bool text = info->type == PARAMETER_TEXT;
+    return (impactlab_parameter){.path = info->path,
+                                 .type = types[info->type],
+                                 .unit = info->unit,
+                                 .choices = info->type == PARAMETER_CHOICE ? info->choices : "",
+                                 .description = info->description,
+                                 .initial = text ? 0 : info->default_corrected,
+                                 .minimum = text ? 0 : info->minimum,
+                                 .maximum = text ? 0 : info->maximum,
+                                 .timed = info->timed};
+}
+
+// The rows point into the tables of the program, which say the same under other names.
+static void fill(void)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        parameter_rows[i] = parameter_row(&parameter_table[i]);
+    }
+    for (int i = 0; i < signal_count; i++) {
+        const signal_info *info = &signal_table[i];
+        signal_rows[i] = (impactlab_signal){info->name, info->ascii, info->unit, info->description};
+    }
+    for (int i = 0; i < summary_count; i++) {
+        const summary_info *info = &summary_table[i];
+        quantity_rows[i] = (impactlab_quantity){info->key, info->label, info->unit,
+                                                info->description, info->timing};
+    }
+}
+
+const impactlab_parameter *impactlab_parameter_at(size_t index)
+{
+    pthread_once(&filled, fill);
+    return index < (size_t)parameter_count ? &parameter_rows[index] : NULL;
+}
+
+const impactlab_signal *impactlab_signal_at(size_t index)
+{
+    pthread_once(&filled, fill);
+    return index < (size_t)signal_count ? &signal_rows[index] : NULL;
+}
+
+const impactlab_quantity *impactlab_quantity_at(size_t index)
+{
+    pthread_once(&filled, fill);
+    return index < (size_t)summary_count ? &quantity_rows[index] : NULL;
+}
+
+const char *impactlab_version(void)
+{
+    return lab_version();
+}

@@ -1,0 +1,42 @@
+#include "src/run/first_contact.h"
+
+#include <assert.h>
+
+// The last row in free flight before the first contact, or NULL if there was no contact.
+static const sample *last_free_row(const trace *t)
+{
+    for (size_t i = 0; i < t->row_count; i++) {
+        bool touches = t->rows[i].contact != 0 || t->rows[i].impulse != 0;
+        if (touches) {
+            return i > 0 ? &t->rows[i - 1] : NULL;
+        }
+    }
+    return NULL;
+}
+
+static three_body_state state_of(const sample *row)
+{
+    return (three_body_state){
+        .angle = {row->hub_angle, row->first_angle, row->last_angle},
+        .velocity = {row->hub_velocity, row->first_velocity, row->last_velocity},
+    };
+}
+
+const sample *predict_first_contact(const scenario *s, const run_result *result,
+                                    prediction_answer answers[PREDICTOR_COUNT])
+{
+    assert(s != NULL && result != NULL && answers != NULL);
+    const sample *row = last_free_row(&result->trace);
+    if (row == NULL) {
+        return NULL;
+    }
+    parameters now = scenario_parameters_at(s, row->time);
+    const double *all = result->before_impact;
+    int half = (int)(result->before_impact_size / sizeof *all / 2);
+    prediction_question question = {.parameters = &now,
+                                    .bodies = state_of(row),
+                                    .angles = all,
+                                    .velocities = all != NULL ? all + half : NULL};
+    predict_all(&question, answers);
+    return row;
+}

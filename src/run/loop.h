@@ -1,0 +1,66 @@
+// A run that a program steps: to an instant, with inputs in between, and back to a state it kept.
+//
+// It is a run of the corrected arm like any other, cut at the instants asked for. No step is chosen
+// for such an instant, one that goes beyond it is cut. What is due at an instant (a sample of the
+// rig, an action of the script) happens when the loop goes on from it.
+#pragma once
+
+#include "src/rig/rig.h"
+#include "src/run/run_result.h"
+#include "src/scenario/scenario.h"
+
+typedef struct run_loop run_loop;
+
+typedef struct loop_options {
+    bool keep_trace; // rows are kept
+    bool commanded;  // the rig's command is what loop_command says, in the place of control.law
+    struct given_law law; // in the place of control.law, if law.law is not NULL
+} loop_options;
+
+// Begins at the start. STATUS_BAD_ARGUMENT for the printed model, which does not stop between its
+// steps. On failure f says why and there is nothing to be destroyed. The scenario is copied.
+status loop_create(run_loop **created, const scenario *s, const loop_options *options, fault *f);
+void loop_destroy(run_loop *l); // l may be NULL
+
+// Where it is [s], and whether it has come to the end of run.duration.
+double loop_time(const run_loop *l);
+bool loop_ended(const run_loop *l);
+
+// Goes on to an instant [s], at most to run.duration; one that is not later changes nothing.
+// What stopped the run stays: every further call returns it again.
+status loop_until(run_loop *l, double time, fault *f);
+// Goes on to the next sample of the rig, without one to the next multiple of method.step.
+status loop_step(run_loop *l, fault *f);
+
+// The volts that a commanded loop's next sample puts out, held until it is told others [V].
+void loop_command(run_loop *l, double volts);
+// Gives a parameter that may change during a run another value, now.
+status loop_set_number(run_loop *l, int parameter, double value, fault *f);
+status loop_set_text(run_loop *l, int parameter, const char *text, fault *f);
+// An impulse at the tip, across the last link, now [N s].
+status loop_push(run_loop *l, double impulse, fault *f);
+
+// What the sensors read: of the sample due now, which the controller will be given, else of the
+// last one. False without a rig.
+bool loop_sense(run_loop *l, sensor_reading *reading);
+// The present state as a row.
+sample loop_row(run_loop *l);
+// Angles of all degrees of freedom [rad], then their velocities [rad/s]; good until the loop goes
+// on.
+const double *loop_state(const run_loop *l, int *angle_count);
+
+// What the run comes to so far; the status is STATUS_STOPPED until it has ended.
+summary loop_summary(run_loop *l);
+// Rows and events so far. Not its summary.
+const run_result *loop_result(const run_loop *l);
+// The scenario that is run.
+const scenario *loop_scenario(const run_loop *l);
+
+// The whole state as one block of bytes, for loops of the same scenario, program and machine.
+// Rows, and what takes a whole run to know (settling time, smoothed force), are not part of it.
+size_t loop_saved_size(const run_loop *l);
+void loop_save(const run_loop *l, void *bytes);
+// Goes back (or forth) to such a state; rows that are later than it are dropped.
+// STATUS_BAD_ARGUMENT if the bytes are of another scenario or version, or of a plug-in's or
+// process's loop that is not this one, whose memory may hold addresses.
+status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f);

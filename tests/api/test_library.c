@@ -1,0 +1,446 @@
+// libimpactlab through its public header and shared library alone.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <impactlab/controller.h>
+#include <impactlab/impactlab.h>
+
+static const char first_impact[] = "corrected/first-impact";
+
+static void check_done(int status, const impactlab_error *error)
+{
+    if (status != IMPACTLAB_OK) {
+        fail_msg("status %d: %s", status, error->sentence);
+    }
+}
+
+static impactlab_scenario *opened(const char *name)
+{
+    impactlab_error error;
+    impactlab_scenario *scenario;
+    check_done(impactlab_scenario_open(&scenario, name, &error), &error);
+    return scenario;
+}
+
+static void set(impactlab_scenario *scenario, const char *path, const char *text)
+{
+    impactlab_error error;
+    check_done(impactlab_scenario_set(scenario, path, text, &error), &error);
+}
+
+static double quantity(const impactlab_run *run, const char *key)
+{
+    impactlab_error error;
+    double value;
+    check_done(impactlab_run_quantity(run, key, &value, &error), &error);
+    return value;
+}
+
+static double peak_of_loop(impactlab_loop *loop)
+{
+    impactlab_error error;
+    impactlab_run *run;
+    check_done(impactlab_loop_run(loop, &run, &error), &error);
+    double peak = quantity(run, "peak_force_N");
+    impactlab_run_destroy(run);
+    return peak;
+}
+
+// the same bits, not about the same number
+static void check_same(double a, double b)
+{
+    assert_memory_equal(&a, &b, sizeof a);
+}
+
+// --- runs -------------------------------------------------------------------------------------
+
+static void rows_are_read_in_place(void **state)
+{
+    (void)state;
+    impactlab_error error;
+    impactlab_scenario *scenario = opened(first_impact);
+    impactlab_run *run;
+    impactlab_series time, force;
+    impactlab_table angles;
+    check_done(impactlab_run_create(&run, scenario, IMPACTLAB_KEEP_ROWS, &error), &error);
+    check_done(impactlab_run_signal(run, "time", &time, &error), &error);
+    check_done(impactlab_run_signal(run, "contact_force", &force, &error), &error);
+    check_done(impactlab_run_angles(run, &angles, &error), &error);
+    assert_true(force.count > 1000 && force.count == time.count && angles.rows == force.count);
+
+    // the largest recorded force is near the located peak, never above it
+    double largest = 0, before = -1;
+    for (size_t i = 0; i < force.count; i++) {
+        const char *row = (const char *)force.values + i * force.stride;
+        double f, t;
+        memcpy(&f, row, sizeof f);
+        memcpy(&t, (const char *)time.values + i * time.stride, sizeof t);
+        largest = fmax(largest, f);
+        assert_true(t >= before);
+        before = t;
+    }
+    double peak = quantity(run, "peak_force_N");
+    assert_true(largest <= peak && largest > 0.99 * peak);
+    check_same(before, 1.0);
+
+    // events and texts
+    impactlab_event event;
+    assert_int_equal(impactlab_run_event(run, 0, &event), 1);
+    assert_int_equal(impactlab_run_event(run, impactlab_run_event_count(run), &event), 0);
+    char *json, *csv;
+    check_done(impactlab_run_json(run, &json, &error), &error);
+    check_done(impactlab_run_csv(run, &csv, &error), &error);
+    assert_true(json[0] == '{' && strncmp(csv, "time[s],", 8) == 0);
+    impactlab_text_free(json);
+    impactlab_text_free(csv);
+    impactlab_run_destroy(run);
+    impactlab_scenario_destroy(scenario);
+}
+
+static void predictions_and_modes(void **state)
+{
+    (void)state;
+    impactlab_error error;
+    impactlab_scenario *scenario = opened(first_impact);
+    impactlab_run *run;
+    impactlab_prediction said[8];
+    size_t count, modes;
+    check_done(impactlab_run_create(&run, scenario, IMPACTLAB_KEEP_ROWS, &error), &error);
+    check_done(impactlab_run_predictions(run, said, 8, &count, &error), &error);
+    assert_true(count >= 4);
+
+    // the linearised arm knows the simulation's first pulse well
+    assert_string_equal(said[3].method, "linearised");
+    assert_true(said[3].known && said[3].holds);
+    assert_true(fabs(said[3].peak / quantity(run, "first_pulse_peak_N") - 1) < 0.05);
+
+    // a free hub and tip turn as a whole
+    double frequencies[4], shapes[16];
+    assert_int_equal(impactlab_freedoms(scenario), 2);
+    check_done(impactlab_modes(scenario, 0, 0, frequencies, shapes, 4, &modes, &error), &error);
+    assert_int_equal(modes, 2);
+    assert_true(fabs(frequencies[0]) < 1e-3 && frequencies[1] > 1);
+    assert_true(fabs(shapes[0] - shapes[1]) < 1e-6);
+    impactlab_run_destroy(run);
+    impactlab_scenario_destroy(scenario);
+}
+
+// --- errors -----------------------------------------------------------------------------------
+
+static void mistakes_are_told(void **state)
+{
+    (void)state;
+    impactlab_error error;
+    impactlab_scenario *scenario = opened(first_impact), *none;
+    impactlab_run *run;
+    impactlab_loop *loop;
+    double value;
+
+    // wrong names name the nearest
+    assert_int_equal(impactlab_scenario_set(scenario, "motor.voltag", "1", &error),
+                     IMPACTLAB_BAD_ARGUMENT);
+    assert_non_null(strstr(error.sentence, "motor.voltage"));
+    assert_int_equal(impactlab_scenario_open(&none, "corrected/frist-impact", &error),
+                     IMPACTLAB_BAD_ARGUMENT);
+    assert_non_null(strstr(error.sentence, "first-impact"));
+    assert_null(none);
+
+    // wrong values change nothing
+    assert_int_not_equal(impactlab_scenario_set(scenario, "motor.voltage", "much", &error), 0);
+    assert_string_equal(error.parameter, "motor.voltage");
+    assert_int_not_equal(impactlab_scenario_set_number(scenario, "wall.angle", NAN, &error), 0);
+    check_done(impactlab_scenario_number(scenario, "motor.voltage", &value, &error), &error);
+    check_same(value, 1);
+
+    // and no call without its arguments gets anywhere
+    assert_int_equal(impactlab_run_create(&run, NULL, 0, &error), IMPACTLAB_BAD_ARGUMENT);
+    assert_null(run);
+    assert_int_equal(impactlab_run_create(&run, scenario, 1000, &error), IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_run_quantity(NULL, "peak_force_N", &value, NULL),
+                     IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_scenario_set(NULL, NULL, NULL, NULL), IMPACTLAB_BAD_ARGUMENT);
+    assert_null(impactlab_signal_at(100000));
+    impactlab_run_destroy(NULL);
+    impactlab_scenario_destroy(NULL);
+    impactlab_loop_destroy(NULL);
+
+    // the printed model is not stepped
+    set(scenario, "arm.model", "printed");
+    assert_int_equal(impactlab_loop_create(&loop, scenario, 0, &error), IMPACTLAB_BAD_ARGUMENT);
+    assert_null(loop);
+    impactlab_scenario_destroy(scenario);
+}
+
+static void files_with_faults_are_refused(void **state)
+{
+    (void)state;
+    static const char text[] = "title: x\nmotor: {voltage: plenty}\n";
+    impactlab_error error;
+    impactlab_scenario *scenario;
+    assert_int_equal(impactlab_scenario_parse(&scenario, text, sizeof text - 1, &error),
+                     IMPACTLAB_BAD_SCENARIO);
+    assert_null(scenario);
+    assert_non_null(strstr(error.sentence, "2:"));
+}
+
+// --- loops ------------------------------------------------------------------------------------
+
+static void a_stepped_run_is_the_run(void **state)
+{
+    (void)state;
+    impactlab_error error;
+    impactlab_scenario *scenario = opened("compare/hybrid");
+    impactlab_run *run;
+    impactlab_loop *loop;
+    check_done(impactlab_run_create(&run, scenario, 0, &error), &error);
+    check_done(impactlab_loop_create(&loop, scenario, 0, &error), &error);
+    while (!impactlab_loop_ended(loop)) {
+        check_done(impactlab_loop_step(loop, &error), &error);
+    }
+    check_same(peak_of_loop(loop), quantity(run, "peak_force_N"));
+    impactlab_loop_destroy(loop);
+    impactlab_run_destroy(run);
+    impactlab_scenario_destroy(scenario);
+}
+
+// What a proportional controller outside the library remembers.
+typedef struct outside {
+    void *context; // left there by the rig
+    long samples;
+} outside;
+
+static double commanded(double encoder, double force)
+{
+    return 1 + 0.3 * (0.1 - encoder) + 0.1 * (1 - force);
+}
+
+static void push_softly(void *memory, const controller_input *in, controller_output *out)
+{
+    outside *m = memory;
+    m->samples++;
+    *(long *)m->context = m->samples;
+    out->command = commanded(in->encoder, in->force);
+}
+
+// A program that reads and commands in a loop is the same controller as one that is called back.
+static void commands_come_from_outside(void **state)
+{
+    (void)state;
+    static const char *const modes[] = {"push", NULL};
+    static const controller law = {.interface = CONTROLLER_INTERFACE,
+                                   .name = "outside",
+                                   .modes = modes,
+                                   .memory_size = sizeof(outside),
+                                   .sample = push_softly};
+    impactlab_error error;
+    impactlab_scenario *scenario = opened(first_impact);
+    impactlab_run *run;
+    impactlab_loop *loop;
+    long samples = 0;
+    check_done(impactlab_run_create_with(&run, scenario, 0, &law, &samples, &error), &error);
+    assert_int_equal(samples, 200);
+
+    check_done(impactlab_loop_create(&loop, scenario, IMPACTLAB_COMMAND, &error), &error);
+    while (!impactlab_loop_ended(loop)) {
+        impactlab_reading read, again;
+        check_done(impactlab_loop_read_sensors(loop, &read, &error), &error);
+        check_done(impactlab_loop_read_sensors(loop, &again, &error), &error);
+        assert_memory_equal(&read, &again, sizeof read);
+        double volts = commanded(read.encoder, read.force);
+        check_done(impactlab_loop_command(loop, volts, &error), &error);
+        check_done(impactlab_loop_step(loop, &error), &error);
+    }
+    check_same(peak_of_loop(loop), quantity(run, "peak_force_N"));
+    impactlab_loop_destroy(loop);
+    impactlab_run_destroy(run);
+    impactlab_scenario_destroy(scenario);
+}
+
+static void step_to(impactlab_loop *loop, double time)
+{
+    impactlab_error error;
+    while (!impactlab_loop_ended(loop) && impactlab_loop_time(loop) < time) {
+        check_done(impactlab_loop_step(loop, &error), &error);
+    }
+}
+
+// A state goes into another loop, and back into its own, to the last bit; noise and all.
+static void states_come_back(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"corrected/first-impact", "compare/hybrid",
+                                        "compare/optimal", "corrected/twenty-links"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        impactlab_error error;
+        impactlab_scenario *scenario = opened(names[i]);
+        impactlab_loop *loop, *other;
+        double end, force, again;
+        check_done(impactlab_scenario_number(scenario, "run.duration", &end, &error), &error);
+        check_done(impactlab_loop_create(&loop, scenario, 0, &error), &error);
+        check_done(impactlab_loop_create(&other, scenario, 0, &error), &error);
+
+        // before and in the contact
+        for (double share = 0.2; share < 1; share += 0.4) {
+            step_to(loop, share * end);
+            size_t size = impactlab_loop_state_size(loop);
+            void *bytes = malloc(size);
+            check_done(impactlab_loop_save_state(loop, bytes, size, &error), &error);
+            step_to(loop, (share + 0.1) * end);
+            check_done(impactlab_loop_signal(loop, "contact_force", &force, &error), &error);
+
+            impactlab_loop *const both[] = {other, loop};
+            for (int k = 0; k < 2; k++) {
+                check_done(impactlab_loop_restore_state(both[k], bytes, size, &error), &error);
+                step_to(both[k], (share + 0.1) * end);
+                check_done(impactlab_loop_signal(both[k], "contact_force", &again, &error), &error);
+                check_same(force, again);
+            }
+            assert_int_not_equal(impactlab_loop_restore_state(loop, bytes, size - 1, &error), 0);
+            free(bytes);
+        }
+        impactlab_loop_destroy(loop);
+        impactlab_loop_destroy(other);
+        impactlab_scenario_destroy(scenario);
+    }
+}
+
+static void inputs_act_at_once(void **state)
+{
+    (void)state;
+    impactlab_error error;
+    impactlab_scenario *scenario = opened(first_impact);
+    impactlab_loop *loop;
+    double torque, doubled, before, after;
+    check_done(impactlab_loop_create(&loop, scenario, IMPACTLAB_KEEP_ROWS, &error), &error);
+    check_done(impactlab_loop_step_until(loop, 0.01, &error), &error);
+    check_same(impactlab_loop_time(loop), 0.01);
+    check_done(impactlab_loop_signal(loop, "motor_torque", &torque, &error), &error);
+    check_done(impactlab_loop_set_input(loop, "motor.voltage", 2, &error), &error);
+    check_done(impactlab_loop_signal(loop, "motor_torque", &doubled, &error), &error);
+    assert_true(fabs(doubled - 2 * torque) < 1e-12);
+
+    // a push across the last link turns it
+    check_done(impactlab_loop_signal(loop, "last_velocity", &before, &error), &error);
+    check_done(impactlab_loop_push(loop, 1e-3, &error), &error);
+    check_done(impactlab_loop_signal(loop, "last_velocity", &after, &error), &error);
+    assert_true(after > before);
+
+    // what holds from the start cannot be set, and an arm without a rig has no sensors
+    impactlab_reading reading;
+    assert_int_equal(impactlab_loop_set_input(loop, "arm.links", 4, &error),
+                     IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_loop_read_sensors(loop, &reading, &error), IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_loop_command(loop, 1, &error), IMPACTLAB_BAD_ARGUMENT);
+    check_done(impactlab_loop_step(loop, &error), &error);
+    impactlab_loop_destroy(loop);
+    impactlab_scenario_destroy(scenario);
+}
+
+// --- batches ----------------------------------------------------------------------------------
+
+typedef struct collected {
+    double peak[500];
+    size_t count, most;
+} collected;
+
+static int collect(void *context, const impactlab_outcome *outcome)
+{
+    collected *c = context;
+    size_t peak = 0;
+    while (strcmp(impactlab_quantity_at(peak)->key, "peak_force_N") != 0) {
+        peak++;
+    }
+    assert_int_equal(outcome->index, c->count);
+    c->peak[c->count++] = outcome->quantities[peak];
+    return c->count == c->most;
+}
+
+static void batches_are_runs(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"motor.voltage"};
+    impactlab_error error;
+    impactlab_scenario *scenario = opened(first_impact);
+    collected one = {.most = 1000}, many = {.most = 1000}, few = {.most = 7};
+    double volts[500];
+    for (int i = 0; i < 500; i++) {
+        volts[i] = 1 + 0.004 * i;
+    }
+    check_done(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &one, &error), &error);
+    check_done(impactlab_batch(scenario, paths, 1, volts, 500, 3, collect, &many, &error), &error);
+    assert_memory_equal(&one.peak, &many.peak, sizeof one.peak);
+    assert_int_equal(one.count, 500);
+
+    // as a run by itself
+    impactlab_run *run;
+    check_done(impactlab_scenario_set_number(scenario, "motor.voltage", volts[250], &error),
+               &error);
+    check_done(impactlab_run_create(&run, scenario, 0, &error), &error);
+    check_same(one.peak[250], quantity(run, "peak_force_N"));
+    impactlab_run_destroy(run);
+
+    // the taker may have enough, and a wrong value is found before anything runs
+    assert_int_equal(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &few, &error),
+                     IMPACTLAB_STOPPED);
+    assert_int_equal(few.count, 7);
+    volts[499] = NAN;
+    assert_int_not_equal(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &few, &error),
+                         0);
+    assert_non_null(strstr(error.sentence, "run 499"));
+    assert_int_equal(few.count, 7);
+    impactlab_scenario_destroy(scenario);
+}
+
+static void scenarios_are_written_and_read(void **state)
+{
+    (void)state;
+    impactlab_error error;
+    impactlab_scenario *scenario = opened(first_impact), *again;
+    char *yaml, text[64];
+    set(scenario, "motor.voltage", "2.5 V");
+    check_done(impactlab_scenario_add_push(scenario, 0.5, 0.001, &error), &error);
+    check_done(impactlab_scenario_add_change(scenario, 0.2, "motor.voltage", "1", &error), &error);
+    check_done(impactlab_scenario_yaml(scenario, &yaml, &error), &error);
+    check_done(impactlab_scenario_parse(&again, yaml, strlen(yaml), &error), &error);
+    check_done(impactlab_scenario_text(again, "motor.voltage", text, sizeof text, &error), &error);
+    assert_string_equal(text, "2.5");
+    assert_int_equal(impactlab_scenario_is_set(again, "motor.voltage"), 1);
+    assert_int_equal(impactlab_scenario_is_set(again, "arm.tip_mass"), 0);
+    assert_int_not_equal(impactlab_scenario_add_push(scenario, -1, 0.001, &error), 0);
+
+    // both are the same run
+    impactlab_run *a, *b;
+    check_done(impactlab_run_create(&a, scenario, 0, &error), &error);
+    check_done(impactlab_run_create(&b, again, 0, &error), &error);
+    check_same(quantity(a, "peak_force_N"), quantity(b, "peak_force_N"));
+    impactlab_run_destroy(a);
+    impactlab_run_destroy(b);
+    impactlab_text_free(yaml);
+    impactlab_scenario_destroy(scenario);
+    impactlab_scenario_destroy(again);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_are_read_in_place),
+        cmocka_unit_test(predictions_and_modes),
+        cmocka_unit_test(mistakes_are_told),
+        cmocka_unit_test(files_with_faults_are_refused),
+        cmocka_unit_test(a_stepped_run_is_the_run),
+        cmocka_unit_test(commands_come_from_outside),
+        cmocka_unit_test(states_come_back),
+        cmocka_unit_test(inputs_act_at_once),
+        cmocka_unit_test(batches_are_runs),
+        cmocka_unit_test(scenarios_are_written_and_read),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
