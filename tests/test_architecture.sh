@@ -10,7 +10,7 @@ set -euo pipefail
 cd "$1"
 
 rooms="src/base src/quantities src/arm src/solve src/rig src/rig/laws src/predict src/scenario
-    src/run src/session src/study src/api
+    src/run src/session src/study src/api/impactlab src/api
     render/page render/plot render/scene render/figures
     ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/commands ui"
 

@@ -72,7 +72,7 @@ static void rows_are_read_in_place(void **state)
     impactlab_table angles;
     check_done(impactlab_run_create(&run, scenario, IMPACTLAB_KEEP_ROWS, &error), &error);
     check_done(impactlab_run_signal(run, "time", &time, &error), &error);
-    check_done(impactlab_run_signal(run, "contact_force", &force, &error), &error);
+    check_done(impactlab_run_signal(run, "force", &force, &error), &error);
     check_done(impactlab_run_angles(run, &angles, &error), &error);
     assert_true(force.count > 1000 && force.count == time.count && angles.rows == force.count);
 
@@ -294,13 +294,13 @@ static void states_come_back(void **state)
             void *bytes = malloc(size);
             check_done(impactlab_loop_save_state(loop, bytes, size, &error), &error);
             step_to(loop, (share + 0.1) * end);
-            check_done(impactlab_loop_signal(loop, "contact_force", &force, &error), &error);
+            check_done(impactlab_loop_signal(loop, "force", &force, &error), &error);
 
             impactlab_loop *const both[] = {other, loop};
             for (int k = 0; k < 2; k++) {
                 check_done(impactlab_loop_restore_state(both[k], bytes, size, &error), &error);
                 step_to(both[k], (share + 0.1) * end);
-                check_done(impactlab_loop_signal(both[k], "contact_force", &again, &error), &error);
+                check_done(impactlab_loop_signal(both[k], "force", &again, &error), &error);
                 check_same(force, again);
             }
             assert_int_not_equal(impactlab_loop_restore_state(loop, bytes, size - 1, &error), 0);

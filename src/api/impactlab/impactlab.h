@@ -80,7 +80,7 @@ typedef struct impactlab_parameter {
 
 // A recorded signal.
 typedef struct impactlab_signal {
-    const char *name;        // "contact_force"
+    const char *name;        // "force"
     const char *symbol;      // in ASCII
     const char *unit;        // "N"
     const char *description; // one sentence without a full stop
@@ -219,7 +219,7 @@ IMPACTLAB_EXPORT int impactlab_run_quantity(const impactlab_run *run, const char
 IMPACTLAB_EXPORT size_t impactlab_run_quantities(const impactlab_run *run, double *values,
                                                  size_t count);
 
-// A signal by its name ("time", "contact_force"), without a copy; NaN where it was not recorded.
+// A signal by its name ("time", "force"), without a copy; NaN where it was not recorded.
 // Angles [rad] and velocities [rad/s] of all degrees of freedom, the hub's first if it has one.
 IMPACTLAB_EXPORT int impactlab_run_signal(const impactlab_run *run, const char *name,
                                           impactlab_series *series, impactlab_error *error);
