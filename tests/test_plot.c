@@ -188,11 +188,11 @@ static void impulses_do_not_touch_the_force_axis(void **state)
     s.figure.panels[0].impulses = huge;
     s.figure.panels[0].impulse_count = 1;
     record(&s.figure.figure, &r);
-    expect_text(&r, "5\u00d7103");
+    expect_text(&r, "5\u00b7103");
     expect_text(&r, "2");
     expect_inside(&r.panels[0], &r.page, "the panel");
     for (int i = 0; i < r.text_count; i++) {
-        if (strcmp(r.texts[i].text, "5\u00d7103") == 0) {
+        if (strcmp(r.texts[i].text, "5\u00b7103") == 0) {
             check_below(r.texts[i].place.y + r.texts[i].place.height, r.panels[0].y + 1);
         }
     }

@@ -2,7 +2,9 @@
 
 #include <assert.h>
 #include <glib.h>
+#include <math.h>
 
+#include "render/plot/opened_run.h"
 #include "src/base/csv.h"
 #include "src/base/whole_file.h"
 
@@ -67,6 +69,7 @@ void diagram_release(void *what)
     g_free(d->parameters);
     g_free(d->curve_x);
     g_free(d->curve_y);
+    g_free(d->shapes);
     g_free(d);
 }
 
@@ -82,6 +85,57 @@ diagram *diagram_create(const char *title, const char *caption, double body,
     parameters_defaults(&d->p, ARM_CORRECTED);
     parameters_resolve(&d->p, NULL);
     return d;
+}
+
+status diagram_take_impact(diagram *d, const char *name, double *speed, fault *f)
+{
+    opened_run run;
+    status code = run_begin(&run, name, NULL, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // the first impact of the run
+    const trace *t = &run.result.trace;
+    code = STATUS_BAD_SCENARIO;
+    for (size_t i = 0; i < t->event_count && code != STATUS_OK; i++) {
+        if (t->events[i].kind == EVENT_IMPACT) {
+            const double *touch = run.result.before_impact;
+            code = STATUS_OK;
+            *speed = t->events[i].speed;
+            d->impulse = t->events[i].impulse;
+            d->before =
+                (three_body_state){{touch[0], touch[0], touch[1]}, {touch[2], touch[2], touch[3]}};
+        }
+    }
+
+    if (code != STATUS_OK) {
+        fault_set(f, code, "%s: no impact to draw", name);
+    } else {
+        d->p = run.scenario.parameters;
+        d->parameters = parameters_line(&run.scenario);
+    }
+    run_end(&run);
+    return code;
+}
+
+point view_place(const view *v, point at)
+{
+    assert(v != NULL);
+    return (point){v->x + v->metre * at.x, v->y - v->metre * v->across * at.y};
+}
+
+point view_end(point from, double length, double angle)
+{
+    return (point){from.x + length * cos(angle), from.y + length * sin(angle)};
+}
+
+void diagram_angle(sketch *s, point at, angle_arc a)
+{
+    double middle = (a.from + a.to) / 2, away = a.radius + 3;
+    sketch_arc(s, at.x, at.y, a.radius, a.from, a.to, SKETCH_INK, true);
+    sketch_text(s, at.x + away * cos(middle), at.y - away * sin(middle), 0, 0.5, a.markup,
+                SKETCH_LABEL);
 }
 
 artwork artwork_of_diagram(diagram *d)

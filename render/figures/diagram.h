@@ -5,7 +5,7 @@
 #include "render/page/sketch.h"
 #include "src/predict/predict.h"
 
-enum { DIAGRAM_VALUES = 16, CURVE_POINTS = 400 };
+enum { DIAGRAM_VALUES = 24, CURVE_POINTS = 400 };
 
 // A number that a diagram shows or is drawn from.
 typedef struct diagram_value {
@@ -24,7 +24,38 @@ typedef struct diagram {
     double after[3];           // angular velocities just after it [rad/s]
     double impulse;            // [N s]
     double *curve_x, *curve_y; // 2.1: force and output
+    void *shapes;              // 3.1, 4.6: owned, what their own file draws
 } diagram;
+
+// A place on the page [pt] or in the model [m].
+typedef struct point {
+    double x, y;
+} point;
+
+// Where the model's metres are on the page; y upwards in the model. `across` enlarges what lies
+// across the line to the right.
+typedef struct view {
+    double x, y, metre, across;
+} view;
+
+// A point of the model on the page.
+point view_place(const view *v, point at);
+
+// End of a piece of length `length` at `angle` [rad] from a point of the model.
+point view_end(point from, double length, double angle);
+
+// An angle at a place, from one direction on the page to another, counterclockwise [rad], with its
+// symbol at the arc's middle.
+typedef struct angle_arc {
+    double radius, from, to;
+    const char *markup;
+} angle_arc;
+void diagram_angle(sketch *s, point at, angle_arc a);
+
+// The first impact of a scenario: d takes its parameters, its impulse and the arm the instant
+// before, *speed that of the contact point [m/s]. Returns what the run does, STATUS_BAD_SCENARIO if
+// there is none.
+status diagram_take_impact(diagram *d, const char *name, double *speed, fault *f);
 
 // A diagram with the corrected arm's default parameters; title and caption are copied, `body` is
 // the drawing's height [pt]. Set `draw`, then give it to artwork_of_diagram.

@@ -2,11 +2,14 @@
 
 #include <assert.h>
 #include <glib.h>
+#include <math.h>
 #include <string.h>
 
 #include "render/figures/publication.h"
 #include "render/figures/run_figure.h"
+#include "render/page/text.h"
 #include "render/plot/opened_run.h"
+#include "src/study/thesis_tables.h"
 
 // Panels that several figures have.
 #define FORCE                                                                                      \
@@ -27,7 +30,7 @@
     }
 #define ENCODER(other)                                                                             \
     {                                                                                              \
-        .label = "Hub angle", .signals = {"encoder", other}, .weight = 1.2                         \
+        .label = "Hub angle", .signals = {"encoder", other}, .wall = true, .weight = 1.2           \
     }
 #define TACHOMETER(other)                                                                          \
     {                                                                                              \
@@ -45,19 +48,24 @@
     }
 #define COMMAND                                                                                    \
     {                                                                                              \
-        .label = "Command <i>u</i>", .signals = {"command"}, .with_zero = true, .modes = true,     \
-        .weight = 1.2                                                                              \
+        .label = "Command <i>u</i>", .signals = {"command"}, .with_zero = true, .weight = 1.2      \
     }
 
 // A figure of chapter 3, and one of the virtual rig; each has a scenario of its own name.
 #define RUN(number, name)                                                                          \
-    .id = number, .file = name, .scenario = "thesis/" name, .model = "printed; corrected dashed"
+    .id = number, .file = name, .scenario = "thesis/" name, .model = "printed; corrected dashed",  \
+    .beside = "arm.model=corrected", .names = {"printed", "corrected"}
 #define RIG(number, name)                                                                          \
-    .id = number, .file = name, .scenario = "thesis/" name, .model = "corrected, on the rig",      \
-    .alone = true
+    .id = number, .file = name, .scenario = "thesis/" name, .model = "corrected, on the rig"
 
-#define TRACED(...)          {__VA_ARGS__},
-#define DRAWN(function, ...) {.open = function, __VA_ARGS__},
+// Chapter 2 has the time axis of the simulations beside it, of figures 3.2 to 3.11.
+#define BENCH(number, name) RIG(number, name), .from = 0, .to = 1
+// Chapter 5 shades one thing.
+#define CONTROL(number, name) RIG(number, name), .modes = true
+#define MANY_LINKS            .beside = "arm.links=8", .names = {"2 links", "8 links"}
+
+#define TRACED(...)           {__VA_ARGS__},
+#define DRAWN(function, ...)  {.open = function, __VA_ARGS__},
 const thesis_figure thesis_figures[] = {
 #include "render/figures/catalogue.inc"
 };
@@ -84,47 +92,116 @@ typedef struct signal_figure {
     opened_run runs[2];
     int run_count;
     run_figure figure;
+    char *caption;
+    double printed_time, printed_force; // of the thesis's table
 } signal_figure;
 
 static void release_signals(void *owner)
 {
     signal_figure *s = owner;
     run_figure_finish(&s->figure);
+    g_free(s->caption);
     for (int i = 0; i < s->run_count; i++) {
         run_end(&s->runs[i]);
     }
     g_free(s);
 }
 
-// Runs the scenario, and once more with the corrected model unless it stands alone.
+// Runs the scenario, and once more with the change of the run beside it.
 static status run_scenarios(signal_figure *s, const thesis_figure *which, fault *f)
 {
-    static const char *const changes[] = {NULL, "arm.model=corrected"};
+    const char *const changes[] = {NULL, which->beside};
     status code = STATUS_OK;
-    for (int i = 0; i < (which->alone ? 1 : 2) && code == STATUS_OK; i++) {
+    for (int i = 0; i < (which->beside == NULL ? 1 : 2) && code == STATUS_OK; i++) {
         code = run_begin(&s->runs[i], which->scenario, changes[i], f);
         s->run_count += code == STATUS_OK;
     }
     return code;
 }
 
+// The peak that the thesis prints for the run, as a point; its residual goes into the caption.
+static void add_printed_peak(signal_figure *s, const thesis_figure *which, GString *caption)
+{
+    double forces[TABLE_VOLTAGES], delays[TABLE_VOLTAGES];
+    trace_figure *t = &s->figure.traces;
+    figure_panel *panel = &t->panels[0];
+    const summary *m = &s->runs[0].result.summary;
+    int column = which->printed_voltage - 1;
+    bool known = tables_printed("4.3", "max_force_simulation", forces) &&
+                 tables_printed("4.3", "delay_simulation", delays);
+    assert(known && column < TABLE_VOLTAGES);
+    (void)known;
+
+    // where the thesis has it: as long after the run's own first contact
+    s->printed_force = forces[column];
+    s->printed_time = m->first_contact_s + delays[column];
+    t->series[0][panel->series_count++] = (figure_series){.name = "Table 4.3",
+                                                          .label = "Table 4.3",
+                                                          .x = &s->printed_time,
+                                                          .y = &s->printed_force,
+                                                          .count = 1,
+                                                          .colour = 5,
+                                                          .no_line = true,
+                                                          .marker = MARKER_DIAMOND,
+                                                          .radius = 2.6};
+
+    // how far the run is from it
+    double more = m->first_pulse_peak_N - forces[column];
+    double late = m->first_pulse_time_to_peak_s - delays[column];
+    text_append(
+        caption,
+        " Diamond: the peak of Table 4.3, %.2f\u2009N after %.0f\u2009ms; that of the printed "
+        "run's first pulse is %.2f\u2009N %s and comes %.0f\u2009ms %s.",
+        forces[column], 1e3 * delays[column], fabs(more), more < 0 ? "lower" : "higher",
+        1e3 * fabs(late), late < 0 ? "earlier" : "later");
+}
+
+// What the catalogue adds to a figure of recorded signals.
+static void add_facts(signal_figure *s, const thesis_figure *which, const figure_options *o)
+{
+    figure *fig = &s->figure.traces.figure;
+    GString *caption = g_string_new(fig->caption);
+    if (which->note != NULL) {
+        g_string_append_printf(caption, " %s", which->note);
+    }
+    if (which->steps) {
+        g_string_append(caption, " Dots: the steps of the method.");
+    }
+    if (which->printed_voltage > 0 && o->signals == NULL) {
+        add_printed_peak(s, which, caption);
+    }
+    s->caption = g_string_free(caption, FALSE);
+    fig->caption = s->caption;
+
+    // a stretch that was asked for on the command line comes first
+    if (which->from < which->to && !(o->from < o->to)) {
+        fig->x.low = which->from;
+        fig->x.high = which->to;
+    }
+}
+
 static status open_signals(const thesis_figure *which, const char *title, const figure_options *o,
                            artwork *out, fault *f)
 {
-    static const char *const names[] = {"printed", "corrected"};
     trace_run runs[2];
+    trace_panel panels[THESIS_PANELS];
     signal_figure *s = g_new0(signal_figure, 1);
 
     // the same panels for each model
     status code = run_scenarios(s, which, f);
     for (int i = 0; i < s->run_count; i++) {
-        runs[i] = (trace_run){
-            .scenario = &s->runs[i].scenario, .result = &s->runs[i].result, .name = names[i]};
+        runs[i] = (trace_run){.scenario = &s->runs[i].scenario,
+                              .result = &s->runs[i].result,
+                              .name = which->names[i],
+                              .steps = which->steps && i == 0,
+                              .brief = i == 1};
     }
+    memcpy(panels, which->panels, sizeof panels);
+    panels[0].modes = which->modes;
 
     if (code == STATUS_OK) {
-        code = run_figure_init(&s->figure, title, which->panels, which->panel_count, runs,
-                               s->run_count, o, f);
+        code = run_figure_init(&s->figure, title, panels, which->panel_count, runs, s->run_count, o,
+                               f);
     }
 
     if (code != STATUS_OK) {
@@ -132,6 +209,7 @@ static status open_signals(const thesis_figure *which, const char *title, const 
         return code;
     }
 
+    add_facts(s, which, o);
     *out = artwork_of_figure(&s->figure.traces.figure, s, release_signals);
     return STATUS_OK;
 }

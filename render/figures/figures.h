@@ -13,7 +13,13 @@ typedef struct thesis_figure {
     const char *caption;  // plain, one line
     const char *scenario; // "thesis/fig-3-4"; NULL: it needs no run
     const char *model;    // plain, the model used: "printed; corrected dashed"
-    bool alone;           // recorded signals of one run, without the corrected model beside it
+    const char *note;     // markup, appended to what the caption says of the run; NULL for none
+    const char *beside;   // recorded signals: a second run with this change, "arm.links=8", or NULL
+    const char *names[2]; // of both runs
+    double from, to;      // recorded signals: ends of the time axis [s]; from >= to: as it comes
+    bool steps;           // a point at every step of the first run
+    bool modes;           // the controller's second mode is shaded instead of contact
+    int printed_voltage;  // the peak of Table 4.3 in this column as a point, 1 to 4; 0: none
     // opens it; NULL for recorded signals in `panels`
     status (*open)(const char *title, const figure_options *o, artwork *out, fault *f);
     trace_panel panels[THESIS_PANELS];

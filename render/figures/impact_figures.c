@@ -1,5 +1,4 @@
-// Figures of one impact: the arm's shape in contact, the force pulse, and what the thesis's
-// predictors assume of the motion.
+// Figures of one impact: the force pulse, and what the thesis's predictors assume of the motion.
 #include "render/figures/figures.h"
 
 #include <assert.h>
@@ -17,7 +16,7 @@
 
 #define IMPACT_SCENARIO "corrected/first-impact"
 
-enum { PANELS = 2, SERIES = 4, NODES = 3, ASSUMED_POINTS = 101, MARKS = 2 };
+enum { PANELS = 2, SERIES = 4, ASSUMED_POINTS = 101, MARKS = 2 };
 
 // A figure with everything it borrows.
 typedef struct impact_figure {
@@ -105,171 +104,6 @@ static void add_signal(impact_figure *fig, int panel, const char *name, const ch
                                .count = t->row_count,
                                .stride = sizeof(sample),
                                .colour = signal->colour});
-}
-
-// ---- shapes of the arm
-
-// Hub, joint and tip in the direction of the contact point: along it [m] and across it [mm].
-static void add_shape(impact_figure *fig, double first, double last, figure_series s)
-{
-    const parameters *p = &fig->run.scenario.parameters;
-    double l = p->arm.length / 2, wall = p->wall.angle;
-    double *x = own(fig, g_new(double, NODES)), *y = own(fig, g_new(double, NODES));
-    x[0] = y[0] = 0;
-    x[1] = l * cos(first - wall);
-    y[1] = 1e3 * l * sin(first - wall);
-    x[2] = x[1] + l * cos(last - wall);
-    y[2] = y[1] + 1e3 * l * sin(last - wall);
-    s.x = x;
-    s.y = y;
-    s.count = NODES;
-    add_series(fig, 0, s);
-}
-
-static void describe_shapes(impact_figure *fig)
-{
-    double *x = own(fig, g_new(double, 1)), *y = own(fig, g_new(double, 1));
-    *x = fig->run.scenario.parameters.arm.length;
-    *y = 0;
-    add_series(fig, 0,
-               (figure_series){.name = "contact point",
-                               .label = "contact point",
-                               .x = x,
-                               .y = y,
-                               .count = 1,
-                               .colour = 5,
-                               .marker = MARKER_SQUARE,
-                               .no_line = true});
-
-    // seen along the line, from the hub to a little beyond the tip
-    fig->figure.x.name = "along";
-    fig->figure.x.label = "Along the line to the contact point";
-    fig->figure.x.unit = "m";
-    fig->figure.x.low = -0.04;
-    fig->figure.x.high = 1.06;
-
-    fig->panels[0].y.name = "across";
-    fig->panels[0].y.label = "Across it";
-    fig->panels[0].y.unit = "mm";
-    fig->panels[0].y.with_zero = true;
-    fig->panels[0].weight = 1.5;
-    fig->figure.panel_count = 1;
-}
-
-// The first row of contact that the next one shares.
-static size_t first_contact_pair(const trace *t)
-{
-    for (size_t i = 0; i + 1 < t->row_count; i++) {
-        if (t->rows[i].contact > 0.5 && t->rows[i + 1].contact > 0.5 &&
-            t->rows[i + 1].time > t->rows[i].time) {
-            return i;
-        }
-    }
-    return 0;
-}
-
-status figure_contact(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    impact_figure *fig = new_impact(title, "thesis/fig-3-1", "method.step=0.01", o, f);
-    if (fig == NULL) {
-        return f != NULL ? f->code : STATUS_BAD_SCENARIO;
-    }
-
-    // two rows, the first in contact and the next
-    const trace *t = &fig->run.result.trace;
-    size_t first = first_contact_pair(t);
-    for (size_t i = first; i < first + 2 && i < t->row_count; i++) {
-        const sample *row = &t->rows[i];
-        char *label = own(fig, text_printf("arm at <i>t</i> = %.2f\u2009s", row->time));
-        char *name = own(fig, text_printf("arm at %.2f s", row->time));
-        add_shape(fig, row->first_angle, row->last_angle,
-                  (figure_series){.name = name,
-                                  .label = label,
-                                  .colour = i == first ? 0 : 1,
-                                  .style = i == first ? LINE_SOLID : LINE_DASHED,
-                                  .marker = MARKER_CIRCLE});
-    }
-
-    describe_shapes(fig);
-    fig->figure.caption =
-        "Hub, joint and tip of the printed model at two successive steps in contact, 1\u2009V. The "
-        "last link always passes through the contact point, (3.9). Steps of 10\u2009ms, so that "
-        "they can be told apart; across the line the scale is larger.";
-    *out = artwork_of_figure(&fig->figure, fig, release_impact);
-    return STATUS_OK;
-}
-
-// The row nearest to an instant.
-static const sample *row_at(const trace *t, double time)
-{
-    const sample *best = &t->rows[0];
-    for (size_t i = 1; i < t->row_count; i++) {
-        if (fabs(t->rows[i].time - time) < fabs(best->time - time)) {
-            best = &t->rows[i];
-        }
-    }
-    return best;
-}
-
-// The last row before the impact's jump.
-static const sample *row_before(const trace *t, double contact)
-{
-    const sample *before = &t->rows[0];
-    for (size_t i = 0; i < t->row_count && t->rows[i].contact < 0.5; i++) {
-        if (t->rows[i].time <= contact) {
-            before = &t->rows[i];
-        }
-    }
-    return before;
-}
-
-status figure_peak_shape(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    impact_figure *fig = new_impact(title, IMPACT_SCENARIO, NULL, o, f);
-    if (fig == NULL) {
-        return f != NULL ? f->code : STATUS_BAD_SCENARIO;
-    }
-
-    // half the bend on either side of the line, as the energy principle has it
-    const trace *t = &fig->run.result.trace;
-    const parameters *p = &fig->run.scenario.parameters;
-    const sample *before = row_before(t, fig->contact), *peak = row_at(t, fig->peak_time);
-    double energy = before->kinetic_energy + before->strain_energy;
-    double bend = sqrt(2 * energy / p->arm.k2);
-
-    // the three shapes
-    add_shape(fig, before->first_angle, before->last_angle,
-              (figure_series){.name = "first contact",
-                              .label = "at first contact",
-                              .colour = 7,
-                              .style = LINE_DOTTED,
-                              .marker = MARKER_CIRCLE});
-    add_shape(fig, peak->first_angle, peak->last_angle,
-              (figure_series){.name = "peak",
-                              .label = "at the peak, computed",
-                              .colour = 0,
-                              .marker = MARKER_CIRCLE});
-    add_shape(fig, p->wall.angle + bend / 2, p->wall.angle - bend / 2,
-              (figure_series){.name = "peak by energy",
-                              .label = "at the peak, energy principle",
-                              .colour = 1,
-                              .style = LINE_DASHED,
-                              .marker = MARKER_TRIANGLE});
-
-    describe_shapes(fig);
-    fig->figure.caption = own(
-        fig,
-        text_printf(
-            "The arm of corrected/first-impact %.1f\u2009ms after first contact, at its peak "
-            "force of %.3g\u2009N: <i>θ</i><sub>2</sub> = %.4f, <i>θ</i><sub>3</sub> = "
-            "%.4f\u2009rad, bend \u2212%.4f\u2009rad. The energy principle puts the %.3g\u2009mJ "
-            "before contact into the spring, half the bend on either side of the line, "
-            "\u2212%.4f\u2009rad, because it leaves out what the impact itself takes.",
-            1e3 * (fig->peak_time - fig->contact), fig->peak, peak->first_angle, peak->last_angle,
-            fabs(peak->last_angle - peak->first_angle), 1e3 * energy, bend));
-
-    *out = artwork_of_figure(&fig->figure, fig, release_impact);
-    return STATUS_OK;
 }
 
 // ---- the force pulse

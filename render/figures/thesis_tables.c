@@ -178,28 +178,26 @@ status table_algorithm(const char *title, const figure_options *o, artwork *out,
     static const char *const rows[][3] = {
         {"1", "Start from given angles and velocities; accelerations are zero.",
          "printed_motion_start"},
-        {"2",
-         "Not in contact, the wall not reached: Newmark's rule and Newton's method for the "
-         "three bodies.",
+        {"2", "Not in contact in the step before: would a free step end behind the wall?",
          "solve_step"},
-        {"3",
-         "A free step would end behind the wall: take it back and do it again with the "
-         "constraint (3.9) and the force as a fourth unknown.",
+        {"2.1",
+         "It would not: Newmark's rule and Newton's method for the three bodies; the next "
+         "state is found.",
          "solve_step"},
-        {"4",
-         "In contact: from the angles and velocities found, accelerations and force once "
-         "more out of the linear system with (3.13), the constraint's second derivative.",
-         "printed_reevaluate"},
-        {"5", "In contact and the force still pushes: the next step is step 3 and 4 again.",
-         "printed_motion_step"},
-        {"6", "The force would pull: contact is over, the next step is step 2.",
-         "printed_motion_step"},
-        {"7", "Next time step.", "printed_motion_step"},
+        {"2.2",
+         "It would: take it back and do it again with the constraint (3.9) and the force as a "
+         "fourth unknown; then accelerations and force once more, out of the linear system with "
+         "(3.13), the constraint's second derivative.",
+         "solve_step, printed_reevaluate"},
+        {"3", "In contact in the step before: does the force still push?", "printed_motion_step"},
+        {"3.1", "It does: as in 2.2.", "printed_motion_step"},
+        {"3.2", "It would pull, contact is over: as in 2.1.", "printed_motion_step"},
+        {"4", "The next time step.", "printed_motion_step"},
     };
     (void)f;
 
     table_page *t = new_table(title, o);
-    table_add_column(t, "", 0.25, TEXT_LEFT);
+    table_add_column(t, "", 0.35, TEXT_LEFT);
     table_add_column(t, "What happens in a step", 4, TEXT_LEFT);
     table_add_column(t, "In the lab", 1.2, TEXT_LEFT);
 
@@ -207,7 +205,8 @@ status table_algorithm(const char *title, const figure_options *o, artwork *out,
         table_add_row(t, rows[i]);
     }
 
-    t->caption = g_strdup("As the lab runs it for the printed model. The corrected model locates "
+    t->caption = g_strdup("Numbered as in the thesis, told as the lab runs it for the printed "
+                          "model. The corrected model locates "
                           "contact and release in time instead; docs/physics.md, sections 4 and "
                           "7.");
 

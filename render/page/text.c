@@ -233,6 +233,25 @@ char *text_quantity(double value, int digits, const char *unit)
     return g_strdup_printf("%s%s\u2009%s", value < 0 ? "\u2212" : "", number, shown);
 }
 
+char *text_number(double value, int digits)
+{
+    assert(digits > 0);
+    char number[48];
+    const char *sign = value < 0 ? "\u2212" : "";
+    decimal_print(number, sizeof number, "%.*g", digits, fabs(value));
+    char *exponent = strchr(number, 'e');
+    if (exponent == NULL) {
+        return g_strdup_printf("%s%s", sign, number);
+    }
+
+    // mantissa and power of ten; a mantissa of 1 goes without saying
+    int power = atoi(exponent + 1);
+    *exponent = '\0';
+    bool one = strcmp(number, "1") == 0;
+    return g_strdup_printf("%s%s%s10<sup>%s%d</sup>", sign, one ? "" : number, one ? "" : "\u00b7",
+                           power < 0 ? "\u2212" : "", abs(power));
+}
+
 char *text_label(const char *description)
 {
     assert(description != NULL);

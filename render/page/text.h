@@ -57,6 +57,10 @@ void text_unit(const char *unit, char *out, size_t size);
 // the result with g_free.
 char *text_quantity(double value, int digits, const char *unit);
 
+// A number of at most `digits` significant digits as markup: a true minus sign, a power of ten
+// where a reader would count zeros, "2·10<sup>−5</sup>". Free the result with g_free.
+char *text_number(double value, int digits);
+
 // The beginning of a description as a label: up to its first comma, colon or bracket, with a
 // capital letter. Plain text; free the result with g_free.
 char *text_label(const char *description);

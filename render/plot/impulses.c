@@ -7,23 +7,6 @@
 
 #include "src/base/numbers.h"
 
-// Three digits, with a power of ten where a reader would count zeros.
-static void number_markup(double value, char *out, size_t size)
-{
-    char digits[32];
-    decimal_print(digits, sizeof digits, "%.3g", fabs(value));
-    char *e = strchr(digits, 'e');
-    const char *sign = value < 0 ? "\u2212" : "";
-    if (e == NULL) {
-        snprintf(out, size, "%s%s", sign, digits);
-        return;
-    }
-    *e = '\0';
-    int power = atoi(e + 1);
-    snprintf(out, size, "%s%s\u00d710<sup>%s%d</sup>", sign, digits, power < 0 ? "\u2212" : "",
-             abs(power));
-}
-
 // An arrow upwards.
 static void draw_arrow(cairo_t *cr, double x, double base, double length)
 {
@@ -66,10 +49,9 @@ enum { IMPULSES_LABELLED = 24 };
 static void label_impulse(drawing *d, const panel_layout *l, int index, double base,
                           figure_rect *taken, int *count)
 {
-    char markup[64];
     double width, height;
     const figure_impulse *all = l->panel->impulses, *p = &all[index];
-    number_markup(p->size / pow(10, impulse_exponent(l->panel)), markup, sizeof markup);
+    char *markup = text_number(p->size / pow(10, impulse_exponent(l->panel)), 3);
     text_block t = figure_text_of(d, markup, d->style.small);
     text_measure(d->context, &t, &width, &height);
     double x = plane_x(&l->plane, p->x);
@@ -93,9 +75,10 @@ static void label_impulse(drawing *d, const panel_layout *l, int index, double b
         if (free_place) {
             taken[(*count)++] = place;
             draw_text(d, t, place.x, place.y, (anchor){0, 0}, d->style.colours->text);
-            return;
+            break;
         }
     }
+    g_free(markup);
 }
 
 static bool impulse_shows(const drawing *d, const figure_impulse *p)

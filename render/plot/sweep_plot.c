@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "render/page/text.h"
@@ -45,25 +44,6 @@ static void *own(sweep_figure *s, void *block)
 }
 
 // ---- axes
-
-// A number with few digits as markup: a true minus sign, "2·10<sup>−5</sup>" for "2e-05".
-static char *number_label(double value)
-{
-    char digits[24];
-    const char *sign = value < 0 ? "\u2212" : "";
-    decimal_print(digits, sizeof digits, "%.6g", fabs(value));
-    char *exponent = strchr(digits, 'e');
-    if (exponent == NULL) {
-        return g_strdup_printf("%s%s", sign, digits);
-    }
-
-    // mantissa and power of ten
-    int power = atoi(exponent + 1);
-    *exponent = '\0';
-    bool one = strcmp(digits, "1") == 0;
-    return g_strdup_printf("%s%s%s10<sup>%s%d</sup>", sign, one ? "" : digits, one ? "" : "\u00b7",
-                           power < 0 ? "\u2212" : "", abs(power));
-}
 
 static int compare_values(const void *a, const void *b, void *context)
 {
@@ -112,7 +92,7 @@ static char *point_label(const varied *v, size_t i)
     char word[PARAMETER_TEXT_SIZE] = "";
     double value = v->axis->values[v->order[i]];
     if (!v->words) {
-        return number_label(value);
+        return text_number(value, 6);
     }
 
     // a word of the parameter table

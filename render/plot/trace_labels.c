@@ -140,10 +140,40 @@ static void add_drive(GString *out, const parameters *p)
     }
 }
 
-char *trace_caption(const trace_run *run, const char *shaded)
+// The constants in which the printed model of chapter 3 departs from the thesis's own numbers or
+// from the beam's: they were found from its tables.
+static void add_printed_constants(GString *out, const parameters *p)
+{
+    if (p->arm.model == ARM_PRINTED) {
+        char *inertia = text_number(p->arm.link_inertia, 3);
+        text_append(out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = ", p->arm.k1);
+        g_string_append_printf(out, "%s\u2009kg·m²", inertia);
+        g_free(inertia);
+    }
+}
+
+// What is shaded, and of several runs whose that is; points of data have no contact of their own.
+static void add_shading(GString *out, const trace_run *runs, int run_count, const char *shaded)
+{
+    int full = 0;
+    for (int i = 0; i < run_count; i++) {
+        full += !runs[i].points;
+    }
+    if (full < 2 || runs[0].name == NULL) {
+        g_string_append_printf(out, "Shaded: %s.", shaded);
+        return;
+    }
+    char *name = text_escape(runs[0].name);
+    g_string_append_printf(out, "Shaded: %s of the first run (%s), whose marks are shown.", shaded,
+                           name);
+    g_free(name);
+}
+
+char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
 {
     static const char *const hub_texts[] = {
         [HUB_RIGID] = "rigid", [HUB_SPRING] = "spring", [HUB_BEAM] = "beam's"};
+    const trace_run *run = &runs[0];
     const parameters *p = &run->scenario->parameters;
 
     // the arm and what drives it
@@ -151,6 +181,7 @@ char *trace_caption(const trace_run *run, const char *shaded)
     char *step = duration_text(p->method.step);
     g_string_append_printf(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
                            hub_texts[p->arm.hub_joint]);
+    add_printed_constants(out, p);
     add_drive(out, p);
 
     // the method and its step
@@ -161,8 +192,9 @@ char *trace_caption(const trace_run *run, const char *shaded)
     } else {
         g_string_append(out, "explicit steps, located events");
     }
-    g_string_append_printf(out, ", <i>h</i> = %s. Shaded: %s. impactlab %s.", step, shaded,
-                           lab_version());
+    g_string_append_printf(out, ", <i>h</i> = %s. ", step);
+    add_shading(out, runs, run_count, shaded);
+    g_string_append_printf(out, " impactlab %s.", lab_version());
 
     // what went wrong
     if (run->result->summary.status != STATUS_OK) {

@@ -28,8 +28,9 @@ char *trace_series_symbol(const scenario *s, int index);
 // "Contact force f"; the body goes, since the symbol names it.
 char *trace_axis_label(const scenario *s, const signal_info *signal);
 
-// Model, links, drive, method and what is shaded in one line.
-char *trace_caption(const trace_run *run, const char *shaded);
+// Model, links, drive, method and what is shaded in one line; of several runs, which of them the
+// shading and the marks belong to.
+char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 
 // --- what happened: trace_events.c
 

@@ -13,6 +13,7 @@
 #include "src/base/version.h"
 
 #define SHORT_PULSE 0.1  // share of the run below which the first pulse is shown enlarged
+#define STEP_RADIUS 1.1  // of a point at every step [pt]
 #define INSET_SPACE 0.15 // of the pulse, shown before and after it
 
 void *trace_keep(GPtrArray *owned, void *block)
@@ -41,7 +42,8 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         bool points = run > 0 && runs[run].points;
 
         // what the hub shows already, and what was not measured
-        if (twin || (points && !trace_has(&runs[run].result->trace, index))) {
+        bool left_out = run > 0 && runs[run].brief && i > 0;
+        if (twin || left_out || (points && !trace_has(&runs[run].result->trace, index))) {
             continue;
         }
 
@@ -55,9 +57,13 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
 
         // the second run stands back
         out->secondary = run > 0;
+        if (runs[run].steps) {
+            out->marker = MARKER_CIRCLE;
+            out->radius = STEP_RADIUS;
+        }
         if (run > 0) {
             out->name = trace_keep(texts, g_strconcat(out->name, " ", runs[run].name, NULL));
-            out->colour = alone ? 6 : out->colour;
+            out->colour = alone ? 6 : runs[run].brief ? 7 : out->colour;
         }
 
         // runs side by side have a colour each
@@ -82,6 +88,13 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         } else if (!alone && run == 0) {
             out->label = trace_keep(texts, trace_series_label(s, index, true));
             out->symbol = trace_keep(texts, trace_series_symbol(s, index));
+        } else if (!alone && !named) {
+            // the first of its signals speaks for the other run
+            char *symbol = trace_series_symbol(s, index), *run_name = text_escape(runs[run].name);
+            out->label = trace_keep(texts, g_strdup_printf("%s  %s", symbol, run_name));
+            named = true;
+            g_free(symbol);
+            g_free(run_name);
         }
     }
 }
@@ -241,7 +254,7 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
 
     char *shading = mode != NULL ? g_strdup_printf("%s mode", mode)
                                  : g_strdup(modes ? "second mode" : "contact");
-    fig->caption = trace_keep(texts, trace_caption(&runs[0], shading));
+    fig->caption = trace_keep(texts, trace_caption(runs, run_count, shading));
     g_free(shading);
     fig->x.name = "time";
     fig->x.label = "Time <i>t</i>";

@@ -26,6 +26,8 @@ typedef struct trace_run {
     const scenario *scenario;
     const run_result *result; // with its trace
     const char *name;         // "corrected"; only shown if there are several runs
+    bool brief;               // further runs only: of each panel the first signal, in grey
+    bool steps;               // a small point at every row: the steps of the method
     bool points;              // further runs only: reference data, points where it has a number
     int rank;                 // 0: as said above; else a full line of its own colour, 1 to 8
 } trace_run;

@@ -85,8 +85,7 @@ static void add_peaks(figure_series *s, const summary *m, GPtrArray *owned)
 figure_series trace_series(const trace_run *run, int index, GPtrArray *owned)
 {
     figure_series s = series_of(run, index);
-    if (index == SIGNAL_INDEX(force) && !run->points && s.count > 0 &&
-        !trace_on_the_rig(run->scenario)) {
+    if (index == SIGNAL_INDEX(force) && !run->points && s.count > 0) {
         add_peaks(&s, &run->result->summary, owned);
     }
     return s;

@@ -242,6 +242,20 @@ status tables_compute(thesis_tables *t, fault *f)
     return STATUS_OK;
 }
 
+bool tables_printed(const char *table, const char *quantity, double *values)
+{
+    assert(table != NULL && quantity != NULL && values != NULL);
+    for (int t = 0; t < STIFFNESSES; t++) {
+        for (int q = 0; q < QUANTITIES; q++) {
+            if (strcmp(thesis[t].name, table) == 0 && strcmp(quantity_names[q], quantity) == 0) {
+                memcpy(values, thesis[t].printed[q], sizeof thesis[t].printed[q]);
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 double tables_mean_error(const thesis_tables *t, const char *model, const char *quantity)
 {
     assert(t != NULL && model != NULL && quantity != NULL);

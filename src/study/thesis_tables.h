@@ -25,5 +25,9 @@ typedef struct thesis_tables {
 // Computes all rows, for both models.
 status tables_compute(thesis_tables *t, fault *f);
 
+// What the thesis prints at the four voltages, 1, 2, 5 and 10 V: values[TABLE_VOLTAGES] of a
+// quantity of Table "4.1", "4.2" or "4.3" [N] or [s]. False if there is no such row.
+bool tables_printed(const char *table, const char *quantity, double *values);
+
 // Mean |relative error| over the 12 cells of one quantity of one model, NaN cells left out.
 double tables_mean_error(const thesis_tables *t, const char *model, const char *quantity);

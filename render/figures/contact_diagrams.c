@@ -1,0 +1,320 @@
+// Figures 3.1 and 4.6: the arm in contact, at two successive steps and at its largest deformation.
+#include <assert.h>
+#include <math.h>
+
+#include "render/figures/diagram.h"
+#include "render/figures/figures.h"
+#include "render/page/text.h"
+#include "render/plot/opened_run.h"
+#include "src/base/numbers.h"
+
+#define CONTACT_ACROSS 6.0  // enlargement of what lies across the reference line, 3.1
+#define PEAK_ACROSS    9.0  // across the line to the contact point, 4.6
+#define FORCE_LENGTH   40.0 // of the arrow of the contact force [pt]
+
+// The arm at an instant.
+typedef struct arm_shape {
+    double first, last; // angles of the links [rad]
+    double force;       // contact force [N]
+    double time;        // [s]
+} arm_shape;
+
+// What is drawn: 3.1 one step and the next; 4.6 first contact, the peak, and the energy
+// principle's.
+typedef struct shapes {
+    arm_shape one, other, assumed;
+} shapes;
+
+static arm_shape shape_of(const sample *row)
+{
+    return (arm_shape){row->first_angle, row->last_angle, row->force, row->time};
+}
+
+// ---- what both draw
+
+// Places of hub, joint and last end on the page, in a view whose line to the right is at `base`.
+typedef struct arm_places {
+    point hub, joint, end;
+} arm_places;
+
+static arm_places places_of(const view *v, const diagram *d, arm_shape a, double base)
+{
+    double l = d->p.arm.length / 2;
+    point joint = view_end((point){0, 0}, l, a.first - base);
+    return (arm_places){view_place(v, (point){0, 0}), view_place(v, joint),
+                        view_place(v, view_end(joint, l, a.last - base))};
+}
+
+// Direction on the page from one place to another, counterclockwise from the right [rad].
+static double direction_of(point from, point to)
+{
+    return atan2(from.y - to.y, to.x - from.x);
+}
+
+static void draw_dashed_arm(const sketch *s, arm_places a, int slot)
+{
+    sketch_dashed(s, a.hub.x, a.hub.y, a.joint.x, a.joint.y, slot);
+    sketch_dashed(s, a.joint.x, a.joint.y, a.end.x, a.end.y, slot);
+    sketch_disc(s, a.joint.x, a.joint.y, 2, slot, true);
+}
+
+static void draw_full_arm(const sketch *s, arm_places a)
+{
+    sketch_bar(s, a.hub.x, a.hub.y, a.joint.x, a.joint.y, 5);
+    sketch_bar(s, a.joint.x, a.joint.y, a.end.x, a.end.y, 5);
+    sketch_disc(s, a.joint.x, a.joint.y, 2.4, SKETCH_INK, true);
+    sketch_disc(s, a.hub.x, a.hub.y, 12, SKETCH_INK, false);
+    sketch_disc(s, a.hub.x, a.hub.y, 2, SKETCH_INK, true);
+}
+
+// Wall and contact force at a place, across a link that has the given direction on the page.
+static void draw_wall(sketch *s, point at, double direction, const char *force)
+{
+    double ux = cos(direction), uy = -sin(direction), nx = -sin(direction), ny = -cos(direction);
+    point wall = {at.x + 4 * nx, at.y + 4 * ny};
+    sketch_wall(s, wall.x + 16 * ux, wall.y + 16 * uy, wall.x - 16 * ux, wall.y - 16 * uy);
+
+    point start = {at.x + (FORCE_LENGTH + 4) * nx, at.y + (FORCE_LENGTH + 4) * ny};
+    sketch_arrow(s, start.x, start.y, at.x + 4 * nx, at.y + 4 * ny, 5);
+    sketch_text(s, start.x + 4 * nx, start.y + 4 * ny, 0.5, 1, force, SKETCH_LABEL);
+}
+
+// An angle with the dashed line that it is measured from.
+static void draw_angle(sketch *s, point at, double radius, double to, const char *markup)
+{
+    sketch_dashed(s, at.x, at.y, at.x + radius + 14, at.y, SKETCH_FAINT);
+    diagram_angle(s, at, (angle_arc){radius, 0, to, markup});
+}
+
+static char *force_text(const char *symbol, double force)
+{
+    char *quantity = text_quantity(force, 3, "N");
+    char *text = g_strdup_printf("%s = %s", symbol, quantity);
+    g_free(quantity);
+    return text;
+}
+
+// ---- 3.1: two successive steps
+
+static void draw_contact(sketch *s, const diagram *d)
+{
+    const shapes *of = d->shapes;
+    view v = {s->left + 34, s->bottom - 30, 255, CONTACT_ACROSS};
+    double length = d->p.arm.length, wall = d->p.wall.angle;
+    point contact = view_place(&v, (point){length * cos(wall), length * sin(wall)});
+    point foot = view_place(&v, (point){length * cos(wall), 0});
+    arm_places one = places_of(&v, d, of->one, 0), other = places_of(&v, d, of->other, 0);
+
+    // the reference line and the coordinates of the contact point
+    sketch_dashed(s, one.hub.x, one.hub.y, foot.x + 40, foot.y, SKETCH_FAINT);
+    sketch_dashed(s, contact.x, contact.y, contact.x + 40, contact.y, SKETCH_FAINT);
+    sketch_measure(s, one.hub.x, foot.y + 16, foot.x, foot.y + 16);
+    sketch_text(s, (one.hub.x + foot.x) / 2, foot.y + 18, 0.5, 0, "<i>a</i>", SKETCH_LABEL);
+    sketch_measure(s, contact.x + 32, foot.y, contact.x + 32, contact.y);
+    sketch_text(s, contact.x + 36, (foot.y + contact.y) / 2, 0, 0.5, "<i>b</i>", SKETCH_LABEL);
+    sketch_text(s, contact.x + 8, contact.y + 3, 0, 0, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
+
+    // both configurations, and the angles of the first
+    draw_full_arm(s, one);
+    draw_dashed_arm(s, other, 0);
+    draw_angle(s, one.hub, 84, direction_of(one.hub, one.joint), "<i>θ</i><sub>2</sub>");
+    draw_angle(s, one.joint, 62, direction_of(one.joint, one.end), "<i>θ</i><sub>3</sub>");
+    sketch_text(s, (one.hub.x + one.joint.x) / 2 - 10, (one.hub.y + one.joint.y) / 2 - 6, 1, 1,
+                "<i>l</i>", SKETCH_LABEL);
+    sketch_text(s, (one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8, 1, 1,
+                "<i>l</i>", SKETCH_LABEL);
+
+    char *force = force_text("<i>f</i>", of->one.force);
+    draw_wall(s, contact, direction_of(one.joint, contact), force);
+    g_free(force);
+
+    // which is which
+    char text[96];
+    double key = s->top + 14;
+    sketch_bar(s, s->left + 4, key, s->left + 26, key, 5);
+    decimal_print(text, sizeof text, "<i>t</i> = %.2f\u2009s", of->one.time);
+    sketch_text(s, s->left + 32, key, 0, 0.5, text, SKETCH_SMALL);
+    sketch_dashed(s, s->left + 4, key + 14, s->left + 26, key + 14, 0);
+    decimal_print(text, sizeof text, "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
+    sketch_text(s, s->left + 32, key + 14, 0, 0.5, text, SKETCH_SMALL);
+}
+
+// The pair of successive rows in contact between which the first link turns most.
+static size_t liveliest_pair(const trace *t)
+{
+    size_t best = 0;
+    double most = -1;
+    for (size_t i = 0; i + 1 < t->row_count; i++) {
+        const sample *a = &t->rows[i], *b = a + 1;
+        double turn = fabs(b->first_angle - a->first_angle);
+        if (a->contact > 0.5 && b->contact > 0.5 && b->time > a->time && turn > most) {
+            most = turn;
+            best = i;
+        }
+    }
+    return best;
+}
+
+static void add_shape_values(diagram *d, const arm_shape *a)
+{
+    diagram_add_value(d, "time", a->time, "s");
+    diagram_add_value(d, "theta2", a->first, "rad");
+    diagram_add_value(d, "theta3", a->last, "rad");
+    diagram_add_value(d, "force f", a->force, "N");
+}
+
+status diagram_contact(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    opened_run run;
+    status code = run_begin(&run, "thesis/fig-3-1", "method.step=0.01", f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // two steps during contact
+    const trace *t = &run.result.trace;
+    size_t first = liveliest_pair(t);
+    diagram *d = diagram_create(title, NULL, 232, o);
+    shapes *of = d->shapes = g_new0(shapes, 1);
+    d->p = run.scenario.parameters;
+    d->parameters = parameters_line(&run.scenario);
+    d->draw = draw_contact;
+    of->one = shape_of(&t->rows[first]);
+    of->other = shape_of(&t->rows[first + 1 < t->row_count ? first + 1 : first]);
+    run_end(&run);
+
+    // the numbers, and what is left of the constraint (3.9)
+    double a = d->p.arm.length * cos(d->p.wall.angle), b = d->p.arm.length * sin(d->p.wall.angle);
+    diagram_add_value(d, "a", a, "m");
+    diagram_add_value(d, "b", b, "m");
+    add_shape_values(d, &of->one);
+    add_shape_values(d, &of->other);
+    diagram_add_value(d, "constraint (3.9)",
+                      a * sin(of->one.last) - b * cos(of->one.last) -
+                          d->p.arm.length / 2 * sin(of->one.last - of->one.first),
+                      "m");
+
+    d->caption = text_printf(
+        "The printed model in contact, 1\u2009V, at two successive steps of 10\u2009ms: "
+        "<i>θ</i><sub>2</sub> = %.4f and %.4f, <i>θ</i><sub>3</sub> = %.4f and %.4f\u2009rad. The "
+        "line of the last link always passes through the contact point (<i>a</i>, <i>b</i>) = "
+        "(%.4f, %.4f)\u2009m, (3.9). <i>k</i><sub>1</sub> = %g\u2009N·m/rad. Enlarged %g times "
+        "across the reference line, angles with it.",
+        of->one.first, of->other.first, of->one.last, of->other.last, a, b, d->p.arm.k1,
+        CONTACT_ACROSS);
+    d->frame.caption = d->caption;
+
+    *out = artwork_of_diagram(d);
+    return STATUS_OK;
+}
+
+// ---- 4.6: the largest deformation
+
+static void draw_deformation(sketch *s, const diagram *d)
+{
+    const shapes *of = d->shapes;
+    double wall = d->p.wall.angle;
+    view v = {s->left + 34, s->bottom - 42, 265, PEAK_ACROSS};
+    point contact = view_place(&v, (point){d->p.arm.length, 0});
+    arm_places peak = places_of(&v, d, of->one, wall), touch = places_of(&v, d, of->other, wall);
+    arm_places assumed = places_of(&v, d, of->assumed, wall);
+
+    // the line to the contact point, and the three shapes
+    sketch_dashed(s, peak.hub.x, peak.hub.y, contact.x, contact.y, SKETCH_FAINT);
+    draw_dashed_arm(s, touch, SKETCH_FAINT);
+    draw_dashed_arm(s, assumed, 1);
+    draw_full_arm(s, peak);
+    sketch_text(s, contact.x + 8, contact.y + 3, 0, 0, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
+    sketch_text(s, peak.hub.x, peak.hub.y + 15, 0.5, 0, "<i>O</i>", SKETCH_LABEL);
+
+    // angles from that line
+    diagram_angle(s, peak.hub,
+                  (angle_arc){92, 0, direction_of(peak.hub, peak.joint),
+                              "<i>θ</i><sub>2</sub> − <i>θ</i><sub>0</sub>"});
+    draw_angle(s, peak.joint, 66, direction_of(peak.joint, peak.end),
+               "<i>θ</i><sub>3</sub> − <i>θ</i><sub>0</sub>");
+
+    char *force = force_text("<i>f</i><sub>max</sub>", of->one.force);
+    draw_wall(s, contact, direction_of(peak.joint, contact), force);
+    g_free(force);
+
+    // a name at each joint
+    sketch_text(s, assumed.joint.x, assumed.joint.y - 5, 0.5, 1, "energy principle", SKETCH_SMALL);
+    sketch_text(s, peak.joint.x, peak.joint.y + 14, 0.5, 0, "at the peak", SKETCH_SMALL);
+    sketch_text(s, touch.joint.x, peak.hub.y + 4, 0.5, 0, "at first contact", SKETCH_SMALL);
+}
+
+// The row nearest to an instant.
+static const sample *row_at(const trace *t, double time)
+{
+    const sample *best = &t->rows[0];
+    for (size_t i = 1; i < t->row_count; i++) {
+        if (fabs(t->rows[i].time - time) < fabs(best->time - time)) {
+            best = &t->rows[i];
+        }
+    }
+    return best;
+}
+
+// The last row before the impact's jump.
+static const sample *row_before(const trace *t, double contact)
+{
+    const sample *before = &t->rows[0];
+    for (size_t i = 0; i < t->row_count && t->rows[i].contact < 0.5; i++) {
+        if (t->rows[i].time <= contact) {
+            before = &t->rows[i];
+        }
+    }
+    return before;
+}
+
+status diagram_deformation(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    opened_run run;
+    status code = run_begin(&run, "corrected/first-impact", NULL, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    const summary *m = &run.result.summary;
+    if (!isfinite(m->first_pulse_time_to_peak_s)) {
+        run_end(&run);
+        return fault_set(f, STATUS_BAD_SCENARIO, "corrected/first-impact: no pulse to draw");
+    }
+
+    // first contact and the peak
+    const trace *t = &run.result.trace;
+    const sample *before = row_before(t, m->first_contact_s);
+    double delay = m->first_pulse_time_to_peak_s, energy;
+    diagram *d = diagram_create(title, NULL, 148, o);
+    shapes *of = d->shapes = g_new0(shapes, 1);
+    d->p = run.scenario.parameters;
+    d->parameters = parameters_line(&run.scenario);
+    d->draw = draw_deformation;
+    of->one = shape_of(row_at(t, m->first_contact_s + delay));
+    of->one.force = m->first_pulse_peak_N;
+    of->other = shape_of(before);
+    energy = before->kinetic_energy + before->strain_energy;
+    run_end(&run);
+
+    // half the bend on either side of the line, as the energy principle has it
+    double wall = d->p.wall.angle, bend = sqrt(2 * energy / d->p.arm.k2);
+    of->assumed = (arm_shape){.first = wall + bend / 2, .last = wall - bend / 2};
+    diagram_add_value(d, "theta0", wall, "rad");
+    add_shape_values(d, &of->one);
+    add_shape_values(d, &of->other);
+    diagram_add_value(d, "bend by the energy principle", -bend, "rad");
+
+    d->caption = text_printf(
+        "The arm of corrected/first-impact %.1f\u2009ms after first contact, at its peak force of "
+        "%.3g\u2009N: <i>θ</i><sub>2</sub> = %.4f, <i>θ</i><sub>3</sub> = %.4f\u2009rad, bend "
+        "\u2212%.4f\u2009rad; <i>θ</i><sub>0</sub> = %g\u2009rad is the line to the contact point. "
+        "The energy principle puts the %.3g\u2009mJ before contact into the spring, half the bend "
+        "on either side of the line, \u2212%.4f\u2009rad, because it leaves out what the impact "
+        "itself takes. Enlarged %g times across the line, angles with it.",
+        1e3 * delay, of->one.force, of->one.first, of->one.last, fabs(of->one.last - of->one.first),
+        wall, 1e3 * energy, bend, PEAK_ACROSS);
+    d->frame.caption = d->caption;
+
+    *out = artwork_of_diagram(d);
+    return STATUS_OK;
+}

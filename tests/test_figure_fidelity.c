@@ -1,0 +1,193 @@
+// Figures that follow the thesis: what their captions own up to, their axes, and the numbers of
+// their diagrams against equations that the drawing does not use.
+#include "tests/check.h"
+
+#include <cairo.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "render/figures/figures.h"
+#include "render/page/text.h"
+
+// fontconfig keeps its cache until the process ends
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig\n";
+}
+
+static artwork open_figure(const char *id)
+{
+    fault f = {0};
+    artwork drawn;
+    const figure_options as_it_comes = {0};
+    const thesis_figure *which = thesis_figure_find(id);
+    assert_non_null(which);
+    if (figure_open(which, &as_it_comes, &drawn, &f) != STATUS_OK) {
+        fail_msg("%s: %s", id, f.text);
+    }
+    return drawn;
+}
+
+static char *caption_of(const char *id)
+{
+    artwork drawn = open_figure(id);
+    char *plain = text_plain(drawn.caption);
+    artwork_finish(&drawn);
+    return plain;
+}
+
+static void expect_in_caption(const char *id, const char *part)
+{
+    char *caption = caption_of(id);
+    if (strstr(caption, part) == NULL) {
+        fail_msg("%s: '%s' is not in '%s'", id, part, caption);
+    }
+    g_free(caption);
+}
+
+// The numbers beside a figure.
+static char *csv_of(const char *id)
+{
+    fault f = {0};
+    char path[] = "/tmp/impactlab-fidelity-XXXXXX", *text = NULL;
+    int file = mkstemp(path);
+    assert_true(file >= 0);
+    close(file);
+    artwork drawn = open_figure(id);
+    if (drawn.write_csv(drawn.what, path, &f) != STATUS_OK) {
+        fail_msg("%s: %s", id, f.text);
+    }
+    artwork_finish(&drawn);
+    assert_true(g_file_get_contents(path, &text, NULL, NULL));
+    unlink(path);
+    return text;
+}
+
+// The number in the second column of the line that begins with a quantity.
+static double value_in(const char *csv, const char *quantity)
+{
+    char start[80];
+    snprintf(start, sizeof start, "\n%s,", quantity);
+    const char *line = strstr(csv, start);
+    if (line == NULL) {
+        fail_msg("no line begins with '%s'", quantity);
+    }
+    return atof(line + strlen(start));
+}
+
+static void captions_name_the_constants_of_the_printed_model(void **state)
+{
+    (void)state;
+    expect_in_caption("3.2", "k1 = 90");
+    expect_in_caption("3.10", "1.67·10");
+    expect_in_caption("2.2", "k1 = 90");
+    expect_in_caption("4.1", "90");
+}
+
+static void captions_say_whose_shading_it_is(void **state)
+{
+    (void)state;
+    expect_in_caption("3.4", "of the first run (printed)");
+    for (int i = 1; i <= 7; i++) {
+        char id[4] = {'5', '.', (char)('0' + i), '\0'};
+        expect_in_caption(id, "Shaded: impact mode");
+    }
+}
+
+// Simulation and bench stand over the same seconds.
+static void chapters_2_and_3_have_one_time_axis(void **state)
+{
+    (void)state;
+    static const char *const ids[] = {"2.4", "2.5", "2.6", "3.2"};
+    for (size_t i = 0; i < G_N_ELEMENTS(ids); i++) {
+        static figure_report r;
+        fault f = {0};
+        artwork drawn = open_figure(ids[i]);
+        cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR, NULL);
+        cairo_t *cr = cairo_create(surface);
+        assert_int_equal(drawn.paint(cr, drawn.what, &r, &f), STATUS_OK);
+        cairo_destroy(cr);
+        cairo_surface_destroy(surface);
+        artwork_finish(&drawn);
+
+        // the last tick stands at the panel's right end
+        bool found = false;
+        for (int k = 0; k < r.text_count; k++) {
+            figure_rect p = r.texts[k].place;
+            found = found || (strcmp(r.texts[k].text, "1.0") == 0 &&
+                              fabs(p.x + p.width / 2 - r.panels[0].x - r.panels[0].width) < 0.6);
+        }
+        if (!found) {
+            fail_msg("%s: its time axis does not end at 1.0 s", ids[i]);
+        }
+    }
+}
+
+static void the_printed_peak_is_a_point(void **state)
+{
+    (void)state;
+    char *csv = csv_of("3.4");
+    const char *point = strstr(csv, ",Table 4.3,");
+    assert_non_null(point);
+    assert_non_null(strstr(point, ",1.84"));
+    g_free(csv);
+    expect_in_caption("3.10", "5.22");
+}
+
+// The cut body: the hinge's torque about the centre is the moment of its impulse, a relation of
+// (4.3) and (4.4) that the drawing does not use; and the wall stops the point of collision.
+static void the_cut_body_is_in_balance(void **state)
+{
+    (void)state;
+    char *csv = csv_of("4.2");
+    double half = 0.25, torque = value_in(csv, "hinge torque impulse Y");
+    check_relative(torque, -half * value_in(csv, "hinge impulse X"), 1e-9);
+    check_relative(value_in(csv, "jump of the point of collision's velocity"),
+                   -value_in(csv, "approach speed"), 1e-6);
+    g_free(csv);
+}
+
+// Both states of 3.1 lie on the constraint (3.9).
+static void the_last_link_goes_through_the_contact_point(void **state)
+{
+    (void)state;
+    char *csv = csv_of("3.1");
+    check_close(value_in(csv, "constraint (3.9)"), 0, 1e-9);
+    check_relative(value_in(csv, "b") / value_in(csv, "a"), tan(0.1), 1e-12);
+    g_free(csv);
+}
+
+static void the_algorithm_has_the_thesis_numbers(void **state)
+{
+    (void)state;
+    static const char *const numbers[] = {"1", "2", "2.1", "2.2", "3", "3.1", "3.2", "4"};
+    char *csv = csv_of("T3.2");
+    const char *at = csv;
+    for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
+        char start[8];
+        snprintf(start, sizeof start, "\n%s,", numbers[i]);
+        at = strstr(at, start);
+        assert_non_null(at);
+        at++;
+    }
+    g_free(csv);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(captions_name_the_constants_of_the_printed_model),
+        cmocka_unit_test(captions_say_whose_shading_it_is),
+        cmocka_unit_test(chapters_2_and_3_have_one_time_axis),
+        cmocka_unit_test(the_printed_peak_is_a_point),
+        cmocka_unit_test(the_cut_body_is_in_balance),
+        cmocka_unit_test(the_last_link_goes_through_the_contact_point),
+        cmocka_unit_test(the_algorithm_has_the_thesis_numbers),
+    };
+    int failed = cmocka_run_group_tests_name("figure_fidelity", tests, NULL, NULL);
+    text_release();
+    return failed != 0;
+}
