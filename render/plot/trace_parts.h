@@ -1,7 +1,7 @@
 // Inside figures of recorded runs: what is written, marked and drawn, apart from the panels.
 #pragma once
 
-#include "render/plot/trace_plot.h"
+#include "render/plot/trace_figure.h"
 
 enum { TRACE_ACTIONS = 16, TRACE_MARKS = 3 + TRACE_ACTIONS };
 

@@ -16,12 +16,6 @@
 #define STEP_RADIUS 1.1  // of a point at every step [pt]
 #define INSET_SPACE 0.15 // of the pulse, shown before and after it
 
-void *trace_keep(GPtrArray *owned, void *block)
-{
-    g_ptr_array_add(owned, block);
-    return block;
-}
-
 // ---- panels
 
 // Colours of runs that stand side by side, the most different first.

@@ -7,6 +7,12 @@
 
 #include "render/plot/curve.h"
 
+void *trace_keep(GPtrArray *owned, void *block)
+{
+    g_ptr_array_add(owned, block);
+    return block;
+}
+
 static figure_series series_of(const trace_run *run, int index)
 {
     assert(index >= 0 && index < signal_count);
