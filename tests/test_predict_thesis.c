@@ -108,6 +108,27 @@ static void energy_of_a_small_bend_can_be_computed_by_hand(void **state)
     check_close(out.force, (k * D - u * a) / 0.5, 1e-6);
 }
 
+// 4.3 on damping: a straight arm that strikes with no drive bends for a quarter of a period, in
+// which the oscillator with mass I1 + 2u and stiffness 4 k2 loses exp(-pi d / w) of its energy.
+static void damping_takes_its_share_of_the_energy(void **state)
+{
+    (void)state;
+    const double ratio = 0.02;
+    three_body_state s = {{0.1, 0.1, 0.1}, {1e-4, 1e-4, 1e-4}};
+    parameters p = corrected_with(HUB_RIGID);
+    prediction undamped, damped;
+    p.arm.link_inertia = 0;
+    p.motor.voltage = p.motor.stiction = 0;
+    assert_int_equal(predict_energy(&p, &s, &undamped, NULL), STATUS_OK);
+    s.velocity[2] = 1e-4 + 1e-12; // bends from here on
+    p.arm.damping_ratio = ratio;
+    assert_int_equal(predict_energy(&p, &s, &damped, NULL), STATUS_OK);
+
+    double u = p.arm.mass / 2 * 0.0625, square = 4 * p.arm.k2 / (p.arm.hub_inertia + 2 * u);
+    double d = square * ratio / sqrt(p.arm.k2 / u), w = sqrt(square - d * d);
+    check_relative(damped.force, undamped.force * exp(-M_PI_2 * d / w), 1e-4);
+}
+
 static void energy_cross_term_makes_no_difference_at_half_a_metre_only(void **state)
 {
     (void)state;
@@ -400,6 +421,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(springs_share_energy_by_their_compliance),
         cmocka_unit_test(energy_of_a_small_bend_can_be_computed_by_hand),
+        cmocka_unit_test(damping_takes_its_share_of_the_energy),
         cmocka_unit_test(energy_cross_term_makes_no_difference_at_half_a_metre_only),
         cmocka_unit_test(impact_stops_the_contact_point),
         cmocka_unit_test(plastic_impact_loses_half_impulse_times_speed),

@@ -210,7 +210,7 @@ int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *pr
     if (run->result.trace.row_count == 0) {
         return api_fail(error, STATUS_BAD_ARGUMENT, "the run kept no rows, expected KEEP_ROWS");
     }
-    if (predict_first_contact(&run->scenario, &run->result, answers) == NULL) {
+    if (predict_first_contact(&run->scenario, &run->result, NULL, answers) == NULL) {
         return api_fail(error, STATUS_BAD_ARGUMENT, "the arm did not touch the wall in this run");
     }
 

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/arm/arm.h"
 #include "src/predict/two_link.h"
 #include "src/base/sincos.h"
 
@@ -67,6 +68,34 @@ static bool printed_force(const parameters *p, const three_body_state *s, double
     return solved;
 }
 
+// Share of the energy at the touch that structural damping leaves for the largest bend, 4.3 in
+// numbers: the arm on the wall is a damped oscillator of one degree of freedom, and from a bend b
+// that grows at b' it is largest a phase atan(b'/(w b)) later. 1 without arm.damping_ratio.
+static double share_undamped(const parameters *p, const two_link *t, const three_body_state *s)
+{
+    if (p->arm.damping_ratio == 0) {
+        return 1;
+    }
+
+    // damping in proportion to stiffness, as the arm of two links has it
+    arm a;
+    parameters two = *p;
+    two.arm.links = 2;
+    two.arm.hub_joint = HUB_RIGID;
+    two.arm.link_inertia = two_link_inertia(p);
+    arm_init(&a, &two);
+    double seconds = a.joint_damping / a.joint_stiffness;
+
+    // the constrained arm: its second link turns against the first one
+    double ratio = -t->j2 / t->j3, last = t->m32 + t->m33 * ratio;
+    double mass = t->m22 + t->m23 * ratio - last + ratio * last;
+    double square = p->arm.k2 * (ratio - 1) * (ratio - 1) / mass, damping = square * seconds / 2;
+    double frequency = sqrt(fmax(square - damping * damping, 0));
+    double bend = s->angle[2] - s->angle[1], rate = s->velocity[2] - s->velocity[1];
+    double phase = atan2(fabs(rate), frequency * copysign(bend, rate * bend));
+    return frequency > 0 ? exp(-2 * damping * phase / frequency) : 0;
+}
+
 // Corrected form: whole energy (4.23), shared by (4.24), and (4.28) without the k2 term that does
 // not belong there. With a hub spring its torque k1 D1 drives both links. With a rigid hub hub and
 // first link are one body, driven by the motor less the Coulomb friction that slowed it.
@@ -75,7 +104,9 @@ static bool corrected_force(const parameters *p, const three_body_state *s, doub
     two_link t;
     double stiffness[2] = {p->arm.k2, p->arm.k1}, bend[2];
     bool rigid = p->arm.hub_joint == HUB_RIGID;
-    quasi_principle_deflections(rigid ? 1 : 2, stiffness, whole_energy(p, s), bend);
+    two_link_at(&t, p, FORM_CORRECTED, s->angle[1], s->angle[2]);
+    double energy = whole_energy(p, s) * share_undamped(p, &t, s);
+    quasi_principle_deflections(rigid ? 1 : 2, stiffness, energy, bend);
     two_link_at(&t, p, FORM_CORRECTED, s->angle[1], s->angle[1] - bend[0]);
 
     // what drives the links while they are stopped
@@ -92,8 +123,10 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     assert(p != NULL && s != NULL && out != NULL);
     bool printed = p->arm.model == ARM_PRINTED;
     two_link touch;
-    *out = (prediction){
-        .holds = false, .force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
+    *out = (prediction){.force = (double)NAN,
+                        .delay = (double)NAN,
+                        .impulse = (double)NAN,
+                        .restitution = (double)NAN};
     status result = three_body_state_check(s, f);
     if (result != STATUS_OK) {
         return result;

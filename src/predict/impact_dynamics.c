@@ -295,8 +295,10 @@ static double earliest_delay(const double c[3])
 static status start(const parameters *p, const three_body_state *s, two_link *t,
                     integrated_motion *g, prediction *out, double after[3], fault *f)
 {
-    *out = (prediction){
-        .holds = false, .force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
+    *out = (prediction){.force = (double)NAN,
+                        .delay = (double)NAN,
+                        .impulse = (double)NAN,
+                        .restitution = (double)NAN};
     status result = three_body_state_check(s, f);
     if (result != STATUS_OK) {
         return result;

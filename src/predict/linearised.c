@@ -12,11 +12,9 @@
 // carry the stiffening by large bending. The force is then evaluated exactly on the predicted path
 // at four instants before the arm stops, and a cubic through them gives peak and delay.
 //
-// Any other arm.
+// Any other arm, and one that bends far.
 //
-// The constrained equations of motion are linearised at the touch by differences,
-// z' = A z + b with z = (q, w, 1), and the path is sampled with the propagator exp(A h). The force
-// is linear in z. Sampling ends where the force falls to zero or the hub turns back.
+// The pulse is followed on a chain of linear arms, see pulse.h.
 #include "src/predict/linearised.h"
 
 #include <assert.h>
@@ -27,8 +25,12 @@
 #include "src/arm/chain_kernel.h"
 #include "src/arm/impact.h"
 #include "src/base/sincos.h"
+#include "src/predict/pulse.h"
 
 enum { PIECES = 3 };
+
+// As far as the closed form is followed: its three pieces are then 1 % off at worst [rad].
+#define CLOSED_FORM_BEND 0.6
 
 // The arm with the wall moved to where the arm touches it now.
 static arm touching_now(const arm *a, const double *q)
@@ -111,6 +113,7 @@ typedef struct pressed_arm {
     chain_link links[2];
     contact_state mode;
     double force, acceleration; // at the state last evaluated
+    double bend;                // there [rad]
 } pressed_arm;
 
 // Exact acceleration and force with the hub at x moving at v.
@@ -140,6 +143,7 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     chain_sweep(a, 2, false, true, false, p->links, q, w, p->mode, alpha, &r);
     p->force = r.force;
     p->acceleration = alpha[0];
+    p->bend = q[1] - q[0];
 }
 
 // Tangents at the touch: c and k of y'' = a - c y' - k y.
@@ -256,170 +260,95 @@ static void path_peak(pressed_arm *p, const pressed_path *path, double first, pr
     out->delay = top > first ? middle + s * h : 0;
 }
 
-// --- any other arm --------------------------------------------------------------------------
+// --- the touch ------------------------------------------------------------------------------
 
-// d(alpha, force)/d(q, w) at the touch by central differences, in contact with the given mode.
-// matrix: (2n+1)^2 of z' = A z, z = (q - q0, w, 1); output[2n+1]: force = output z.
-static void linearise(const arm *a, chain_link *links, contact_state mode, const double *q,
-                      const double *w, double *matrix, double *output, double *scratch)
+// The velocities just after the touch, and whether it holds: on a rigid wall after a plastic
+// impact, at one that gives if the arm comes nearer.
+static bool touch_holds(const arm *touched, chain_link *links, const double *q, const double *w,
+                        double *after, contact_state *mode, double *impulse)
 {
-    const int n = a->dof, size = 2 * n + 1;
-    double *z = scratch, *alpha = scratch + 2 * n;
+    const int n = touched->dof;
+    const bool gives = wall_gives(&touched->wall);
     chain_reaction r;
-
-    // d(angle)/dt = velocity
-    memset(matrix, 0, (size_t)(size * size) * sizeof *matrix);
+    impact_result jump = impact_velocity_increments(touched, links, q, w, 0, after);
+    *impulse = gives ? 0 : fmax(jump.impulse, 0);
     for (int i = 0; i < n; i++) {
-        matrix[i * size + n + i] = 1;
-        z[i] = q[i];
-        z[n + i] = w[i];
+        after[i] = w[i] + (*impulse > 0 ? after[i] : 0);
     }
 
-    // constant terms: accelerations and force at the touch
-    chain_accelerations(a, links, z, z + n, mode, alpha, &r);
-    output[2 * n] = r.force;
-    for (int i = 0; i < n; i++) {
-        matrix[(n + i) * size + 2 * n] = alpha[i];
+    // an elastic impact throws the arm back
+    *mode = (contact_state){.contact = true, .friction = after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD};
+    if (gives) {
+        return jump.speed > 0;
     }
-
-    // slopes, one column of A after the other
-    for (int j = 0; j < 2 * n; j++) {
-        double e = 1e-6 * (1 + fabs(z[j])), value = z[j], slope = 0;
-        for (int side = 1; side >= -1; side -= 2) {
-            z[j] = value + side * e;
-            chain_accelerations(a, links, z, z + n, mode, alpha, &r);
-            slope += side * r.force / (2 * e);
-            for (int i = 0; i < n; i++) {
-                matrix[(n + i) * size + j] += side * alpha[i] / (2 * e);
-            }
-        }
-        z[j] = value;
-        output[j] = slope;
+    if (jump.impulse < 0 || wall_restitution(&touched->wall, jump.speed) > 0) {
+        return false;
     }
-
-    // velocities enter as they are: take the linear terms at w out of the constant ones
-    for (int j = 0; j < n; j++) {
-        output[2 * n] -= output[n + j] * w[j];
-        for (int i = 0; i < n; i++) {
-            matrix[(n + i) * size + 2 * n] -= matrix[(n + i) * size + n + j] * w[j];
-        }
-    }
+    chain_accelerations(touched, links, q, after, *mode, after + n, &r);
+    return r.force > 0;
 }
 
-// result = exp(matrix h): Taylor's series of the scaled matrix, squared back.
-static void exponential(const double *matrix, int size, double h, double *result, double *power,
-                        double *product)
+// Two links on a rigid hub whose hub goes on towards the wall: the closed form.
+static bool closed_form_suits(const arm *a, const double *after)
 {
-    const size_t bytes = (size_t)(size * size) * sizeof(double);
-
-    // the largest row sum
-    double norm = 0;
-    for (int i = 0; i < size; i++) {
-        double row = 0;
-        for (int j = 0; j < size; j++) {
-            row += fabs(matrix[i * size + j]) * h;
-        }
-        norm = fmax(norm, row);
-    }
-
-    // halved until the series converges fast
-    int squarings = norm > 0.5 ? (int)ceil(log2(norm / 0.5)) : 0;
-    double scale = h / ldexp(1, squarings);
-    memset(result, 0, bytes);
-    memset(power, 0, bytes);
-    for (int i = 0; i < size; i++) {
-        result[i * size + i] = power[i * size + i] = 1;
-    }
-
-    // first the terms of the series, then the squarings
-    enum { TERMS = 14 };
-    for (int term = 1; term <= TERMS + squarings; term++) {
-        // a term of the series, or the square of what there is so far
-        const double *left = term <= TERMS ? matrix : result;
-        const double *right = term <= TERMS ? power : result;
-        double factor = term <= TERMS ? scale / term : 1;
-        for (int i = 0; i < size; i++) {
-            for (int j = 0; j < size; j++) {
-                double sum = 0;
-                for (int k = 0; k < size; k++) {
-                    sum += left[i * size + k] * right[k * size + j];
-                }
-                product[i * size + j] = sum * factor;
-            }
-        }
-
-        if (term > TERMS) {
-            memcpy(result, product, bytes);
-            continue;
-        }
-        memcpy(power, product, bytes);
-        for (int i = 0; i < size * size; i++) {
-            result[i] += product[i];
-        }
-    }
+    return a->dof == 2 && a->links == 2 && after[0] > 0 && !chain_is_loaded(a);
 }
 
-// Follows force(t) with the propagator from the touch to its first peak that ends the pulse's rise.
-static status many_link_peak(const arm *a, chain_link *links, contact_state mode, const double *q,
-                             const double *w, double first_force, prediction *out)
+// False if the arm bends further than the few pieces of the closed form are good for.
+static bool predict_closed_form(const arm *touched, const double *q, const double *after,
+                                contact_state mode, prediction *out)
 {
-    enum { MOST_SAMPLES = 20000 };
-    const int n = a->dof, size = 2 * n + 1;
-    const size_t square = (size_t)(size * size);
-    double *block = calloc(4 * square + 3 * (size_t)size + 4 * (size_t)n, sizeof *block);
-    if (block == NULL) {
-        return STATUS_NO_MEMORY;
+    pressed_arm p = {.a = touched, .mode = mode};
+    pressed_path path;
+    double c, k;
+    pressed_evaluate(&p, q[0], after[0]);
+    const double first = p.force;
+
+    // the path, and the force along its end, where the arm is bent the most
+    pressed_tangents(touched, q, &c, &k);
+    predict_path(&p, q[0], after[0], c, k, &path);
+    path_peak(&p, &path, first, out);
+    return fabs(p.bend) < CLOSED_FORM_BEND;
+}
+
+static prediction no_prediction(void)
+{
+    const double none = (double)NAN;
+    return (prediction){.force = none, .delay = none, .impulse = none, .restitution = none};
+}
+
+status predict_pulse(const arm *a, motion *work, const double *q, const double *w,
+                     const voltage_profile *command, prediction *out)
+{
+    assert(a != NULL && work != NULL && q != NULL && w != NULL && out != NULL);
+    assert(command == NULL || command->count == 0 || (command->times && command->volts));
+    arm touched = touching_now(a, q);
+    double *after = work->scratch;
+    pulse found;
+    *out = no_prediction();
+    if (!wall_stands(&a->wall)) {
+        return STATUS_OK;
     }
 
-    // scratch and results lie one after another
-    double *matrix = block, *step = matrix + square, *power = step + square;
-    double *product = power + square, *output = product + square, *z = output + size;
-    double *next = z + size, *scratch = next + size;
-
-    // the propagator over a tenth of a radian of the fastest mode
-    linearise(a, links, mode, q, w, matrix, output, scratch);
-    double h = 0.1 / fmax(a->highest_frequency, 1);
-    exponential(matrix, size, h, step, power, product);
-
-    // from the touch, z = (0, w, 1)
-    for (int i = 0; i < n; i++) {
-        z[n + i] = w[i];
+    pulse_start start = {.q = q, .w = after};
+    out->holds = touch_holds(&touched, work->links, q, w, after, &start.mode, &out->impulse);
+    if (!out->holds) {
+        return STATUS_OK;
     }
-    z[2 * n] = 1;
-
-    // step by step along the path
-    double f[3] = {first_force, first_force, first_force};
-    out->force = first_force;
-    out->delay = 0;
-    for (int sample = 1; sample < MOST_SAMPLES && f[2] > 0; sample++) {
-        // one sample on
-        double force = 0;
-        for (int i = 0; i < size; i++) {
-            double sum = 0;
-            for (int j = 0; j < size; j++) {
-                sum += step[i * size + j] * z[j];
-            }
-            next[i] = sum;
-            force += output[i] * sum;
-        }
-
-        memcpy(z, next, (size_t)size * sizeof *z);
-
-        // a maximum between the last three
-        f[0] = f[1], f[1] = f[2], f[2] = force;
-        if (sample > 1 && f[1] > f[0] && f[1] >= f[2]) {
-            double t = (sample - 1) * h, top = parabola_top(f, h, &t);
-            if (top > out->force) {
-                out->force = top;
-                out->delay = t;
-            }
-        }
-        if (mode.friction * z[n] < 0) {
-            break; // the hub turns back: friction changes its direction
-        }
+    start.command = command != NULL ? *command : (voltage_profile){0};
+    status code = pulse_follow(&touched, work->links, &start, &found);
+    if (code != STATUS_OK) {
+        return code;
     }
 
-    free(block);
+    // numbers only where they are to be relied on
+    out->doubt = found.doubt;
+    out->holds = found.doubt == DOUBT_NONE;
+    if (out->holds) {
+        out->force = found.peak;
+        out->delay = found.delay;
+        out->restitution = found.restitution;
+    }
     return STATUS_OK;
 }
 
@@ -427,41 +356,20 @@ status predict_linearised(const arm *a, motion *work, const double *q, const dou
                           prediction *out)
 {
     assert(a != NULL && work != NULL && q != NULL && w != NULL && out != NULL);
-    const int n = a->dof;
     arm touched = touching_now(a, q);
-    double *after = work->scratch, *alpha = work->scratch + n;
-    chain_reaction r;
-    *out = (prediction){
-        .holds = false, .force = (double)NAN, .delay = (double)NAN, .impulse = (double)NAN};
-
+    double *after = work->scratch;
+    contact_state mode;
+    *out = no_prediction();
     if (!wall_stands(&a->wall)) {
         return STATUS_OK;
     }
 
-    // the impact, plastic
-    impact_result jump = impact_velocity_increments(&touched, work->links, q, w, 0, after);
-    out->impulse = fmax(jump.impulse, 0);
-    for (int i = 0; i < n; i++) {
-        after[i] = w[i] + (jump.impulse > 0 ? after[i] : 0);
-    }
-
-    // what the force is just after it
-    contact_state mode = {true, after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD};
-    chain_accelerations(&touched, work->links, q, after, mode, alpha, &r);
-    out->holds = jump.impulse >= 0 && r.force > 0;
+    out->holds = touch_holds(&touched, work->links, q, w, after, &mode, &out->impulse);
     if (!out->holds) {
         return STATUS_OK;
     }
-
-    // its rise
-    if (n == 2 && !a->hub_spring && after[0] > 0) {
-        pressed_arm p = {.a = &touched, .mode = mode, .acceleration = alpha[0]};
-        pressed_path path;
-        double c, k;
-        pressed_tangents(&touched, q, &c, &k);
-        predict_path(&p, q[0], after[0], c, k, &path);
-        path_peak(&p, &path, r.force, out);
+    if (closed_form_suits(a, after) && predict_closed_form(&touched, q, after, mode, out)) {
         return STATUS_OK;
     }
-    return many_link_peak(&touched, work->links, mode, q, after, r.force, out);
+    return predict_pulse(a, work, q, w, NULL, out);
 }

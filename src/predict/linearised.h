@@ -11,6 +11,14 @@
 // (in its present direction) and the hub. The motion after it is the closed form of a linear
 // constrained arm, see linearised.c. q[dof], w[dof]: the state before the touch.
 // work: a motion created for this arm, used as scratch; its state is not touched.
-// Costs about a microsecond for two links on a rigid hub, a matrix exponential otherwise.
+// A wall that gives is taken as it is, a mass at the tip too. Where the number could not be relied
+// on, `doubt` says why and the prediction does not hold.
+// Costs about a microsecond for two links on a rigid hub, a chain of matrix exponentials
+// otherwise.
 status predict_linearised(const arm *a, motion *work, const double *q, const double *w,
                           prediction *out);
+
+// The same by pulse.h for any arm, which also tells e_eq of 4.1.1, and for a voltage that is
+// prescribed from the touch on (command; NULL or empty: the one in force stays).
+status predict_pulse(const arm *a, motion *work, const double *q, const double *w,
+                     const voltage_profile *command, prediction *out);

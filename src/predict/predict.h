@@ -10,12 +10,36 @@ typedef struct three_body_state {
     double velocity[3]; // [rad/s]
 } three_body_state;
 
+// Why a predictor that knows the state gives no number: what follows the touch cannot be told from
+// it as exactly as the predictor claims.
+#define PREDICTION_DOUBT_LIST(X)                                                                   \
+    X(DOUBT_NONE, "")                                                                              \
+    X(DOUBT_GRAZE, "the force nearly vanishes before its peak: whether contact is lost then "      \
+                   "cannot be told")                                                               \
+    X(DOUBT_BEND, "the arm bends too far for a chain of linear arms")                              \
+    X(DOUBT_LENGTH, "the pulse lasts longer than it can be followed")
+
+typedef enum prediction_doubt {
+#define PREDICTION_DOUBT_ENUM(id, text) id,
+    PREDICTION_DOUBT_LIST(PREDICTION_DOUBT_ENUM)
+#undef PREDICTION_DOUBT_ENUM
+} prediction_doubt;
+
 typedef struct prediction {
-    bool holds;     // false: the touch would not hold, contact is lost at once
-    double force;   // peak of the first pulse [N]
-    double delay;   // from contact to the peak [s]; NaN where the method gives none
-    double impulse; // of the impact [N s]; NaN where the method gives none
+    bool holds;             // false: the touch would not hold, contact is lost at once
+    double force;           // peak of the first pulse [N]
+    double delay;           // from contact to the peak [s]; NaN where the method gives none
+    double impulse;         // of the impact [N s]; NaN where the method gives none
+    double restitution;     // e_eq of 4.1.1 [-]; NaN where the method gives none
+    prediction_doubt doubt; // not DOUBT_NONE: force and delay are NaN, and it does not hold
 } prediction;
+
+// Commands of the motor after the touch, each in force from its time on: v(t) of the remark in 4.2.
+typedef struct voltage_profile {
+    int count;           // 0: the present command stays
+    const double *times; // since the touch, rising [s]
+    const double *volts; // [V]
+} voltage_profile;
 
 // A touch holds if the contact point approaches (or rests) and force and delay come out positive;
 // in the corrected forms also only if the wall's force just after the impact is not negative.
@@ -34,8 +58,9 @@ typedef struct prediction {
 void quasi_principle_deflections(int n, const double *k, double energy, double *deflection);
 
 // Energy principle, (4.23)-(4.34), with the quasi-principle (4.24). p->arm.model chooses the
-// printed form with the listing's habits, or the corrected one. The method gives no delay and no
-// impulse: both are NaN.
+// printed form with the listing's habits, or the corrected one, which also takes off what
+// structural damping (arm.damping_ratio) loses until the largest bend, as 4.3 proposes. The method
+// gives no delay and no impulse: both are NaN.
 status predict_energy(const parameters *p, const three_body_state *s, prediction *out, fault *f);
 
 // Velocity increments of a plastic impact, (4.10)-(4.17): after[3] is the velocities just after

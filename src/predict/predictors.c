@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/arm/motor.h"
 #include "src/predict/linearised.h"
 
 // The linearised arm asks for the state of all links.
@@ -20,8 +21,10 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
     arm a;
     arm_init(&a, p);
     motion *work = motion_create(&a, &p->method);
-    status code = work == NULL
-                      ? STATUS_NO_MEMORY
+    status code = work == NULL ? STATUS_NO_MEMORY
+                  : question->whole_pulse || question->command.count > 0
+                      ? predict_pulse(&a, work, question->angles, question->velocities,
+                                      &question->command, out)
                       : predict_linearised(&a, work, question->angles, question->velocities, out);
     motion_destroy(work);
 
@@ -29,7 +32,55 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
         fault_set(f, code, "%s", status_text(code));
         return PREDICTION_FAILED;
     }
-    return out->holds ? PREDICTION_HOLDS : PREDICTION_LOST;
+    return out->doubt != DOUBT_NONE ? PREDICTION_DOUBTFUL
+           : out->holds             ? PREDICTION_HOLDS
+                                    : PREDICTION_LOST;
+}
+
+// Mean command from the touch until `time` [V]: with it, kT/Ra times the time is the integral of
+// (4.20) over the prescribed v(t).
+static double mean_voltage(const prediction_question *question, double time)
+{
+    const voltage_profile *command = &question->command;
+    const motor_parameters *motor = &question->parameters->motor;
+    double sum = 0, from = 0, volts = motor_limited_voltage(motor, motor->voltage);
+    for (int i = 0; i <= command->count; i++) {
+        double to = i < command->count ? fmin(command->times[i], time) : time;
+        sum += volts * fmax(to - from, 0);
+        from = fmax(from, to);
+        if (i < command->count) {
+            volts = motor_limited_voltage(motor, command->volts[i]);
+        }
+    }
+    return time > 0 ? sum / time : volts;
+}
+
+// The impact dynamics for a prescribed v(t): the delay says over which time the voltage counts, and
+// the mean voltage over it says the delay.
+static status ask_impact_dynamics(predictor which, const prediction_question *question,
+                                  prediction *out, fault *f)
+{
+    enum { MOST_ITERATIONS = 200 };
+    parameters p = *question->parameters;
+    double delay = 0, found = 0;
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        if (question->command.count > 0) {
+            p.motor.voltage = mean_voltage(question, delay);
+        }
+        status code = which == PREDICTOR_IMPACT_DYNAMICS
+                          ? predict_impact_dynamics(&p, &question->bodies, out, f)
+                          : predict_impact_quadratic(&p, &question->bodies, out, f);
+        found = out->delay;
+        if (code != STATUS_OK || question->command.count == 0 || !out->holds ||
+            fabs(found - delay) <= 1e-9 * found) {
+            return code;
+        }
+
+        // half the way, as the mean of a voltage that changes its sign may overshoot
+        delay = i == 0 ? found : (delay + found) / 2;
+    }
+    return fault_set(f, STATUS_NEWTON_FAILED,
+                     "no delay goes with the mean of the prescribed voltage over it");
 }
 
 static prediction_outcome ask(predictor which, const prediction_question *question, prediction *out,
@@ -39,12 +90,15 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     const three_body_state *s = &question->bodies;
     status code = STATUS_OK;
 
-    // what none of them knows
-    if (p->wall.contact != WALL_RIGID) {
-        return PREDICTION_RIGID_WALL_ONLY; // all of them begin with an impact
+    // the thesis's begin with an impact of two bare links
+    if (which != PREDICTOR_LINEARISED && p->wall.contact != WALL_RIGID) {
+        return PREDICTION_RIGID_WALL_ONLY;
     }
-    if (p->arm.tip_mass > 0) {
+    if (which != PREDICTOR_LINEARISED && p->arm.tip_mass > 0) {
         return PREDICTION_BARE_TIP_ONLY;
+    }
+    if (which == PREDICTOR_ENERGY && question->command.count > 0) {
+        return PREDICTION_KNOWS_NO_TIME;
     }
 
     switch (which) {
@@ -52,10 +106,8 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
         code = predict_energy(p, s, out, f);
         break;
     case PREDICTOR_IMPACT_DYNAMICS:
-        code = predict_impact_dynamics(p, s, out, f);
-        break;
     case PREDICTOR_IMPACT_QUADRATIC:
-        code = predict_impact_quadratic(p, s, out, f);
+        code = ask_impact_dynamics(which, question, out, f);
         break;
     case PREDICTOR_LINEARISED:
         return ask_linearised(question, out, f);
@@ -84,7 +136,11 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
                                 .fault = {.code = STATUS_OK}};
     answer.outcome = ask(which, question, &answer.prediction, &answer.fault);
     if (!prediction_known(&answer)) {
-        answer.prediction = (prediction){.force = none, .delay = none, .impulse = none};
+        answer.prediction = (prediction){.force = none,
+                                         .delay = none,
+                                         .impulse = none,
+                                         .restitution = none,
+                                         .doubt = answer.prediction.doubt};
     }
     return answer;
 }
@@ -110,9 +166,17 @@ const char *prediction_reason(const prediction_answer *answer)
         PREDICTION_OUTCOME_LIST(PREDICTION_OUTCOME_TEXT)
 #undef PREDICTION_OUTCOME_TEXT
     };
+    static const char *const doubts[] = {
+#define PREDICTION_DOUBT_TEXT(id, text) [id] = text,
+        PREDICTION_DOUBT_LIST(PREDICTION_DOUBT_TEXT)
+#undef PREDICTION_DOUBT_TEXT
+    };
     assert(answer != NULL);
     if (answer->outcome == PREDICTION_FAILED) {
         return answer->fault.text;
+    }
+    if (answer->outcome == PREDICTION_DOUBTFUL) {
+        return doubts[answer->prediction.doubt];
     }
     return answer->outcome == PREDICTION_HOLDS ? "" : texts[answer->outcome];
 }

@@ -24,9 +24,11 @@ typedef enum predictor {
 #define PREDICTION_OUTCOME_LIST(X)                                                                 \
     X(PREDICTION_HOLDS, "the touch would hold")                                                    \
     X(PREDICTION_LOST, "the touch would not hold")                                                 \
+    X(PREDICTION_DOUBTFUL, "it cannot be told")                                                    \
     X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                                   \
     X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                                         \
     X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                             \
+    X(PREDICTION_KNOWS_NO_TIME, "knows no time over which a voltage could act")                    \
     X(PREDICTION_LINKS_UNKNOWN, "the state of all links is not known")                             \
     X(PREDICTION_FAILED, "there is no prediction")
 
@@ -38,10 +40,13 @@ typedef enum prediction_outcome {
 
 // The state that is asked about.
 typedef struct prediction_question {
-    const parameters *parameters; // resolved, as they are at that instant
+    const parameters *parameters; // resolved, as they are at that instant; motor.voltage is the
+                                  // command in force, under a law that of the law
     three_body_state bodies;      // hub, first and last link
     const double *angles;         // of all degrees of freedom [rad], as the corrected model counts
     const double *velocities;     // them [rad/s]; NULL where they are not known
+    voltage_profile command;      // what the motor is to be given from the touch on; count 0: as is
+    bool whole_pulse;             // also e_eq, at the cost of following the pulse to its end
 } prediction_question;
 
 typedef struct prediction_answer {

@@ -23,6 +23,7 @@ static three_body_state state_of(const sample *row)
 }
 
 const sample *predict_first_contact(const scenario *s, const run_result *result,
+                                    const voltage_profile *then,
                                     prediction_answer answers[PREDICTOR_COUNT])
 {
     assert(s != NULL && result != NULL && answers != NULL);
@@ -30,13 +31,18 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
     if (row == NULL) {
         return NULL;
     }
+
+    // under a control law the voltage in force is the law's
     parameters now = scenario_parameters_at(s, row->time);
+    now.motor.voltage = row->voltage;
     const double *all = result->before_impact;
     int half = (int)(result->before_impact_size / sizeof *all / 2);
     prediction_question question = {.parameters = &now,
                                     .bodies = state_of(row),
                                     .angles = all,
-                                    .velocities = all != NULL ? all + half : NULL};
+                                    .velocities = all != NULL ? all + half : NULL,
+                                    .command = then != NULL ? *then : (voltage_profile){0},
+                                    .whole_pulse = true};
     predict_all(&question, answers);
     return row;
 }

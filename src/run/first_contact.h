@@ -5,7 +5,9 @@
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 
-// Asks all predictors about the last row in free flight, with the parameters in effect then.
-// Returns that row; NULL if the run kept no rows or touched nothing, and then no answers.
+// Asks all predictors about the last row in free flight, with the parameters and the
+// voltage in effect then; `then` is what the motor is to be given from the touch on, NULL: the
+// same. Returns that row; NULL if the run kept no rows or touched nothing, and then no answers.
 const sample *predict_first_contact(const scenario *s, const run_result *result,
+                                    const voltage_profile *then,
                                     prediction_answer answers[PREDICTOR_COUNT]);

@@ -33,6 +33,7 @@ typedef struct arguments {
     const char *against, *columns; // of compare
     double tolerance;              // of compare [%]
     const char *laws, *over;       // of robust
+    const char *then;              // of predict, "TIME:VOLTS,..."
 
     // where results go
     const char *json, *csv, *plot, *scene, *output, *db, *markdown, *format;

@@ -3,8 +3,42 @@
 #include <math.h>
 
 #include "src/base/json.h"
+#include "src/base/numbers.h"
 #include "src/run/first_contact.h"
 #include "ui/commands/pictures.h"
+
+// Commands of --then.
+enum { MOST_COMMANDS = 64 };
+typedef struct command_list {
+    double times[MOST_COMMANDS], volts[MOST_COMMANDS];
+    int count;
+} command_list;
+
+// Reads "TIME:VOLTS,TIME:VOLTS", times since the touch in seconds, from 0 on and growing.
+static bool read_commands(const char *text, command_list *list)
+{
+    const char *rest = text;
+    *list = (command_list){0};
+    while (rest != NULL && *rest != '\0') {
+        const int i = list->count;
+        double time, volts;
+        bool read = i < MOST_COMMANDS && decimal_read(rest, &time, &rest) && *rest == ':' &&
+                    decimal_read(rest + 1, &volts, &rest) && (*rest == ',' || *rest == '\0');
+        if (!read || !isfinite(time) || !isfinite(volts) || time < 0 ||
+            (i > 0 && !(time > list->times[i - 1]))) {
+            complain("--then %s: expected TIME:VOLTS,... such as 0:2,0.01:-3, at most %d of them, "
+                     "times in seconds from the touch on and growing",
+                     text, MOST_COMMANDS);
+            return false;
+        }
+
+        list->times[i] = time;
+        list->volts[i] = volts;
+        list->count++;
+        rest += *rest == ',';
+    }
+    return true;
+}
 
 static json_t *prediction_object(const prediction_answer *answer)
 {
@@ -17,6 +51,7 @@ static json_t *prediction_object(const prediction_answer *answer)
     json_object_set_new(object, "peak_N", json_number(p->force));
     json_object_set_new(object, "time_to_peak_s", json_number(p->delay));
     json_object_set_new(object, "impulse_Ns", json_number(p->impulse));
+    json_object_set_new(object, "equivalent_restitution", json_number(p->restitution));
     return object;
 }
 
@@ -80,6 +115,13 @@ static void print_predictions(const scenario *s, const sample *row,
     print_line("simulation", m->first_pulse_peak_N, m->first_pulse_time_to_peak_s,
                m->contact_impulse_Ns);
 
+    const prediction *pulse = &answers[PREDICTOR_LINEARISED].prediction;
+    if (!isnan(pulse->restitution)) {
+        printf(
+            "\n  Kinetic energy given back by the end of the pulse, of the largest energy in the\n"
+            "  springs (e_eq of 4.1.1): %.4g\n",
+            pulse->restitution);
+    }
     if (s->parameters.arm.links != 2) {
         printf("\n  The thesis's predictors know two links, the simulation has %d.\n",
                s->parameters.arm.links);
@@ -139,7 +181,14 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
 static int report(const arguments *a, const scenario *s, const run_result *result)
 {
     prediction_answer answers[PREDICTOR_COUNT];
-    const sample *row = predict_first_contact(s, result, answers);
+    const sample *row;
+    command_list then;
+    if (!read_commands(a->then, &then)) {
+        return EXIT_BAD_ARGUMENTS;
+    }
+
+    row = predict_first_contact(s, result, &(voltage_profile){then.count, then.times, then.volts},
+                                answers);
     if (row == NULL) {
         complain("%s has no free flight that ends in a contact, there is nothing to predict",
                  s->name);
@@ -177,7 +226,14 @@ static int predict(const arguments *a)
     return with_scenario(a->operands[0], a, predict_and_report);
 }
 
-static const option_row rows[] = {PLOT_OPTION("draw the predicted peaks beside the simulated one")};
+static const option_row rows[] = {
+    PLOT_OPTION("draw the predicted peaks beside the simulated one"),
+    {.name = "then",
+     .type = OPTION_TEXT,
+     .value = "TIME:VOLTS,...",
+     .help = "what if the motor got these commands from the touch on (s, V)",
+     PLACE(then)},
+};
 static const option_table options = OPTION_TABLE("Options", rows);
 
 const command predict_command = {

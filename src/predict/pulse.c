@@ -1,0 +1,456 @@
+#include "src/predict/pulse.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/predict/exponential.h"
+
+// Samples a radian of the fastest mode.
+#define SAMPLES_A_RADIAN 10
+// What a linear arm may be off in the force, or by its gap bring into it, of the largest force so
+// far.
+#define FORCE_DEFECT 5e-4
+// Between this share of the peak above and below zero, a force may vanish or not.
+#define GRAZE 0.02
+// A peak after such a force that is no larger than this times the one before changes nothing.
+#define SAME_PEAK 1.005
+
+enum { MOST_PIECES = 1000, MOST_SAMPLES = 60000 };
+
+// The arm at an instant of the pulse, with what the true equations say there.
+typedef struct instant_of_pulse {
+    double time;           // since the touch [s]
+    double *q, *w, *alpha; // [dof]
+    chain_reaction reaction;
+} instant_of_pulse;
+
+typedef struct follower {
+    arm arm; // with the command in force
+    chain_link *links;
+    int n, size; // dof; of z
+    contact_state mode;
+    voltage_profile command;
+    int next_command;
+    double sample;    // usual time between two samples [s]
+    double stiffness; // of the outermost joint at the tip, zero at a wall that gives [N/m]
+
+    // the linear arm in use
+    double *matrix, *propagator, *power, *product; // [size * size]
+    double *output;                                // force = output z [size]
+    double *z, *next, *scratch, *base;             // [size], [size], [4 dof], [dof]
+
+    instant_of_pulse now, then; // this sample and the next one
+
+    // what was seen so far
+    double before_last, last;           // the two forces before, NaN at the start of a piece [N]
+    double most_strain, kinetic_there;  // [J]
+    double first_zero, kinetic_at_zero; // where the force vanished [s], [J]
+    double peak_at_graze;               // NaN if it never grazed zero [N]
+    double lowest;                      // the last force [N]
+    bool falling;                       // it was below the one before
+} follower;
+
+// --- storage --------------------------------------------------------------------------------
+
+static double *take(double **next, size_t count)
+{
+    double *taken = *next;
+    *next += count;
+    return taken;
+}
+
+// One block for all vectors and matrices, to be freed by the caller; NULL if out of memory.
+static double *allocate(follower *f)
+{
+    const size_t n = (size_t)f->n, size = (size_t)f->size, square = size * size;
+    double *block = calloc(4 * square + 3 * size + 11 * n, sizeof *block), *next = block;
+    if (block == NULL) {
+        return NULL;
+    }
+
+    f->matrix = take(&next, square);
+    f->propagator = take(&next, square);
+    f->power = take(&next, square);
+    f->product = take(&next, square);
+    f->output = take(&next, size);
+    f->z = take(&next, size);
+    f->next = take(&next, size);
+    f->scratch = take(&next, 4 * n);
+    f->base = take(&next, n);
+    for (int i = 0; i < 2; i++) {
+        instant_of_pulse *at = i == 0 ? &f->now : &f->then;
+        at->q = take(&next, n);
+        at->w = take(&next, n);
+        at->alpha = take(&next, n);
+    }
+    return block;
+}
+
+// --- one linear arm -------------------------------------------------------------------------
+
+static void evaluate(follower *f, instant_of_pulse *at)
+{
+    chain_accelerations(&f->arm, f->links, at->q, at->w, f->mode, at->alpha, &at->reaction);
+}
+
+// Puts the arm back onto a rigid wall, from which linear motion drifts, along M^-1 J^T.
+static void put_on_wall(follower *f)
+{
+    const bool locked = f->mode.friction == HUB_STICK;
+    double *response = f->scratch, compliance, depth;
+    if (wall_gives(&f->arm.wall) || f->n == 1) {
+        return;
+    }
+
+    // the angles first, then the velocities there
+    chain_contact_response(&f->arm, f->links, f->now.q, locked, response, &compliance);
+    chain_penetration(&f->arm, f->now.q, f->now.w, &depth, NULL);
+    for (int i = 0; i < f->n; i++) {
+        f->now.q[i] += depth / compliance * response[i];
+    }
+    double rate = chain_penetration_rate(&f->arm, f->now.q, f->now.w);
+    for (int i = 0; i < f->n; i++) {
+        f->now.w[i] += rate / compliance * response[i];
+    }
+}
+
+// The equations of motion linearised at f->now: d(alpha, force)/d(q, w) by central differences.
+static void linearise(follower *f)
+{
+    const int n = f->n, size = f->size;
+    double *at = f->scratch, *alpha = f->scratch + 2 * n, *matrix = f->matrix;
+    chain_reaction r;
+
+    // d(angle)/dt = velocity, and the constant terms
+    memset(matrix, 0, (size_t)(size * size) * sizeof *matrix);
+    f->output[2 * n] = f->now.reaction.force;
+    for (int i = 0; i < n; i++) {
+        matrix[i * size + n + i] = 1;
+        matrix[(n + i) * size + 2 * n] = f->now.alpha[i];
+        at[i] = f->now.q[i];
+        at[n + i] = f->now.w[i];
+    }
+
+    // slopes, one column of A after the other
+    for (int j = 0; j < 2 * n; j++) {
+        double e = 1e-6 * (1 + fabs(at[j])), value = at[j], slope = 0;
+        for (int side = 1; side >= -1; side -= 2) {
+            at[j] = value + side * e;
+            chain_accelerations(&f->arm, f->links, at, at + n, f->mode, alpha, &r);
+            slope += side * r.force / (2 * e);
+            for (int i = 0; i < n; i++) {
+                matrix[(n + i) * size + j] += side * alpha[i] / (2 * e);
+            }
+        }
+        at[j] = value;
+        f->output[j] = slope;
+    }
+
+    // velocities enter as they are: take the linear terms at w out of the constant ones
+    for (int j = 0; j < n; j++) {
+        f->output[2 * n] -= f->output[n + j] * f->now.w[j];
+        for (int i = 0; i < n; i++) {
+            matrix[(n + i) * size + 2 * n] -= matrix[(n + i) * size + n + j] * f->now.w[j];
+        }
+    }
+
+    // from here, z = (0, w, 1)
+    memcpy(f->base, f->now.q, (size_t)n * sizeof *f->base);
+    memset(f->z, 0, (size_t)size * sizeof *f->z);
+    memcpy(f->z + n, f->now.w, (size_t)n * sizeof *f->z);
+    f->z[2 * n] = 1;
+}
+
+// Begins the next linear arm where the arm is now.
+static void begin_piece(follower *f)
+{
+    put_on_wall(f);
+    evaluate(f, &f->now);
+    linearise(f);
+    matrix_exponential(f->matrix, f->size, f->sample, f->propagator, f->power, f->product);
+    f->last = f->before_last = (double)NAN;
+}
+
+// One sample on, into f->then; returns how far the linear arm's force is off the true one [N].
+static double advance(follower *f, double h)
+{
+    const int n = f->n, size = f->size;
+    double force = 0;
+    for (int i = 0; i < size; i++) {
+        double sum = 0;
+        for (int j = 0; j < size; j++) {
+            sum += f->propagator[i * size + j] * f->z[j];
+        }
+        f->next[i] = sum;
+        force += f->output[i] * sum;
+    }
+
+    // what the true equations say there
+    for (int i = 0; i < n; i++) {
+        f->then.q[i] = f->base[i] + f->next[i];
+        f->then.w[i] = f->next[n + i];
+    }
+    f->then.time = f->now.time + h;
+    evaluate(f, &f->then);
+    return fabs(force - f->then.reaction.force);
+}
+
+// f->then moved back to a share of the way from f->now: cubics through both ends' values and rates.
+static void move_back(follower *f, double share)
+{
+    const double h = f->then.time - f->now.time, s = share;
+    const double last = s * s * (3 - 2 * s), rate0 = h * s * (1 - s) * (1 - s),
+                 rate1 = h * s * s * (s - 1);
+    for (int i = 0; i < f->n; i++) {
+        double w0 = f->now.w[i], w1 = f->then.w[i];
+        f->then.q[i] = f->now.q[i] + last * (f->then.q[i] - f->now.q[i]) + rate0 * w0 + rate1 * w1;
+        f->then.w[i] = w0 + last * (w1 - w0) + rate0 * f->now.alpha[i] + rate1 * f->then.alpha[i];
+    }
+    f->then.time = f->now.time + share * h;
+}
+
+// --- what happens on the way ----------------------------------------------------------------
+
+// Hub friction after the hub has come to rest or broken away: it sticks if friction can hold it,
+// else slides the way it is pushed.
+static void settle_friction(follower *f, instant_of_pulse *at)
+{
+    f->mode.friction = HUB_STICK;
+    at->w[0] = 0;
+    evaluate(f, at);
+    if (fabs(at->reaction.friction) > f->arm.motor.stiction) {
+        f->mode.friction = at->reaction.friction < 0 ? HUB_FORWARD : HUB_BACKWARD;
+        evaluate(f, at);
+    }
+}
+
+// Whether the hub comes to rest or breaks away between the two samples. Moves f->then there and
+// puts the friction after it in force.
+static bool friction_changes(follower *f)
+{
+    const hub_friction friction = f->mode.friction;
+    if (f->n == 1 && !wall_gives(&f->arm.wall)) {
+        return false; // held by the wall alone
+    }
+
+    if (friction != HUB_STICK) {
+        // at a start from rest the velocity may be zero and grow
+        double before = friction * f->now.w[0], after = friction * f->then.w[0];
+        if (!(after < 0)) {
+            return false;
+        }
+        move_back(f, before > 0 ? before / (before - after) : 0);
+        settle_friction(f, &f->then);
+        return true;
+    }
+
+    double before = fabs(f->now.reaction.friction), after = fabs(f->then.reaction.friction);
+    double most = f->arm.motor.stiction;
+    if (!(after > most)) {
+        return false;
+    }
+    hub_friction way = f->then.reaction.friction < 0 ? HUB_FORWARD : HUB_BACKWARD;
+    move_back(f, before < most ? (most - before) / (after - before) : 0);
+    f->mode.friction = way;
+    f->then.w[0] = 0;
+    evaluate(f, &f->then);
+    return true;
+}
+
+// Commands that are due.
+static bool command_changes(follower *f)
+{
+    bool changed = false;
+    while (f->next_command < f->command.count &&
+           f->command.times[f->next_command] <= f->now.time * (1 + 1e-12)) {
+        arm_set_voltage(&f->arm, f->command.volts[f->next_command++]);
+        changed = true;
+    }
+
+    // a stuck hub may break away under the new one
+    if (changed && f->mode.friction == HUB_STICK) {
+        settle_friction(f, &f->now);
+    }
+    return changed;
+}
+
+static double next_command_time(const follower *f)
+{
+    return f->next_command < f->command.count ? f->command.times[f->next_command] : HUGE_VAL;
+}
+
+// Whether wall and friction leave the arm no way to move.
+static bool held_still(const follower *f)
+{
+    int holds = !wall_gives(&f->arm.wall) + (f->mode.friction == HUB_STICK);
+    return f->n == 1 ? holds > 0 : holds >= f->n;
+}
+
+// --- what is seen on the way ----------------------------------------------------------------
+
+// The top of the parabola through the last three forces, if it lies between them.
+static void see_peak(follower *f, double h, pulse *out)
+{
+    double force = f->now.reaction.force;
+    if (force > out->peak) {
+        out->peak = force;
+        out->delay = f->now.time;
+    }
+
+    double second = f->before_last - 2 * f->last + force, slope = (force - f->before_last) / 2;
+    if (f->last > f->before_last && f->last >= force && second < 0) {
+        double s = -slope / second, top = f->last + slope * s / 2;
+        if (top > out->peak) {
+            out->peak = top;
+            out->delay = f->now.time - h + s * h;
+        }
+    }
+}
+
+// Where the strain is largest, and what moves there.
+static void see_energy(follower *f)
+{
+    double strain = chain_strain_energy(&f->arm, f->now.q);
+    if (strain > f->most_strain) {
+        f->most_strain = strain;
+        f->kinetic_there = chain_kinetic_energy(&f->arm, f->now.q, f->now.w);
+    }
+}
+
+// Whether the force has vanished for good. A force that only comes near zero is remembered: what it
+// would have done with other digits nobody knows.
+static bool see_end(follower *f, double h, pulse *out)
+{
+    double force = f->now.reaction.force, margin = GRAZE * out->peak;
+    if (force <= 0 && isnan(f->first_zero)) {
+        // f->then is the sample before
+        double before = f->then.reaction.force, share = before > 0 ? before / (before - force) : 1;
+        double kinetic = chain_kinetic_energy(&f->arm, f->then.q, f->then.w);
+        f->first_zero = f->now.time - (1 - share) * h;
+        f->kinetic_at_zero =
+            kinetic + share * (chain_kinetic_energy(&f->arm, f->now.q, f->now.w) - kinetic);
+    }
+    if (force < -margin) {
+        out->length = f->first_zero;
+        return true;
+    }
+
+    // a lowest force near zero
+    bool lowest = f->falling && force > f->lowest && f->lowest < margin;
+    if (lowest && isnan(f->peak_at_graze)) {
+        f->peak_at_graze = out->peak;
+    }
+    f->falling = force < f->lowest || (f->falling && force == f->lowest);
+    f->lowest = force;
+    f->first_zero = force > 0 ? (double)NAN : f->first_zero;
+    return false;
+}
+
+// --- the pulse ------------------------------------------------------------------------------
+
+// Follows the pulse piece by piece, sample by sample.
+static void follow(follower *f, pulse *out)
+{
+    int pieces = 0;
+    bool fresh = true; // a linear arm begins
+    for (int sample = 0; f->now.time < PULSE_HORIZON; sample++) {
+        if (command_changes(f) || fresh) {
+            evaluate(f, &f->now);
+            if (held_still(f)) {
+                see_peak(f, 0, out);
+                f->now.time = next_command_time(f);
+                fresh = true;
+                continue;
+            }
+            begin_piece(f);
+        }
+        if (pieces > MOST_PIECES || sample > MOST_SAMPLES) {
+            out->doubt = pieces > MOST_PIECES ? DOUBT_BEND : DOUBT_LENGTH;
+            return;
+        }
+
+        // up to the next sample, or the next command
+        double h = f->sample, due = next_command_time(f) - f->now.time;
+        bool cut = due < h;
+        if (cut) {
+            h = due;
+            matrix_exponential(f->matrix, f->size, h, f->propagator, f->power, f->product);
+        }
+        double defect = advance(f, h), gap = f->then.reaction.gap;
+        bool changed = friction_changes(f);
+        bool off = defect + f->stiffness * fabs(gap) > FORCE_DEFECT * out->peak;
+
+        // on to it
+        f->before_last = f->last;
+        f->last = f->now.reaction.force;
+        instant_of_pulse behind = f->now;
+        f->now = f->then;
+        f->then = behind;
+        memcpy(f->z, f->next, (size_t)f->size * sizeof *f->z);
+        see_energy(f);
+        see_peak(f, h, out);
+        if (see_end(f, h, out)) {
+            return;
+        }
+        fresh = changed || cut || off;
+        pieces += off;
+    }
+}
+
+// Of the outermost joint, as a force across the tip meets it [N/m].
+static double tip_stiffness(const arm *a)
+{
+    double joint = a->links > 1 ? a->joint_stiffness : a->hub_stiffness;
+    return joint / (a->link_length * a->link_length);
+}
+
+status pulse_follow(const arm *a, chain_link *work, const pulse_start *start, pulse *out)
+{
+    assert(a != NULL && work != NULL && start != NULL && out != NULL);
+    assert(start->q != NULL && start->w != NULL && start->mode.contact);
+    const double none = (double)NAN;
+    follower f = {.arm = *a,
+                  .links = work,
+                  .n = a->dof,
+                  .size = 2 * a->dof + 1,
+                  .mode = start->mode,
+                  .command = start->command,
+                  .stiffness = wall_gives(&a->wall) ? 0 : tip_stiffness(a),
+                  .first_zero = none,
+                  .peak_at_graze = none};
+    *out = (pulse){.length = none, .restitution = none};
+
+    double *block = allocate(&f);
+    if (block == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+
+    // at the touch
+    memcpy(f.now.q, start->q, (size_t)f.n * sizeof *f.now.q);
+    memcpy(f.now.w, start->w, (size_t)f.n * sizeof *f.now.w);
+    evaluate(&f, &f.now);
+    out->peak = f.lowest = f.now.reaction.force;
+    see_energy(&f);
+
+    // the fastest motion to come; a wall that gives has a say
+    double rate = fmax(a->highest_frequency, 1), compliance;
+    if (wall_gives(&a->wall)) {
+        chain_contact_response(a, work, start->q, false, f.scratch, &compliance);
+        rate = hypot(rate, wall_rate(&a->wall, compliance, fmax(-f.now.reaction.gap, 0),
+                                     -f.now.reaction.gap_velocity));
+    }
+    f.sample = 1 / (SAMPLES_A_RADIAN * rate);
+    follow(&f, out);
+
+    // what is too close to call is left open
+    if (out->doubt == DOUBT_NONE && out->peak > SAME_PEAK * f.peak_at_graze) {
+        out->doubt = DOUBT_GRAZE;
+    }
+    if (!isnan(out->length) && f.most_strain > 0) {
+        out->restitution = (f.kinetic_at_zero - f.kinetic_there) / f.most_strain;
+    }
+    free(block);
+    return STATUS_OK;
+}
