@@ -78,6 +78,16 @@ void chain_penetration(const arm *a, const double *q, const double *w, double *g
     }
 }
 
+bool chain_is_folded(const arm *a, const double *q)
+{
+    bool folded = a->wall.kind == WALL_PLANE && a->links > 1;
+    for (int k = a->first; k < a->dof && folded; k++) {
+        double along = inline_cos(q[k]) * a->wall.cosine + inline_sin(q[k]) * a->wall.sine;
+        folded = fabs(along) < CHAIN_FOLDED;
+    }
+    return folded;
+}
+
 // response = M^-1 of the generalised force of a force -(ex, ey) at the tip and a moment -lever on
 // the last link. The same two sweeps as chain_sweep, without velocities and springs.
 static void unit_response(const arm *a, chain_link *link, const double *q, double ex, double ey,

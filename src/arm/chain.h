@@ -30,6 +30,13 @@
 void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
                          contact_state mode, double *alpha, chain_reaction *reaction);
 
+// Whether every link stands across a flat wall to CHAIN_FOLDED [rad]: the arm is folded over the
+// hub's axis, through which the wall passes, and the tip is there. Then J of chain.h is zero, no
+// force of the wall turns any link, and the constraint's equation J M^-1 J^T f = ... says nothing
+// of the force, which grows on the way there without bound.
+#define CHAIN_FOLDED 1e-3
+bool chain_is_folded(const arm *a, const double *q);
+
 // Penetration g [m], its rate [m/s] (either may be NULL).
 void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate);
 

@@ -31,6 +31,18 @@ static status explain(const corrected_run *c, status s, fault *f)
     return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
 }
 
+// Says where a flat wall could no longer hold the arm.
+static status explain_fold(const corrected_run *c, fault *f)
+{
+    const motion *m = c->motion;
+    const double *q = state_angles(m, m->state);
+    return fault_set(f, STATUS_FOLDED,
+                     "at t = %.9g s: the arm is folded across the hub's axis, its tip on the flat "
+                     "wall there, first and last link at %.4g and %.4g rad, across the wall within "
+                     "%g rad: no force of a rigid wall holds it so, and the model ends there",
+                     m->state[SLOT_TIME], q[c->arm.first], q[c->arm.dof - 1], CHAIN_FOLDED);
+}
+
 // Whether the stretch between two stops is through.
 static bool stretch_is_over(const corrected_run *c)
 {
@@ -49,6 +61,9 @@ status corrected_stride(corrected_run *c, fault *f)
 
     // one step, or less to an event
     status s = motion_step(&c->arm, m, c->stop, r->now.method.step, &report);
+    if (s == STATUS_FOLDED) {
+        return explain_fold(c, f);
+    }
     if (s != STATUS_OK) {
         return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
                          m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);

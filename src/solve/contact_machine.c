@@ -135,6 +135,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     // what the event itself has ended would violate something an instant later: what it left for is
     // taken although rounding speaks against it
     int preferred = event == MOTION_RELEASE ? choices : event == MOTION_SLIP ? 2 : 0;
+    const double rounding = FORCE_TOLERANCE * motion_rounding(a, m);
     double least = 0;
     contact_state best = {false, sliding};
 
@@ -149,7 +150,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
             least = v;
             best = contact_state_of(state);
         }
-        if (v <= (i < preferred ? FORCE_TOLERANCE : FORCE_TOLERANCE / 1000)) {
+        if (v <= (i < preferred ? rounding : FORCE_TOLERANCE / 1000)) {
             best = contact_state_of(state);
             break;
         }
@@ -420,10 +421,21 @@ static status tried_step(const arm *a, motion *m, double step, double wanted, do
     return s;
 }
 
+// Whether a rigid wall holds the arm where it cannot: folded over the hub's axis.
+static bool held_folded(const arm *a, motion *m)
+{
+    return m->state[SLOT_CONTACT] != 0 && !m->wall_gives &&
+           chain_is_folded(a, state_angles(m, m->state));
+}
+
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL && step > 0);
     *report = (motion_report){.event = MOTION_REACHED};
+    if (held_folded(a, m)) {
+        m->failure_time = m->state[SLOT_TIME];
+        return STATUS_FOLDED;
+    }
 
     // as far as accuracy allows, the cut, or the first event
     double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step), h = wanted;
@@ -441,6 +453,11 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
 
     accept(m, step);
+    if (any && first == WATCH_GAP && !m->wall_gives &&
+        chain_is_folded(a, state_angles(m, m->state))) {
+        m->failure_time = m->state[SLOT_TIME];
+        return STATUS_FOLDED;
+    }
     if (any && first == WATCH_GAP && m->state[SLOT_PARTED] != 0) {
         m->state[SLOT_PARTED] = m->state[SLOT_WALL_POWER] = 0; // free flight goes on as it was
     } else if (any) {

@@ -15,6 +15,9 @@
 #define PROJECTION_GAP       1e-14 // drift that is projected away in contact [m]
 #define PROJECTION_RATE      1e-13 // [m/s]
 
+// Some last bits of an angle, as a share of 1e-9, which counts as zero in a soft arm [s2/rad].
+#define SPRING_ROUNDING 4e-6
+
 static void choose_engine(const arm *a, motion *m, const method_parameters *method)
 {
     double rho = method->spectral_radius;
@@ -125,6 +128,16 @@ void motion_watch(motion *m)
 {
     m->pulse_peak = -1;
     m->pulse_peak_time = m->state[SLOT_TIME];
+}
+
+double motion_rounding(const arm *a, const motion *m)
+{
+    const double *q = state_angles(m, m->state);
+    double largest = 0;
+    for (int i = 0; i < m->dof; i++) {
+        largest = fmax(largest, fabs(q[i]));
+    }
+    return 1 + SPRING_ROUNDING * a->highest_frequency * a->highest_frequency * largest;
 }
 
 double motion_energy_residual(const arm *a, const motion *m, double *state)

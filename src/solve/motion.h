@@ -147,6 +147,11 @@ status motion_try_step(const arm *a, motion *m, double h);
 // that moved it.
 void motion_project(const arm *a, motion *m, double *state);
 
+// How many times more than in a soft arm rounding of the angles shows in accelerations, at least 1:
+// a spring of stiffness k between bodies of inertia I turns a last bit of an angle q into a change
+// of (k/I) q 2^-52, and k/I is the square of the arm's highest frequency at most.
+double motion_rounding(const arm *a, const motion *m);
+
 // Whether the motion's steps are those of an implicit method.
 static inline bool motion_is_implicit(const motion *m)
 {

@@ -22,6 +22,8 @@
 #define EDGE_RATE  1e-9
 #define EDGE_MORE  1e-7
 #define EDGE_GAP   1e-12 // [m]
+// As deep in the wall an arm in free flight may be by the truncation of the series that led there.
+#define EDGE_DEPTH 1e-9 // [m]
 
 enum { MOST_TERMS = TAYLOR_MOST + 2, ANGLES = 3 };
 
@@ -130,15 +132,16 @@ static double bend_of(const polynomial *p, double t)
     return bound[0] + t * bound[1];
 }
 
-// Divides the function by the time as often as its first coefficients are nothing but rounding.
-static void leave_edge(polynomial *p, double value)
+// Divides the function by the time as often as its first coefficients are nothing but rounding, of
+// which there may be `rounding` times as much as in a soft arm.
+static void leave_edge(polynomial *p, double value, double rounding)
 {
     int edge = 0;
     double limit = value;
 
     // how many coefficients are
     while (edge < 3 && fabs(p->terms[edge]) <= limit) {
-        limit = edge == 0 ? EDGE_RATE : EDGE_MORE;
+        limit = rounding * (edge == 0 ? EDGE_RATE : EDGE_MORE);
         edge++;
     }
 
@@ -232,7 +235,8 @@ static void set_polynomial(polynomial *p, const double *terms, int count, double
 static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
 {
     const int order = s->form.order;
-    const bool at_edge = m->state[SLOT_JUMPED] != 0;
+    const bool jumped = m->state[SLOT_JUMPED] != 0;
+    bool wall_at_edge = jumped;
     const contact_state now = contact_state_of(m->state);
     const double stiction = a->motor.stiction;
 
@@ -240,7 +244,12 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
     if (now.contact) {
         set_polynomial(&s->watched[WATCH_FORCE], s->block + AT_FORCE, order, 1);
     } else {
-        set_polynomial(&s->watched[WATCH_GAP], s->block + AT_GAP, order + 2, 1);
+        polynomial *gap = &s->watched[WATCH_GAP];
+        set_polynomial(gap, s->block + AT_GAP, order + 2, 1);
+        if (gap->terms[0] < 0 && gap->terms[0] > -EDGE_DEPTH) {
+            gap->terms[0] = 0;
+            wall_at_edge = true;
+        }
     }
 
     // the hub
@@ -255,12 +264,14 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
         s->far_limit.terms[0] += stiction;
     }
 
-    // just after an event they may begin at zero
-    if (at_edge) {
+    // just after an event they may begin at zero, as the gap does after a bounce cut short
+    if (wall_at_edge) {
         leave_edge(&s->watched[now.contact ? WATCH_FORCE : WATCH_GAP],
-                   now.contact ? EDGE_VALUE : EDGE_GAP);
+                   now.contact ? EDGE_VALUE : EDGE_GAP, motion_rounding(a, m));
+    }
+    if (jumped) {
         leave_edge(&s->watched[now.friction != HUB_STICK ? WATCH_HUB : WATCH_STICTION],
-                   now.friction != HUB_STICK ? 0 : EDGE_VALUE);
+                   now.friction != HUB_STICK ? 0 : EDGE_VALUE, motion_rounding(a, m));
     }
 }
 

@@ -1,0 +1,124 @@
+// Runs that random_runs once found wrong: each comes to its end now with a closed ledger, or ends
+// where the model does.
+#include <math.h>
+
+#include "src/run/run.h"
+#include "tests/arm_fixture.h"
+
+// A fast bounce whose place is a truncation behind the wall.
+static const char *const *const bounced = SETTINGS(
+    "wall.kind=point", "arm.hub_joint=rigid", "motor.voltage=7.3624601908433931",
+    "motor.amplifier_gain=8.9902797532526701", "motor.torque_constant=0.48270590708722927",
+    "motor.back_emf=0", "motor.viscous_friction=0", "motor.stiction=0.70949566156492572",
+    "wall.angle=-0.058876146053460587", "wall.restitution=1", "arm.length=0.71577119300778325",
+    "arm.mass=0.035027178090743044", "arm.hub_inertia=0.0016973633624598463",
+    "arm.k2=0.42683428006921265", "arm.damping_ratio=0", "initial.angle=-0.31252081318290958",
+    "initial.velocity=4.7072186055817422");
+
+// A hub on a stiff spring that breaks away again and again in no time.
+static const char *const *const broke_away =
+    SETTINGS("wall.kind=plane", "arm.hub_joint=spring", "motor.voltage=7.8616633048956466",
+             "motor.amplifier_gain=1.2161957581200313", "motor.torque_constant=3.2034403573797228",
+             "motor.back_emf=0.039542482532608912", "motor.resistance=4.4304877882132878",
+             "motor.viscous_friction=0.35338470965139318", "wall.angle=0.32026106661836051",
+             "wall.restitution=0.84165404374525177", "arm.length=0.22066926519018759",
+             "arm.mass=0.42223357184361698", "arm.hub_inertia=0.00011259278634964185",
+             "arm.k1=8738.6745800420013", "arm.k2=17.737641046122626",
+             "initial.angle=-0.98466858192806406", "initial.velocity=3.7931958766092073");
+
+// A release that rounding in a stiff spring takes back.
+static const char *const *const let_go =
+    SETTINGS("wall.kind=point", "arm.hub_joint=spring", "motor.voltage=-1.9768743413650149",
+             "motor.amplifier_gain=11.851235553121795", "motor.torque_constant=0.29410972446189715",
+             "motor.back_emf=0.046188856706749562", "motor.resistance=4.5978605120540212",
+             "motor.stiction=0", "wall.angle=-1.2075879084802406", "arm.length=1.271463985995744",
+             "arm.hub_inertia=0.0050819994182993182", "arm.k1=50232.130598215772",
+             "arm.k2=4.1088365789119283", "initial.angle=-2.2989462138385468",
+             "initial.velocity=-1.6291145627024184");
+
+// The same at 120 rad/s.
+static const char *const *const let_go_fast =
+    SETTINGS("wall.kind=point", "arm.hub_joint=spring", "motor.voltage=3.8573970306479204",
+             "motor.amplifier_gain=11.146218201548116", "motor.torque_constant=2.6986066679690039",
+             "motor.back_emf=0", "motor.resistance=3.6706804241669562",
+             "motor.viscous_friction=0.00024240317969145454", "motor.stiction=0",
+             "wall.angle=-0.21487423762876823", "wall.restitution=0.2179205452748364",
+             "arm.length=0.42193272654453556", "arm.mass=0.11068382206550233",
+             "arm.hub_inertia=0.00057945978438589776", "arm.k1=26377.448470638956",
+             "arm.k2=1.0232856054044419", "initial.angle=-1.658630168534875",
+             "initial.velocity=2.6352725431145618");
+
+// And with an arm of 30 g.
+static const char *const *const came_back =
+    SETTINGS("wall.kind=plane", "arm.hub_joint=spring", "motor.voltage=-5.5737155909324887",
+             "motor.amplifier_gain=2.4726066350646123", "motor.torque_constant=19.952682974789454",
+             "motor.back_emf=0.087192693296029092", "motor.resistance=70.635963479064998",
+             "motor.viscous_friction=0", "motor.stiction=0", "wall.angle=-0.93927037094654975",
+             "wall.restitution=0.36606539907880009", "arm.length=1.5629847646382611",
+             "arm.mass=0.02978291683201471", "arm.hub_inertia=0.0020731549166709828",
+             "arm.k2=28.063939184279072", "initial.angle=-2.3500528114513877",
+             "initial.velocity=-1.0167315338419591");
+
+static void run_with(const char *const *settings, bool keep_trace, run_result *result)
+{
+    char name[] = "random", none[] = "";
+    scenario s = {.name = name, .file = none, .title = none, .description = none};
+    s.parameters = fixture_parameters(settings);
+    run_scenario(&s, keep_trace, result);
+}
+
+static void test_runs_that_failed_come_to_their_end(void **state)
+{
+    (void)state;
+    const char *const *const runs[] = {bounced, broke_away, let_go, let_go_fast, came_back};
+    for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
+        run_result r;
+        run_with(runs[i], false, &r);
+        assert_int_equal(r.summary.status, STATUS_OK);
+        assert_false(r.summary.inaccurate);
+        assert_true(r.summary.energy_residual_J < 1e-9);
+        assert_true(isfinite(r.summary.first_contact_s));
+        run_finish(&r);
+    }
+}
+
+// Soft springs let the arm fold over the hub's axis, with its tip sliding on the flat wall. On the
+// way there the wall's reaction grows as 1/lever, and where the lever is nothing the run ends: with
+// the ledger closed, the links opposite to each other and the tip at the axis.
+static void test_an_arm_folded_over_the_hub_ends_the_run(void **state)
+{
+    (void)state;
+    const char *const *const arms[] = {
+        SETTINGS("wall.kind=plane", "motor.voltage=8.238", "motor.resistance=3.68",
+                 "wall.angle=-0.541", "arm.k2=0.09", "initial.angle=-1.977"),
+        SETTINGS("wall.kind=plane", "motor.voltage=-3.753", "motor.back_emf=0", "arm.mass=0.539",
+                 "arm.k2=0.0817"),
+        SETTINGS("wall.kind=plane", "motor.voltage=-8.97", "motor.back_emf=0", "arm.k2=0.1",
+                 "wall.angle=0.94", "initial.angle=0.71", "arm.hub_joint=spring", "arm.k1=500"),
+    };
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+        run_result r;
+        run_with(arms[i], true, &r);
+        const trace *t = &r.trace;
+        assert_int_equal(r.summary.status, STATUS_FOLDED);
+        assert_true(r.summary.message[0] != '\0');
+        assert_true(r.summary.energy_residual_J < 1e-9);
+
+        // the last rows: ever more force on ever less lever
+        assert_true(t->row_count > 10);
+        const sample *last = &t->rows[t->row_count - 1];
+        const double bend = fabs(remainder(last->last_angle - last->first_angle, 2 * M_PI));
+        assert_true(bend > 2);
+        assert_true(isfinite(r.summary.peak_force_N) && r.summary.peak_force_N < 1e6);
+        run_finish(&r);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_runs_that_failed_come_to_their_end),
+        cmocka_unit_test(test_an_arm_folded_over_the_hub_ends_the_run),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
