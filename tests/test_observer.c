@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/rig/arm_observer.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/laws/hybrid_modes.h"
 #include "src/rig/reduced_arm.h"
@@ -169,6 +170,57 @@ static void it_settles_on_three_links(void **state)
     }
 }
 
+// The setup that a law gets of these parameters.
+static controller_setup setup_of(const parameters *p)
+{
+    rig *r = NULL;
+    fault f;
+    parameters as_hybrid = *p;
+    as_hybrid.control.law = LAW_HYBRID;
+    assert_int_equal(rig_create(&r, &as_hybrid, &f), STATUS_OK);
+    controller_setup setup = ((const hybrid_memory *)r->memory)->rig;
+    rig_destroy(r);
+    return setup;
+}
+
+// A stiffness believed wrongly is learned from the readings: half the way to it counts as much as
+// what was believed, and the force at the end does not depend on it.
+static void it_learns_how_stiff_the_arm_is(void **state)
+{
+    (void)state;
+    static const double wrong[] = {0.75, 1.25};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        const char *const settings[] = {"control.law=observer", NULL};
+        parameters p = rig_parameters(settings);
+        p.belief.k2_factor = wrong[i];
+        controller_setup setup = setup_of(&p);
+        arm_observer o;
+        assert_null(arm_observer_init(&o, &setup, 1));
+
+        // the hub bends the arm against the wall, the readings are those of the true stiffness
+        const double stiffness = 4 * setup.k2 / wrong[i];
+        controller_input in = {.piezo_force = (double)NAN,
+                               .film = (double)NAN,
+                               .accelerometer = (double)NAN,
+                               .wanted_mode = -1};
+        arm_observer_start(&o, &in);
+        arm_observer_touch(&o, 0);
+        for (int k = 1; k <= 200; k++) {
+            in.time = k * setup.period;
+            in.encoder = fmin(0.05, 0.5 * in.time);
+            in.tachometer = in.encoder < 0.05 ? 0.5 : 0;
+            in.force = stiffness * in.encoder;
+            in.voltage = in.force * 2 * setup.link_length / setup.torque_per_volt;
+            arm_observer_sample(&o, &in, true);
+        }
+
+        // from the believed one towards the true one, and not beyond
+        double share = (o.stiffness - 1) / (1 / wrong[i] - 1);
+        check_below(0.3, share);
+        check_below(share, 1.05);
+    }
+}
+
 // Pushed off the wall it finds back: the force is there again at the end.
 static void it_finds_the_wall_again(void **state)
 {
@@ -187,19 +239,6 @@ static void it_finds_the_wall_again(void **state)
 }
 
 // --- laws see sensors only --------------------------------------------------------------------
-
-// The setup that a law gets of these parameters.
-static controller_setup setup_of(const parameters *p)
-{
-    rig *r = NULL;
-    fault f;
-    parameters as_hybrid = *p;
-    as_hybrid.control.law = LAW_HYBRID;
-    assert_int_equal(rig_create(&r, &as_hybrid, &f), STATUS_OK);
-    controller_setup setup = ((const hybrid_memory *)r->memory)->rig;
-    rig_destroy(r);
-    return setup;
-}
 
 // The plant is replaced by a recording of what its sensors read: the commands are the same.
 static void the_same_readings_give_the_same_commands(void **state)
@@ -264,6 +303,7 @@ int main(void)
         cmocka_unit_test(wrong_beliefs_do_no_harm),
         cmocka_unit_test(a_delay_untold_does_no_harm),
         cmocka_unit_test(it_settles_on_three_links),
+        cmocka_unit_test(it_learns_how_stiff_the_arm_is),
         cmocka_unit_test(it_finds_the_wall_again),
         cmocka_unit_test(the_same_readings_give_the_same_commands),
     };

@@ -20,9 +20,12 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define TORQUE_DRIFT 0.1    // of the unknown torque, in a second [N m]
 #define WALL_DRIFT   1e-3   // of the wall, in a second [rad]
 #define STIFFNESS    0.25   // share by which the stiffness may be wrong
-#define TIP_IMPULSE  0.03   // that the wall may give where contact ends [N s]
-#define OUTLIER      4.0    // readings further off, in standard deviations, are worth less
-#define REST         0.01   // a slower hub counts as at rest [rad/s]
+#define STIFF_MEMORY                                                                               \
+    0.5 // over which readings count for the stiffness, and as what the belief does [s]
+#define LEAST_STIFF 0.2  // share of it that the arm has at least
+#define TIP_IMPULSE 0.03 // that the wall may give where contact ends [N s]
+#define OUTLIER     4.0  // readings further off, in standard deviations, are worth less
+#define REST        0.01 // a slower hub counts as at rest [rad/s]
 
 static int count_of(const arm_observer *o)
 {
@@ -49,6 +52,11 @@ static int state_count(const arm_observer *o)
     return arm_observer_torque_index(o) + 1;
 }
 
+double arm_observer_square(const arm_observer *o, int i)
+{
+    return arm_observer_modes(o)->square[i] * (o->touches && i == 0 ? o->stiffness : 1);
+}
+
 // --- the model --------------------------------------------------------------------------------
 
 // a_i'' = -w_i^2 a_i - c_i a_i' + h_i (drive + unknown torque - damping hub rate), over h.
@@ -69,7 +77,7 @@ static void sample_model(const arm_observer *o, const mode_set *set, int torque,
     sampled_model_init(model, torque + 1, rate, input, h);
 }
 
-const char *arm_observer_init(arm_observer *o, const controller_setup *setup)
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force)
 {
     assert(o != NULL && setup != NULL);
     memset(o, 0, sizeof *o);
@@ -84,6 +92,7 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup)
     o->stiction = setup->stiction;
     o->period = setup->period;
     o->delay = fmin(setup->delay, setup->period);
+    o->stiff_belief = STIFF_MEMORY * force * force;
     for (int k = 0; k < 2; k++) {
         double h = k == 0 ? o->delay : o->period - o->delay;
         sample_model(o, &o->arm.free, 2 * o->arm.free.count, h, &o->free_model[k]);
@@ -109,6 +118,8 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     o->touches = false;
     o->since = in->time;
     o->wall_variance = HUGE_VAL;
+    o->stiffness = 1;
+    o->stiff_force = o->stiff_bend = 0;
     o->last_voltage = in->voltage;
     o->tip_before = o->tip_now = in->encoder;
 }
@@ -161,7 +172,8 @@ static double balancing_torque(const arm_observer *o, const estimator *e)
     const mode_set *set = arm_observer_modes(o);
     double sum = 0;
     for (int i = 0; i < set->count; i++) {
-        sum += set->hub[i] * (set->square[i] * e->z[i] + set->damping[i] * e->z[set->count + i]);
+        sum += set->hub[i] *
+               (arm_observer_square(o, i) * e->z[i] + set->damping[i] * e->z[set->count + i]);
     }
     return sum / hub_mobility(set);
 }
@@ -202,7 +214,7 @@ static void force_row(const arm_observer *o, double *row)
     double at_once = arm_observer_force_per_torque(o), length = o->arm.length;
     memset(row, 0, N * sizeof *row);
     for (int i = 0; i < n; i++) {
-        row[i] = set->momentum[i] * set->square[i] / length;
+        row[i] = set->momentum[i] * arm_observer_square(o, i) / length;
         row[n + i] =
             set->momentum[i] * set->damping[i] / length - at_once * o->hub_damping * set->hub[i];
     }
@@ -242,12 +254,23 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
         noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
     }
 
-    estimator_predict(e, model, drive - arm_observer_friction(o, e, drive), noise);
+    double net = drive - arm_observer_friction(o, e, drive);
+    if (!o->touches) {
+        estimator_predict(e, model, net, noise);
+        return;
+    }
+
+    // stiffer than believed: the difference as a force held over h
+    sampled_model now = *model;
+    double more = (o->stiffness - 1) * o->arm.contact.square[0] * h;
+    now.a[n][0] -= more;
+    now.a[0][0] -= more * h / 2;
+    estimator_predict(e, &now, net, noise);
 }
 
-// A reading that is far off is worth less: an impact is no noise.
-static void take_reading(arm_observer *o, const double *row, double offset, double reading,
-                         double deviation)
+// A reading that is far off is worth less: an impact is no noise. Returns its worth, at most 1.
+static double take_reading(arm_observer *o, const double *row, double offset, double reading,
+                           double deviation)
 {
     const int n = state_count(o);
     double expected = offset, variance = deviation * deviation;
@@ -258,8 +281,9 @@ static void take_reading(arm_observer *o, const double *row, double offset, doub
         }
     }
     double off = fabs(reading - expected) / sqrt(variance);
-    double worth = off > OUTLIER ? off / OUTLIER : 1;
-    estimator_correct(&o->e, n, row, offset, reading, deviation * deviation * worth * worth);
+    double doubt = off > OUTLIER ? off / OUTLIER : 1;
+    estimator_correct(&o->e, n, row, offset, reading, deviation * deviation * doubt * doubt);
+    return 1 / doubt;
 }
 
 // Hub and beam: encoder, tachometer, and film and accelerometer where they are fitted.
@@ -286,7 +310,7 @@ static void take_motion(arm_observer *o, const controller_input *in)
         double row[N] = {0}, mobility = hub_mobility(set);
         double drive = o->torque_per_volt * in->voltage;
         for (int i = 0; i < n; i++) {
-            row[i] = -set->hub[i] * set->square[i];
+            row[i] = -set->hub[i] * arm_observer_square(o, i);
             row[n + i] = -set->hub[i] * set->damping[i] - mobility * o->hub_damping * set->hub[i];
         }
         row[arm_observer_torque_index(o)] = mobility;
@@ -295,7 +319,7 @@ static void take_motion(arm_observer *o, const controller_input *in)
     }
 }
 
-static void take_force(arm_observer *o, const controller_input *in)
+static double take_force(arm_observer *o, const controller_input *in)
 {
     double row[N], linear = 0, drive = o->torque_per_volt * in->voltage;
     force_row(o, row);
@@ -303,7 +327,33 @@ static void take_force(arm_observer *o, const controller_input *in)
         linear += row[i] * o->e.z[i];
     }
     double offset = arm_observer_force(o, &o->e, drive) - linear;
-    take_reading(o, row, offset, in->force, FORCE_NOISE + FORCE_SHARE * fabs(in->force));
+    return take_reading(o, row, offset, in->force, FORCE_NOISE + FORCE_SHARE * fabs(in->force));
+}
+
+// How stiff the arm is in contact: the force over the way of the hub since the touch, both less
+// what the other modes and the motion make of them, by least squares. The belief counts as
+// STIFF_TIME of pressing with the wanted force, long enough for vibrations that the model does not
+// show to cancel.
+static void learn_stiffness(arm_observer *o, const controller_input *in, double worth)
+{
+    const mode_set *set = &o->arm.contact;
+    const double per_mode = set->momentum[0] * set->square[0] / o->arm.length;
+    double drive = o->torque_per_volt * in->voltage, bend = in->encoder - o->met;
+    for (int i = 1; i < set->count; i++) {
+        bend -= set->hub[i] * o->e.z[i];
+    }
+
+    // the force of the first mode, as believed and as read
+    double believed = per_mode * bend / set->hub[0];
+    double others = arm_observer_force(o, &o->e, drive) - per_mode * o->stiffness * o->e.z[0];
+    double read = in->force - others;
+
+    double kept = 1 - fmin(1, o->period / STIFF_MEMORY), weight = o->period * worth * worth;
+    o->stiff_force = kept * o->stiff_force + weight * believed * read;
+    o->stiff_bend = kept * o->stiff_bend + weight * believed * believed;
+    double stiffness =
+        (o->stiff_force + o->stiff_belief) / fmax(o->stiff_bend + o->stiff_belief, 1e-12);
+    o->stiffness = fmax(LEAST_STIFF, stiffness);
 }
 
 void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force)
@@ -321,7 +371,7 @@ void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes
     // what the sensors say
     take_motion(o, in);
     if (o->touches && takes_force) {
-        take_force(o, in);
+        learn_stiffness(o, in, take_force(o, in));
     }
 
     // what a touch will need to know
@@ -394,7 +444,7 @@ void arm_observer_touch(arm_observer *o, double time)
     }
     t[wall + 1][2 * n] = 1;
     transform(&o->e, 2 * n + 1, 2 * m + 2, t);
-    o->e.z[wall] = met;
+    o->e.z[wall] = o->met = met;
     for (int i = 0; i < m; i++) {
         o->e.z[i] -= contact->momentum[i] * met;
         o->e.p[wall][i] = o->e.p[i][wall] = -contact->momentum[i] * variance;

@@ -22,11 +22,15 @@ typedef struct arm_observer {
     double since;               // when the contact or the flight began [s]
     double wall, wall_variance; // as last known [rad], [rad2]
     double tip_before, tip_now; // tip angle in flight at the last two samples [rad]
+    double met;                 // wall's angle at the touch [rad]
+    // stiffness of the first mode in contact over what it is believed to be, the sums that it is
+    // the quotient of, and what the belief adds to both [N2 s]
+    double stiffness, stiff_force, stiff_bend, stiff_belief;
 } arm_observer;
 
-// Models the arm that the setup describes, at rest at an angle still to be read. NULL, or a
-// sentence that says why it cannot.
-const char *arm_observer_init(arm_observer *o, const controller_setup *setup);
+// Models the arm that the setup describes, at rest at an angle still to be read, which is to press
+// with about `force` [N]. NULL, or a sentence that says why it cannot.
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force);
 
 // Starts at rest where the encoder is.
 void arm_observer_start(arm_observer *o, const controller_input *in);
@@ -45,6 +49,11 @@ estimator arm_observer_ahead(const arm_observer *o, double voltage);
 // The modes of the present state, and the index of the torque among the states.
 const mode_set *arm_observer_modes(const arm_observer *o);
 int arm_observer_torque_index(const arm_observer *o);
+
+// Square of the frequency of mode i of the present state [1/s2], of the first in contact with the
+// stiffness that the readings have shown: what a wrong k2, a spring at the hub or more links than
+// believed come to at rest.
+double arm_observer_square(const arm_observer *o, int i);
 
 // Of an estimate: hub angle and tip angle [rad], hub velocity [rad/s].
 double arm_observer_hub(const arm_observer *o, const estimator *e);

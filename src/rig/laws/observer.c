@@ -28,7 +28,7 @@ static const controller_parameter table[PARAMETERS] = {{.name = "force"},
 #define TOUCH_SHARE     0.5   // of the speed that the commanded force stops, to touch with
 #define WALL_DOUBT      0.03  // by which the wall may be nearer than believed [rad]
 #define RISE_PERIODS    0.5   // that the force rises for, periods of the vibration in contact
-#define INTEGRAL_TIME   0.1   // of the force reading's integral [s]
+#define BIAS_TIME       0.1   // over which the error of the estimated force is averaged [s]
 #define MOST_CORRECTION 0.3   // that it may add to the force aimed at, a share
 #define LEAST_FORCE     0.1   // share of the force below which no command lets it fall at once
 #define LOST_AFTER      2     // readings without force that mean lost contact
@@ -37,6 +37,8 @@ static const controller_parameter table[PARAMETERS] = {{.name = "force"},
 #define HOLD_BEYOND     0.04  // and beyond which it is held no longer,
 #define HOLD_LEAST      0.005 // both on top of this [N]
 #define HOLD_MEAN       0.1   // over which the reading is averaged meanwhile [s]
+#define HOLD_SWING      0.1   // share of the force by which it may swing where it is held,
+#define SWING_MEAN      0.04  // over which that is averaged [s]
 
 typedef struct observer_memory {
     controller_setup rig;
@@ -44,20 +46,24 @@ typedef struct observer_memory {
     arm_observer observer;
     double travel_gain[ESTIMATOR_STATES], press_gain[ESTIMATOR_STATES]; // [V per unit of state]
     double touch_speed, top_speed;                                      // [rad/s]
-    double ramp_time;              // of a change of speed that leaves no vibration [s]
+    double ramp_time;              // of a change of speed that leaves no vibration [s],
+    double ramp_edge;              // of which its acceleration rises, and falls [s]
     sampled_model plan_model;      // of the free arm that the plan moves
     double plan[ESTIMATOR_STATES]; // its state: as the observer's in flight, the torque left out
     double cruise_speed;           // of the plan between its two changes of speed [rad/s]
-    double planned_acceleration;   // in the present change [rad/s2]
-    double change_left;            // of the present change of speed [s]
+    double planned_change;         // of speed, the present one [rad/s]
+    double changing;               // how long it has been under way [s]
     bool slows;                    // the plan has begun to slow down for the touch
-    double rise[6];                // quintic of the first mode in contact, in the time since
+    double rise_from, rise_rate;   // of the first mode in contact where its rise began
     double rise_start, rise_time;  // when it began, and how long it takes [s]
     int mode;
     bool started;
     int readings_without_force;
-    double correction;   // of the force aimed at, by the integral of its error [N]
+    double
+        correction; // of the force aimed at, by what the estimated force is above the reading [N]
     double held_force;   // mean of the reading while it holds [N]
+    double mean_force;   // of the reading, over SWING_MEAN [N]
+    double swing;        // its mean square about that [N2]
     double hold_command; // [V]
 } observer_memory;
 
@@ -178,7 +184,8 @@ static void find_speeds(observer_memory *m, double force)
         m->touch_speed = fmin(m->touch_speed, TOUCH_SHARE * stopped);
     }
 
-    m->ramp_time = 2 * PI / sqrt(arm->free.square[1]);
+    m->ramp_edge = arm->free.count > 2 ? 2 * PI / sqrt(arm->free.square[2]) : 0;
+    m->ramp_time = 2 * PI / sqrt(arm->free.square[1]) + m->ramp_edge;
     m->rise_time = RISE_PERIODS * 2 * PI / sqrt(square);
 }
 
@@ -192,7 +199,7 @@ static const char *start(void *memory, const controller_setup *setup)
     }
 
     // model, gains, and the plan's speeds
-    const char *refusal = arm_observer_init(&m->observer, setup);
+    const char *refusal = arm_observer_init(&m->observer, setup, m->p[FORCE_WANTED]);
     if (refusal != NULL) {
         return refusal;
     }
@@ -228,7 +235,7 @@ static void plan_rotation(observer_memory *m, double speed)
     for (int i = 0; i < set->count; i++) {
         m->plan[set->count + i] = set->momentum[i] * speed;
     }
-    m->change_left = 0;
+    m->changing = m->ramp_time;
 }
 
 // Speed of rotation of the plan [rad/s].
@@ -244,9 +251,22 @@ static void begin_plan(observer_memory *m, double angle)
     double way = m->rig.wall_angle - WALL_DOUBT - angle, ramp = m->ramp_time;
     double room = (way - m->touch_speed * ramp / 2) / ramp;
     m->cruise_speed = fmax(m->touch_speed, fmin(m->top_speed, room));
-    m->planned_acceleration = m->cruise_speed / ramp;
-    m->change_left = ramp;
+    m->planned_change = m->cruise_speed;
+    m->changing = 0;
     m->slows = !(m->cruise_speed > m->touch_speed);
+}
+
+// Share of a change of speed that is made after a time: the integral of a trapezoid, which is one
+// vibration's period as a box convolved with the next one's.
+static double share_changed(const observer_memory *m, double t)
+{
+    const double T = m->ramp_time, edge = m->ramp_edge, top = 1 / (T - edge);
+    t = fmax(0, fmin(t, T));
+    if (t < edge) {
+        return top * t * t / (2 * edge);
+    }
+    double left = T - t;
+    return left < edge ? 1 - top * left * left / (2 * edge) : top * (t - edge / 2);
 }
 
 // Moves the plan on by a period; returns the torque that its rotation takes [N m].
@@ -254,15 +274,15 @@ static double follow_plan(observer_memory *m, double tip)
 {
     double left = m->rig.wall_angle - WALL_DOUBT - tip;
     double slowing = (m->cruise_speed + m->touch_speed) / 2 * m->ramp_time;
-    if (!m->slows && m->change_left <= 0 && left <= slowing) {
+    if (!m->slows && m->changing >= m->ramp_time && left <= slowing) {
         m->slows = true;
-        m->planned_acceleration = (m->touch_speed - m->cruise_speed) / m->ramp_time;
-        m->change_left = m->ramp_time;
+        m->planned_change = m->touch_speed - m->cruise_speed;
+        m->changing = 0;
     }
 
-    // a change ends within a period: the mean over it
-    double share = fmax(0, fmin(1, m->change_left / m->rig.period));
-    double torque = share * m->planned_acceleration * m->observer.arm.inertia;
+    // the mean over the period
+    double share = share_changed(m, m->changing + m->rig.period) - share_changed(m, m->changing);
+    double torque = share * m->planned_change / m->rig.period * m->observer.arm.inertia;
     double next[ESTIMATOR_STATES];
     for (int i = 0; i < m->plan_model.n; i++) {
         next[i] = m->plan_model.b[i] * torque;
@@ -271,7 +291,7 @@ static double follow_plan(observer_memory *m, double tip)
         }
     }
     memcpy(m->plan, next, (size_t)m->plan_model.n * sizeof next[0]);
-    m->change_left -= m->rig.period;
+    m->changing += m->rig.period;
     return torque;
 }
 
@@ -311,19 +331,33 @@ static double within_force(const observer_memory *m, const estimator *e, double 
     return limited(m, command);
 }
 
-// Plans the first mode's way from where it is to rest under the wanted force.
+// First mode at rest under a force [sqrt(kg m2)].
+static double mode_at_rest(const observer_memory *m, double force)
+{
+    return m->observer.arm.contact.hub[0] * force * m->observer.arm.length /
+           arm_observer_square(&m->observer, 0);
+}
+
+// The first mode's way goes on from where it is.
 static void begin_rise(observer_memory *m, const estimator *e, double time)
 {
-    const mode_set *set = &m->observer.arm.contact;
-    double rest = set->hub[0] * m->p[FORCE_WANTED] * m->observer.arm.length / set->square[0];
-    double T = m->rise_time, v = e->z[set->count], way = rest - e->z[0];
     m->rise_start = time;
-    m->rise[0] = e->z[0];
-    m->rise[1] = v;
-    m->rise[2] = 0;
-    m->rise[3] = (20 * way - 12 * v * T) / (2 * T * T * T);
-    m->rise[4] = (-30 * way + 16 * v * T) / (2 * T * T * T * T);
-    m->rise[5] = (12 * way - 6 * v * T) / (2 * T * T * T * T * T);
+    m->rise_from = e->z[0];
+    m->rise_rate = e->z[m->observer.arm.contact.count];
+}
+
+// The quintic that leads it to rest under the wanted force: coordinate, rate and second derivative
+// at a time since it began.
+static void rise_at(const observer_memory *m, double t, double *rise)
+{
+    const double T = m->rise_time, a = m->rise_from, v = m->rise_rate;
+    const double way = mode_at_rest(m, m->p[FORCE_WANTED]) - a;
+    const double cubic = (20 * way - 12 * v * T) / (2 * T * T * T);
+    const double quartic = (-30 * way + 16 * v * T) / (2 * T * T * T * T);
+    const double quintic = (12 * way - 6 * v * T) / (2 * T * T * T * T * T);
+    rise[0] = a + t * (v + t * t * (cubic + t * (quartic + t * quintic)));
+    rise[1] = v + t * t * (3 * cubic + t * (4 * quartic + t * 5 * quintic));
+    rise[2] = t * (6 * cubic + t * (12 * quartic + t * 20 * quintic));
 }
 
 // Keeps the arm to the rise and then at rest: the first mode on its way, the others as its torque
@@ -333,23 +367,21 @@ static double press(const observer_memory *m, const estimator *e, double time)
     const arm_observer *o = &m->observer;
     const mode_set *set = &o->arm.contact;
     const int n = set->count;
-    const double *c = m->rise, t = fmin(time - m->rise_start, m->rise_time);
+    const double t = time - m->rise_start, aim = m->p[FORCE_WANTED] + m->correction;
 
     // the first mode's way, and the torque on it
-    bool moves = time - m->rise_start < m->rise_time;
-    double a = c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
-    double rate = c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
-    double second = 2 * c[2] + t * (6 * c[3] + t * (12 * c[4] + t * 20 * c[5]));
-    double torque = (second + set->square[0] * a) / set->hub[0];
-    if (!moves) {
-        rate = 0;
-        torque = (m->p[FORCE_WANTED] + m->correction) * o->arm.length;
+    bool moves = t < m->rise_time;
+    double rise[3] = {mode_at_rest(m, aim), 0, 0};
+    if (moves) {
+        rise_at(m, t, rise);
     }
+    double a = rise[0], rate = rise[1];
+    double torque = (rise[2] + arm_observer_square(o, 0) * a) / set->hub[0];
 
     // the others stand as that torque bends them
     double way = 0, feedback = 0, hub_rate = set->hub[0] * rate;
     for (int i = 0; i < n; i++) {
-        double wanted = moves && i == 0 ? a : set->hub[i] * torque / set->square[i];
+        double wanted = i == 0 ? a : set->hub[i] * torque / set->square[i];
         double off = wanted - e->z[i], off_rate = (i == 0 ? rate : 0) - e->z[n + i];
         way += set->hub[i] * off;
         feedback += m->press_gain[i] * off + m->press_gain[n + i] * off_rate;
@@ -393,35 +425,45 @@ static void follow_contact(observer_memory *m, const controller_input *in)
     }
 }
 
-// Integral action on the reading itself, once the rise is over: what is left of a wrong stiffness.
-// It is bounded, and stands still while the arm is held.
+// What the estimated force is above the reading, averaged, is added to the force aimed at once the
+// rise is over: what model errors leave. It is bounded, and cannot wind up, being no integral of
+// the way to go.
 static void correct_aim(observer_memory *m, const controller_input *in)
 {
+    const arm_observer *o = &m->observer;
     double most = MOST_CORRECTION * m->p[FORCE_WANTED];
     if (in->time - m->rise_start >= m->rise_time) {
-        double error = m->p[FORCE_WANTED] - in->force;
-        m->correction += m->rig.period / INTEGRAL_TIME * error;
+        double force = arm_observer_force(o, &o->e, m->rig.torque_per_volt * in->voltage);
+        double share = fmin(1, m->rig.period / BIAS_TIME);
+        m->correction += share * (force - in->force - m->correction);
         m->correction = fmax(-most, fmin(m->correction, most));
     }
 }
 
-// Holds where the hub rests with the wanted force, until the reading's mean says otherwise.
+// Holds where the hub rests with the wanted force and the beam has come to rest, until the
+// reading's mean says otherwise or the hub moves.
 static void choose_hold(observer_memory *m, const estimator *e, const controller_input *in)
 {
     const arm_observer *o = &m->observer;
-    double force = m->p[FORCE_WANTED], share = m->rig.period / HOLD_MEAN;
+    double force = m->p[FORCE_WANTED], rate = fabs(arm_observer_rate(o, e));
+
+    // the reading's mean, and how far it swings about it
+    double off = in->force - m->mean_force, share = fmin(1, m->rig.period / SWING_MEAN);
+    m->mean_force += share * off;
+    m->swing += share * (off * off - m->swing);
 
     // held: until the mean of the readings is off
     if (m->mode == HOLD) {
-        m->held_force += fmin(1, share) * (in->force - m->held_force);
-        m->mode = fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST ? HOLD : PRESS;
+        m->held_force += fmin(1, m->rig.period / HOLD_MEAN) * (in->force - m->held_force);
+        bool right = fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST;
+        m->mode = right && rate < 2 * REST ? HOLD : PRESS;
         return;
     }
 
     // at rest where the force is right: held from now on
     double rests_at = resting_force(m, e);
-    if (fabs(arm_observer_rate(o, e)) < REST &&
-        fabs(rests_at - force) < HOLD_WITHIN * force + HOLD_LEAST) {
+    if (rate < REST && fabs(rests_at - force) < HOLD_WITHIN * force + HOLD_LEAST &&
+        sqrt(m->swing) < HOLD_SWING * force + HOLD_LEAST) {
         m->mode = HOLD;
         m->held_force = rests_at;
         m->hold_command = limited(m, arm_observer_holding_torque(o, e) / m->rig.torque_per_volt);
@@ -453,8 +495,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
         }
         out->command =
             m->mode == HOLD ? m->hold_command : press(m, &ahead, in->time + m->rig.delay);
-        out->desired_angle = o->wall + m->p[FORCE_WANTED] * o->arm.length * o->arm.contact.hub[0] *
-                                           o->arm.contact.hub[0] / o->arm.contact.square[0];
+        out->desired_angle = o->wall + o->arm.contact.hub[0] * mode_at_rest(m, m->p[FORCE_WANTED]);
         out->desired_velocity = 0;
         force_now = arm_observer_force(o, &o->e, m->rig.torque_per_volt * in->voltage);
     } else {
