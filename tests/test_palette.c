@@ -71,7 +71,7 @@ static void test_the_prompt_has_it_too(void **state)
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":bra");
     assert_shows(&ex, ":branch");
-    assert_shows(&ex, "keep this run");
+    assert_shows(&ex, "pin this run");
 
     // nothing is selected until Down is pressed, Up leaves the list again
     press(&ex, "<Down>");

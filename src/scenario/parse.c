@@ -48,7 +48,8 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
 // Reports a key that a file does not have at its top, with the nearest one that it may have.
 static void report_unknown_top(reader *r, const tree_node *key)
 {
-    static const char *const others[] = {"title", "description", "panes", "script", "expect"};
+    static const char *const others[] = {"title",  "description", "panes",
+                                         "script", "expect",      "lesson"};
     nearest_word near = nearest_begin(key->text);
 
     // a parameter's whole path, which belongs under its group
@@ -88,20 +89,21 @@ static void report_unknown_top(reader *r, const tree_node *key)
                     (int)strcspn(near.best, "."), near.best);
         return;
     }
-    report_node(r, key,
-                "unknown key '%.60s', expected title, description, panes%s, script or expect",
-                key->text, groups);
+    report_node(
+        r, key,
+        "unknown key '%.60s', expected title, description, panes%s, script, expect or lesson",
+        key->text, groups);
 }
 
-// Reads everything; script and expect come after the parameters that they depend on.
+// Reads everything; script, expect and lesson come after the parameters that they depend on.
 static void parse_root(reader *r, const tree_node *root)
 {
-    const tree_node *script = NULL, *expect = NULL;
+    const tree_node *script = NULL, *expect = NULL, *steps = NULL;
     if (!reader_expect_map(r, root, "the file", "title: ...")) {
         return;
     }
 
-    // each key once; script and expectations are kept for later
+    // each key once; what depends on parameters is kept for later
     for (const tree_node *child = root->first; child != NULL; child = child->next) {
         const char *key = reader_key(r, root, child);
         if (key == NULL) {
@@ -118,6 +120,8 @@ static void parse_root(reader *r, const tree_node *root)
             script = child;
         } else if (strcmp(key, "expect") == 0) {
             expect = child;
+        } else if (strcmp(key, "lesson") == 0) {
+            steps = child;
         } else if (reader_is_group(key)) {
             reader_group(r, child, key);
         } else {
@@ -137,6 +141,9 @@ static void parse_root(reader *r, const tree_node *root)
     }
     if (expect != NULL) {
         reader_expectations(r, expect);
+    }
+    if (steps != NULL) {
+        reader_lesson(r, steps);
     }
 }
 

@@ -84,5 +84,8 @@ void reader_script(reader *r, const tree_node *list);
 // Parses the signals that the run is to be looked at by.
 void reader_panes(reader *r, const tree_node *list);
 
+// Parses the lesson; the parameters must have been resolved.
+void reader_lesson(reader *r, const tree_node *map);
+
 // Parses what is expected of the run.
 void reader_expectations(reader *r, const tree_node *map);

@@ -16,6 +16,7 @@ void scenario_finish(scenario *s)
     free(s->description);
     free(s->actions);
     free(s->expectations);
+    lesson_finish(&s->lesson);
     *s = (scenario){0};
 }
 

@@ -3,6 +3,7 @@
 
 #include "src/quantities/parameters.h"
 #include "src/rig/controller.h"
+#include "src/scenario/lesson.h"
 
 typedef enum action_kind { ACTION_SET, ACTION_PUSH } action_kind;
 
@@ -39,6 +40,7 @@ typedef struct scenario {
     int action_count;
     expectation *expectations;
     int expectation_count;
+    lesson lesson; // of no steps if it has none
 } scenario;
 
 // Inserts an action behind those that are not later. s->actions has room for it.
@@ -78,7 +80,8 @@ void scenario_finish(scenario *s);
 status scenario_copy(scenario *copy, const scenario *s);
 
 // Writes a file that reads back with the same title, description, parameters and script. What it
-// expects is not written: with other parameters it would not hold. Errors stay in the stream.
+// expects and its lesson are not written: with other parameters they would not hold. Errors stay in
+// the stream.
 void scenario_write(FILE *stream, const scenario *s);
 
 // Gives the scenario other parameters, changed but not yet resolved: resolves them and checks that

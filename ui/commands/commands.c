@@ -9,6 +9,7 @@
 // One line a command: its name as a C word, in the order in which they are listed.
 #define COMMANDS(X)                                                                                \
     X(lab)                                                                                         \
+    X(lesson)                                                                                      \
     X(list)                                                                                        \
     X(show)                                                                                        \
     X(check)                                                                                       \

@@ -271,7 +271,7 @@ static const option_row rows[] = {
      .help = "how many of them the terminal has",
      PLACE(colours)},
 };
-static const option_table options = OPTION_TABLE("Options", rows);
+const option_table lab_options = OPTION_TABLE("Options", rows);
 
 const command lab_command = {
     .name = "lab",
@@ -283,6 +283,6 @@ const command lab_command = {
             "screen is printed as text.\n",
     .most = 1,
     .takes_scenarios = true,
-    .options = {&set_options, &options, &quiet_options},
+    .options = {&set_options, &lab_options, &quiet_options},
     .run = run,
 };

@@ -62,6 +62,7 @@ bool explorer_carry_out(explorer *ex, const char *line)
 {
     assert(ex != NULL);
     action_result result = explorer_execute(&ex->state, line);
+    act_follow_lesson(&ex->state);
     result_show(&result, &ex->state.message);
     return result_ok(&result);
 }

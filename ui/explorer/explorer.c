@@ -72,6 +72,7 @@ void explorer_draw(explorer *ex, screen *s)
     if (compose_fits(size)) {
         action_result news = act_follow_slider(st);
         result_show(&news, &st->message);
+        act_follow_lesson(st);
         state_update(st);
     }
     compose_screen(st, &ex->layout, s);

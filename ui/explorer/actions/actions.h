@@ -68,6 +68,11 @@ void act_select_swept(explorer_state *st, int direction);
 // Makes the present run that of the selected value, by a change from the start.
 action_result act_take_swept(explorer_state *st);
 
+// --- lessons ----------------------------------------------------------------------------------
+
+// Takes note of a step of the lesson that is done by now.
+action_result act_follow_lesson(explorer_state *st);
+
 // --- the palette -------------------------------------------------------------------------------
 
 // Moves the selection up (-1) or down (1), kept within the list; without words to search for it may

@@ -57,6 +57,14 @@ static void draw_place(const explorer_state *st, layout *lay, screen *s, panel_p
 
 static void draw_panels(const explorer_state *st, layout *lay, screen *s, area body)
 {
+    // the lesson takes its rows from all others
+    const panel *strip = panel_of(PANEL_LESSON);
+    const int taken = strip->rows(st, (screen_size){s->width, body.height});
+    if (taken > 0) {
+        strip->draw(st, lay, s, (area){0, body.y, s->width, taken});
+        body.y += taken;
+        body.height -= taken;
+    }
     int right = side_width(s->width), left = s->width - right;
     int top = body.height >= 20 ? body.height * 2 / 5 : body.height / 2;
     draw_place(st, lay, s, PLACE_TOP, (area){body.x, body.y, left, top});

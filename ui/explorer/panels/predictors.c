@@ -142,4 +142,4 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 }
 
 const panel predictors_panel = {
-    .name = "predictors", .least_width = SIDE_WIDTH, .least_body = 18, .rows = rows, .draw = draw};
+    .name = "predictors", .least_width = SIDE_WIDTH, .least_body = 15, .rows = rows, .draw = draw};

@@ -58,10 +58,13 @@
     X("", "trace", "1-9|SIGNAL...", "show or hide a pane of curves", act_trace_pane)               \
     X("", "lanes", "auto|all|off", "contact, modes, changes... below the curves; alone: next",     \
       act_set_lanes)                                                                               \
-    X("Scenarios and files", "open", "[NAME|+1|-1]", "another scenario, from a list",              \
-      act_open_scenario_by)                                                                        \
+    X("Scenarios", "open", "[NAME|+1|-1]", "another scenario, from a list", act_open_scenario_by)  \
     X("", "find", "[TEXT]", "the list, filtered by what is typed", act_find_scenario)              \
-    X("", "save", "FILE", ".png .pdf .svg .csv .yaml .txt", act_save)                              \
+    X("Lessons", "lesson", "[NAME|off]", "experiments step by step; alone: a list of them",        \
+      act_open_lesson)                                                                             \
+    X("", "answer", "[ANSWER]", "a step's question: a number, or that of a choice", act_answer)    \
+    X("", "continue", "", "the next step; before it is done: a hint", act_go_on)                   \
+    X("Files", "save", "FILE", ".png .pdf .svg .csv .yaml .txt", act_save)                         \
     X("", "save!", "FILE", "the same over a file that is there", act_save_over)                    \
     X("", "scene", "FILE.png", "picture of the arm at this instant", act_save_scene)               \
     X("The lab", "palette", "[WORDS]", "find anything by words: commands, values, scenarios",      \

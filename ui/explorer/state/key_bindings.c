@@ -85,6 +85,8 @@ static const binding bindings[] = {
     {"9", "trace 9"},
     {"T", "lanes"},
     {"o", "open"},
+    {"A", "answer"},
+    {"y", "continue"},
     {"/", "filter"},
     {"d", "info"},
     {"H", "changes"},

@@ -7,6 +7,7 @@
 
 // Where a panel stands.
 typedef enum panel_place {
+    PLACE_STRIP, // below the title, while there is a lesson
     PLACE_TOP,   // above the curves
     PLACE_MAIN,  // below that
     PLACE_SIDE,  // on the right; Tab chooses one of these
@@ -17,6 +18,7 @@ typedef enum panel_place {
 
 // identity, place, description; side panels in the order of Tab, stacked ones from top to bottom
 #define PANEL_LIST(X)                                                                              \
+    X(PANEL_LESSON, PLACE_STRIP, lesson_panel)                                                     \
     X(PANEL_ARM, PLACE_TOP, arm_panel)                                                             \
     X(PANEL_CURVES, PLACE_MAIN, curves_panel)                                                      \
     X(PANEL_PARAMETERS, PLACE_SIDE, parameters_panel)                                              \

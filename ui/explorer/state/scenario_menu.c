@@ -31,10 +31,13 @@ void scenario_menu_read_titles(scenario_menu *menu)
     }
     menu->titles = calloc((size_t)menu->count, sizeof *menu->titles);
     menu->descriptions = calloc((size_t)menu->count, sizeof *menu->descriptions);
-    for (int i = 0; menu->titles != NULL && menu->descriptions != NULL && i < menu->count; i++) {
+    menu->lessons = calloc((size_t)menu->count, sizeof *menu->lessons);
+    const bool room = menu->titles != NULL && menu->descriptions != NULL && menu->lessons != NULL;
+    for (int i = 0; room && i < menu->count; i++) {
         scenario s;
         if (scenario_open(&s, menu->names[i], ignore_fault, NULL) == STATUS_OK) {
             menu->titles[i] = s.title != NULL ? strdup(s.title) : NULL;
+            menu->lessons[i] = s.lesson.step_count > 0;
             menu->descriptions[i] = s.description != NULL ? strdup(s.description) : NULL;
             scenario_finish(&s);
         }
@@ -49,6 +52,7 @@ void scenario_menu_finish(scenario_menu *menu)
         free(menu->titles != NULL ? menu->titles[i] : NULL);
         free(menu->descriptions != NULL ? menu->descriptions[i] : NULL);
     }
+    free(menu->lessons);
     free(menu->descriptions);
     free(menu->titles);
     free(menu->names);

@@ -56,6 +56,19 @@ static int main_parameter(const explorer_state *st)
     return PARAMETER_INDEX(control.rate);
 }
 
+// Begins the scenario's lesson, if it has one, with the parameters that matter to it.
+static void begin_lesson(explorer_state *st)
+{
+    const lesson *l = &st->session.base.lesson;
+    st->lesson = (lesson_progress){.on = l->step_count > 0};
+    for (int i = 0; l->parameter_count > 0 && i < PARAMETER_GROUPS; i++) {
+        st->parameters.folded[i] = true;
+    }
+    for (int i = l->parameter_count; i-- > 0;) {
+        parameter_list_select(&st->parameters, (parameter_line){l->parameters[i], false});
+    }
+}
+
 // How a session is looked at at first.
 static void look_afresh(explorer_state *st)
 {
@@ -65,6 +78,7 @@ static void look_afresh(explorer_state *st)
     }
     parameter_list_arrange(&st->parameters, &st->session.effective.parameters, main_parameter(st));
     st->mark.set = false;
+    begin_lesson(st);
     time_window_show_all(&st->window);
     define_panes(st);
 }

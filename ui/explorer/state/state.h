@@ -9,6 +9,7 @@
 #include "ui/explorer/state/difference.h"
 #include "ui/explorer/state/lab_sweep.h"
 #include "ui/explorer/state/law_modes.h"
+#include "ui/explorer/state/lesson_progress.h"
 #include "ui/explorer/state/looks.h"
 #include "ui/explorer/state/message.h"
 #include "ui/explorer/state/palette.h"
@@ -78,6 +79,7 @@ typedef struct explorer_state {
     filters filters;
     page_view page;
     scenario_menu scenarios;
+    lesson_progress lesson;
     int change;            // selected among the changes, index in session.inputs
     int scroll[PANEL_IDS]; // by panel: lines it is away from where it stands by itself
     slider_grip slider;

@@ -1,0 +1,285 @@
+// The lesson of a scenario file.
+#include "src/scenario/reader.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/quantities/summary.h"
+
+#define NEAR_ENOUGH 0.001 // share of a value that a parameter may be off
+
+void lesson_finish(lesson *l)
+{
+    for (int i = 0; i < l->step_count; i++) {
+        lesson_step *step = &l->steps[i];
+        free(step->say);
+        free(step->then);
+        free(step->hint);
+        for (int k = 0; k < LESSON_CHOICES; k++) {
+            free(step->choices[k]);
+        }
+        for (int k = 0; k < LESSON_COMMANDS; k++) {
+            free(step->commands[k]);
+        }
+    }
+    free(l->steps);
+    *l = (lesson){0};
+}
+
+// --- pieces -----------------------------------------------------------------------------------
+
+// The text of a node in one line; NULL after a fault.
+static char *read_text(reader *r, const tree_node *node, const char *what)
+{
+    if (!node_is_scalar(node) || node->text[0] == '\0') {
+        report_node(r, node, "%s is %s, expected text", what, node_kind_name(node));
+        return NULL;
+    }
+
+    // folded lines are one, blanks at the end go
+    char *text = strdup(node->text);
+    if (!reader_have_memory(r, text)) {
+        return NULL;
+    }
+    for (char *c = text; *c != '\0'; c++) {
+        *c = *c == '\n' || *c == '\t' ? ' ' : *c;
+    }
+    for (size_t n = strlen(text); n > 0 && text[n - 1] == ' '; n--) {
+        text[n - 1] = '\0';
+    }
+    return text;
+}
+
+// Fills texts from a list; returns how many there are.
+static int read_texts(reader *r, const tree_node *list, const char *what, char **texts, int most)
+{
+    int count = 0;
+    if (list->kind != TREE_LIST) {
+        report_node(r, list, "%s is %s, expected a list", what, node_kind_name(list));
+        return 0;
+    }
+    for (const tree_node *child = list->first; child != NULL; child = child->next) {
+        if (count == most) {
+            report_node(r, child, "%s: more than %d of them", what, most);
+            return count;
+        }
+        texts[count] = read_text(r, child, what);
+        count += texts[count] != NULL;
+    }
+    return count;
+}
+
+// The value of a key in a map, NULL without one.
+static const tree_node *value_of(reader *r, const tree_node *map, const char *wanted)
+{
+    for (const tree_node *child = map->first; child != NULL; child = child->next) {
+        const char *key = reader_key(r, map, child);
+        if (key != NULL && strcmp(key, wanted) == 0) {
+            return child;
+        }
+    }
+    return NULL;
+}
+
+// A number of a map; the value stays where the key may be left out and is.
+static void read_number(reader *r, const tree_node *map, const char *key, bool needed,
+                        double *value)
+{
+    const tree_node *node = value_of(r, map, key);
+    if (node != NULL) {
+        reader_quantity(r, node, key, "", value);
+    } else if (needed) {
+        report_node(r, map, "there is no '%s' here, expected one", key);
+    }
+}
+
+// A quantity of the summary that a map names.
+static void read_quantity(reader *r, const tree_node *map, const char *key, int *index)
+{
+    const tree_node *node = value_of(r, map, key);
+    const bool named = node != NULL && node_is_scalar(node);
+    *index = named ? summary_find(node->text) : -1;
+    if (*index < 0) {
+        report_node(r, node != NULL ? node : map,
+                    "%s is no quantity of a run, expected a key of 'run --json'", key);
+        *index = 0;
+    }
+}
+
+// --- checks -----------------------------------------------------------------------------------
+
+static void read_choice(reader *r, const tree_node *map, lesson_step *step)
+{
+    const tree_node *of = value_of(r, map, "of");
+    double right = 0;
+    step->check = LESSON_CHOICE;
+    if (of == NULL) {
+        report_node(r, map, "a choice has no 'of', expected a list of answers");
+        return;
+    }
+    step->choice_count = read_texts(r, of, "of", step->choices, LESSON_CHOICES);
+    read_number(r, map, "right", true, &right);
+    step->right = (int)right - 1;
+    if (step->right < 0 || step->right >= step->choice_count) {
+        report_node(r, map, "right = %g, expected the number of an answer, from 1", right);
+    }
+}
+
+static void read_value(reader *r, const tree_node *map, lesson_step *step)
+{
+    fault f = {0};
+    const tree_node *child = map->first;
+    step->check = LESSON_VALUE;
+    step->within = NEAR_ENOUGH;
+    const char *path = child != NULL ? reader_key(r, map, child) : NULL;
+    if (path == NULL || child->next != NULL) {
+        report_node(r, map, "value takes one parameter, such as {motor.voltage: 0.5}");
+        return;
+    }
+
+    // a scratch copy checks and converts the value
+    step->parameter = parameter_look_up(path, &f);
+    const char *text = step->parameter >= 0 ? reader_value_text(r, child, path) : NULL;
+    parameters scratch = r->s->parameters;
+    if (step->parameter < 0 ||
+        (text != NULL && parameter_set_text(&scratch, step->parameter, text, &f) != STATUS_OK)) {
+        report_node(r, child, "%s", f.text);
+        step->parameter = 0;
+        return;
+    }
+    step->value = parameter_get(&scratch, step->parameter);
+}
+
+// Reads what has to be so; false if the key says nothing of that kind.
+static bool read_check(reader *r, const char *key, const tree_node *node, lesson_step *step)
+{
+    static const char *const kinds[] = {"number", "choice", "cursor", "value", "ratio", "pinned"};
+    enum { NUMBER, CHOICE, CURSOR, VALUE, RATIO, PINNED, KINDS };
+    int kind = 0;
+    while (kind < KINDS && strcmp(key, kinds[kind]) != 0) {
+        kind++;
+    }
+    if (kind == KINDS) {
+        return false;
+    }
+    if (step->check != LESSON_READ) {
+        report_node(r, node->key, "'%s' is a second check of this step, expected one", key);
+        return true;
+    }
+
+    // a count, or a map of what it needs
+    if (kind == PINNED) {
+        double count = 0;
+        step->check = LESSON_PINNED;
+        reader_quantity(r, node, key, "", &count);
+        step->pinned = (int)count;
+        return true;
+    }
+    if (!reader_expect_map(r, node, key, "quantity: peak_force_N")) {
+        return true;
+    }
+    if (kind == CHOICE) {
+        read_choice(r, node, step);
+    } else if (kind == VALUE) {
+        read_value(r, node, step);
+    } else if (kind == NUMBER) {
+        step->check = LESSON_NUMBER;
+        read_quantity(r, node, "quantity", &step->quantity);
+        read_number(r, node, "within", true, &step->within);
+    } else if (kind == CURSOR) {
+        step->check = LESSON_CURSOR;
+        read_quantity(r, node, "at", &step->quantity);
+        read_number(r, node, "offset", false, &step->offset);
+        read_number(r, node, "within", true, &step->within);
+    } else {
+        step->check = LESSON_RATIO;
+        read_quantity(r, node, "quantity", &step->quantity);
+        read_number(r, node, "from", true, &step->low);
+        read_number(r, node, "to", true, &step->high);
+    }
+    return true;
+}
+
+// --- steps ------------------------------------------------------------------------------------
+
+static void read_step(reader *r, const tree_node *map, lesson_step *step)
+{
+    if (!reader_expect_map(r, map, "a step", "say: ...")) {
+        return;
+    }
+    for (const tree_node *child = map->first; child != NULL; child = child->next) {
+        const char *key = reader_key(r, map, child);
+        if (key == NULL || read_check(r, key, child, step)) {
+            continue;
+        }
+        if (strcmp(key, "say") == 0) {
+            step->say = read_text(r, child, key);
+        } else if (strcmp(key, "then") == 0) {
+            step->then = read_text(r, child, key);
+        } else if (strcmp(key, "hint") == 0) {
+            step->hint = read_text(r, child, key);
+        } else if (strcmp(key, "do") == 0) {
+            step->command_count = read_texts(r, child, key, step->commands, LESSON_COMMANDS);
+        } else {
+            report_node(r, child->key,
+                        "unknown key '%.60s' in a step, expected say, then, hint, do, number, "
+                        "choice, cursor, value, pinned or ratio",
+                        key);
+        }
+    }
+
+    // what can be left out is empty
+    if (value_of(r, map, "say") == NULL) {
+        report_node(r, map, "a step has no 'say', expected text");
+    }
+    step->then = step->then != NULL ? step->then : strdup("");
+    step->hint = step->hint != NULL ? step->hint : strdup("");
+    reader_have_memory(r, step->then);
+    reader_have_memory(r, step->hint);
+}
+
+static void read_parameters(reader *r, const tree_node *list, lesson *l)
+{
+    char *paths[LESSON_PARAMETERS] = {0};
+    const int count = read_texts(r, list, "parameters", paths, LESSON_PARAMETERS);
+    for (int i = 0; i < count; i++) {
+        fault f = {0};
+        const int index = parameter_look_up(paths[i], &f);
+        if (index < 0) {
+            report_node(r, list, "%s", f.text);
+        } else {
+            l->parameters[l->parameter_count++] = index;
+        }
+        free(paths[i]);
+    }
+}
+
+void reader_lesson(reader *r, const tree_node *map)
+{
+    lesson *l = &r->s->lesson;
+    if (!reader_expect_map(r, map, "lesson", "steps: [...]")) {
+        return;
+    }
+    const tree_node *steps = value_of(r, map, "steps");
+    const tree_node *parameters_that_matter = value_of(r, map, "parameters");
+    if (steps == NULL || steps->kind != TREE_LIST || steps->first == NULL) {
+        report_node(r, map, "the lesson has no steps, expected a list under 'steps'");
+        return;
+    }
+    if (parameters_that_matter != NULL) {
+        read_parameters(r, parameters_that_matter, l);
+    }
+
+    // room for all of them, then one after the other
+    int most = 0;
+    for (const tree_node *child = steps->first; child != NULL; child = child->next) {
+        most++;
+    }
+    l->steps = calloc((size_t)most, sizeof *l->steps);
+    if (!reader_have_memory(r, l->steps)) {
+        return;
+    }
+    for (const tree_node *child = steps->first; child != NULL; child = child->next) {
+        read_step(r, child, &l->steps[l->step_count++]);
+    }
+}

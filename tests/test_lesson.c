@@ -1,0 +1,162 @@
+// Lessons: every one that ships can be gone through to its end by its own commands, no step is done
+// before it is, and files that are wrong are told.
+#include "tests/explorer_on_screen.h"
+
+// Goes through a lesson by its own commands.
+static void go_through(explorer *ex, const char *name)
+{
+    const lesson *l = &ex->state.session.base.lesson;
+    for (int i = 0; i < l->step_count; i++) {
+        const lesson_step *step = &l->steps[i];
+        if (ex->state.lesson.step != i || !ex->state.lesson.on) {
+            fail_msg("%s is at step %d, expected %d", name, ex->state.lesson.step + 1, i + 1);
+        }
+
+        // asked before it is done it gives a hint and stays
+        if (step->check != LESSON_READ) {
+            explorer_carry_out(ex, "continue");
+            if (ex->state.lesson.step != i || strlen(step->hint) < 5) {
+                fail_msg("%s: step %d is done before anything is, or has no hint", name, i + 1);
+            }
+        }
+        for (int k = 0; k < step->command_count; k++) {
+            if (!explorer_carry_out(ex, step->commands[k])) {
+                fail_msg("%s: step %d: '%s': %s", name, i + 1, step->commands[k],
+                         ex->state.message.text);
+            }
+        }
+        if (step->check != LESSON_READ && !ex->state.lesson.passed) {
+            fail_msg("%s: step %d is not done by its own commands", name, i + 1);
+        }
+        explorer_carry_out(ex, "continue");
+    }
+    assert_false(ex->state.lesson.on);
+}
+
+static void test_every_lesson_can_be_gone_through(void **state)
+{
+    (void)state;
+    char **names;
+    int count, lessons = 0;
+    fault f = {0};
+    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        scenario s;
+        assert_int_equal(scenario_open(&s, names[i], fail_on_fault, NULL), STATUS_OK);
+        const bool is_lesson = s.lesson.step_count > 0;
+        scenario_finish(&s);
+        if (is_lesson) {
+            explorer ex;
+            open_explorer(&ex, names[i]);
+            go_through(&ex, names[i]);
+            explorer_finish(&ex);
+            lessons++;
+        }
+        free(names[i]);
+    }
+    free(names);
+    assert_int_equal(lessons, 6);
+}
+
+static void test_every_step_fits_a_small_screen(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "lessons/impulse-and-force");
+    const lesson *l = &ex.state.session.base.lesson;
+    for (int i = 0; i < l->step_count; i++) {
+        ex.state.lesson = (lesson_progress){.on = true, .step = i};
+        char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+        assert_non_null(strstr(text, "lesson, step"));
+        assert_non_null(strstr(text, "energy"));
+        free(text);
+
+        // its last word is on the screen
+        const char *say = l->steps[i].say, *last = strrchr(say, ' ');
+        text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+        assert_non_null(strstr(text, l->steps[i].choice_count == 0 ? last + 1 : say));
+        free(text);
+    }
+    explorer_finish(&ex);
+}
+
+static void test_wrong_answers_are_not_taken(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "lessons/hybrid-law");
+    press(&ex, "A1<Enter>");
+    assert_false(ex.state.lesson.passed);
+    assert_true(ex.state.message.warning);
+    press(&ex, "A3<Enter>");
+    assert_true(ex.state.lesson.passed);
+    press(&ex, "y");
+    press(&ex, "A3<Enter>");
+    assert_false(ex.state.lesson.passed);
+    press(&ex, "A1.76<Enter>");
+    assert_true(ex.state.lesson.passed);
+
+    // by name, from anywhere; and out of it
+    press(&ex, ":open corrected/first-impact<Enter>");
+    assert_false(ex.state.lesson.on);
+    press(&ex, ":lesson step-size<Enter>");
+    assert_true(ex.state.lesson.on);
+    press(&ex, ":lesson off<Enter>");
+    assert_false(ex.state.lesson.on);
+    press(&ex, ":lesson no-such<Enter>");
+    assert_true(ex.state.message.warning);
+    explorer_finish(&ex);
+}
+
+static int faults_seen;
+
+static void count_fault(void *context, const char *sentence)
+{
+    (void)context;
+    (void)sentence;
+    faults_seen++;
+}
+
+static void test_lessons_with_faults_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        int faults;
+    } cases[] = {
+        {"lesson: {steps: [{say: a}]}", 0},
+        {"lesson: {steps: []}", 1},
+        {"lesson: [a]", 1},
+        {"lesson: {steps: [{hint: a}]}", 1},
+        {"lesson: {steps: [{say: a, saw: b}]}", 1},
+        {"lesson: {steps: [{say: a, number: {quantity: peek, within: 1}}]}", 1},
+        {"lesson: {steps: [{say: a, number: {quantity: peak_force_N}}]}", 1},
+        {"lesson: {steps: [{say: a, choice: {of: [a, b], right: 3}}]}", 1},
+        {"lesson: {steps: [{say: a, value: {motor.volts: 1}}]}", 1},
+        {"lesson: {steps: [{say: a, pinned: 1, value: {motor.voltage: 1}}]}", 1},
+        {"lesson: {parameters: [motor.volts], steps: [{say: a}]}", 1},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        scenario s;
+        faults_seen = 0;
+        const status code = scenario_parse(&s, cases[i].text, strlen(cases[i].text), "file.yaml",
+                                           NULL, count_fault, NULL);
+        if (faults_seen != cases[i].faults || (code == STATUS_OK) != (cases[i].faults == 0)) {
+            fail_msg("%s: %d faults", cases[i].text, faults_seen);
+        }
+        if (code == STATUS_OK) {
+            scenario_finish(&s);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_lesson_can_be_gone_through),
+        cmocka_unit_test(test_every_step_fits_a_small_screen),
+        cmocka_unit_test(test_wrong_answers_are_not_taken),
+        cmocka_unit_test(test_lessons_with_faults_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,62 @@
+// The strip of a lesson below the title: what is to be done, or what came of it.
+#include "ui/explorer/panels/panel.h"
+
+#include <string.h>
+
+enum { MOST_LINES = 7 };
+
+// The step as text: its sentence, the answers to choose from, what it says when it is done.
+static void write_step(const explorer_state *st, char *text, size_t size)
+{
+    const lesson_step *step = &st->session.base.lesson.steps[st->lesson.step];
+    if (st->lesson.passed) {
+        snprintf(text, size, "Right. %s", step->then);
+        return;
+    }
+    snprintf(text, size, "%s", step->say);
+    for (int i = 0; i < step->choice_count; i++) {
+        const size_t used = strlen(text);
+        snprintf(text + used, used < size ? size - used : 0, "  %d: %s", i + 1, step->choices[i]);
+    }
+}
+
+// What key is to be pressed.
+static const char *wanted_key(const explorer_state *st)
+{
+    const lesson_step *step = &st->session.base.lesson.steps[st->lesson.step];
+    const bool answers = step->check == LESSON_NUMBER || step->check == LESSON_CHOICE;
+    return st->lesson.passed || step->check == LESSON_READ ? "y goes on"
+           : answers                                       ? "A answers, y asks for a hint"
+                                                           : "do it, y asks for a hint";
+}
+
+static int rows(const explorer_state *st, screen_size body)
+{
+    char text[1024];
+    text_line lines[MOST_LINES];
+    if (!st->lesson.on) {
+        return 0;
+    }
+    write_step(st, text, sizeof text);
+    const int count = text_wrap(text, body.width - 4, lines, MOST_LINES, NULL);
+    return count + 2;
+}
+
+static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    (void)lay;
+    const lesson *l = &st->session.base.lesson;
+    char text[1024], title[LINE_TEXT];
+    text_line lines[MOST_LINES];
+    write_step(st, text, sizeof text);
+    snprintf(title, sizeof title, "lesson, step %d of %d (%s)", st->lesson.step + 1, l->step_count,
+             wanted_key(st));
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_EVENT, title);
+    const int count = text_wrap(text, a.width - 4, lines, MOST_LINES, NULL);
+    for (int i = 0; i < count && i < a.height - 2; i++) {
+        screen_print(s, a.x + 2, a.y + 1 + i, a.width - 4, st->lesson.passed ? INK_TITLE : INK_TEXT,
+                     "%.*s", lines[i].bytes, lines[i].start);
+    }
+}
+
+const panel lesson_panel = {.name = "lesson", .rows = rows, .draw = draw};
