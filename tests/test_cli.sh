@@ -174,6 +174,10 @@ printf 'runs:\n  - scenario: hit.yaml\npanels:\n  - signals: [forse]\n' >bad-rec
 expect 2 plot bad-recipe.yaml -o recipe.svg
 says err "bad-recipe.yaml:4:15: there is no signal 'forse', did you mean 'force'?"
 expect 2 plot nowhere.yaml -o recipe.svg
+expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --vary arm.k2=4:6:2 --db map.sqlite --quiet
+printf 'tables:\n  - {file: map.sqlite, x: motor.voltage, y: arm.k2, z: peak_force_N}\npanels:\n  - {weight: 2}\n' >map.yaml
+expect 0 plot map.yaml -o map.svg --quiet
+[ "$(grep -c '^[^,]*,[^,]*,' map.csv)" -ge 5 ] || fail "a map's numbers are missing: $(cat map.csv)"
 
 # the arm in space
 expect 0 run hit.yaml --quiet --scene arm.png --gl cairo --size 320x180

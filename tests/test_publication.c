@@ -246,13 +246,21 @@ static status open_recipe(const char *name, artwork *drawn, fault *f)
 static void shipped_recipes_are_drawn(void **state)
 {
     (void)state;
-    static const char *const names[] = {"fig-3-4", "fig-3-8", "measured", "voltages"};
     static figure_report r;
-    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+    char *recipes = g_build_filename(getenv("IMPACTLAB_SCENARIOS"), "recipes", NULL);
+    GDir *entries = g_dir_open(recipes, 0, NULL);
+    assert_non_null(entries);
+    const char *name;
+    int drawn_recipes = 0;
+    while ((name = g_dir_read_name(entries)) != NULL) {
+        if (!g_str_has_suffix(name, ".yaml")) {
+            continue;
+        }
+        drawn_recipes++;
         fault f = {0};
         artwork drawn;
         const figure_options o = {.look.width = 85};
-        char *path = g_strdup_printf("%s/recipes/%s.yaml", getenv("IMPACTLAB_SCENARIOS"), names[i]);
+        char *path = g_build_filename(recipes, name, NULL);
         heard = heard != NULL ? g_string_truncate(heard, 0) : g_string_new(NULL);
         if (recipe_open(path, &o, listen, NULL, &drawn, &f) != STATUS_OK) {
             fail_msg("%s: %s%s", path, heard->str, f.text);
@@ -262,13 +270,52 @@ static void shipped_recipes_are_drawn(void **state)
             expect_inside(&r.texts[k].place, &r.page, r.texts[k].text);
             for (int n = 0; n < k; n++) {
                 if (overlap(&r.texts[k].place, &r.texts[n].place)) {
-                    fail_msg("%s: '%s' covers '%s'", names[i], r.texts[k].text, r.texts[n].text);
+                    fail_msg("%s: '%s' covers '%s'", name, r.texts[k].text, r.texts[n].text);
                 }
             }
         }
         artwork_finish(&drawn);
         g_free(path);
     }
+    assert_true(drawn_recipes >= 20);
+    g_dir_close(entries);
+    g_free(recipes);
+}
+
+// Small multiples are what the same runs give one by one.
+static void multiples_are_runs_at_their_values(void **state)
+{
+    (void)state;
+    fault f = {0};
+    artwork drawn;
+    size_t length;
+    static figure_report r;
+    write_measured("many.yaml", "runs: [{name: arm, scenario: corrected/first-impact}]\n"
+                                "multiples: {vary: motor.voltage, values: [1 V, 2 V]}\n"
+                                "panels: [{signals: [force]}, {signals: [hub_angle]}]\n");
+    assert_int_equal(open_recipe(path_of("many.yaml"), &drawn, &f), STATUS_OK);
+    report_of(&drawn, &r);
+    assert_int_equal(r.panel_count, 4);
+    assert_int_equal(drawn.write_csv(drawn.what, path_of("many.csv"), &f), STATUS_OK);
+    artwork_finish(&drawn);
+
+    write_measured("one.yaml", "runs: [{name: arm 2 V, scenario: corrected/first-impact, set: "
+                               "{motor.voltage: 2}}]\npanels: [{signals: [force]}]\n");
+    assert_int_equal(open_recipe(path_of("one.yaml"), &drawn, &f), STATUS_OK);
+    assert_int_equal(drawn.write_csv(drawn.what, path_of("one.csv"), &f), STATUS_OK);
+    artwork_finish(&drawn);
+
+    // the same rows, whatever else is in the file
+    char *many = read_file(path_of("many.csv"), &length);
+    char *one = read_file(path_of("one.csv"), &length);
+    const char *row = ",arm 2 V force,0.3,";
+    const char *a = strstr(many, row), *b = strstr(one, row);
+    assert_non_null(a);
+    assert_non_null(b);
+    check_close(atof(a + strlen(row)), atof(b + strlen(row)), 0);
+    assert_true(atof(a + strlen(row)) > 1);
+    free(many);
+    free(one);
 }
 
 // A recipe of figure 3.4 shows the numbers that figure 3.4 does, and their difference.
@@ -325,6 +372,13 @@ static void faults_of_recipes_have_their_places(void **state)
         {"runs: [{scenario: a}]\nx: {range: [1]}\n", ":2:12: range is a list, expected two"},
         {"runs: 3\n", ":1:7: runs is a single value, expected a list"},
         {"runs: [\n", ":2:1: "},
+        {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\nmultiples: {vary: motor.volts}\n",
+         ":3:19: there is no parameter 'motor.volts', did you mean 'motor.voltage'?"},
+        {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\nmultiples: {values: [1]}\n",
+         ":3:12: multiples needs 'vary'"},
+        {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\n"
+         "multiples: {vary: arm.k2, values: [1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]}\n",
+         ":3:75: there are more than 16 values"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         fault f = {0};
@@ -359,6 +413,7 @@ int main(void)
         cmocka_unit_test(measured_data_have_a_panel_of_residuals),
         cmocka_unit_test(shipped_recipes_are_drawn),
         cmocka_unit_test(a_recipe_shows_what_its_runs_give),
+        cmocka_unit_test(multiples_are_runs_at_their_values),
         cmocka_unit_test(faults_of_recipes_have_their_places),
     };
     return cmocka_run_group_tests_name("publication", tests, make_work_folder,

@@ -42,8 +42,12 @@ static status paint_artwork(cairo_t *cr, const void *what, fault *f)
 picture artwork_picture(const artwork *a, const figure_options *options)
 {
     assert(a != NULL && options != NULL);
-    static char software[32];
-    g_snprintf(software, sizeof software, "impactlab %s", lab_version());
+    static gsize software;
+    if (g_once_init_enter(&software)) {
+        char *named = g_strdup_printf("impactlab %s", lab_version());
+        g_once_init_leave(&software, (gsize)g_intern_string(named));
+        g_free(named);
+    }
     return (picture){.width = a->width,
                      .height = a->height,
                      .dpi = options->look.dpi,
@@ -51,7 +55,7 @@ picture artwork_picture(const artwork *a, const figure_options *options)
                      .command = options->command,
                      .alternative = a->alternative != NULL ? a->alternative : a->title,
                      .title = a->title,
-                     .software = software,
+                     .software = (const char *)software,
                      .parameters = a->parameters,
                      .paint = paint_artwork,
                      .what = a};

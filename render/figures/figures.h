@@ -19,6 +19,7 @@ typedef struct thesis_figure {
     double from, to;      // recorded signals: ends of the time axis [s]; from >= to: as it comes
     bool steps;           // a point at every step of the first run
     bool modes;           // the controller's second mode is shaded instead of contact
+    bool slow;            // takes as long as all others: begin with it
     int printed_voltage;  // the peak of Table 4.3 in this column as a point, 1 to 4; 0: none
     // opens it; NULL for recorded signals in `panels`
     status (*open)(const char *title, const figure_options *o, artwork *out, fault *f);

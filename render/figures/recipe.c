@@ -6,37 +6,13 @@
 #include <string.h>
 
 #include "render/figures/publication.h"
-#include "render/figures/recipe_model.h"
+#include "render/figures/recipe_figure.h"
 #include "render/page/text.h"
 #include "render/plot/opened_run.h"
 #include "render/plot/overlay.h"
 #include "src/base/version.h"
-#include "src/study/sweep_table.h"
 
-// A source with what came of it.
-typedef struct opened_source {
-    opened_run run;  // of a run
-    bool ran;        // it is to be ended
-    run_result data; // of data: its trace alone
-    double *x, *y;   // of a table
-    size_t count;
-} opened_source;
-
-// A figure with everything it borrows.
-typedef struct recipe_figure {
-    recipe recipe;
-    char *path;
-    opened_source sources[RECIPE_SOURCES];
-    figure figure;
-    figure_panel panels[FIGURE_PANELS];
-    figure_series series[FIGURE_PANELS][PANEL_SERIES];
-    figure_note notes[FIGURE_PANELS][RECIPE_NOTES];
-    figure_mark marks[RECIPE_MARKS];
-    figure_interval *intervals;
-    GPtrArray *owned;
-} recipe_figure;
-
-static void *own(recipe_figure *fig, void *block)
+void *recipe_own(recipe_figure *fig, void *block)
 {
     g_ptr_array_add(fig->owned, block);
     return block;
@@ -51,8 +27,9 @@ static void release(void *owner)
             run_end(&s->run);
         }
         trace_finish(&s->data.trace);
-        free(s->x);
-        free(s->y);
+        for (int k = 0; k < SWEEP_TABLE_COLUMNS; k++) {
+            free(s->columns[k]);
+        }
     }
 
     g_ptr_array_free(fig->owned, TRUE);
@@ -124,7 +101,8 @@ static status open_source(recipe_figure *fig, int index, fault *f)
         code = open_data(fig, s, out, &why);
     } else {
         char *path = path_of(fig, s->file);
-        code = sweep_table_read(path, s->x, s->y, &out->x, &out->y, &out->count, &why);
+        const char *const keys[] = {s->x, s->y, s->z};
+        code = sweep_table_read(path, keys, s->z != NULL ? 3 : 2, out->columns, &out->count, &why);
         g_free(path);
     }
 
@@ -137,18 +115,6 @@ static const trace *trace_of(const recipe_figure *fig, int source)
 {
     const opened_source *s = &fig->sources[source];
     return fig->recipe.sources[source].kind == SOURCE_RUN ? &s->run.result.trace : &s->data.trace;
-}
-
-static const char *label_of(recipe_figure *fig, const recipe_source *s)
-{
-    return own(fig, text_escape(s->label != NULL ? s->label : s->name));
-}
-
-// Colours of curves side by side, the most different first; data are black.
-static int colour_of(int index)
-{
-    static const int colours[] = {0, 5, 2, 4, 1, 3, 7};
-    return colours[index % (int)G_N_ELEMENTS(colours)];
 }
 
 static void add_signal(recipe_figure *fig, int panel, int source, int signal, int signals)
@@ -170,42 +136,23 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
     *out = trace_series(&run, index, fig->owned);
 
     // several signals of one run are told by their symbols, several runs by their labels
-    const char *label = label_of(fig, from);
+    const char *label = recipe_label(fig, from);
     if (signals > 1) {
         const opened_source *first = &fig->sources[0];
         char *symbol = trace_symbol(data ? &first->run.scenario : run.scenario, index);
-        label = own(fig, fig->recipe.source_count > 1 ? g_strdup_printf("%s %s", label, symbol)
-                                                      : g_strdup(symbol));
+        label =
+            recipe_own(fig, fig->recipe.source_count > 1 ? g_strdup_printf("%s %s", label, symbol)
+                                                         : g_strdup(symbol));
         g_free(symbol);
     }
 
     // measured data are points without a line
     out->label = label;
-    out->name = own(fig, g_strdup_printf("%s %s", from->name, signal_table[index].name));
+    out->name = recipe_own(fig, g_strdup_printf("%s %s", from->name, signal_table[index].name));
     out->style = LINE_SOLID;
-    out->colour = data ? 6 : colour_of(p->series_count);
+    out->colour = data ? 6 : recipe_colour(p->series_count);
     out->no_line = data;
     out->marker = data ? MARKER_CIRCLE : MARKER_NONE;
-    p->series_count++;
-}
-
-static void add_table(recipe_figure *fig, int panel, int source)
-{
-    static const marker_kind markers[] = {MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE,
-                                          MARKER_DIAMOND};
-    figure_panel *p = &fig->panels[panel];
-    const opened_source *s = &fig->sources[source];
-    if (p->series_count == PANEL_SERIES) {
-        return;
-    }
-    fig->series[panel][p->series_count] =
-        (figure_series){.name = fig->recipe.sources[source].name,
-                        .label = label_of(fig, &fig->recipe.sources[source]),
-                        .x = s->x,
-                        .y = s->y,
-                        .count = s->count,
-                        .colour = colour_of(p->series_count),
-                        .marker = s->count > 80 ? MARKER_NONE : markers[p->series_count % 4]};
     p->series_count++;
 }
 
@@ -215,8 +162,8 @@ static void add_difference(recipe_figure *fig, int panel)
     const recipe_panel *from = &fig->recipe.panels[panel];
     const trace *of = trace_of(fig, from->of), *less = trace_of(fig, from->less);
     int index = signal_index(from->signals[0]);
-    double *x = own(fig, g_new(double, of->row_count + 1));
-    double *y = own(fig, g_new(double, of->row_count + 1));
+    double *x = recipe_own(fig, g_new(double, of->row_count + 1));
+    double *y = recipe_own(fig, g_new(double, of->row_count + 1));
 
     for (size_t i = 0; i < of->row_count; i++) {
         x[i] = of->rows[i].time;
@@ -255,22 +202,22 @@ static void describe_axis(recipe_figure *fig, int panel)
         y->name = signal->name;
         y->unit = signal->unit;
         y->symbol = from->signal_count == 1
-                        ? own(fig, g_strconcat(from->of >= 0 ? "Δ" : "", symbol, NULL))
+                        ? recipe_own(fig, g_strconcat(from->of >= 0 ? "Δ" : "", symbol, NULL))
                         : NULL;
-        y->label =
-            own(fig, from->of >= 0             ? g_strdup_printf("Difference of %s", symbol)
-                     : from->signal_count == 1 ? g_strdup_printf("%s %s", signal->quantity, symbol)
-                                               : g_strdup(signal->quantity));
+        y->label = recipe_own(fig, from->of >= 0 ? g_strdup_printf("Difference of %s", symbol)
+                                   : from->signal_count == 1
+                                       ? g_strdup_printf("%s %s", signal->quantity, symbol)
+                                       : g_strdup(signal->quantity));
         g_free(symbol);
     } else if (from->source_count > 0) {
-        const char *key = fig->recipe.sources[from->sources[0]].y;
-        int quantity = summary_find(key);
-        char *label = quantity >= 0 ? text_label(summary_table[quantity].label) : g_strdup(key);
-        y->name = key;
-        y->unit = quantity >= 0 ? summary_table[quantity].unit : "";
-        y->label = own(fig, text_escape(label));
-        y->room = 0.05;
-        g_free(label);
+        const recipe_source *table = &fig->recipe.sources[from->sources[0]];
+        figure_axis column = recipe_column_axis(fig, table->y);
+        column.with_zero = from->zero;
+        column.low = from->low;
+        column.high = from->high;
+        column.scale = y->scale;
+        column.room = table->z != NULL ? 0 : 0.05;
+        *y = column;
     }
 
     // the recipe's own word
@@ -302,7 +249,7 @@ static void describe_panel(recipe_figure *fig, int panel)
     }
     for (int i = 0; i < from->source_count; i++) {
         if (fig->recipe.sources[from->sources[i]].kind == SOURCE_TABLE) {
-            add_table(fig, panel, from->sources[i]);
+            recipe_add_table(fig, panel, from->sources[i]);
             continue;
         }
         for (int k = 0; k < from->signal_count; k++) {
@@ -333,14 +280,8 @@ static figure_axis horizontal_axis(recipe_figure *fig)
     figure_axis x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
 
     if (first->kind == SOURCE_TABLE) {
-        int index = parameter_find(first->x);
-        char *label =
-            index >= 0 ? text_label(parameter_table[index].description) : g_strdup(first->x);
-        x = (figure_axis){.name = first->x,
-                          .label = own(fig, text_escape(label)),
-                          .unit = index >= 0 ? parameter_table[index].unit : "",
-                          .room = 0.03};
-        g_free(label);
+        x = recipe_column_axis(fig, first->x);
+        x.room = first->z != NULL ? 0 : 0.03;
     }
 
     // what the recipe says of it
@@ -378,17 +319,18 @@ static void describe(recipe_figure *fig, const figure_options *o)
         fig->marks[i] = (figure_mark){r->marks[i].x, r->marks[i].label};
     }
 
-    fig->figure = (figure){.title = r->title,
-                           .caption = r->caption,
-                           .x = horizontal_axis(fig),
-                           .panels = fig->panels,
-                           .panel_count = r->panel_count,
-                           .columns = r->columns,
-                           .shared_y = r->shared,
-                           .marks = fig->marks,
-                           .mark_count = r->mark_count,
-                           .software = own(fig, g_strconcat("impactlab ", lab_version(), NULL)),
-                           .parameters = own(fig, parameters_of(fig))};
+    fig->figure =
+        (figure){.title = r->title,
+                 .caption = r->caption,
+                 .x = horizontal_axis(fig),
+                 .panels = fig->panels,
+                 .panel_count = r->panel_count,
+                 .columns = r->columns,
+                 .shared_y = r->shared,
+                 .marks = fig->marks,
+                 .mark_count = r->mark_count,
+                 .software = recipe_own(fig, g_strconcat("impactlab ", lab_version(), NULL)),
+                 .parameters = recipe_own(fig, parameters_of(fig))};
 
     // the first run's contact
     if (r->contact && fig->sources[0].ran) {

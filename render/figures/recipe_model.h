@@ -20,6 +20,7 @@ typedef struct recipe_source {
     const char *file;   // of data (CSV), of a table (a sweep's database)
     const char *column; // of data, NULL: all that are signals
     const char *x, *y;  // of a table: columns
+    const char *z;      // of a table: the column that a map's colours show, NULL: a curve
     double shift;       // of data [s]
     place at;           // in the recipe
 } recipe_source;

@@ -276,16 +276,18 @@ static void add_model(table_page *t, const table_row *row, double scale, const c
     g_free(name);
 }
 
-// Computing the tables takes a while, and three pages want them.
+G_LOCK_DEFINE_STATIC(tables);
+
+// Computing the tables takes a while, and four pages want them, perhaps on several threads.
 static const thesis_tables *computed_tables(fault *f)
 {
     static thesis_tables tables;
     static bool done;
-    if (!done && tables_compute(&tables, f) != STATUS_OK) {
-        return NULL;
-    }
-    done = true;
-    return &tables;
+    G_LOCK(tables);
+    done = done || tables_compute(&tables, f) == STATUS_OK;
+    const thesis_tables *computed = done ? &tables : NULL;
+    G_UNLOCK(tables);
+    return computed;
 }
 
 static status open_predictions(const char *table, const char *title, const figure_options *o,

@@ -39,13 +39,15 @@ static bool family_matches(const char *wanted_family)
 
 status text_check_font(fault *f)
 {
-    // asked once: a process does not see fonts come and go
-    static int known; // 0 not asked, 1 there, -1 missing
-    if (known == 0) {
+    // asked once, by whichever thread comes first: a process does not see fonts come and go
+    enum { THERE = 1, MISSING };
+    static gsize known;
+    if (g_once_init_enter(&known)) {
         FcFontSet *fonts = FcInit() ? FcConfigGetFonts(NULL, FcSetSystem) : NULL;
-        known = fonts != NULL && fonts->nfont > 0 && family_matches(TEXT_FAMILY) ? 1 : -1;
+        bool there = fonts != NULL && fonts->nfont > 0 && family_matches(TEXT_FAMILY);
+        g_once_init_leave(&known, there ? THERE : MISSING);
     }
-    if (known < 0) {
+    if (known == MISSING) {
         return fault_set(f, STATUS_CANNOT_READ,
                          "the font " TEXT_FAMILY " is not installed, figures need it: install "
                          "fonts-dejavu-core");

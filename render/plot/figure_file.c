@@ -27,72 +27,108 @@ status figure_write(const figure *fig, const char *path, fault *f)
     return picture_write(&p, path, f);
 }
 
+// A table in long form; `shaded`: with a last column for the colour scale.
+typedef struct long_form {
+    csv_writer csv;
+    bool shaded;
+} long_form;
+
 // A name, or the label without markup where there is none, with its unit.
-static void write_name(csv_writer *csv, const char *name, const char *label, const char *unit)
+static void write_name(long_form *t, const char *name, const char *label, const char *unit)
 {
     char *plain = name ? g_strdup(name) : text_plain(label ? label : "");
-    csv_heading(csv, plain, unit != NULL && unit[0] != '\0' ? unit : NULL);
+    csv_heading(&t->csv, plain, unit != NULL && unit[0] != '\0' ? unit : NULL);
     g_free(plain);
 }
 
-static void write_panel_name(csv_writer *csv, const figure_panel *panel)
+static void write_panel_name(long_form *t, const figure_panel *panel)
 {
-    write_name(csv, panel->y.name, panel->y.label, panel->y.unit);
+    write_name(t, panel->y.name, panel->y.label, panel->y.unit);
 }
 
 // The end of a row.
-static void write_point(csv_writer *csv, double x, double y)
+static void write_point(long_form *t, double x, double y)
 {
-    csv_number(csv, x);
-    csv_number(csv, isfinite(y) ? y : (double)NAN);
-    csv_end_row(csv);
+    csv_number(&t->csv, x);
+    csv_number(&t->csv, isfinite(y) ? y : (double)NAN);
+    if (t->shaded) {
+        csv_number(&t->csv, (double)NAN);
+    }
+    csv_end_row(&t->csv);
 }
 
-static void write_series(csv_writer *csv, const figure_panel *panel, const figure_series *s)
+// The end of a row that has a value on a colour scale, too.
+static void write_shaded_point(long_form *t, double x, double y, double shade)
 {
-    for (size_t i = 0; i < s->count && !ferror(csv->stream); i++) {
-        if (isfinite(series_x(s, i))) {
-            write_panel_name(csv, panel);
-            write_name(csv, s->name, s->label, NULL);
-            write_point(csv, series_x(s, i), series_y(s, i));
+    csv_number(&t->csv, x);
+    csv_number(&t->csv, y);
+    csv_number(&t->csv, isfinite(shade) ? shade : (double)NAN);
+    csv_end_row(&t->csv);
+}
+
+static void write_series(long_form *t, const figure_panel *panel, const figure_series *s)
+{
+    for (size_t i = 0; i < s->count && !ferror(t->csv.stream); i++) {
+        if (!isfinite(series_x(s, i))) {
+            continue;
+        }
+
+        write_panel_name(t, panel);
+        write_name(t, s->name, s->label, NULL);
+        if (s->shade != NULL) {
+            write_shaded_point(t, series_x(s, i), series_y(s, i), series_shade(s, i));
+        } else {
+            write_point(t, series_x(s, i), series_y(s, i));
         }
     }
 }
 
-static void write_levels_and_impulses(csv_writer *csv, const figure_panel *panel)
+static void write_map(long_form *t, const figure_panel *panel)
+{
+    const figure_map *map = panel->map;
+    for (size_t i = 0; i < map->columns && !ferror(t->csv.stream); i++) {
+        for (size_t j = 0; j < map->rows; j++) {
+            write_panel_name(t, panel);
+            csv_text(&t->csv, "map");
+            write_shaded_point(t, map->x[i], map->y[j], map->z[i * map->rows + j]);
+        }
+    }
+}
+
+static void write_levels_and_impulses(long_form *t, const figure_panel *panel)
 {
     for (int i = 0; i < panel->impulse_count; i++) {
-        write_panel_name(csv, panel);
-        write_name(csv, "impulse", NULL, panel->impulse_unit);
-        write_point(csv, panel->impulses[i].x, panel->impulses[i].size);
+        write_panel_name(t, panel);
+        write_name(t, "impulse", NULL, panel->impulse_unit);
+        write_point(t, panel->impulses[i].x, panel->impulses[i].size);
     }
     for (int i = 0; i < panel->level_count; i++) {
         const char *label = panel->levels[i].label;
-        write_panel_name(csv, panel);
-        write_name(csv, NULL, label ? label : "level", NULL);
+        write_panel_name(t, panel);
+        write_name(t, NULL, label ? label : "level", NULL);
         // a level has no x of its own
-        write_point(csv, (double)NAN, panel->levels[i].y);
+        write_point(t, (double)NAN, panel->levels[i].y);
     }
 }
 
 // A row that has an x alone.
-static void write_instant(csv_writer *csv, const char *panel, const char *series, double x)
+static void write_instant(long_form *t, const char *panel, const char *series, double x)
 {
-    csv_text(csv, panel);
-    csv_text(csv, series);
-    write_point(csv, x, (double)NAN);
+    csv_text(&t->csv, panel);
+    csv_text(&t->csv, series);
+    write_point(t, x, (double)NAN);
 }
 
-static void write_marks(csv_writer *csv, const figure *fig)
+static void write_marks(long_form *t, const figure *fig)
 {
     for (int i = 0; i < fig->mark_count; i++) {
         char *label = text_plain(fig->marks[i].label ? fig->marks[i].label : "");
-        write_instant(csv, "mark", label, fig->marks[i].x);
+        write_instant(t, "mark", label, fig->marks[i].x);
         g_free(label);
     }
     for (int i = 0; i < fig->interval_count; i++) {
-        write_instant(csv, "interval", "begins", fig->intervals[i].from);
-        write_instant(csv, "interval", "ends", fig->intervals[i].to);
+        write_instant(t, "interval", "begins", fig->intervals[i].from);
+        write_instant(t, "interval", "ends", fig->intervals[i].to);
     }
 }
 
@@ -109,10 +145,10 @@ static bool panels_are_alike(const figure *fig)
     return alike;
 }
 
-static void write_axis_heading(csv_writer *csv, const figure_axis *a, const char *otherwise)
+static void write_axis_heading(long_form *t, const figure_axis *a, const char *otherwise)
 {
     bool nameless = a->name == NULL && a->label == NULL;
-    write_name(csv, nameless ? otherwise : a->name, a->label, a->unit);
+    write_name(t, nameless ? otherwise : a->name, a->label, a->unit);
 }
 
 status figure_write_csv(const figure *fig, const char *path, fault *f)
@@ -125,26 +161,37 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
     }
 
     // the heading: panel, series, and both axes
-    csv_writer csv = csv_begin(file.stream);
-    csv_heading(&csv, "panel", NULL);
-    csv_heading(&csv, "series", NULL);
-    write_axis_heading(&csv, &fig->x, "x");
+    long_form t = {.csv = csv_begin(file.stream)};
+    csv_heading(&t.csv, "panel", NULL);
+    csv_heading(&t.csv, "series", NULL);
+    write_axis_heading(&t, &fig->x, "x");
     if (panels_are_alike(fig)) {
-        write_axis_heading(&csv, &fig->panels[0].y, "y");
+        write_axis_heading(&t, &fig->panels[0].y, "y");
     } else {
-        csv_heading(&csv, "value", NULL);
+        csv_heading(&t.csv, "value", NULL);
     }
-    csv_end_row(&csv);
+    for (int p = 0; p < fig->panel_count; p++) {
+        const figure_colours *colours = fig->panels[p].colours;
+        if (colours != NULL) {
+            write_axis_heading(&t, &colours->axis, "z");
+            t.shaded = true;
+            break;
+        }
+    }
+    csv_end_row(&t.csv);
 
     // panel by panel, then what all share
     for (int p = 0; p < fig->panel_count; p++) {
         const figure_panel *panel = &fig->panels[p];
         for (int s = 0; s < panel->series_count; s++) {
-            write_series(&csv, panel, &panel->series[s]);
+            write_series(&t, panel, &panel->series[s]);
         }
-        write_levels_and_impulses(&csv, panel);
+        if (panel->map != NULL) {
+            write_map(&t, panel);
+        }
+        write_levels_and_impulses(&t, panel);
     }
-    write_marks(&csv, fig);
+    write_marks(&t, fig);
     return whole_file_commit(&file, f);
 }
 

@@ -11,8 +11,9 @@ status figure_write(const figure *fig, const char *path, fault *f);
 // Writes what the figure shows as CSV in long form: the panel with its unit, the series, and two
 // columns headed by the axes' names and units ("time[s]", "force[N]"; "value" where the panels show
 // different quantities, whose units stand beside the panels' names). Every point of every curve (y
-// empty where the curve has a gap), impulses as the series impulse[unit], then marks and shaded
-// intervals with an empty y.
+// empty where the curve has a gap), cells of maps as the series "map", impulses as the series
+// impulse[unit], then marks and shaded intervals with an empty y. Where there is a colour scale its
+// value stands in a last column.
 status figure_write_csv(const figure *fig, const char *path, fault *f);
 
 // Both: the picture, and a CSV of the same name beside it.

@@ -5,25 +5,28 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-// All rows of a statement with two numbers each.
-static status read_rows(sqlite3_stmt *rows, double **x, double **y, size_t *count, fault *f)
+// All rows of a statement with a number in each of its columns.
+static status read_rows(sqlite3_stmt *rows, int key_count, double **columns, size_t *count,
+                        fault *f)
 {
     size_t room = 0;
     while (sqlite3_step(rows) == SQLITE_ROW) {
-        // both grow together; what was had is kept for the caller to free
+        // all grow together; what was had is kept for the caller to free
         if (*count == room) {
             room = room > 0 ? 2 * room : 64;
-            double *more_x = realloc(*x, room * sizeof **x);
-            *x = more_x != NULL ? more_x : *x;
-            double *more_y = realloc(*y, room * sizeof **y);
-            *y = more_y != NULL ? more_y : *y;
-            if (more_x == NULL || more_y == NULL) {
-                return fault_no_memory(f);
+            for (int k = 0; k < key_count; k++) {
+                double *more = realloc(columns[k], room * sizeof *more);
+                if (more == NULL) {
+                    return fault_no_memory(f);
+                }
+                columns[k] = more;
             }
         }
 
-        (*x)[*count] = sqlite3_column_double(rows, 0);
-        (*y)[(*count)++] = sqlite3_column_double(rows, 1);
+        for (int k = 0; k < key_count; k++) {
+            columns[k][*count] = sqlite3_column_double(rows, k);
+        }
+        (*count)++;
     }
     return STATUS_OK;
 }
@@ -42,38 +45,49 @@ static bool has_column(sqlite3 *database, const char *key)
     return has;
 }
 
-static status query(sqlite3 *database, const char *path, const char *x_key, const char *y_key,
+// Opens the rows of runs that have a number in every column.
+static status query(sqlite3 *database, const char *path, const char *const *keys, int key_count,
                     sqlite3_stmt **rows, fault *f)
 {
-    // both columns must be there
-    const char *const keys[] = {x_key, y_key};
-    for (int i = 0; i < 2; i++) {
-        if (!has_column(database, keys[i])) {
+    sqlite3_str *sql = sqlite3_str_new(database);
+
+    // what is wanted; sqlite would take an unknown name for a text
+    for (int k = 0; k < key_count; k++) {
+        if (!has_column(database, keys[k])) {
+            sqlite3_free(sqlite3_str_finish(sql));
             return fault_set(f, STATUS_CANNOT_READ,
                              "%s: no column '%s' in it, expected the database of a sweep", path,
-                             keys[i]);
+                             keys[k]);
         }
+        sqlite3_str_appendf(sql, "%s\"%w\"", k == 0 ? "SELECT " : ", ", keys[k]);
     }
 
-    // runs that have both numbers
-    char *sql = sqlite3_mprintf("SELECT \"%w\", \"%w\" FROM run WHERE typeof(\"%w\") IN ('real', "
-                                "'integer') AND typeof(\"%w\") IN ('real', 'integer') ORDER BY 1",
-                                x_key, y_key, x_key, y_key);
-    int code = sql != NULL ? sqlite3_prepare_v2(database, sql, -1, rows, NULL) : SQLITE_NOMEM;
-    sqlite3_free(sql);
+    // of which runs, in which order
+    for (int k = 0; k < key_count; k++) {
+        sqlite3_str_appendf(sql, "%s typeof(\"%w\") IN ('real', 'integer')",
+                            k == 0 ? " FROM run WHERE" : " AND", keys[k]);
+    }
+    sqlite3_str_appendf(sql, " ORDER BY 1%s", key_count > 1 ? ", 2" : "");
+
+    char *text = sqlite3_str_finish(sql);
+    int code = text != NULL ? sqlite3_prepare_v2(database, text, -1, rows, NULL) : SQLITE_NOMEM;
+    sqlite3_free(text);
     return code == SQLITE_OK ? STATUS_OK
                              : fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", path,
                                          sqlite3_errmsg(database));
 }
 
-status sweep_table_read(const char *path, const char *x_key, const char *y_key, double **x,
-                        double **y, size_t *count, fault *f)
+status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,
+                        size_t *count, fault *f)
 {
-    assert(path != NULL && x_key != NULL && y_key != NULL && x != NULL && y != NULL);
+    assert(path != NULL && keys != NULL && columns != NULL && count != NULL);
+    assert(key_count >= 1 && key_count <= SWEEP_TABLE_COLUMNS);
     sqlite3 *database = NULL;
     sqlite3_stmt *rows = NULL;
-    *x = *y = NULL;
     *count = 0;
+    for (int k = 0; k < key_count; k++) {
+        columns[k] = NULL;
+    }
 
     // read only: nothing is created where no file is
     status code = STATUS_OK;
@@ -82,20 +96,19 @@ status sweep_table_read(const char *path, const char *x_key, const char *y_key, 
                          sqlite3_errmsg(database));
     }
     if (code == STATUS_OK) {
-        code = query(database, path, x_key, y_key, &rows, f);
+        code = query(database, path, keys, key_count, &rows, f);
     }
     if (code == STATUS_OK) {
-        code = read_rows(rows, x, y, count, f);
+        code = read_rows(rows, key_count, columns, count, f);
     }
 
     // all or nothing
     sqlite3_finalize(rows);
     sqlite3_close(database);
-    if (code != STATUS_OK) {
-        free(*x);
-        free(*y);
-        *x = *y = NULL;
-        *count = 0;
+    for (int k = 0; k < key_count && code != STATUS_OK; k++) {
+        free(columns[k]);
+        columns[k] = NULL;
     }
+    *count = code == STATUS_OK ? *count : 0;
     return code;
 }

@@ -3,8 +3,10 @@
 #include <string.h>
 
 #include "render/figures/figures.h"
+#include "src/study/pool.h"
 #include "src/base/words.h"
 #include "src/base/numbers.h"
+#include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"
 
 #define DEFAULT_FOLDER  "figures"
@@ -29,34 +31,134 @@ static int check_ids(const arguments *a)
     return EXIT_DONE;
 }
 
-static int figures(const arguments *a)
-{
+// What came of a figure.
+typedef struct drawn {
+    bool over;
+    GString *tex; // its figure environment
+} drawn;
+
+// Figures in the order in which they were asked for.
+typedef struct figure_list {
+    const thesis_figure **figures;
+    size_t *order; // in which they are begun: slow ones first
+    drawn *drawn;
+    size_t count, told; // told: those that the user was told of, from the first on
+    bool quiet;
+    const char *folder, *formats;
     figure_options options;
-    const char *folder = a->output ? a->output : DEFAULT_FOLDER;
-    const char *formats = a->format ? a->format : DEFAULT_FORMATS;
-    int count = a->operand_count > 0 ? a->operand_count : thesis_figure_count;
+} figure_list;
 
-    int code = check_ids(a);
-    code = code == EXIT_DONE ? read_picture_options(a, &options) : code;
-    GString *tex = g_string_new(NULL);
+// The result of a piece of work.
+typedef struct figure_result {
+    status code;
+    fault fault;
+    GString *tex;
+} figure_result;
 
-    for (int i = 0; i < count && code == EXIT_DONE; i++) {
-        const thesis_figure *drawn =
-            a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : &thesis_figures[i];
-        fault f = {0};
-        if (figure_draw_into(drawn->id, &options, folder, formats, tex, &f) != STATUS_OK) {
-            code = complain_fault(&f);
-        } else if (!a->quiet) {
-            printf("%-10s  %s/%s  %s\n", drawn->id, folder, drawn->file, drawn->caption);
-        }
+static void draw_one(void *context, size_t i, void *scratch, void *result)
+{
+    const figure_list *list = context;
+    const thesis_figure *which = list->figures[list->order[i]];
+    figure_result *out = result;
+    (void)scratch;
+    *out = (figure_result){.tex = g_string_new(NULL)};
+    out->code = figure_draw_into(which->id, &list->options, list->folder, list->formats, out->tex,
+                                 &out->fault);
+}
+
+// Keeps a figure's text and tells of every figure whose predecessors are there, too.
+static status take_one(void *context, size_t i, const void *result, fault *f)
+{
+    figure_list *list = context;
+    const figure_result *from = result;
+    list->drawn[list->order[i]] = (drawn){.over = from->code == STATUS_OK, .tex = from->tex};
+    if (from->code != STATUS_OK) {
+        *f = from->fault;
+        return from->code;
     }
 
+    for (; list->told < list->count && list->drawn[list->told].over; list->told++) {
+        const thesis_figure *which = list->figures[list->told];
+        if (!list->quiet) {
+            printf("%-10s  %s/%s  %s\n", which->id, list->folder, which->file, which->caption);
+        }
+    }
+    return STATUS_OK;
+}
+
+// Draws all of them, on as many threads as there are processors.
+static status draw_list(figure_list *list, int threads, fault *f)
+{
+    const pool_work work = {.context = list,
+                            .count = list->count,
+                            .result_size = sizeof(figure_result),
+                            .compute = draw_one,
+                            .collect = take_one};
+    size_t first = 0, last = list->count;
+    for (size_t i = list->count; i-- > 0;) {
+        last -= !list->figures[i]->slow;
+        if (!list->figures[i]->slow) {
+            list->order[last] = i;
+        }
+    }
+    for (size_t i = 0; i < list->count; i++) {
+        if (list->figures[i]->slow) {
+            list->order[first++] = i;
+        }
+    }
+    return pool_run(&work, threads, f);
+}
+
+// The environments of all figures in their order.
+static status write_environments(const figure_list *list, const char *path, fault *f)
+{
+    GString *tex = g_string_new(NULL);
+    for (size_t i = 0; i < list->count; i++) {
+        g_string_append_len(tex, list->drawn[i].tex->str, (gssize)list->drawn[i].tex->len);
+    }
+    status code = latex_write(path, tex, f);
+    g_string_free(tex, TRUE);
+    return code;
+}
+
+static int figures(const arguments *a)
+{
     fault f = {0};
-    if (code == EXIT_DONE && a->latex != NULL && latex_write(a->latex, tex, &f) != STATUS_OK) {
+    size_t count = a->operand_count > 0 ? (size_t)a->operand_count : (size_t)thesis_figure_count;
+    figure_list list = {.count = count,
+                        .quiet = a->quiet,
+                        .folder = a->output ? a->output : DEFAULT_FOLDER,
+                        .formats = a->format ? a->format : DEFAULT_FORMATS};
+
+    int code = check_ids(a);
+    code = code == EXIT_DONE ? read_picture_options(a, &list.options) : code;
+    if (code != EXIT_DONE) {
+        return code;
+    }
+
+    // which ones
+    list.figures = g_new(const thesis_figure *, count);
+    list.order = g_new(size_t, count);
+    list.drawn = g_new0(drawn, count);
+    for (size_t i = 0; i < count; i++) {
+        list.figures[i] =
+            a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : &thesis_figures[i];
+    }
+
+    // drawn, and for LaTeX told of in their order
+    if (draw_list(&list, many_runs_jobs(a), &f) != STATUS_OK ||
+        (a->latex != NULL && write_environments(&list, a->latex, &f) != STATUS_OK)) {
         code = complain_fault(&f);
     }
 
-    g_string_free(tex, TRUE);
+    for (size_t i = 0; i < count; i++) {
+        if (list.drawn[i].tex != NULL) {
+            g_string_free(list.drawn[i].tex, TRUE);
+        }
+    }
+    g_free(list.drawn);
+    g_free(list.order);
+    g_free(list.figures);
     return code;
 }
 
