@@ -550,7 +550,7 @@ static void test_gif_as_asked(void **state)
     film_options options = small_film();
     fault f = {0};
     char *old = with_encoder("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
-                             "echo \"$@\" >\"${last#file:}\"\n");
+                             "printf 'GIF89a %s;' \"$*\" >\"${last#file:}\"\n");
     if (film_write(&r.scenario, &r.result, &options, in_folder("asked.gif"), &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
@@ -581,15 +581,87 @@ static void test_interrupted(void **state)
     recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
+    stopped = 0;
     options.progress = stop_soon;
     options.stop = &stopped;
     char *old = with_encoder("#!/bin/sh\ncat >/dev/null\n");
     int before = count_files(folder);
     assert_int_equal(film_write(&r.scenario, &r.result, &options, in_folder("half.mp4"), &f),
-                     STATUS_CANNOT_WRITE);
+                     STATUS_STOPPED);
     assert_non_null(strstr(f.text, "interrupted after 2 of 5"));
     assert_int_equal(count_files(folder), before);
     restore_encoder(old);
+    forget(&r);
+}
+
+// A complaint is a failure whatever the encoder's status is, as with a full disk; and what it
+// leaves without a complaint must be a film.
+static void test_encoder_complains(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *script, *said;
+    } cases[] = {
+        {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\nprintf 'xxxxftyp' >\"${last#file:}\"\n"
+         "echo 'av_interleaved_write_frame(): No space left on device' >&2\n",
+         "No space left"},
+        {"#!/bin/sh\ncat >/dev/null\n", "no such film"},
+        {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho nonsense >\"${last#file:}\"\n",
+         "no such film"},
+    };
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+
+    // a film that was there before stays
+    FILE *kept = fopen(in_folder("kept.mp4"), "w");
+    assert_non_null(kept);
+    fputs("old", kept);
+    fclose(kept);
+    for (int i = 0; i < 3; i++) {
+        char *old = with_encoder(cases[i].script), text[8] = "";
+        assert_int_equal(film_write(&r.scenario, &r.result, &options, in_folder("kept.mp4"), &f),
+                         STATUS_CANNOT_WRITE);
+        restore_encoder(old);
+        assert_non_null(strstr(f.text, cases[i].said));
+        kept = fopen(in_folder("kept.mp4"), "r");
+        assert_non_null(kept);
+        assert_non_null(fgets(text, sizeof text, kept));
+        fclose(kept);
+        assert_string_equal(text, "old");
+    }
+    unlink(in_folder("kept.mp4"));
+    forget(&r);
+}
+
+static void stop_now(int number)
+{
+    (void)number;
+    stopped = 1;
+}
+
+// An encoder that hangs, before the first frame or after the last, is left at the first signal.
+static void test_encoder_hangs(void **state)
+{
+    (void)state;
+    static const char *const scripts[] = {"#!/bin/sh\ntrap '' TERM\nexec sleep 1000\n",
+                                          "#!/bin/sh\ncat >/dev/null\nexec sleep 1000\n"};
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+    options.stop = &stopped;
+    struct sigaction act = {.sa_handler = stop_now};
+    sigaction(SIGALRM, &act, NULL);
+    for (int i = 0; i < 2; i++) {
+        char *old = with_encoder(scripts[i]);
+        int before = count_files(folder);
+        stopped = 0;
+        alarm(1);
+        assert_int_equal(film_write(&r.scenario, &r.result, &options, in_folder("half.mp4"), &f),
+                         STATUS_STOPPED);
+        assert_int_equal(count_files(folder), before);
+        restore_encoder(old);
+    }
     forget(&r);
 }
 
@@ -638,7 +710,8 @@ int main(void)
         cmocka_unit_test(test_golden_gl),     cmocka_unit_test(test_file),
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_clock),
         cmocka_unit_test(test_frames),        cmocka_unit_test(test_film),
-        cmocka_unit_test(test_encoder_fails), cmocka_unit_test(test_interrupted),
+        cmocka_unit_test(test_encoder_fails), cmocka_unit_test(test_encoder_complains),
+        cmocka_unit_test(test_encoder_hangs), cmocka_unit_test(test_interrupted),
         cmocka_unit_test(test_gif_as_asked),  cmocka_unit_test(test_film_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down) != 0;

@@ -141,6 +141,7 @@ check_given_back INT
 # suspended and taken up again
 start
 suspend
+until_true modes_are_given_back || fail "^Z: alternate screen, cursor or mouse are left over"
 mux send-keys "clear; jobs" Enter
 await "Stopped"
 mux send-keys "fg" Enter
@@ -187,6 +188,22 @@ until_true mouse_is_off || fail "the mouse stays on"
 mux send-keys q
 await "status 0"
 check_given_back mouse
+
+# suspended, the shell has the mouse; taken up again, the lab
+mouse_is_on() {
+    [ "$(mux display-message -p '#{mouse_any_flag}')" = 1 ]
+}
+start
+until_true mouse_is_on || fail "the mouse stays off"
+suspend
+until_true modes_are_given_back || fail "^Z: alternate screen, cursor or mouse are left over"
+mux send-keys "clear; fg" Enter
+await "Space run/pause"
+until_true mouse_is_on || fail "the mouse stays off after fg"
+mux send-keys q
+await "ready>"
+mux send-keys note_settings Enter
+check_given_back "suspended with a mouse"
 
 # a drag in the curves scrubs, the wheel zooms, Shift and an arrow pans
 start

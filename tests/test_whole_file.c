@@ -5,7 +5,9 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/check.h"
@@ -198,6 +200,109 @@ static void a_reader_that_left_is_told_from_a_full_disk(void **state)
     fclose(stream);
 }
 
+// The stream forgets why a write failed that lies far back; whoever closes the file does not.
+static void why_a_write_failed_is_known_at_the_end(void **state)
+{
+    (void)state;
+    struct rlimit before, small;
+    whole_file file;
+    fault f = {0};
+    put("kept", "old");
+    signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before);
+    small = (struct rlimit){.rlim_cur = 100000, .rlim_max = before.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+
+    // one large write fails, small ones follow
+    char *block = calloc(1, 400000);
+    assert_non_null(block);
+    assert_int_equal(whole_file_open(&file, "kept", &f), STATUS_OK);
+    fwrite(block, 1, 400000, file.stream);
+    clearerr(file.stream);
+    fputc('x', file.stream);
+    assert_int_equal(whole_file_commit(&file, &f), STATUS_CANNOT_WRITE);
+    setrlimit(RLIMIT_FSIZE, &before);
+    free(block);
+    assert_non_null(strstr(f.text, strerror(EFBIG)));
+    assert_holds("kept", "old");
+}
+
+// A run that was killed leaves its temporary; the next one removes it, but none of a run that
+// lives.
+static void what_killed_runs_left_goes(void **state)
+{
+    (void)state;
+    int told[2];
+    char byte;
+    assert_int_equal(mkdir("folder", 0777), 0);
+    assert_int_equal(pipe(told), 0);
+    put("folder/.impactlab-notes.part", "no temporary of ours");
+    put("folder/.impactlab-1-2.part.txt", "neither");
+    put("folder/.impactlab-999999-0.part", "left by nobody");
+    assert_int_equal(mkfifo("folder/.impactlab-1-7.part", 0600), 0);
+
+    // another process writes into it
+    pid_t other = fork();
+    if (other == 0) {
+        whole_file file;
+        _exit(whole_file_open(&file, "folder/other", NULL) != STATUS_OK ||
+              write(told[1], "x", 1) != 1 || pause() == 0);
+    }
+    assert_int_equal(read(told[0], &byte, 1), 1);
+    char living[64], *names[] = {"folder/.impactlab-notes.part", "folder/.impactlab-1-2.part.txt",
+                                 "folder/.impactlab-1-7.part", living};
+    snprintf(living, sizeof living, "folder/.impactlab-%ld-0.part", (long)other);
+    whole_file mine;
+    assert_int_equal(whole_file_open(&mine, "folder/mine", NULL), STATUS_OK);
+    whole_file_abandon(&mine);
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(access(names[i], F_OK), 0);
+    }
+    assert_int_not_equal(access("folder/.impactlab-999999-0.part", F_OK), 0);
+
+    // killed: what it left goes with the next file in the folder
+    kill(other, SIGKILL);
+    waitpid(other, NULL, 0);
+    assert_int_equal(access(living, F_OK), 0);
+    assert_int_equal(whole_file_open(&mine, "elsewhere", NULL), STATUS_OK);
+    whole_file_abandon(&mine);
+    assert_int_equal(whole_file_open(&mine, "folder/mine", NULL), STATUS_OK);
+    whole_file_abandon(&mine);
+    assert_int_not_equal(access(living, F_OK), 0);
+    for (int i = 0; i < 3; i++) {
+        unlink(names[i]);
+    }
+    close(told[0]);
+    close(told[1]);
+    assert_int_equal(rmdir("folder"), 0);
+}
+
+// In a folder like /tmp a link of somebody else's leads nowhere, as the kernel has it.
+static void a_strangers_link_is_not_followed(void **state)
+{
+    (void)state;
+    whole_file file;
+    fault f = {0};
+    assert_int_equal(mkdir("shared", 0777), 0);
+    assert_int_equal(chmod("shared", 01777), 0);
+    assert_int_equal(symlink("../target", "shared/link"), 0);
+    assert_int_equal(whole_file_open(&file, "shared/link", &f), STATUS_OK);
+    whole_file_abandon(&file);
+
+    // only root can make a link somebody else's
+    if (geteuid() == 0) {
+        assert_int_equal(lchown("shared/link", 12345, 12345), 0);
+        assert_int_equal(whole_file_open(&file, "shared/link", &f), STATUS_CANNOT_WRITE);
+        assert_non_null(strstr(f.text, strerror(EACCES)));
+        assert_int_equal(whole_file_check("shared/link", &f), STATUS_CANNOT_WRITE);
+        assert_int_equal(chmod("shared", 0755), 0);
+        assert_int_equal(whole_file_open(&file, "shared/link", &f), STATUS_OK);
+        whole_file_abandon(&file);
+    }
+    unlink("shared/link");
+    assert_int_equal(rmdir("shared"), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -209,6 +314,9 @@ int main(void)
         cmocka_unit_test(a_full_device_is_reported_and_stays_a_device),
         cmocka_unit_test(what_cannot_be_written_is_said_beforehand),
         cmocka_unit_test(a_reader_that_left_is_told_from_a_full_disk),
+        cmocka_unit_test(why_a_write_failed_is_known_at_the_end),
+        cmocka_unit_test(what_killed_runs_left_goes),
+        cmocka_unit_test(a_strangers_link_is_not_followed),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder) != 0;
 }

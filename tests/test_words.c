@@ -91,7 +91,28 @@ static void control_characters_and_broken_text_become_question_marks(void **stat
     check_printable("\xc0\x80", "??"); // no character begins with these
     check_printable("\xe2\x86"
                     "a",
-                    "??a"); // cut short in the middle
+                    "??a");                      // cut short in the middle
+    check_printable("\xed\xa0\x80", "???");      // half of a pair
+    check_printable("\xf4\x90\x80\x80", "????"); // beyond the last character
+    check_printable("\xe0\x80\x8a", "???");      // a line feed written longer than it is
+}
+
+static void what_turns_the_direction_of_text_becomes_question_marks(void **state)
+{
+    (void)state;
+    check_printable("a\u202eb", "a???b");
+    check_printable("\u2066x\u2069", "???x???");
+    check_printable("\u200e\u061c", "?????");
+    check_printable("\u2028\u2029", "??????");
+    check_printable("\u200b\u2030", "\u200b\u2030"); // their neighbours stay
+}
+
+static void lines_keep_their_ends(void **state)
+{
+    (void)state;
+    char text[] = "one\ntwo\r\n\tthree";
+    make_lines_printable(text);
+    assert_string_equal(text, "one\ntwo?\n?three");
 }
 
 int main(void)
@@ -103,6 +124,8 @@ int main(void)
         cmocka_unit_test(the_nearest_word_is_found_or_none),
         cmocka_unit_test(of_equally_near_words_the_first_is_kept),
         cmocka_unit_test(control_characters_and_broken_text_become_question_marks),
+        cmocka_unit_test(what_turns_the_direction_of_text_becomes_question_marks),
+        cmocka_unit_test(lines_keep_their_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

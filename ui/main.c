@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/base/json.h"
 #include "src/base/whole_file.h"
 #include "src/base/version.h"
 #include "ui/terminal/terminal.h"
@@ -151,5 +152,6 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     catch_endings();
+    json_watch_memory();
     return close_output(dispatch(argc, argv));
 }

@@ -8,6 +8,7 @@
 
 #include "render/page/page.h"
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 
 #define INDEX_SIZE 0.72 // of its line's letters, but never too small to read
 
@@ -140,6 +141,14 @@ char *text_translate(const char *markup, double size)
     return g_string_free(out, FALSE);
 }
 
+// Any bytes as valid UTF-8 of printable characters and line feeds.
+static char *printable_copy(const char *bytes)
+{
+    char *valid = g_utf8_make_valid(bytes, -1);
+    make_lines_printable(valid);
+    return valid;
+}
+
 PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 {
     assert(context != NULL && t != NULL && t->markup != NULL);
@@ -155,7 +164,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     pango_font_description_free(font);
 
     // text that is no markup is shown as it is
-    char *valid = g_utf8_make_valid(t->markup, -1), *markup = text_translate(valid, t->size);
+    char *valid = printable_copy(t->markup), *markup = text_translate(valid, t->size);
     if (pango_parse_markup(markup, -1, 0, NULL, NULL, NULL, NULL)) {
         pango_layout_set_markup(layout, markup, -1);
     } else {
@@ -272,8 +281,10 @@ char *text_label(const char *description)
 char *text_plain(const char *markup)
 {
     assert(markup != NULL);
-    char *valid = g_utf8_make_valid(markup, -1), *plain = NULL;
+    char *valid = printable_copy(markup), *plain = NULL;
     if (pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
+        // an entity may have become what the markup did not hold
+        make_lines_printable(plain);
         g_free(valid);
         return plain;
     }
@@ -283,7 +294,7 @@ char *text_plain(const char *markup)
 char *text_escape(const char *bytes)
 {
     assert(bytes != NULL);
-    char *valid = g_utf8_make_valid(bytes, -1), *escaped = g_markup_escape_text(valid, -1);
+    char *valid = printable_copy(bytes), *escaped = g_markup_escape_text(valid, -1);
     g_free(valid);
     return escaped;
 }

@@ -68,7 +68,8 @@ char *text_label(const char *description);
 // The markup's bare text, valid UTF-8. Free the result with g_free.
 char *text_plain(const char *markup);
 
-// Any bytes as valid UTF-8 that markup shows as they stand. Free the result with g_free.
+// Any bytes as valid UTF-8 that markup shows as they stand, printable ones only (src/base/words.h).
+// Free the result with g_free.
 char *text_escape(const char *bytes);
 
 // As g_strdup_printf and g_string_append_printf, with a decimal point in every locale.

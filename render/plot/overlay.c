@@ -142,8 +142,9 @@ static int read_headings(const char *line, int *signals, const overlay_spec *spe
     return count;
 }
 
+// Reads a row; counts the numbers beside its time.
 static status read_line(trace *t, const char *line, const int *signals, int columns,
-                        const char *where, fault *f)
+                        const char *where, size_t *numbers, fault *f)
 {
     status code = STATUS_OK;
     sample row = missing_row();
@@ -160,6 +161,7 @@ static status read_line(trace *t, const char *line, const int *signals, int colu
             code = fault_set(f, STATUS_BAD_ARGUMENT, "%s: '%s' is no number", where, cell);
         } else {
             set_signal(&row, signals[i], value);
+            *numbers += signals[i] > 0 && isfinite(value);
         }
     }
 
@@ -177,6 +179,7 @@ static status read_rows(trace *t, const char *text, const overlay_spec *spec,
                         const trace_panel *panels, int panel_count, fault *f)
 {
     int signals[MOST_COLUMNS];
+    size_t numbers = 0;
     char **lines = g_strsplit(text, "\n", -1);
     int columns =
         lines[0] != NULL ? read_headings(lines[0], signals, spec, panels, panel_count, f) : 0;
@@ -186,13 +189,21 @@ static status read_rows(trace *t, const char *text, const overlay_spec *spec,
     for (int i = 1; code == STATUS_OK && lines[i] != NULL; i++) {
         char *where = g_strdup_printf("%s:%d", spec->path, i + 1);
         if (g_strstrip(lines[i])[0] != '\0') {
-            code = read_line(t, lines[i], signals, columns, where, f);
+            code = read_line(t, lines[i], signals, columns, where, &numbers, f);
         }
         g_free(where);
     }
 
-    // as the clocks were apart
+    // nothing to lay over anything is a mistake somewhere
     g_strfreev(lines);
+    if (code == STATUS_OK && (t->row_count == 0 || numbers == 0)) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%s: no row below its heading has a time and a number, expected at least "
+                         "one",
+                         spec->path);
+    }
+
+    // as the clocks were apart
     for (size_t i = 0; i < t->row_count; i++) {
         t->rows[i].time += spec->shift;
     }

@@ -239,7 +239,7 @@ static status add_frames(film *m, film_file *file, fault *f)
 
     for (int i = 0; i < total && code == STATUS_OK; i++) {
         if (o->stop != NULL && *o->stop != 0) {
-            return fault_set(f, STATUS_CANNOT_WRITE, "interrupted after %d of %d frames", i, total);
+            return fault_set(f, STATUS_STOPPED, "interrupted after %d of %d frames", i, total);
         }
 
         double speed, time = film_clock_time(&m->clock, o->seconds * i / (total - 1), &speed);
@@ -352,7 +352,8 @@ static status record(film *m, const char *path, fault *f)
                               .height = m->options.height,
                               .frames_per_second = m->options.frames_per_second,
                               .notes = notes,
-                              .note_count = 4};
+                              .note_count = 4,
+                              .stop = m->options.stop};
     film_file *file;
 
     status code = film_file_open(&file, path, &facts, f);

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <dirent.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdbool.h>
@@ -14,6 +15,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "src/base/whole_file.h"
@@ -22,7 +24,11 @@ extern char **environ;
 
 typedef enum film_kind { FILM_UNKNOWN, FILM_MP4, FILM_WEBM, FILM_GIF, FILM_FRAMES } film_kind;
 
-enum { ARGUMENTS_MOST = 64, FRAME_DPI = 144 };
+enum {
+    ARGUMENTS_MOST = 64,
+    FRAME_DPI = 144,
+    PATIENCE = 200 // longest until a request to stop is seen [ms]
+};
 
 struct film_file {
     film_kind kind;
@@ -291,7 +297,28 @@ static status start_encoder(film_file *film, fault *f)
     return code;
 }
 
-// Waits for the encoder and takes its last words. True if it succeeded.
+static bool is_asked_to_stop(const film_file *film)
+{
+    return film->facts.stop != NULL && *film->facts.stop != 0;
+}
+
+// Waits for the encoder's end and returns its status. One that hangs is ended when we are asked to
+// stop.
+static int wait_for_encoder(film_file *film)
+{
+    const struct timespec moment = {.tv_nsec = 5000000};
+    int result = -1;
+    while (waitpid(film->encoder, &result, WNOHANG) == 0) {
+        if (is_asked_to_stop(film)) {
+            kill(film->encoder, SIGKILL);
+        }
+        nanosleep(&moment, NULL);
+    }
+    film->encoder = 0;
+    return result;
+}
+
+// Waits for the encoder and takes its last words. True if it succeeded without any.
 static bool end_encoder(film_file *film, char *said, size_t size)
 {
     int result = -1;
@@ -303,9 +330,7 @@ static bool end_encoder(film_file *film, char *said, size_t size)
         film->pipe = -1;
     }
     if (film->encoder > 0) {
-        while (waitpid(film->encoder, &result, 0) < 0 && errno == EINTR) {
-        }
-        film->encoder = 0;
+        result = wait_for_encoder(film);
     }
 
     // what it complained about; the first complaint is the cause, later ones follow from it
@@ -317,7 +342,12 @@ static bool end_encoder(film_file *film, char *said, size_t size)
             snprintf(said, size, "%s", line);
         }
     }
-    return WIFEXITED(result) && WEXITSTATUS(result) == 0;
+    return WIFEXITED(result) && WEXITSTATUS(result) == 0 && said[0] == '\0';
+}
+
+static status stopped(const film_file *film, fault *f)
+{
+    return fault_set(f, STATUS_STOPPED, "interrupted after %d frames", film->frames);
 }
 
 static status complain_encoder(const film_file *film, const char *said, fault *f)
@@ -329,9 +359,16 @@ static status complain_encoder(const film_file *film, const char *said, fault *f
 static status send_bytes(film_file *film, const unsigned char *bytes, size_t length, fault *f)
 {
     while (length > 0) {
+        // not longer than a moment, in case the encoder hangs
+        struct pollfd ready = {.fd = film->pipe, .events = POLLOUT};
+        poll(&ready, 1, PATIENCE);
+        if (is_asked_to_stop(film)) {
+            return stopped(film, f);
+        }
+
         // a reader that went away is an error, not a signal
-        ssize_t sent = send(film->pipe, bytes, length, MSG_NOSIGNAL);
-        if (sent < 0 && errno != EINTR) {
+        ssize_t sent = send(film->pipe, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (sent < 0 && errno != EINTR && errno != EAGAIN) {
             char said[512];
             end_encoder(film, said, sizeof said);
             return complain_encoder(film, said, f);
@@ -340,6 +377,41 @@ static status send_bytes(film_file *film, const unsigned char *bytes, size_t len
         length -= sent > 0 ? (size_t)sent : 0;
     }
     return STATUS_OK;
+}
+
+// Whether the bytes at a place of a file are those of `mark`.
+static bool has_mark(FILE *file, long offset, int from, const char *mark, size_t length)
+{
+    char found[8];
+    return fseek(file, offset, from) == 0 && fread(found, 1, length, file) == length &&
+           memcmp(found, mark, length) == 0;
+}
+
+// Whether the finished file begins, and where its kind has an end of its own ends, as it should.
+static bool looks_whole(const film_file *film)
+{
+    FILE *file = fopen(film->file.temporary ? film->file.temporary : film->file.path, "rb");
+    bool whole = false;
+    if (file == NULL) {
+        return false;
+    }
+
+    // ISO/IEC 14496-12, an ftyp box first; RFC 8794, the EBML mark; GIF89a, a trailer last
+    switch (film->kind) {
+    case FILM_MP4:
+        whole = has_mark(file, 4, SEEK_SET, "ftyp", 4);
+        break;
+    case FILM_WEBM:
+        whole = has_mark(file, 0, SEEK_SET, "\x1a\x45\xdf\xa3", 4);
+        break;
+    case FILM_GIF:
+        whole = has_mark(file, 0, SEEK_SET, "GIF8", 4) && has_mark(file, -1, SEEK_END, ";", 1);
+        break;
+    default:
+        break;
+    }
+    fclose(file);
+    return whole;
 }
 
 // ---- the film
@@ -447,13 +519,19 @@ status film_file_commit(film_file *film, fault *f)
     assert(film != NULL);
     status code = STATUS_OK;
     if (film->kind != FILM_FRAMES) {
+        // its words, then its work
         char said[512];
-        if (end_encoder(film, said, sizeof said)) {
-            code = whole_file_commit(&film->file, f);
-        } else {
+        bool content = end_encoder(film, said, sizeof said);
+        if (is_asked_to_stop(film)) {
+            code = stopped(film, f);
+        } else if (!content) {
             code = complain_encoder(film, said, f);
-            whole_file_abandon(&film->file);
+        } else if (film->file.temporary != NULL && !looks_whole(film)) {
+            code = fault_set(f, STATUS_CANNOT_WRITE,
+                             "%s could not be made: ffmpeg left a file that is no such film",
+                             film->path);
         }
+        code = whole_file_close(&film->file, code, f);
     }
     film_file_free(film);
     return code;
@@ -465,7 +543,7 @@ void film_file_abandon(film_file *film)
     if (film->kind != FILM_FRAMES) {
         char said[512];
         if (film->encoder > 0) {
-            kill(film->encoder, SIGTERM);
+            kill(film->encoder, SIGKILL);
         }
         end_encoder(film, said, sizeof said);
         whole_file_abandon(&film->file);

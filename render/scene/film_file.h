@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cairo.h>
+#include <signal.h>
 #include <stdbool.h>
 
 #include "render/page/png_file.h"
@@ -13,6 +14,7 @@ typedef struct film_facts {
     int frames_per_second;
     const png_note *notes; // for the metadata
     int note_count;
+    const volatile sig_atomic_t *stop; // not 0: nothing is waited for any longer; may be NULL
 } film_facts;
 
 // Tells early whether a film could be written: STATUS_BAD_ARGUMENT for an extension that is not
@@ -27,10 +29,12 @@ status film_file_open(film_file **out, const char *path, const film_facts *facts
 // every colour of the film.
 bool film_file_wants_palette(const film_file *film);
 
-// Appends a frame (RGB24). STATUS_CANNOT_WRITE with the encoder's own words if it gave up.
+// Appends a frame (RGB24). STATUS_CANNOT_WRITE with the encoder's own words if it gave up,
+// STATUS_STOPPED if `stop` became true while it took nothing.
 status film_file_add(film_file *film, cairo_surface_t *frame, fault *f);
 
-// Completes the film and puts it in its place, or gives up and leaves nothing of a film behind
+// Completes the film and puts it in its place, which needs an encoder that complained of nothing
+// and a file that begins and ends as its kind does. Or gives up and leaves nothing of a film behind
 // (frames in a folder stay). Frees it in either case.
 status film_file_commit(film_file *film, fault *f);
 void film_file_abandon(film_file *film);

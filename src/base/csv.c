@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 
 csv_writer csv_begin(FILE *stream)
 {
@@ -20,20 +21,20 @@ static void begin_field(csv_writer *w)
     w->in_row = true;
 }
 
-// What stands between quotes, inner ones doubled.
+// What stands between quotes, inner ones doubled; what may not leave the program becomes '?'.
 static void write_quoted(FILE *stream, const char *text)
 {
-    for (; *text != '\0'; text++) {
-        if (*text == '"') {
-            fputc('"', stream);
-        }
-        fputc(*text, stream);
+    while (*text != '\0') {
+        const int length = *text == '\n' ? 1 : printable_length(text);
+        fputs(*text == '"' ? "\"" : "", stream);
+        fprintf(stream, "%.*s", length > 0 ? length : 1, length > 0 ? text : "?");
+        text += length > 0 ? length : 1;
     }
 }
 
 static bool needs_quotes(const char *text)
 {
-    return strpbrk(text, ",\"\r\n") != NULL;
+    return strpbrk(text, ",\"\n") != NULL;
 }
 
 // One field: a name, and a unit in brackets unless that is NULL.

@@ -19,7 +19,8 @@ csv_writer csv_begin(FILE *stream);
 // A heading of the first row; unit NULL for a name alone.
 void csv_heading(csv_writer *w, const char *name, const char *unit);
 
-// A text, in quotes where commas, quotes or ends of lines need them.
+// A text, in quotes where commas, quotes or ends of lines need them; what is unprintable (words.h)
+// becomes '?', but for line feeds.
 void csv_text(csv_writer *w, const char *text);
 
 // A number as number_format gives it; NaN is missing.

@@ -8,6 +8,27 @@
 
 #include "src/base/numbers.h"
 
+static _Thread_local bool lost; // memory was refused
+
+static void *watched_malloc(size_t size)
+{
+    void *memory = malloc(size);
+    lost = lost || memory == NULL;
+    return memory;
+}
+
+void json_watch_memory(void)
+{
+    json_set_alloc_funcs(watched_malloc, free);
+}
+
+bool json_lost_something(void)
+{
+    const bool since = lost;
+    lost = false;
+    return since;
+}
+
 json_t *json_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
@@ -18,6 +39,7 @@ json_t *json_text(const char *text)
     assert(text != NULL);
     json_t *string = json_string(text);
     char *copy = string == NULL ? strdup(text) : NULL;
+    lost = lost || (string == NULL && copy == NULL);
 
     // a file's name may be no UTF-8, which JSON cannot hold
     for (char *c = copy; c != NULL && *c != '\0'; c++) {

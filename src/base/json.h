@@ -3,6 +3,7 @@
 #pragma once
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 // A JSON number, or null where value is not finite.
@@ -13,6 +14,14 @@ json_t *json_numbers(const double *values, int count);
 
 // A JSON string; in a text that is not UTF-8 every byte beyond ASCII becomes '?'.
 json_t *json_text(const char *text);
+
+// From now on every allocation of jansson is watched, for the whole program: what fails to be set
+// for want of memory would be missing from an object without a word.
+void json_watch_memory(void);
+
+// Whether this thread was refused memory for JSON since the last call, in a program that watches:
+// what it made may lack something and is not to be written.
+bool json_lost_something(void);
 
 // Writes a JSON value with two spaces of indentation, keys in the order in which they were set and
 // numbers as number_format gives them. Errors stay in the stream (ferror).

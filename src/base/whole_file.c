@@ -1,14 +1,17 @@
 #include "src/base/whole_file.h"
 
 #include <assert.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <poll.h>
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -71,8 +74,21 @@ static char *folder_of(const char *path)
     return length ? strndup(path, length) : strdup(".");
 }
 
+// Whether the kernel would follow a link; see proc_sys_fs(5), protected_symlinks.
+static bool may_follow(const char *link)
+{
+    struct stat about, around = {0};
+    char *folder = folder_of(link);
+    bool known = folder != NULL && lstat(link, &about) == 0 && stat(folder, &around) == 0;
+    free(folder);
+
+    const mode_t everybodys = S_ISVTX | S_IWOTH;
+    return known && ((around.st_mode & everybodys) != everybodys || about.st_uid == geteuid() ||
+                     about.st_uid == around.st_uid);
+}
+
 // Where a path leads, be it there or not: a link stays a link and its target is what gets written.
-// NULL without memory.
+// NULL without memory, or if a link is not to be followed, with errno.
 static char *target_of(const char *path)
 {
     char *target = strdup(path);
@@ -84,6 +100,11 @@ static char *target_of(const char *path)
         if (length < 0) {
             break;
         }
+        if (!may_follow(target)) {
+            free(target);
+            errno = EACCES;
+            return NULL;
+        }
         link[length] = '\0';
 
         char *next;
@@ -94,8 +115,111 @@ static char *target_of(const char *path)
 
         free(target);
         target = next;
+        errno = target == NULL ? ENOMEM : errno;
     }
     return target;
+}
+
+// --- what killed runs left ------------------------------------------------------------------
+
+// A temporary is locked as long as its run lives, and the lock goes with the run however that ends.
+static bool lock_temporary(int descriptor)
+{
+    struct stat about;
+    return flock(descriptor, LOCK_EX | LOCK_NB) == 0 && fstat(descriptor, &about) == 0 &&
+           about.st_nlink > 0;
+}
+
+// Whether a name is that of a temporary, ".impactlab-PROCESS-NUMBER.part".
+static bool is_temporary_name(const char *name)
+{
+    int length = 0;
+    long process;
+    int number;
+    return sscanf(name, ".impactlab-%ld-%d.part%n", &process, &number, &length) == 2 &&
+           length > 0 && name[length] == '\0';
+}
+
+// Removes a temporary of the user's that nobody holds a lock on.
+static void remove_if_left(int folder, const char *name)
+{
+    struct stat about;
+    int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) {
+        return;
+    }
+    if (fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_uid == geteuid() &&
+        flock(file, LOCK_EX | LOCK_NB) == 0) {
+        unlinkat(folder, name, 0);
+    }
+    close(file);
+}
+
+// Removes what runs that were killed left in the folder of `path`, once for each folder after
+// another.
+static void remove_left_behind(const char *path)
+{
+    static pthread_mutex_t looking = PTHREAD_MUTEX_INITIALIZER;
+    static dev_t last_device;
+    static ino_t last_folder;
+
+    struct stat about;
+    char *name = folder_of(path);
+    DIR *folder = name != NULL ? opendir(name) : NULL;
+    free(name);
+    if (folder == NULL) {
+        return;
+    }
+
+    // the frames of a film, the pictures of a report: one folder many times
+    pthread_mutex_lock(&looking);
+    bool known = fstat(dirfd(folder), &about) != 0 ||
+                 (about.st_dev == last_device && about.st_ino == last_folder);
+    last_device = known ? last_device : about.st_dev;
+    last_folder = known ? last_folder : about.st_ino;
+    pthread_mutex_unlock(&looking);
+
+    struct dirent *entry;
+    while (!known && (entry = readdir(folder)) != NULL) {
+        if (is_temporary_name(entry->d_name)) {
+            remove_if_left(dirfd(folder), entry->d_name);
+        }
+    }
+    closedir(folder);
+}
+
+// --- the stream -----------------------------------------------------------------------------
+
+// Where the bytes of a stream go. The stream itself forgets why a write failed.
+typedef struct whole_file_sink {
+    int descriptor;
+    int reason; // errno of the first write that failed, 0 if none did
+} whole_file_sink;
+
+static ssize_t sink_write(void *context, const char *bytes, size_t size)
+{
+    whole_file_sink *sink = context;
+    size_t done = 0;
+    while (done < size) {
+        ssize_t written = write(sink->descriptor, bytes + done, size - done);
+        if (written < 0 && errno != EINTR) {
+            sink->reason = sink->reason != 0 ? sink->reason : errno;
+            return 0;
+        }
+        done += written > 0 ? (size_t)written : 0;
+    }
+    return (ssize_t)size;
+}
+
+// The descriptor is closed by whoever looks at what became of it.
+static FILE *open_sink(whole_file *w, int descriptor)
+{
+    w->sink = malloc(sizeof *w->sink);
+    if (w->sink == NULL) {
+        return NULL;
+    }
+    *w->sink = (whole_file_sink){.descriptor = descriptor};
+    return fopencookie(w->sink, "w", (cookie_io_functions_t){.write = sink_write});
 }
 
 // 0 if target can be replaced or created, else the reason.
@@ -143,7 +267,12 @@ status whole_file_check(const char *path, fault *f)
     assert(path != NULL);
     bool in_place;
     mode_t mode;
-    int reason = strcmp(path, "-") == 0 ? 0 : obstacle(path, &in_place, &mode);
+    if (strcmp(path, "-") == 0) {
+        return STATUS_OK;
+    }
+    char *target = target_of(path);
+    int reason = target != NULL ? obstacle(target, &in_place, &mode) : errno;
+    free(target);
     return reason == 0 ? STATUS_OK : cannot_write(f, path, reason);
 }
 
@@ -161,7 +290,11 @@ static int create_temporary(whole_file *w, mode_t mode)
 
         // creating it tells whether the name is free
         int descriptor = open(w->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor >= 0) {
+        if (descriptor >= 0 && !lock_temporary(descriptor)) {
+            // taken for one left behind, in the moment before the lock
+            close(descriptor);
+            errno = EEXIST;
+        } else if (descriptor >= 0) {
             remember_unfinished(w->temporary);
             if (mode != 0) {
                 // not owning the old file is no reason to write nothing
@@ -190,20 +323,26 @@ static int open_target(whole_file *w)
         return reason;
     }
 
+    // what is left of runs before goes first
+    if (!in_place) {
+        remove_left_behind(w->path);
+    }
+
     // a file stands under a name of its own until it is whole
     int descriptor = in_place ? open(w->path, O_WRONLY | O_CLOEXEC) : create_temporary(w, mode);
     if (descriptor < 0) {
         return errno;
     }
 
-    w->stream = fdopen(descriptor, "w");
+    w->stream = open_sink(w, descriptor);
     if (w->stream == NULL) {
-        reason = errno;
+        reason = ENOMEM;
         close(descriptor);
         if (w->temporary != NULL) {
             unlink(w->temporary);
             forget_unfinished(w->temporary);
         }
+        free(w->sink);
         return reason;
     }
     return 0;
@@ -221,7 +360,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
 
     // a file: where the path leads in the end
     w->path = target_of(path);
-    int reason = w->path ? open_target(w) : ENOMEM;
+    int reason = w->path ? open_target(w) : errno;
     if (reason != 0) {
         free(w->path);
         free(w->temporary);
@@ -246,29 +385,38 @@ int stream_failure(FILE *stream)
     return errno != 0 ? errno : EIO;
 }
 
-// Flushes the stream down to the disk; 0 or the reason why not.
-static int flush_to_disk(whole_file *w)
+// Closes stream and file, brought to the disk if it is `wanted`; 0 or the reason why not.
+static int close_sink(whole_file *w, bool wanted)
 {
-    int reason = stream_failure(w->stream);
-    if (reason != 0) {
-        return reason;
-    }
+    const int descriptor = w->sink->descriptor;
+    const bool flushed = fclose(w->stream) == 0; // looks at everything written before
+    int reason = w->sink->reason != 0 ? w->sink->reason : flushed ? 0 : ENOMEM;
+
     // a pipe or a device has no disk to reach
-    if (w->temporary != NULL && fsync(fileno(w->stream)) != 0) {
-        return errno;
+    if (wanted && reason == 0 && w->temporary != NULL && fsync(descriptor) != 0) {
+        reason = errno;
     }
-    return 0;
+    if (close(descriptor) != 0 && reason == 0) {
+        reason = errno;
+    }
+    return reason;
+}
+
+static void forget(whole_file *w)
+{
+    forget_unfinished(w->temporary);
+    free(w->sink);
+    free(w->path);
+    free(w->temporary);
+    memset(w, 0, sizeof *w);
 }
 
 status whole_file_commit(whole_file *w, fault *f)
 {
     assert(w != NULL && w->stream != NULL && w->path != NULL);
-    int reason = flush_to_disk(w);
-    bool standard_output = w->stream == stdout;
-    if (standard_output) {
-        reason = reason == EPIPE ? 0 : reason;
-    } else if (fclose(w->stream) != 0 && reason == 0) {
-        reason = errno;
+    int reason = w->sink == NULL ? stream_failure(stdout) : close_sink(w, true);
+    if (w->sink == NULL && reason == EPIPE) {
+        reason = 0;
     }
 
     // the new file takes the place of the old one, or goes
@@ -282,26 +430,20 @@ status whole_file_commit(whole_file *w, fault *f)
     }
 
     status result = reason == 0 ? STATUS_OK : cannot_write(f, w->path, reason);
-    forget_unfinished(w->temporary);
-    free(w->path);
-    free(w->temporary);
-    memset(w, 0, sizeof *w);
+    forget(w);
     return result;
 }
 
 void whole_file_abandon(whole_file *w)
 {
     assert(w != NULL);
-    if (w->stream != NULL && w->stream != stdout) {
-        fclose(w->stream);
+    if (w->sink != NULL) {
+        close_sink(w, false);
     }
     if (w->temporary != NULL) {
         unlink(w->temporary);
-        forget_unfinished(w->temporary);
     }
-    free(w->path);
-    free(w->temporary);
-    memset(w, 0, sizeof *w);
+    forget(w);
 }
 
 status whole_file_close(whole_file *w, status written, fault *f)

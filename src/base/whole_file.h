@@ -2,7 +2,12 @@
 //
 // What is written goes to a temporary file in the target's folder; whole_file_commit brings it to
 // the disk and renames it to the target. "-" is the standard output. A target that exists and is
-// no regular file (a device, a pipe) is written in place. A symbolic link is followed.
+// no regular file (a device, a pipe) is written in place.
+//
+// A symbolic link is followed, but not where the kernel would refuse it (fs.protected_symlinks): in
+// a folder in which everybody may write and nobody may remove what is others', one that belongs
+// neither to the user nor to the folder's owner. What a run that was killed left behind
+// (.impactlab-*.part) goes when the next one writes into the same folder.
 #pragma once
 
 #include <stdio.h>
@@ -13,6 +18,7 @@ typedef struct whole_file {
     FILE *stream;    // write here
     char *path;      // of the target, links resolved; "-" for the standard output
     char *temporary; // renamed to path in the end; NULL if the target is written in place
+    struct whole_file_sink *sink; // what stream writes to; NULL for the standard output
 } whole_file;
 
 // Tells early, before long work, whether path could be written. Creates nothing.

@@ -1,9 +1,11 @@
 #include "src/base/words.h"
 
 #include <assert.h>
-#include <stdbool.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "src/base/numbers.h"
 
 static int smaller(int a, int b)
 {
@@ -76,23 +78,89 @@ void nearest_try(nearest_word *n, const char *candidate)
     }
 }
 
+bool is_unprintable(uint32_t character)
+{
+    const bool control = character < 0x20 || (character >= 0x7f && character < 0xa0);
+    const bool separator = character == 0x2028 || character == 0x2029;
+    const bool direction = character == 0x061c || character == 0x200e || character == 0x200f ||
+                           (character >= 0x202a && character <= 0x202e) ||
+                           (character >= 0x2066 && character <= 0x2069);
+    return control || separator || direction;
+}
+
+// Length in bytes of the whole character that begins at c, 0 if none does; its number.
+static int whole_character(const unsigned char *c, uint32_t *number)
+{
+    // the first byte says how many follow, each with six bits
+    const int length = *c < 0x80    ? 1
+                       : *c >= 0xf5 ? 0
+                       : *c >= 0xf0 ? 4
+                       : *c >= 0xe0 ? 3
+                       : *c >= 0xc2 ? 2
+                                    : 0;
+    *number = length <= 1 ? *c : *c & (0x7fu >> length);
+    for (int i = 1; i < length; i++) {
+        if ((c[i] & 0xc0) != 0x80) {
+            return 0;
+        }
+        *number = *number << 6 | (c[i] & 0x3fu);
+    }
+
+    // written longer than it is, half of a pair, or beyond the last one
+    const bool broken = (length == 3 && *number < 0x800) || (length == 4 && *number < 0x10000) ||
+                        (*number >= 0xd800 && *number < 0xe000) || *number > 0x10ffff;
+    return broken ? 0 : length;
+}
+
+int printable_length(const char *text)
+{
+    assert(text != NULL && *text != '\0');
+    uint32_t character;
+    const int length = whole_character((const unsigned char *)text, &character);
+    return is_unprintable(character) ? 0 : length;
+}
+
+// Replaces what is unprintable, but for `kept`. The bytes after the first of a character that goes
+// begin none, and go one by one.
+static void replace_unprintable(char *text, char kept)
+{
+    while (*text != '\0') {
+        const int length = *text == kept ? 1 : printable_length(text);
+        *text = length > 0 ? *text : '?';
+        text += length > 0 ? length : 1;
+    }
+}
+
 void make_printable(char *text)
 {
     assert(text != NULL);
-    for (unsigned char *c = (unsigned char *)text; *c != '\0';) {
-        // bytes of the character that begins here, 0 if none can, and how many of them follow
-        int length = *c < 0x80 ? 1 : *c >= 0xf0 ? 4 : *c >= 0xe0 ? 3 : *c >= 0xc2 ? 2 : 0;
-        int have = length > 0;
-        while (have > 0 && have < length && (c[have] & 0xc0) == 0x80) {
-            have++;
-        }
+    replace_unprintable(text, 0);
+}
 
-        bool control = *c < 0x20 || *c == 0x7f || (*c == 0xc2 && c[1] < 0xa0);
-        if (have < length || length == 0 || control) {
-            *c = '?';
-            c++;
-        } else {
-            c += length;
-        }
+void make_lines_printable(char *text)
+{
+    assert(text != NULL);
+    replace_unprintable(text, '\n');
+}
+
+bool print_printable_list(FILE *stream, const char *format, va_list list)
+{
+    assert(stream != NULL && format != NULL);
+    char *text = decimal_vtext(format, list);
+    if (text == NULL) {
+        return false;
     }
+    make_lines_printable(text);
+    const bool printed = fputs(text, stream) >= 0;
+    free(text);
+    return printed;
+}
+
+bool print_printable(FILE *stream, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    const bool printed = print_printable_list(stream, format, list);
+    va_end(list);
+    return printed;
 }

@@ -1,5 +1,10 @@
-// Words: the one nearest to a misspelt one, and texts that a terminal may show.
+// Words: the one nearest to a misspelt one, and texts as they may leave the program.
 #pragma once
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
 
 // Number of insertions, deletions, replacements and swaps of neighbours that turn a into b, at most
 // `limit` (also for words of more than 64 bytes).
@@ -19,5 +24,25 @@ nearest_word nearest_begin(const char *word);
 // '/' or '.' counts for the whole ("fig-3-4" finds "thesis/fig-3-4").
 void nearest_try(nearest_word *n, const char *candidate);
 
-// Replaces what could disturb a terminal, control characters and broken UTF-8, by '?', in place.
+// Whether a character (Unicode) may not leave the program in a text: a control character (C0 and
+// C1, line ends too), one that turns the direction of what follows it, or a line or paragraph
+// separator.
+bool is_unprintable(uint32_t character);
+
+// Length in bytes of the printable character that begins at `text`, which does not end there; 0 if
+// the byte stands in its way.
+int printable_length(const char *text);
+
+// The one filter for texts from outside (titles, names of files and plug-ins, cells, complaints of
+// other programs) on every way out: terminal, CSV, SVG, HTML. Replaces each byte of an unprintable
+// character, and of broken UTF-8, by '?', in place, so that what was there is seen to be missing.
 void make_printable(char *text);
+
+// The same for a text of several lines, whose line feeds stay.
+void make_lines_printable(char *text);
+
+// Prints like printf, with a decimal point, what make_lines_printable leaves of the text. Returns
+// false without memory or if it could not be written.
+bool print_printable(FILE *stream, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool print_printable_list(FILE *stream, const char *format, va_list list)
+    __attribute__((format(printf, 2, 0)));

@@ -40,7 +40,7 @@ static double random_normal(noise_source *n)
 double converter_value(double value, int bits, double range)
 {
     double within = value < -range ? -range : value < range ? value : range;
-    if (bits == 0) {
+    if (bits == 0 || range == 0) {
         return within;
     }
 

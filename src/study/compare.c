@@ -219,7 +219,7 @@ void compare_text(FILE *stream, const compare_table *t)
     // a line each: names, what was varied, results with a mark where they differ
     for (int i = 0; i < t->count; i++) {
         const compare_row *row = &t->rows[i];
-        fprintf(stream, "%-*s  %-*s", width, row->scenario, law, row->law);
+        print_printable(stream, "%-*s  %-*s", width, row->scenario, law, row->law);
         for (int v = 0; v < t->varied_count; v++) {
             char text[PARAMETER_TEXT_SIZE];
             format_varied(t, i, v, text, sizeof text);
@@ -269,7 +269,7 @@ void compare_markdown(FILE *stream, const compare_table *t)
 
     // rows
     for (int i = 0; i < t->count; i++) {
-        fprintf(stream, "| %s | %s |", t->rows[i].scenario, t->rows[i].law);
+        print_printable(stream, "| %s | %s |", t->rows[i].scenario, t->rows[i].law);
         for (int v = 0; v < t->varied_count; v++) {
             format_varied(t, i, v, text, sizeof text);
             fprintf(stream, " %s |", text);

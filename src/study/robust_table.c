@@ -6,6 +6,7 @@
 #include "src/base/csv.h"
 #include "src/base/json.h"
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 #include "src/study/robust.h"
 
 enum {
@@ -145,7 +146,7 @@ void robust_text(FILE *stream, const robust_table *t)
         double values[COLUMNS];
         values_of(law, values);
         if (width > 0) {
-            fprintf(stream, "%-*s  ", width, law->case_title);
+            print_printable(stream, "%-*s  ", width, law->case_title);
         }
         fprintf(stream, "%-16s  %5zu", law->law, law->runs);
         for (int k = 0; k < count; k++) {
@@ -185,7 +186,7 @@ void robust_markdown(FILE *stream, const robust_table *t)
         double values[COLUMNS];
         values_of(law, values);
         if (cases) {
-            fprintf(stream, "| %s ", law->case_title);
+            print_printable(stream, "| %s ", law->case_title);
         }
         fprintf(stream, "| %s | %zu |", law->law, law->runs);
         for (int k = 0; k < count; k++) {

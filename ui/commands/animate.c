@@ -63,7 +63,7 @@ static int film_run(const arguments *a, const scenario *s, const run_result *res
 
     if (code == STATUS_OK) {
         if (!a->quiet) {
-            printf("%s: %s\n", s->name, a->output);
+            say("%s: %s\n", s->name, a->output);
         }
         return EXIT_DONE;
     }

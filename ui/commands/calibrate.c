@@ -52,7 +52,7 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
 
 static void print_points(const calibration *c, const scenario *s, const char *table)
 {
-    printf("%s: %s\n\n", s->name, s->title);
+    say("%s: %s\n\n", s->name, s->title);
     printf("  %9s  %9s  %11s  %11s  %9s  %9s  %9s\n", "command/V", "force/N", "hub/rad",
            "K2/(Nm/rad)", "K2/arm.k2", "+-force/N", "+-hub/rad");
 

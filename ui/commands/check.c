@@ -21,7 +21,7 @@ static bool check_one(const char *file)
 
     if (code == STATUS_OK) {
         scenario_finish(&s);
-        printf("%s: no fault\n", file);
+        say("%s: no fault\n", file);
         return true;
     }
 

@@ -1,6 +1,7 @@
 #include "ui/commands/command.h"
 
 #include "src/base/json.h"
+#include "src/base/words.h"
 
 #include <assert.h>
 #include <langinfo.h>
@@ -15,7 +16,7 @@ int complain(const char *format, ...)
     fflush(stdout);
     fputs("impactlab: ", stderr);
     va_start(list, format);
-    vfprintf(stderr, format, list);
+    print_printable_list(stderr, format, list);
     va_end(list);
     fputc('\n', stderr);
     return EXIT_BAD_ARGUMENTS;
@@ -41,7 +42,7 @@ void report_to_stderr(void *context, const char *sentence)
 {
     (void)context;
     fflush(stdout);
-    fprintf(stderr, "%s\n", sentence);
+    print_printable(stderr, "%s\n", sentence);
 }
 
 // Counts the faults it passes on, so that none of them goes unsaid.
@@ -116,21 +117,23 @@ int with_scenario(const char *name_or_file, const arguments *a,
     return result;
 }
 
-static void write_json_value(FILE *stream, const void *value)
-{
-    json_write(stream, value);
-}
-
 int write_json(const char *path, json_t *value)
 {
     assert(path != NULL);
-    if (value == NULL) {
-        complain("%s", status_text(STATUS_NO_MEMORY));
-        return EXIT_FAILED;
+    whole_file file;
+    fault f = {0};
+    bool lost = json_lost_something() || value == NULL;
+    status code = lost ? fault_no_memory(&f) : whole_file_open(&file, path, &f);
+
+    // all of it or nothing
+    if (code == STATUS_OK) {
+        json_write(file.stream, value);
+        code = json_lost_something() ? fault_no_memory(&f) : STATUS_OK;
+        code = whole_file_close(&file, code, &f);
     }
-    int result = write_file(path, write_json_value, value);
+
     json_decref(value);
-    return result;
+    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
 int write_file(const char *path, void (*write)(FILE *stream, const void *what), const void *what)
@@ -161,6 +164,15 @@ bool summary_wanted(const arguments *a)
         alone = alone || (path != NULL && strcmp(path, "-") == 0);
     }
     return !a->quiet && !alone;
+}
+
+void say(const char *format, ...)
+{
+    assert(format != NULL);
+    va_list list;
+    va_start(list, format);
+    print_printable_list(stdout, format, list);
+    va_end(list);
 }
 
 bool terminal_has_utf8(void)

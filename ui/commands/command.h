@@ -115,6 +115,10 @@ int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // The same for a fault. Returns the exit status that belongs to its code.
 int complain_fault(const fault *f);
 
+// Prints words that come from outside (titles, names of files and scenarios) among others to the
+// standard output, printable ones only (src/base/words.h).
+void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 // A fault_handler that prints the sentence to stderr.
 void report_to_stderr(void *context, const char *sentence);
 

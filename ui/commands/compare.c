@@ -175,8 +175,8 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     if (summary_wanted(a)) {
         compare_text(stdout, t);
         if (t->against != NULL) {
-            printf("\n* differs from %s by more than %g %%\n", t->against->scenario,
-                   100 * t->tolerance);
+            say("\n* differs from %s by more than %g %%\n", t->against->scenario,
+                100 * t->tolerance);
         }
     }
     return result;

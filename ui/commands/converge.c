@@ -48,7 +48,7 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
 
     // head: scenario, method and the three steps
     parameter_format(&s->parameters, PARAMETER_INDEX(method.name), method, sizeof method);
-    printf("%s: %s\nmethod %s\n\n  %-26s", s->name, s->title, method, "step [s]");
+    say("%s: %s\nmethod %s\n\n  %-26s", s->name, s->title, method, "step [s]");
     for (int i = 0; i < PANEL_STEPS; i++) {
         decimal_print(step[i], sizeof step[i], "%g", panel->step[i]);
         printf(" %15s", step[i]);

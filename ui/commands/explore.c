@@ -153,8 +153,8 @@ static void run_on_terminal(explorer *ex)
 static void say_goodbye(const explorer *ex)
 {
     const session *e = &ex->state.session;
-    printf("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
-           e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
+    say("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
+        e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
 }
 
 // What the terminal can be expected to show: the console of Linux has no braille in its fonts.

@@ -80,7 +80,7 @@ static status take_one(void *context, size_t i, const void *result, fault *f)
     for (; list->told < list->count && list->drawn[list->told].over; list->told++) {
         const thesis_figure *which = list->figures[list->told];
         if (!list->quiet) {
-            printf("%-10s  %s/%s  %s\n", which->id, list->folder, which->file, which->caption);
+            say("%-10s  %s/%s  %s\n", which->id, list->folder, which->file, which->caption);
         }
     }
     return STATUS_OK;

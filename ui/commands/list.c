@@ -14,10 +14,10 @@ static void print_scenario(const char *name, int width)
 {
     scenario s;
     if (scenario_open(&s, name, ignore_fault, NULL) != STATUS_OK) {
-        printf("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
+        say("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
         return;
     }
-    printf("%-*s  %s\n", width, name, s.title ? s.title : "");
+    say("%-*s  %s\n", width, name, s.title ? s.title : "");
     scenario_finish(&s);
 }
 

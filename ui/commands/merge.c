@@ -16,8 +16,8 @@ static int merge(const arguments *a)
 
     // a sweep with runs missing is whole as a file: the same sweep goes on in it
     if (!a->quiet) {
-        printf("%s: %zu of %zu runs from %d part%s\n", a->output, merged.runs, merged.total,
-               a->operand_count, a->operand_count == 1 ? "" : "s");
+        say("%s: %zu of %zu runs from %d part%s\n", a->output, merged.runs, merged.total,
+            a->operand_count, a->operand_count == 1 ? "" : "s");
     }
     return EXIT_DONE;
 }

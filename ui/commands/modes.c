@@ -171,8 +171,8 @@ static int report(const arguments *args, const scenario *s, const arm *a, const 
         result = worse(result, plot_modes(args, s, a, sets));
     }
     if (summary_wanted(args)) {
-        printf("%s: %s\nsmall vibrations of the straight arm, %d link%s, without damping\n",
-               s->name, s->title, a->links, a->links == 1 ? "" : "s");
+        say("%s: %s\nsmall vibrations of the straight arm, %d link%s, without damping\n", s->name,
+            s->title, a->links, a->links == 1 ? "" : "s");
         for (int i = 0; i < HOLDS; i++) {
             print_set(a, &sets[i], holds[i].hub_name, holds[i].tip_name);
         }

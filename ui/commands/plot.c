@@ -43,7 +43,7 @@ static int plot(const arguments *a)
         }
     }
     if (code == EXIT_DONE && !a->quiet) {
-        printf("%s: %s\n", a->operands[0], path);
+        say("%s: %s\n", a->operands[0], path);
     }
     g_free(path);
     return code;

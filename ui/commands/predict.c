@@ -93,8 +93,8 @@ static void print_line(const char *label, double force, double delay, double imp
 static void print_predictions(const scenario *s, const sample *row,
                               const prediction_answer *answers, const summary *m)
 {
-    printf("%s: %s\nfirst contact at %.6g s, predicted from the instant before it\n\n", s->name,
-           s->title, m->first_contact_s);
+    say("%s: %s\nfirst contact at %.6g s, predicted from the instant before it\n\n", s->name,
+        s->title, m->first_contact_s);
 
     printf("  last free row at %.6g s: hub, first and last link at %.5g, %.5g, %.5g rad,\n"
            "  turning with %.5g, %.5g, %.5g rad/s\n\n",

@@ -12,7 +12,7 @@ static int report(const arguments *a)
         return complain_fault(&f);
     }
     if (!a->quiet) {
-        printf("%s/report.html\n%s/report.pdf\n", folder, folder);
+        say("%s/report.html\n%s/report.pdf\n", folder, folder);
     }
     return EXIT_DONE;
 }

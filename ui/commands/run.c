@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "src/arm/arm.h"
+#include "src/base/words.h"
 #include "src/quantities/parameters.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/run_progress.h"
@@ -24,7 +25,7 @@ static void print_heading(const scenario *s)
 {
     char model[128], joint[128], wall[128], method[128];
     const parameters *p = &s->parameters;
-    printf("%s: %s\n", s->name, s->title);
+    say("%s: %s\n", s->name, s->title);
     printf("%s model, %d link%s, %s hub, %s wall, %g V, method %s, h = %g s, %g s\n\n",
            value_text(p, "arm.model", model), p->arm.links, p->arm.links == 1 ? "" : "s",
            value_text(p, "arm.hub_joint", joint),
@@ -58,7 +59,7 @@ static void print_event(const scenario *s, const event *e)
         char value[128];
         const action *a = &s->actions[e->index];
         action_format_value(a, value, sizeof value);
-        printf("   %s = %s", parameter_table[a->parameter].path, value);
+        say("   %s = %s", parameter_table[a->parameter].path, value);
     }
     printf("\n");
 }
@@ -177,7 +178,7 @@ static int run_and_report(const arguments *a, scenario *s)
         complain("%s is inaccurate: %s", s->name, result.summary.message);
         exit_status = worse(exit_status, EXIT_FAILED);
     } else if (result.summary.message[0] != '\0') {
-        fprintf(stderr, "impactlab: note: %s\n", result.summary.message);
+        print_printable(stderr, "impactlab: note: %s\n", result.summary.message);
     }
 
     note_limited_voltage(&s->parameters);

@@ -17,7 +17,7 @@ static void print_range(const parameter_info *info)
     } else {
         snprintf(text, sizeof text, "%g to %g", info->minimum, info->maximum);
     }
-    printf("  %-29s", text);
+    say("  %-29s", text);
 }
 
 static void print_parameter(const parameters *p, int index)
@@ -25,7 +25,7 @@ static void print_parameter(const parameters *p, int index)
     const parameter_info *info = &parameter_table[index];
     char value[128];
     parameter_format(p, index, value, sizeof value);
-    printf("%-33s %c %18s %-9s", info->path, p->set[index] ? '=' : ' ', value, info->unit);
+    say("%-33s %c %18s %-9s", info->path, p->set[index] ? '=' : ' ', value, info->unit);
     print_range(info);
     printf("  %s\n", info->description);
 }
@@ -39,7 +39,7 @@ static void print_actions(const scenario *s)
         } else {
             char value[128];
             action_format_value(a, value, sizeof value);
-            printf("  at %g s: %s = %s\n", a->time, parameter_table[a->parameter].path, value);
+            say("  at %g s: %s = %s\n", a->time, parameter_table[a->parameter].path, value);
         }
     }
 }
@@ -59,7 +59,7 @@ static void print_expectations(const scenario *s)
 static int print_scenario(const arguments *a, scenario *s)
 {
     (void)a;
-    printf("%s: %s\n", s->name, s->title);
+    say("%s: %s\n", s->name, s->title);
     print_wrapped(stdout, s->description, (int)strlen(s->description), 96);
 
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",

@@ -53,10 +53,10 @@ static void print_cell(int width, double value)
 
 static void print_methods(const scenario *s, const method_study *study)
 {
-    printf("%s: error against cost\nreference: event method at %g s; first contact %.12g s, first "
-           "pulse peak %.12g N,\nsteady force %.12g N\n",
-           s->name, study->reference_step, study->reference[0], study->reference[1],
-           study->reference[2]);
+    say("%s: error against cost\nreference: event method at %g s; first contact %.12g s, first "
+        "pulse peak %.12g N,\nsteady force %.12g N\n",
+        s->name, study->reference_step, study->reference[0], study->reference[1],
+        study->reference[2]);
 
     // a table for each method
     for (int m = 0; m < STUDY_METHODS; m++) {

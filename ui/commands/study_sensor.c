@@ -42,7 +42,7 @@ static json_t *sensor_object(const scenario *s, const sensor_study *study)
 
 static void print_sensor(const scenario *s, const sensor_study *study)
 {
-    printf("%s: the first %g ms after first contact\n\n", s->name, 1e3 * SENSOR_WINDOW);
+    say("%s: the first %g ms after first contact\n\n", s->name, 1e3 * SENSOR_WINDOW);
     printf(
         "        ideal point contact           momentum   peak of a sensor with time constant\n");
 

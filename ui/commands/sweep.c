@@ -118,8 +118,8 @@ static int compute(const sweep_order *o, sweep_store *store)
         return report_sweep(o, store, &progress);
     }
     if (!o->arguments->quiet) {
-        printf("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario.name, o->share.part,
-               o->share.parts, progress.done, o->sweep.run_count, o->arguments->db);
+        say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario.name, o->share.part,
+            o->share.parts, progress.done, o->sweep.run_count, o->arguments->db);
     }
     return progress.failed > 0 && progress.failed == progress.total ? EXIT_FAILED : EXIT_DONE;
 }

@@ -38,8 +38,8 @@ static void print_values(const sweep *s, size_t run)
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
         char text[128];
         sweep_value_text(s, run, i, text, sizeof text);
-        printf("%s%s = %s%s%s", i > 0 ? ", " : "", info->path, text, info->unit[0] ? " " : "",
-               info->unit);
+        say("%s%s = %s%s%s", i > 0 ? ", " : "", info->path, text, info->unit[0] ? " " : "",
+            info->unit);
     }
 }
 
@@ -74,8 +74,8 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
     const char *unit = quantity->unit;
 
     // how many runs there were
-    printf("%s: %zu run%s (%s), %zu failed", o->scenario.name, s->run_count,
-           s->run_count == 1 ? "" : "s", sweep_sampling_name(s->sampling), failed);
+    say("%s: %zu run%s (%s), %zu failed", o->scenario.name, s->run_count,
+        s->run_count == 1 ? "" : "s", sweep_sampling_name(s->sampling), failed);
     if (p->done_now < p->total) {
         printf(", %zu were there already", p->total - p->done_now);
     }

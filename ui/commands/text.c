@@ -4,6 +4,8 @@
 #include <assert.h>
 #include <string.h>
 
+#include "src/base/words.h"
+
 int text_width(const char *text)
 {
     assert(text != NULL);
@@ -29,7 +31,7 @@ void print_wrapped(FILE *stream, const char *text, int bytes, int width)
         int wide = text_width(word);
         const char *gap = column == 0 ? "" : column + 1 + wide > width ? "\n" : " ";
         column = gap[0] == ' ' ? column + 1 + wide : wide;
-        fprintf(stream, "%s%.*s", gap, length, text);
+        print_printable(stream, "%s%.*s", gap, length, text);
         text += length;
     }
     fprintf(stream, "%s", column > 0 ? "\n" : "");

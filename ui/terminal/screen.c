@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/words.h"
+
 enum { BRAILLE = 0x2800 };
 
 bool screen_resize(screen *s, int width, int height)
@@ -70,8 +72,7 @@ uint32_t glyph_decode(const char **text)
 
     // what the terminal must not get
     bool stray = more == 0 && t[0] >= 0x80;
-    bool control = glyph < ' ' || (glyph >= 0x7f && glyph < 0xa0);
-    return stray || control ? '?' : glyph;
+    return stray || is_unprintable(glyph) ? '?' : glyph;
 }
 
 int screen_text(screen *s, int x, int y, int room, ink colour, const char *text)

@@ -40,9 +40,10 @@ static struct {
 
 #define SEQUENCE_TIME 0.25 // after such a pause what is missing of a sequence does not come [s]
 
-static volatile sig_atomic_t leaving; // the signal that asks to leave
+static volatile sig_atomic_t leaving;    // the signal that asks to leave
+static volatile sig_atomic_t suspending; // ^Z was pressed
 
-static const int polite_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH, SIGCONT};
+static const int polite_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH, SIGCONT, SIGTSTP};
 static const int fatal_signals[] = {SIGSEGV, SIGABRT, SIGFPE,  SIGBUS,   SIGILL,  SIGTRAP,
                                     SIGXCPU, SIGSYS,  SIGUSR1, SIGUSR2,  SIGALRM, SIGVTALRM,
                                     SIGPROF, SIGIO,   SIGPWR,  SIGSTKFLT};
@@ -60,7 +61,9 @@ static void on_polite(int number)
 {
     int kept = errno;
     char byte = 0;
-    if (number != SIGWINCH && number != SIGCONT) {
+    if (number == SIGTSTP) {
+        suspending = 1;
+    } else if (number != SIGWINCH && number != SIGCONT) {
         leaving = number;
     }
     ssize_t ignored = write(tty.wake[1], &byte, 1);
@@ -90,6 +93,10 @@ static void take_signals(void)
     for (int i = 0; i < POLITE; i++) {
         struct sigaction act = {.sa_handler = on_polite};
         sigaction(polite_signals[i], &act, &polite_before[i]);
+        // a shell without jobs asks for ^Z to be ignored
+        if (polite_signals[i] == SIGTSTP && polite_before[i].sa_handler == SIG_IGN) {
+            sigaction(SIGTSTP, &polite_before[i], NULL);
+        }
     }
 
     for (int i = 0; i < FATAL; i++) {
@@ -389,12 +396,37 @@ static terminal_input pending_input(void)
     return (terminal_input){.kind = TERMINAL_NONE};
 }
 
+// Gives the terminal back, mouse included, stops until the shell lets us go on, and takes the
+// terminal over again.
+static void suspend(void)
+{
+    struct sigaction ours, plain = {.sa_handler = SIG_DFL};
+    terminal_mouse(false);
+    erase();
+    refresh();
+    endwin();
+
+    // nothing stops a program that no shell could wake
+    sigaction(SIGTSTP, &plain, &ours);
+    raise(SIGTSTP);
+    sigaction(SIGTSTP, &ours, NULL);
+
+    // what is shown is the shell's
+    clearok(stdscr, TRUE);
+    refresh();
+    curs_set(0);
+}
+
 // Takes the bytes that signals left, and the terminal's new size.
 static terminal_input after_signal(void)
 {
     char bytes[64];
     struct winsize size;
     while (read(tty.wake[0], bytes, sizeof bytes) > 0) {
+    }
+    if (suspending != 0) {
+        suspending = 0;
+        suspend();
     }
     if (leaving != 0) {
         return (terminal_input){.kind = TERMINAL_LEAVE};
