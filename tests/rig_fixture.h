@@ -12,7 +12,9 @@ static inline parameters rig_parameters(const char *const *settings)
     for (; settings != NULL && *settings != NULL; settings++) {
         all[count++] = *settings;
     }
-    return fixture_parameters(all);
+    parameters p = fixture_parameters(all);
+    p.code_allowed = true;
+    return p;
 }
 
 // Runs them; the caller calls run_finish.

@@ -21,7 +21,7 @@ static void every_word_chooses_the_controller_of_that_name(void **state)
         assert_int_equal(parameter_set_text(&p, index, word, &f), STATUS_OK);
         assert_int_equal(p.control.law, law);
         const controller *c = controller_of(law);
-        assert_true((c == NULL) == (law == LAW_NONE || law == LAW_PLUGIN));
+        assert_true((c == NULL) == (law == LAW_NONE || law == LAW_PLUGIN || law == LAW_PROCESS));
         if (c != NULL) {
             assert_string_equal(c->name, word);
         }

@@ -22,11 +22,13 @@ SAME_CODE(CANNOT_WRITE);
 SAME_CODE(CANNOT_READ);
 SAME_CODE(EXPECTATION_FAILED);
 SAME_CODE(STOPPED);
+SAME_CODE(FOLDED);
+SAME_CODE(CONTROLLER_FAILED);
 
 const char *impactlab_status_text(int code)
 {
-    return code >= STATUS_OK && code <= STATUS_STOPPED ? status_text((status)code)
-                                                       : "not a status of impactlab";
+    return code >= STATUS_OK && code <= STATUS_CONTROLLER_FAILED ? status_text((status)code)
+                                                                 : "not a status of impactlab";
 }
 
 // Copies a text, cut to fit.

@@ -16,7 +16,8 @@
     X(STATUS_CANNOT_READ, "a file could not be read")                                              \
     X(STATUS_EXPECTATION_FAILED, "an expected value was not met")                                  \
     X(STATUS_STOPPED, "stopped before its end")                                                    \
-    X(STATUS_FOLDED, "the arm is folded across the hub's axis on a flat wall")
+    X(STATUS_FOLDED, "the arm is folded across the hub's axis on a flat wall")                     \
+    X(STATUS_CONTROLLER_FAILED, "the controller failed")
 
 typedef enum status {
 #define STATUS_ENUM(code, text) code,

@@ -139,12 +139,17 @@ const parameter_info parameter_table[] = {
 
     {PATH(run.duration), REAL("s", 1e-6, 1e5), DEFAULT(1), MEANING("simulated time")},
 
-    {PATH(control.law), CHOICE(LAW_PLUGIN, CONTROL_LAW_CHOICES), DEFAULT(LAW_NONE),
+    {PATH(control.law), CHOICE(LAW_PROCESS, CONTROL_LAW_CHOICES), DEFAULT(LAW_NONE),
      MEANING("control law on the rig, or none: the bare arm under motor.voltage")},
     {PATH(control.plugin), TEXT(NULL),
      MEANING("shared object with a controller of one's own (control.law = plugin)")},
+    {PATH(control.command), TEXT(NULL),
+     MEANING("program that is the controller, as a shell takes it (control.law = process)")},
+    {PATH(control.answer_time), REAL("s", 0.01, 3600), DEFAULT(10),
+     MEANING("for which a process may keep the lab waiting, by the clock, before the run fails")},
     {PATH(control.settings), TEXT(NULL),
-     MEANING("a plug-in's own parameters, written name=value and separated by spaces")},
+     MEANING(
+         "a plug-in's or process's own parameters, written name=value and separated by spaces")},
     {PATH(control.lock), TEXT("none"), TIMED,
      MEANING("mode that the law is held in, by its name, or none: the law chooses")},
     {PATH(control.rate), REAL("Hz", 1, 1e5), DEFAULT(200), TIMED, MEANING("samples a second")},

@@ -89,6 +89,8 @@ enum { PARAMETER_TEXT_SIZE = 128 }; // room for a parameter that is a text, its 
 typedef struct control_parameters {
     int law;                            // control_law
     char plugin[PARAMETER_TEXT_SIZE];   // file of a shared object
+    char command[PARAMETER_TEXT_SIZE];  // of a program, as a shell takes it
+    double answer_time;                 // that the program has for each answer [s]
     char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
     char lock[PARAMETER_TEXT_SIZE];     // mode that the law is held in, "none" if it is free
     double rate;                        // samples a second [Hz]

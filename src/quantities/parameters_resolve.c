@@ -157,6 +157,10 @@ static status check_control(const parameters *p, fault *f)
             f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.plugin),
             "control.law = plugin needs the file of a shared object in control.plugin");
     }
+    if (c->law == LAW_PROCESS && c->command[0] == '\0') {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.command),
+                            "control.law = process needs the program to start in control.command");
+    }
     k2_table table;
     if (k2_table_read(&table, c->k2_table, f) != STATUS_OK) {
         return STATUS_BAD_SCENARIO;

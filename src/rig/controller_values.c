@@ -138,8 +138,9 @@ status controller_values(const controller *law, const parameters *p, double *val
     }
 
     // those that control.settings replaces
+    // a process reads its settings itself
     status code = STATUS_OK;
-    const char *rest = p->control.settings;
+    const char *rest = p->control.law == LAW_PROCESS ? "" : p->control.settings;
     while (code == STATUS_OK && *(rest += strspn(rest, " ")) != '\0') {
         setting s = setting_at(rest);
         code = read_setting(law, s, values, f);

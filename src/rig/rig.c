@@ -107,6 +107,33 @@ static controller_output no_answer(void)
                                .calculated_force = (double)NAN};
 }
 
+// Finds the controller that control.law names; one from outside only if the user allows it.
+static status open_law(rig *r, const parameters *p, fault *f)
+{
+    const control_parameters *c = &p->control;
+    r->law = controller_of(c->law);
+    if (r->law != NULL) {
+        return STATUS_OK;
+    }
+    if (!p->code_allowed) {
+        const bool program = c->law == LAW_PROCESS;
+        return fault_set_at(f, STATUS_BAD_SCENARIO, program ? "control.command" : "control.plugin",
+                            "the scenario wants to %s '%.200s', which can do whatever you can: if "
+                            "you trust it, allow that with --allow-code",
+                            program ? "start the program" : "load the plug-in",
+                            program ? c->command : c->plugin);
+    }
+
+    if (c->law == LAW_PLUGIN) {
+        status s = plugin_open(&r->plugin, c->plugin, f);
+        r->law = r->plugin.law;
+        return s;
+    }
+    r->process = process_create(c);
+    r->law = &process_law;
+    return r->process != NULL ? STATUS_OK : fault_no_memory(f);
+}
+
 status rig_create(rig **created, const parameters *p, fault *f)
 {
     return rig_create_with(created, p, NULL, f);
@@ -137,10 +164,13 @@ status rig_create_with(rig **created, const parameters *p, const given_law *give
 
     // the controller, which may refuse the lock, its settings or the arm
     status s = STATUS_OK;
-    r->law = given != NULL ? given->law : controller_of(p->control.law);
-    if (given == NULL && p->control.law == LAW_PLUGIN) {
-        s = plugin_open(&r->plugin, p->control.plugin, f);
-        r->law = r->plugin.law;
+    given_law asked;
+    if (given != NULL) {
+        r->law = given->law;
+    } else {
+        s = open_law(r, p, f);
+        asked = (given_law){r->law, r->process};
+        given = r->process != NULL ? &asked : NULL;
     }
     s = s == STATUS_OK ? rig_lock(r, p->control.lock, f) : s;
     s = s == STATUS_OK ? start_controller(r, p, given, f) : s;
@@ -165,6 +195,7 @@ void rig_destroy(rig *r)
         free(r->memory);
         free(r->values);
         plugin_close(&r->plugin);
+        process_destroy(r->process);
         free(r);
     }
 }
@@ -215,6 +246,10 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     controller_output *out = &r->output;
     *out = no_answer();
     r->law->sample(r->memory, &input, out);
+    if (r->process != NULL && process_failure(r->process) != NULL) {
+        return fault_set_at(f, STATUS_CONTROLLER_FAILED, "control.command", "at t = %.9g s %s",
+                            time, process_failure(r->process));
+    }
     if (!isfinite(out->command)) {
         return fault_set(
             f, STATUS_NOT_FINITE,

@@ -7,6 +7,7 @@
 
 #include "src/rig/controller.h"
 #include "src/rig/plugin.h"
+#include "src/rig/process.h"
 #include "src/rig/sensors.h"
 #include "src/base/fault.h"
 
@@ -19,9 +20,10 @@ typedef struct given_law {
 
 typedef struct rig {
     const controller *law;
-    plugin plugin;  // the law comes from, else empty
-    void *memory;   // the controller's
-    double *values; // of the controller's parameters
+    plugin plugin;    // the law comes from, else empty
+    process *process; // that the law asks, else NULL
+    void *memory;     // the controller's
+    double *values;   // of the controller's parameters
     sensors sensors;
     double period, delay, jitter; // [s]
     double voltage_limit;         // [V]
@@ -90,5 +92,5 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
 // finds it taken. What is not due changes nothing.
 void rig_read(rig *r, double time, const sensed_motion *now);
 
-// The built-in controller of a law; NULL for LAW_NONE and LAW_PLUGIN.
+// The built-in controller of a law; NULL for LAW_NONE, LAW_PLUGIN and LAW_PROCESS.
 const controller *controller_of(int law);

@@ -61,7 +61,7 @@ int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, 
     fault ignored;
     plugin opened = {0};
     const controller *law = controller_of(p->control.law);
-    if (p->control.law == LAW_PLUGIN &&
+    if (p->control.law == LAW_PLUGIN && p->code_allowed &&
         plugin_open(&opened, p->control.plugin, &ignored) == STATUS_OK) {
         law = opened.law;
     }

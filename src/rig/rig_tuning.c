@@ -38,6 +38,9 @@ static status tell_controller(rig *r, const parameters *p, fault *f)
     if (s != STATUS_OK) {
         return s;
     }
+    if (r->process != NULL) {
+        process_tell(r->process, &p->control);
+    }
     const controller_setup setup = rig_believed_setup(r, p);
 
     const char *refusal = r->law->tune(r->memory, &setup);

@@ -430,6 +430,7 @@ static void restore_rig(run_loop *l, const rig *saved, const char *at)
     *r = *saved;
     r->law = own.law;
     r->plugin = own.plugin;
+    r->process = own.process;
     r->memory = own.memory;
     r->values = own.values;
     memcpy(r->memory, at, memory_size(r));
@@ -443,6 +444,11 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
 {
     assert(l != NULL && bytes != NULL);
     saved_head head;
+    if (l->recording.rig != NULL && l->recording.rig->process != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "control.law is a process, which would have to go on from its own past: "
+                         "begin another loop instead");
+    }
     if (size != loop_saved_size(l)) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "a state of this loop has %zu bytes, but %zu were given",

@@ -91,7 +91,8 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
         return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
     }
 
-    // what the command line changes
+    // what the command line allows and changes
+    s->parameters.code_allowed = a->allow_code;
     int result = check_keeps_scenario(s, a);
     if (result == EXIT_DONE && scenario_override_all(s, a->sets.items, a->sets.count,
                                                      complain_sentence, NULL) != STATUS_OK) {

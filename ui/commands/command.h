@@ -23,6 +23,7 @@ typedef struct arguments {
 
     // what is run
     text_list sets;                // --set
+    bool allow_code;               // --allow-code
     text_list varies;              // --vary
     const char *sampling;          // --sample, NULL: grid
     uint64_t runs, seed;           // --runs (0 if not given), --seed

@@ -9,6 +9,10 @@ static const option_row set_rows[] = {
      .value = "PATH=VALUE",
      .help = "give a parameter another value (may be repeated)",
      PLACE(sets)},
+    {.name = "allow-code",
+     .type = OPTION_FLAG,
+     .help = "let the scenario start the program or load the plug-in that it names",
+     PLACE(allow_code)},
 };
 const option_table set_options = OPTION_TABLE("Options", set_rows);
 

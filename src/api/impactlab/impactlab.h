@@ -48,7 +48,9 @@ typedef enum impactlab_status {
     IMPACTLAB_CANNOT_WRITE = 9,        //
     IMPACTLAB_CANNOT_READ = 10,        // a file that is not there, or cannot be read
     IMPACTLAB_EXPECTATION_FAILED = 11, //
-    IMPACTLAB_STOPPED = 12             // before its end
+    IMPACTLAB_STOPPED = 12,            // before its end
+    IMPACTLAB_FOLDED = 13,             // the arm is folded across the hub's axis on a flat wall
+    IMPACTLAB_CONTROLLER_FAILED = 14   // a process that is the controller died, hung or babbled
 } impactlab_status;
 
 typedef struct impactlab_error {

@@ -78,7 +78,10 @@ static const char *reason_of_control(const parameters *p, int parameter)
     const controller *law = controller_of(p->control.law);
     const char *name = strchr(parameter_table[parameter].path, '.') + 1;
     if (IS_OF(parameter, control.plugin)) {
-        return law == NULL ? NULL : "it belongs to control.law = plugin";
+        return p->control.law == LAW_PLUGIN ? NULL : "it belongs to control.law = plugin";
+    }
+    if (IS_OF(parameter, control.command) || IS_OF(parameter, control.answer_time)) {
+        return p->control.law == LAW_PROCESS ? NULL : "it belongs to control.law = process";
     }
     if (law == NULL || is_of_every_law(parameter)) {
         return NULL;
