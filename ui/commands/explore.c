@@ -81,6 +81,12 @@ static int run_off_screen(explorer *ex, const arguments *a)
     if (code == EXIT_DONE && !a->quiet) {
         code = print_screen(ex, width, height);
     }
+
+    // the keys went on, but what they were to do is not done
+    if (code == EXIT_DONE && ex->first_failure[0] != '\0') {
+        complain("--keys: %s", ex->first_failure);
+        code = EXIT_FAILED;
+    }
     return code;
 }
 

@@ -22,7 +22,7 @@ typedef struct explorer {
     explorer_state state;
     layout layout; // of the picture drawn last
     pointer_grip grip;
-    bool command_failed; // the line that was entered last
+    char first_failure[MESSAGE_TEXT]; // why the first line that failed did, "" if none has
 } explorer;
 
 // Opens the explorer on a scenario, taken over also on failure. Waits for runs not longer than

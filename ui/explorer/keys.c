@@ -10,7 +10,6 @@
 bool explorer_keys(explorer *ex, const char *text, fault *f)
 {
     assert(ex != NULL && text != NULL);
-    ex->command_failed = false;
     while (*text != '\0' && !ex->state.quit) {
         // a character by itself, unless it begins a name
         const char *close = *text == '<' ? strchr(text, '>') : NULL;
@@ -29,12 +28,6 @@ bool explorer_keys(explorer *ex, const char *text, fault *f)
         }
         explorer_key(ex, key);
         text = close + 1;
-
-        // what follows a command that failed would go astray
-        if (ex->command_failed) {
-            fault_set(f, STATUS_STOPPED, "--keys: %s", ex->state.message.text);
-            return false;
-        }
     }
     return true;
 }
@@ -58,7 +51,9 @@ static void enter_prompt(explorer *ex)
         return;
     }
     snprintf(p->history, sizeof p->history, "%s", line);
-    ex->command_failed = !explorer_carry_out(ex, line);
+    if (!explorer_carry_out(ex, line) && ex->first_failure[0] == '\0') {
+        snprintf(ex->first_failure, sizeof ex->first_failure, "%s", st->message.text);
+    }
 }
 
 // Whether a key moved in the palette that the prompt shows: Up leaves it at its top.
