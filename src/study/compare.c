@@ -9,6 +9,7 @@
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 #include "src/predict/best_stop.h"
+#include "src/predict/least_time.h"
 #include "src/rig/rig.h"
 
 enum {
@@ -17,6 +18,8 @@ enum {
     OVERSHOOT,
     SETTLING,
     BEST_SETTLING,
+    FROM_START,
+    LEAST_TIME,
     IMPACTS,
     SEPARATIONS,
     STEADY_ERROR,
@@ -30,6 +33,8 @@ const compare_quantity compare_quantities[COMPARE_QUANTITIES] = {
     [OVERSHOOT] = {"overshoot_percent", "overshoot", "over", "%"},
     [SETTLING] = {"settling_time_s", "settling_time", "settled", "s"},
     [BEST_SETTLING] = {"best_settling_s", "best_settling", "best time", "s"},
+    [FROM_START] = {"from_start_s", "from_start", "from start", "s"},
+    [LEAST_TIME] = {"least_time_s", "least_time", "least time", "s"},
     [IMPACTS] = {"impacts", "impacts", "impacts", ""},
     [SEPARATIONS] = {"separations", "separations", "separations", ""},
     [STEADY_ERROR] = {"steady_error_N", "steady_error", "error", "N"},
@@ -67,6 +72,16 @@ static void find_best(const scenario *s, const run_result *result, double *peak,
     }
 }
 
+// The least time from the start that any controller takes, pressing no harder than the run did.
+static double find_least_time(const scenario *s, const run_result *result)
+{
+    const parameters *p = &s->parameters;
+    const double command = result->summary.force_command_N, peak = result->summary.peak_force_N;
+    bool known = s->action_count == 0 && p->initial.velocity == 0 && p->wall.restitution == 0 &&
+                 command > 0 && !isnan(peak);
+    return known ? least_time_of(p, command, SETTLED_BAND, peak).total : (double)NAN;
+}
+
 compare_row compare_row_of(const scenario *s, const run_result *result)
 {
     assert(s != NULL && result != NULL);
@@ -87,6 +102,8 @@ compare_row compare_row_of(const scenario *s, const run_result *result)
                                            : m->force_overshoot_percent,
                    [SETTLING] = m->settling_time_s,
                    [BEST_SETTLING] = settling,
+                   [FROM_START] = m->first_contact_s + m->settling_time_s,
+                   [LEAST_TIME] = find_least_time(s, result),
                    [IMPACTS] = m->impacts,
                    [SEPARATIONS] = m->separations,
                    [STEADY_ERROR] = m->steady_error_N,

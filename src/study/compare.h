@@ -6,7 +6,7 @@
 
 #include "src/run/run.h"
 
-enum { COMPARE_QUANTITIES = 10, COMPARE_MOST_VARIED = 32 };
+enum { COMPARE_QUANTITIES = 12, COMPARE_MOST_VARIED = 32 };
 
 typedef struct compare_quantity {
     const char *key;     // in JSON, its unit at the end
@@ -44,7 +44,9 @@ typedef struct compare_table {
 // after the run's first impact (src/predict/best_stop.h): the least peak with which it can end in
 // contact; and the least settling time into the band round the commanded force, with a peak not
 // above this run's own (nor below the band). They hold on the corrected arm of two links on a rigid
-// hub, without script, where the first impact was plastic; else they are NaN.
+// hub, without script, where the first impact was plastic; else they are NaN. from_start_s is the
+// time from the run's start until it has settled, and least_time_s the least that any controller
+// with this voltage takes for that from rest, pressing no harder (src/predict/least_time.h).
 compare_row compare_row_of(const scenario *s, const run_result *result);
 
 // Whether a value differs from the reference's by more than the tolerance, a share of the larger

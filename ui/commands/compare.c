@@ -273,11 +273,13 @@ const command compare_command = {
     .group = GROUP_MANY_RUNS,
     .operands = "SCENARIO...",
     .summary = "Several scenarios in one table",
-    .help = "One row a run: peak force, its overshoot over the commanded force, settling time, "
-            "impacts,\nseparations, steady error, largest command and electrical energy. Best peak "
-            "and best time are\nwhat a controller could have made of the first impact if it knew "
-            "the whole state, pressing no\nharder than the run did. --set holds for all of them; "
-            "--vary, as sweep takes it, runs each of\nthem for every combination of values.\n",
+    .help =
+        "One row a run: peak force, its overshoot over the commanded force, settling time, "
+        "impacts,\nseparations, steady error, largest command and electrical energy. Best peak "
+        "and best time are\nwhat a controller could have made of the first impact if it knew "
+        "the whole state, pressing no\nharder than the run did; from start is when it has settled, "
+        "and least time what no controller\ntakes less than for that. --set holds for all of them; "
+        "--vary, as sweep takes it, runs each of\nthem for every combination of values.\n",
     .least = 1,
     .most = MOST_SCENARIOS,
     .takes_scenarios = true,

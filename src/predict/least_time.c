@@ -1,0 +1,219 @@
+#include "src/predict/least_time.h"
+
+#include <assert.h>
+#include <math.h>
+
+enum { MOST_STEPS = 4000, SUBSTEPS = 8, HALVINGS = 60 };
+
+// The arm in flight, q = (theta2, theta3) - theta_imp: M q'' + D e2 q2' + k2 B q = T e2.
+typedef struct flight {
+    double inverse[2][2];   // of M [1/(kg m2)]
+    double damping;         // D [N m s/rad]
+    double k2;              // [N m/rad]
+    double length;          // l of a link [m]
+    double torque;          // largest, friction's included [N m]
+    double start;           // q at the start, both [rad]
+    double take[2];         // x' after a touch = take[0] q2' + take[1] q3'
+    double press, per_rate; // K [N/rad], and K/s [N s/rad]: K xi = K x + (K/s) x'
+} flight;
+
+typedef struct flight_state {
+    double q[2], w[2];
+} flight_state;
+
+static bool flight_of(const parameters *p, flight *f)
+{
+    pressed_arm_model m;
+    if (!pressed_arm_model_of(p, &m)) {
+        return false;
+    }
+
+    // masses as in (2.16), (2.17), hub and first link one body
+    const double l = p->arm.length / 2, mass = p->arm.mass / 2;
+    const double quarter = mass * l * l / 4, inertia = p->arm.link_inertia;
+    const double m11 = p->arm.hub_inertia + inertia + 5 * quarter, m12 = 2 * quarter,
+                 m22 = inertia + quarter, determinant = m11 * m22 - m12 * m12;
+    *f = (flight){.inverse = {{m22 / determinant, -m12 / determinant},
+                              {-m12 / determinant, m11 / determinant}},
+                  .damping = m.damping,
+                  .k2 = p->arm.k2,
+                  .length = l,
+                  .torque = m.torque_limit + m.stiction,
+                  .start = p->initial.angle - p->wall.angle,
+                  .take = {(m11 - m12) / m.inertia, (m12 - m22) / m.inertia},
+                  .press = m.spring_force,
+                  .per_rate = sqrt(m.spring_force * m.mass_force)};
+    return f->start < 0 && f->torque > 0;
+}
+
+static flight_state rate(const flight *f, const flight_state *s, double torque)
+{
+    const double bend = f->k2 * (s->q[0] - s->q[1]);
+    const double hub = torque - f->damping * s->w[0] - bend;
+    return (flight_state){{s->w[0], s->w[1]},
+                          {f->inverse[0][0] * hub + f->inverse[0][1] * bend,
+                           f->inverse[1][0] * hub + f->inverse[1][1] * bend}};
+}
+
+static flight_state ahead(const flight_state *s, const flight_state *r, double h)
+{
+    return (flight_state){{s->q[0] + h * r->q[0], s->q[1] + h * r->q[1]},
+                          {s->w[0] + h * r->w[0], s->w[1] + h * r->w[1]}};
+}
+
+// Over LEAST_TIME_STEP under a constant torque, by the classical Runge-Kutta method.
+static flight_state advance(const flight *f, flight_state s, double torque)
+{
+    const double h = LEAST_TIME_STEP / SUBSTEPS;
+    for (int i = 0; i < SUBSTEPS; i++) {
+        flight_state a = rate(f, &s, torque), at = ahead(&s, &a, h / 2);
+        flight_state b = rate(f, &at, torque);
+        at = ahead(&s, &b, h / 2);
+        flight_state c = rate(f, &at, torque);
+        at = ahead(&s, &c, h);
+        flight_state d = rate(f, &at, torque);
+        for (int k = 0; k < 2; k++) {
+            s.q[k] += h / 6 * (a.q[k] + 2 * b.q[k] + 2 * c.q[k] + d.q[k]);
+            s.w[k] += h / 6 * (a.w[k] + 2 * b.w[k] + 2 * c.w[k] + d.w[k]);
+        }
+    }
+    return s;
+}
+
+static double tip_of(const flight *f, const flight_state *s)
+{
+    return f->length * (s->q[0] + s->q[1]);
+}
+
+// K xi after a touch now.
+static double press_of(const flight *f, const flight_state *s)
+{
+    double velocity = f->take[0] * s->w[0] + f->take[1] * s->w[1];
+    return f->press * s->q[0] + f->per_rate * velocity;
+}
+
+// What one step of unit torque comes to k steps after its beginning, k from 1: tip [1/N], K xi
+// [1/m].
+typedef struct responses {
+    double tip[MOST_STEPS + 1], press[MOST_STEPS + 1];
+    int count; // of the steps that are filled in
+} responses;
+
+// The end of the interval of K xi that can be had with a touch after n steps.
+typedef struct edge {
+    double press, weight, slack;
+} edge;
+
+// Sums over the torque U sign(sense (press - weight tip)).
+static void follow_sign(const flight *f, const responses *r, int n, double weight, double sense,
+                        double *tip, double *press)
+{
+    *tip = *press = 0;
+    for (int k = 1; k <= n; k++) {
+        double torque = sense * (r->press[k] - weight * r->tip[k]) > 0 ? f->torque : -f->torque;
+        *tip += torque * r->tip[k];
+        *press += torque * r->press[k];
+    }
+}
+
+// The largest K xi (sense 1) or the least (-1) of a touch after n steps. A larger weight takes the
+// tip back (sense 1) or on (-1), one step's sign after the other, so that halving finds the one
+// with the tip at the wall. False if no torque brings it there.
+static bool find_edge(const flight *f, const responses *r, int n, double sense, edge *e)
+{
+    double way = 0, low = -1, high = 1, tip, press;
+    for (int k = 1; k <= n; k++) {
+        way += f->torque * fabs(r->tip[k]);
+    }
+    const double start = tip_of(f, &(flight_state){{f->start, f->start}, {0, 0}});
+    if (way < -start) {
+        return false;
+    }
+
+    // weights so large that the tip's share alone decides
+    for (int k = 1; k <= n; k++) {
+        double ratio = 2 * fabs(r->press[k]) / fmax(fabs(r->tip[k]), 1e-12);
+        high = fmax(high, ratio);
+        low = -high;
+    }
+    for (int i = 0; i < HALVINGS; i++) {
+        double middle = (low + high) / 2;
+        follow_sign(f, r, n, middle, sense, &tip, &press);
+        *((start + tip > 0) == (sense > 0) ? &low : &high) = middle;
+    }
+
+    // between two weights one step's torque lies between both signs: on the straight line there
+    double tip_low, press_low;
+    follow_sign(f, r, n, low, sense, &tip_low, &press_low);
+    follow_sign(f, r, n, high, sense, &tip, &press);
+    double across = tip_low - tip, share = across != 0 ? (-start - tip) / across : 0;
+    share = fmax(0, fmin(1, share));
+    e->press = f->press * f->start + press + share * (press_low - press);
+    e->slack = fabs(start + tip + share * across) / -start;
+    e->weight = (low + high) / 2;
+    return true;
+}
+
+// Least time from K xi to the band [a, b] under forces from 0 to P; NaN if it is never there.
+static double time_to_band(double xi, double a, double b, double most, double s)
+{
+    if (xi > b) {
+        return xi < most ? log((most - b) / (most - xi)) / s : (double)NAN;
+    }
+    return xi >= a ? 0 : xi > 0 ? log(a / xi) / s : (double)NAN;
+}
+
+least_time least_time_of(const parameters *p, double force, double band, double peak)
+{
+    assert(p != NULL && band > 0);
+    least_time best = {.total = (double)NAN};
+    flight f;
+    responses r = {.count = 0};
+    if (!(force > 0) || !flight_of(p, &f)) {
+        return best;
+    }
+    const double a = force * (1 - band), b = force * (1 + band), most = fmax(peak, b);
+    const double s = f.press / f.per_rate;
+
+    // later and later touches, until the touch alone takes longer than the best
+    flight_state kicked = {{0, 0}, {0, 0}};
+    for (int n = 1; n <= MOST_STEPS && !(n * LEAST_TIME_STEP >= best.total); n++) {
+        edge edges[2];
+        kicked = advance(&f, kicked, n == 1 ? 1 : 0);
+        r.tip[n] = tip_of(&f, &kicked);
+        r.press[n] = press_of(&f, &kicked);
+        if (!find_edge(&f, &r, n, -1, &edges[0]) || !find_edge(&f, &r, n, 1, &edges[1])) {
+            continue;
+        }
+
+        // what lies nearest to the band
+        bool largest = edges[1].press < a;
+        const edge *e = &edges[largest];
+        double press = largest ? e->press : fmax(e->press, a);
+        double total = n * LEAST_TIME_STEP + time_to_band(press, a, b, most, s);
+        if (total < best.total || (isnan(best.total) && !isnan(total))) {
+            best = (least_time){.total = total,
+                                .touch = n * LEAST_TIME_STEP,
+                                .press = e->press,
+                                .weight = e->weight,
+                                .largest = largest,
+                                .slack = e->slack};
+        }
+    }
+    return best;
+}
+
+void least_time_follow(const parameters *p, const double *torque, int steps, double *tip,
+                       double *press)
+{
+    assert(p != NULL && torque != NULL && tip != NULL && press != NULL && steps >= 0);
+    flight f;
+    bool known = flight_of(p, &f);
+    flight_state s = {{f.start, f.start}, {0, 0}};
+    assert(known);
+    for (int k = 0; k < steps && known; k++) {
+        s = advance(&f, s, torque[k]);
+    }
+    *tip = tip_of(&f, &s);
+    *press = press_of(&f, &s);
+}
