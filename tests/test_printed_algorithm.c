@@ -334,6 +334,70 @@ static void beta_matters_little_in_free_flight(void **state)
     free(b);
 }
 
+// Largest force of a run that may fail on its way, huge if it does.
+static double largest_force(const parameters *p)
+{
+    recording *r = calloc(1, sizeof *r);
+    fault f = {.text = ""};
+    assert_non_null(r);
+    double largest = run_into(r, *p, NULL, &f) == STATUS_OK ? 0 : HUGE_VAL;
+    for (int i = 0; i < r->count; i++) {
+        largest = fmax(largest, r->rows[i].force);
+    }
+    free(r);
+    return largest;
+}
+
+// 3.1.3: with a single run no beta and gamma give a force that is any use. Where it survives, it
+// is the impulse over one step: ten times as large with a tenth of the step.
+static void a_single_run_gives_no_force_whatever_beta_and_gamma(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(1, 0.5);
+    const double both = largest_force(&p);
+    p.printed.reevaluation = REEVALUATE_NONE;
+    for (int b = 0; b < 4; b++) {
+        for (int g = 0; g < 3; g++) {
+            p.method.beta = 0.1 + 0.2 * b;
+            p.method.gamma = 0.5 + 0.2 * g;
+            p.method.step = 1e-3;
+            check_below(5 * both, largest_force(&p));
+        }
+    }
+
+    // with the thesis's own pair
+    p.method.beta = 0.4;
+    p.method.gamma = 0.5;
+    double coarse = largest_force(&p);
+    p.method.step = 1e-4;
+    double fine = largest_force(&p);
+    check_below(7 * coarse, fine);
+    check_below(fine, 13 * coarse);
+
+    // what two runs give hardly depends on the step
+    p.printed.reevaluation = REEVALUATE_RHS;
+    check_relative(largest_force(&p), both, 0.05);
+}
+
+static void negative_forces_change_no_peak(void **state)
+{
+    (void)state;
+    parameters p = printed_parameters_of(5, 1);
+    recording *clamped = run(&p, NULL);
+    p.printed.clamp_force = false;
+    recording *free_sign = run(&p, NULL);
+    double largest[2] = {0, 0}, smallest = 0;
+    for (int i = 0; i < clamped->count; i++) {
+        largest[0] = fmax(largest[0], clamped->rows[i].force);
+        largest[1] = fmax(largest[1], free_sign->rows[i].force);
+        smallest = fmin(smallest, free_sign->rows[i].force);
+    }
+    check_below(smallest, 0);
+    check_close(largest[1], largest[0], 0);
+    free(clamped);
+    free(free_sign);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -350,6 +414,8 @@ int main(void)
         cmocka_unit_test(overflow_stops_the_run_with_a_sentence),
         cmocka_unit_test(free_flight_converges_to_the_equations_with_second_order),
         cmocka_unit_test(beta_matters_little_in_free_flight),
+        cmocka_unit_test(a_single_run_gives_no_force_whatever_beta_and_gamma),
+        cmocka_unit_test(negative_forces_change_no_peak),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

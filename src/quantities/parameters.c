@@ -120,9 +120,11 @@ const parameter_info parameter_table[] = {
          "printed model: sign() takes -0.01 for the lower edge of its dead band instead of -1e-5")},
     {PATH(printed.energy_cross_term), BOOLEAN, DEFAULT(true),
      MEANING("printed model: kinetic energy of the predictor has eps w2 w3 for 2 l eps w2 w3")},
-    {PATH(printed.reevaluation), CHOICE(1, "rhs|listing"), DEFAULT(REEVALUATE_RHS),
+    {PATH(printed.reevaluation), CHOICE(2, "rhs|listing|none"), DEFAULT(REEVALUATE_RHS),
      MEANING("printed model: where the re-evaluation puts 2 l sin(d) w2 w3, as (3.13) has it or as "
-             "the listing has it")},
+             "the listing has it; none: the single run of 3.1.3, whose force is Newmark's own")},
+    {PATH(printed.clamp_force), BOOLEAN, DEFAULT(true),
+     MEANING("printed model: a force that comes out negative is set to zero")},
     {PATH(printed.force_after_release), BOOLEAN, DEFAULT(true),
      MEANING(
          "printed model: the force is evaluated from the constrained system after release too")},

@@ -16,7 +16,11 @@ typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING, HUB_BEAM } hub_joint_kind;
 typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
 typedef enum wall_law { WALL_RIGID, WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY } wall_law;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
-typedef enum listing_reevaluation { REEVALUATE_RHS, REEVALUATE_LISTING } listing_reevaluation;
+typedef enum listing_reevaluation {
+    REEVALUATE_RHS,
+    REEVALUATE_LISTING,
+    REEVALUATE_NONE
+} listing_reevaluation;
 
 typedef struct arm_parameters {
     int model;            // arm_model_kind
@@ -69,7 +73,8 @@ typedef struct printed_parameters {
     bool force_at_link_end;         // contact force acts at l, not at the contact point (B5)
     bool sign_dead_band;            // sign() uses -1e-2 where it means -1e-5 (C1)
     bool energy_cross_term;         // energy predictor uses E2 w2 w3 for 2 l e w2 w3 (C2)
-    int reevaluation;               // listing_reevaluation: where C3's term stands
+    int reevaluation;               // listing_reevaluation: where C3's term stands, or none at all
+    bool clamp_force;               // a re-evaluated force below zero becomes zero
     bool force_after_release;       // re-evaluates the force after release (C4)
     bool feed_newmark_acceleration; // next step starts from Newmark's own acceleration (C5)
     int newton_iterations;          // Newton solves per step

@@ -117,10 +117,15 @@ static status reevaluate(printed_motion *m, step_result *r)
         return STATUS_OK;
     }
 
-    if (!printed_reevaluate(&m->arm, r->angle, r->velocity, r->acceleration, &m->force)) {
+    // the single run has the multiplier of the constraint, and nothing but Newmark's accelerations
+    if (m->arm.switches.reevaluation == REEVALUATE_NONE) {
+        m->force = r->newmark_force;
+    } else if (!printed_reevaluate(&m->arm, r->angle, r->velocity, r->acceleration, &m->force)) {
         return STATUS_SINGULAR;
     }
-    m->force = fmax(m->force, 0);
+    if (m->arm.switches.clamp_force) {
+        m->force = fmax(m->force, 0);
+    }
     return STATUS_OK;
 }
 
