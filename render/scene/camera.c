@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/numbers.h"
+
 // Names, and where each camera stands: to the left of the arm's heading, and above the floor.
 // Narrow views keep parallels parallel; a plan is nearly without perspective.
 static const struct {
@@ -13,19 +15,33 @@ static const struct {
 } kinds[] = {
     [CAMERA_THREE_QUARTER] = {"three-quarter", -60, 40, 0.15},
     [CAMERA_TOP] = {"top", -90, 90, 0.02},
-    [CAMERA_SIDE] = {"side", -90, 14, 0.10},
+    // not straight along the force's arrow, which would be a point
+    [CAMERA_SIDE] = {"side", -52, 13, 0.10},
+    [CAMERA_TIP] = {"tip", -70, 46, 0.15},
+    [CAMERA_FREE] = {NULL, 0, 0, 0.12},
 };
 
-bool camera_kind_find(const char *name, camera_kind *kind)
+bool camera_read(const char *text, camera_view *view)
 {
-    assert(name != NULL && kind != NULL);
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        if (strcmp(kinds[i].name, name) == 0) {
-            *kind = (camera_kind)i;
+    assert(text != NULL && view != NULL);
+    for (size_t i = 0; i < CAMERA_FREE; i++) {
+        if (strcmp(kinds[i].name, text) == 0) {
+            *view = (camera_view){.kind = (camera_kind)i};
             return true;
         }
     }
-    return false;
+
+    // two angles
+    const char *rest;
+    camera_view free_view = {.kind = CAMERA_FREE};
+    if (!decimal_read(text, &free_view.azimuth, &rest) || *rest != ',' ||
+        !decimal_read(rest + 1, &free_view.elevation, &rest) || *rest != '\0' ||
+        !(fabs(free_view.azimuth) <= 360) ||
+        !(free_view.elevation >= 1 && free_view.elevation <= 90)) {
+        return false;
+    }
+    *view = free_view;
+    return true;
 }
 
 // The smallest distance, and the sideways place, from which all points lie between two planes:
@@ -44,13 +60,14 @@ static double fit_axis(const vector *points, int count, vector axis, vector back
     return (right + left) / 2;
 }
 
-camera camera_fit(camera_kind kind, double heading, const vector *points, int count, int width,
+camera camera_fit(camera_view view, double heading, const vector *points, int count, int width,
                   int height, camera_window window)
 {
     assert(points != NULL && count > 0 && width > 0 && height > 0);
     // three axes of the view; the half angle is that of the shorter edge
-    double azimuth = heading + kinds[kind].azimuth * M_PI / 180;
-    double elevation = kinds[kind].elevation * M_PI / 180;
+    bool own = view.kind == CAMERA_FREE;
+    double azimuth = heading + (own ? view.azimuth : kinds[view.kind].azimuth) * M_PI / 180;
+    double elevation = (own ? view.elevation : kinds[view.kind].elevation) * M_PI / 180;
     double c = cos(elevation), s = sin(elevation);
     camera out = {.right = {-sin(azimuth), cos(azimuth), 0},
                   .up = {-s * cos(azimuth), -s * sin(azimuth), c},
@@ -58,8 +75,8 @@ camera camera_fit(camera_kind kind, double heading, const vector *points, int co
                   .width = width,
                   .height = height};
     double shorter = fmin(width, height);
-    out.focal_x = shorter / width / tan(kinds[kind].half_view);
-    out.focal_y = shorter / height / tan(kinds[kind].half_view);
+    out.focal_x = shorter / width / tan(kinds[view.kind].half_view);
+    out.focal_y = shorter / height / tan(kinds[view.kind].half_view);
 
     // within the window the view is narrower, and its middle is not the picture's
     double share_x = window.right - window.left, share_y = window.bottom - window.top;

@@ -3,7 +3,20 @@
 
 #include "render/scene/mesh.h"
 
-typedef enum camera_kind { CAMERA_THREE_QUARTER, CAMERA_TOP, CAMERA_SIDE } camera_kind;
+typedef enum camera_kind {
+    CAMERA_THREE_QUARTER,
+    CAMERA_TOP,
+    CAMERA_SIDE,
+    CAMERA_TIP, // the contact from near by
+    CAMERA_FREE // by its own angles
+} camera_kind;
+
+// Where a scene is seen from.
+typedef struct camera_view {
+    camera_kind kind;
+    double azimuth, elevation; // of CAMERA_FREE: from the arm's heading to the left, and above the
+                               // floor [degrees]
+} camera_view;
 
 typedef struct camera {
     vector eye;               // [m]
@@ -18,12 +31,13 @@ typedef struct camera_window {
     double left, top, right, bottom;
 } camera_window;
 
-// "three-quarter", "top" or "side"; false if it is none of them.
-bool camera_kind_find(const char *name, camera_kind *kind);
+// "three-quarter", "top", "side", "tip", or two angles "-60,40" (azimuth -360 to 360, elevation 1
+// to 90); false if it is none of them.
+bool camera_read(const char *text, camera_view *view);
 
-// The camera of a kind that shows all of the points inside the window, as large as it can.
+// The camera of a view that shows all of the points inside the window, as large as it can.
 // `heading` [rad] is the direction in which the arm points, so that every arm is seen alike.
-camera camera_fit(camera_kind kind, double heading, const vector *points, int count, int width,
+camera camera_fit(camera_view view, double heading, const vector *points, int count, int width,
                   int height, camera_window window);
 
 // A point's place on the picture: x to the right and y down [pixels], and its depth [m].

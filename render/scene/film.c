@@ -8,13 +8,15 @@
 #include "render/plot/opened_run.h"
 #include "render/plot/trace_plot.h"
 #include "render/scene/film_file.h"
+#include "render/scene/labels.h"
 #include "src/base/numbers.h"
 #include "src/base/version.h"
 
 enum { CLOCK_CELLS = 4000 };
 
 #define TRACE_SHARE   0.36 // of the picture's width, for the traces
-#define TRACE_LETTERS 1.45 // scale of the traces for a picture 720 pixels high
+#define TRACE_LETTERS 2.5  // scale of the traces for a picture 720 pixels high
+#define GHOST_TIME    0.02 // of the run between one ghost and the next [s]
 #define VEIL          0.82 // how far the future of the traces is faded out
 
 // A film in the making.
@@ -92,6 +94,11 @@ double film_clock_time(const film_clock *c, double film_time, double *speed)
 
 // ---- the traces
 
+static colour page_of(const film *m)
+{
+    return palette_of(m->options.view.theme)->page;
+}
+
 // Paints all of the traces once; frames veil what has not happened yet.
 static status paint_traces(film *m, fault *f)
 {
@@ -116,6 +123,7 @@ static status paint_traces(film *m, fault *f)
 
     // the scene has the title
     t.figure.title = t.figure.caption = NULL;
+    t.figure.theme = m->options.view.theme;
     t.figure.x.low = m->clock.start;
     t.figure.x.high = m->clock.end;
     t.figure.width = width / m->trace_scale * 25.4 / 72;
@@ -123,7 +131,7 @@ static status paint_traces(film *m, fault *f)
 
     m->traces = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
     cairo_t *cr = cairo_create(m->traces);
-    cairo_set_source_rgb(cr, 1, 1, 1);
+    set_colour(cr, page_of(m));
     cairo_paint(cr);
     cairo_scale(cr, m->trace_scale, m->trace_scale);
     code = figure_paint(cr, &t.figure, m->report, f);
@@ -137,6 +145,7 @@ static void draw_traces(const film *m, cairo_t *cr, double time)
 {
     // all of it
     const figure_report *r = m->report;
+    const colour page = page_of(m);
     cairo_set_source_surface(cr, m->traces, m->scene_width, 0);
     cairo_paint(cr);
 
@@ -148,7 +157,7 @@ static void draw_traces(const film *m, cairo_t *cr, double time)
         figure_rect p = r->panels[i];
         double x = p.x + p.width * (time - m->clock.start) / (m->clock.end - m->clock.start);
         cairo_rectangle(cr, x, p.y, p.x + p.width - x, p.height);
-        cairo_set_source_rgba(cr, 1, 1, 1, VEIL);
+        cairo_set_source_rgba(cr, page.red, page.green, page.blue, VEIL);
         cairo_fill(cr);
         cairo_move_to(cr, x, p.y);
         cairo_line_to(cr, x, p.y + p.height);
@@ -176,8 +185,9 @@ static void soften_seam(const film *m, cairo_t *cr)
 {
     double width = 0.06 * m->scene_width, from = m->scene_width - width;
     cairo_pattern_t *fade = cairo_pattern_create_linear(from, 0, m->scene_width, 0);
-    cairo_pattern_add_color_stop_rgba(fade, 0, 1, 1, 1, 0);
-    cairo_pattern_add_color_stop_rgba(fade, 1, 1, 1, 1, 1);
+    const colour page = page_of(m);
+    cairo_pattern_add_color_stop_rgba(fade, 0, page.red, page.green, page.blue, 0);
+    cairo_pattern_add_color_stop_rgba(fade, 1, page.red, page.green, page.blue, 1);
     cairo_set_source(cr, fade);
     cairo_rectangle(cr, from, 0, width, m->options.height);
     cairo_fill(cr);
@@ -198,8 +208,8 @@ static void draw_speed(const film *m, cairo_t *cr, double speed)
         decimal_print(text, sizeof text, "%.1f times faster than real", speed);
     }
 
-    const text_block t = {.markup = text, .size = 13 * scale};
-    cairo_set_source_rgb(cr, 0.38, 0.40, 0.43);
+    const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
+    set_colour(cr, palette_of(m->options.view.theme)->faint_text);
     cairo_move_to(cr, 22 * scale, 20 * scale);
     text_draw(cr, m->context, &t);
 }
@@ -208,7 +218,16 @@ static void draw_speed(const film *m, cairo_t *cr, double speed)
 static status add_frame(film *m, film_file *file, double time, double present, double speed,
                         fault *f)
 {
-    status code = scene_paint(m->scene, &time, 1, m->view, f);
+    double times[SCENE_INSTANTS];
+    int count = 0;
+    for (int i = m->options.ghosts; i >= 0; i--) {
+        double earlier = time - i * GHOST_TIME;
+        if (i == 0 || earlier >= m->clock.start) {
+            times[count++] = earlier;
+        }
+    }
+
+    status code = scene_paint(m->scene, times, count, m->view, f);
     if (code != STATUS_OK) {
         return code;
     }
@@ -273,6 +292,11 @@ static status check_options(const film_options *o, fault *f)
                          o->seconds);
     }
 
+    if (o->ghosts < 0 || o->ghosts >= SCENE_INSTANTS) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "%d ghosts, expected 0 to %d", o->ghosts,
+                         SCENE_INSTANTS - 1);
+    }
+
     if (!(o->slow >= 1 && o->slow <= 1000)) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "the impact slowed down %g times, expected 1 to 1000", o->slow);
@@ -306,10 +330,12 @@ static status prepare(film *m, fault *f)
 
     // the scene takes what the traces leave
     m->scene_width = (int)(m->options.width * (1 - TRACE_SHARE));
-    const scene_options view = {.camera = m->options.camera,
-                                .renderer = m->options.renderer,
-                                .width = m->scene_width,
-                                .height = m->options.height};
+    scene_options view = m->options.view;
+    view.width = m->scene_width;
+    view.height = m->options.height;
+    view.samples = SAMPLES_QUICK;
+    view.keyless = true;
+    view.transparent = false;
 
     m->clock = film_clock_of(m->result, m->options.seconds, m->options.slow);
     code = scene_create(&m->scene, m->scenario, m->result, &view, f);

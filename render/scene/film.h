@@ -7,11 +7,11 @@
 #include "render/scene/scene.h"
 
 typedef struct film_options {
-    camera_kind camera;
-    scene_renderer renderer;
+    scene_options view;    // of the arm; its size and samples are the film's to choose
     int width, height;     // [pixels], even numbers; 0: 1280 x 720
     int frames_per_second; // 0: 30
     double seconds;        // length of the film [s]; 0: 10
+    int ghosts;            // earlier arms behind the present one, GHOST_TIME apart
     double slow;           // the first impact is slowed down by this, against the rest; 0: 8
     // called after each frame, or NULL
     void (*progress)(void *context, int done, int total);

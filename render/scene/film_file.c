@@ -22,7 +22,14 @@
 
 extern char **environ;
 
-typedef enum film_kind { FILM_UNKNOWN, FILM_MP4, FILM_WEBM, FILM_GIF, FILM_FRAMES } film_kind;
+typedef enum film_kind {
+    FILM_UNKNOWN,
+    FILM_MP4,
+    FILM_WEBM,
+    FILM_GIF,
+    FILM_WEBP,
+    FILM_FRAMES
+} film_kind;
 
 enum {
     ARGUMENTS_MOST = 64,
@@ -46,7 +53,8 @@ static film_kind kind_of(const char *path)
     static const struct {
         const char *ending;
         film_kind kind;
-    } known[] = {{".mp4", FILM_MP4}, {".webm", FILM_WEBM}, {".gif", FILM_GIF}};
+    } known[] = {
+        {".mp4", FILM_MP4}, {".webm", FILM_WEBM}, {".gif", FILM_GIF}, {".webp", FILM_WEBP}};
 
     struct stat found;
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
@@ -102,7 +110,7 @@ static status check_folder(const char *path, fault *f)
     if (!S_ISDIR(found.st_mode)) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "%s is a file: expected the name of a folder, or one that ends in .mp4, "
-                         ".webm or .gif",
+                         ".webm, .gif or .webp",
                          path);
     }
     if (!is_empty_folder(path)) {
@@ -122,7 +130,7 @@ status film_file_check(const char *path, fault *f)
     if (kind == FILM_UNKNOWN || strcmp(path, "-") == 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "'%s' is no name for a film: expected one that ends in .mp4, .webm or "
-                         ".gif, or a folder for PNG frames",
+                         ".gif, .webp, or a folder for PNG frames",
                          path);
     }
 
@@ -212,6 +220,7 @@ static void add_codec(argument_list *list, film_kind kind)
                      "[a]trim=end_frame=1,palettegen[p];[b]trim=start_frame=1,"
                      "setpts=PTS-STARTPTS[c];[c][p]paletteuse=dither=none:diff_mode=rectangle "
                      "-loop 0 -f gif",
+        [FILM_WEBP] = "-c:v libwebp_anim -lossless 0 -q:v 82 -compression_level 4 -loop 0 -f webp",
     };
     add_words(list, words[kind]);
     add_words(list, "-fflags +bitexact -flags:v +bitexact");

@@ -12,7 +12,6 @@ enum {
     BLUR_PASSES = 3, // three boxes are nearly a bell
 };
 
-static const double page[] = {255, 255, 255}, ground[] = {243, 244, 246}, line[] = {208, 213, 219};
 #define SHADOW_DEPTH 0.30  // what a shadow takes away of the floor's light
 #define LINE_WIDTH   0.012 // of a grid line, in distances of the grid
 
@@ -22,6 +21,18 @@ static double line_cover(double place, double grid, double across)
     double lines = place / grid, off = fabs(lines - floor(lines + 0.5)) * grid;
     double cover = 0.5 + (fmax(LINE_WIDTH * grid, across) / 2 - off) / across;
     return cover < 0 ? 0 : cover > 1 ? 1 : cover;
+}
+
+static colour mixed(colour a, colour b, double share)
+{
+    return (colour){a.red + share * (b.red - a.red), a.green + share * (b.green - a.green),
+                    a.blue + share * (b.blue - a.blue)};
+}
+
+static uint32_t rgb_of(colour c)
+{
+    return (uint32_t)(255 * c.red + 0.5) << 16 | (uint32_t)(255 * c.green + 0.5) << 8 |
+           (uint32_t)(255 * c.blue + 0.5);
 }
 
 // Colour of the floor at (x, y) within its reach, a pixel being `wide` by `deep` there.
@@ -38,12 +49,8 @@ static uint32_t floor_colour(const scene_floor *floor, double x, double y, doubl
     double dense = fmin(1, fmax(0, floor->grid / fmax(wide, deep) / 6 - 0.5));
     double cover = dense * (1 - (1 - over_x) * (1 - over_y));
 
-    uint32_t rgb = 0;
-    for (int i = 0; i < 3; i++) {
-        double own = ground[i] + cover * (line[i] - ground[i]);
-        rgb = rgb << 8 | (uint32_t)(page[i] + fade * (own - page[i]) + 0.5);
-    }
-    return rgb;
+    colour c = mixed(floor->ground_colour, floor->line, cover);
+    return rgb_of(mixed(floor->page, c, fade));
 }
 
 // Rays through pixels: of the first one's centre, and how they change to the right and downwards.
@@ -64,7 +71,7 @@ static void paint_pixel(scene_floor *floor, const camera *c, const ray_field *ra
     bool meets = ray.z < 0 && away_x * away_x + away_y * away_y < floor->reach * floor->reach;
     floor->x[at] = meets ? (float)x : 1e30F;
     floor->y[at] = meets ? (float)y : 1e30F;
-    floor->ground[at] = 0xFFFFFF;
+    floor->ground[at] = rgb_of(floor->page);
 
     // how far a pixel reaches on the floor along both directions
     if (meets) {
@@ -199,7 +206,7 @@ static uint32_t darkened(uint32_t rgb, float shadow)
 {
     uint32_t light = 256 - (uint32_t)(shadow * (float)(SHADOW_DEPTH * 256 / 255));
     uint32_t red = (rgb >> 16 & 255) * light >> 8, green = (rgb >> 8 & 255) * light >> 8;
-    return red << 16 | green << 8 | (rgb & 255) * light >> 8;
+    return 0xFF000000U | red << 16 | green << 8 | (rgb & 255) * light >> 8;
 }
 
 void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
@@ -216,7 +223,8 @@ void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
         size_t at = (size_t)row * (size_t)floor->width;
         for (int column = 0; column < floor->width; column++, at++) {
             float shadow = shadow_at(floor, floor->x[at], floor->y[at]);
-            to[column] = shadow > 0 ? darkened(floor->ground[at], shadow) : floor->ground[at];
+            to[column] =
+                shadow > 0 ? darkened(floor->ground[at], shadow) : 0xFF000000U | floor->ground[at];
         }
     }
     cairo_surface_mark_dirty(onto);

@@ -5,21 +5,22 @@
 #include "src/base/fault.h"
 
 typedef struct scene_floor {
-    double level;        // height of the floor [m]
-    double grid;         // distance of the lines [m]
-    vector middle;       // round which the floor fades out
-    double reach;        // distance from there at which it is gone [m]
-    vector light;        // unit vector towards the light
-    int width, height;   // of the picture [pixels]
-    unsigned *ground;    // the floor without shadows, 0x00RRGGBB
-    float *x, *y;        // place of every pixel on the floor [m]
-    unsigned char *mask; // shadow on a map of the floor, and room for smoothing
+    double level;                     // height of the floor [m]
+    double grid;                      // distance of the lines [m]
+    vector middle;                    // round which the floor fades out
+    double reach;                     // distance from there at which it is gone [m]
+    colour page, ground_colour, line; // beyond the floor, of it, and of its grid
+    vector light;                     // unit vector towards the light
+    int width, height;                // of the picture [pixels]
+    unsigned *ground;                 // the floor without shadows, 0x00RRGGBB
+    float *x, *y;                     // place of every pixel on the floor [m]
+    unsigned char *mask;              // shadow on a map of the floor, and room for smoothing
     unsigned char *spare;
     double map_left, map_low, map_cell; // the map's corner and the size of its cells [m]
 } scene_floor;
 
-// Prepares the floor of a picture: level, grid, middle, reach and light are set by the caller.
-// STATUS_NO_MEMORY if there is no room.
+// Prepares the floor of a picture: level, grid, middle, reach and light and colours are set by the
+// caller. STATUS_NO_MEMORY if there is no room.
 status scene_floor_init(scene_floor *floor, const camera *c, fault *f);
 void scene_floor_finish(scene_floor *floor);
 

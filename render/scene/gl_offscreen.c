@@ -218,6 +218,8 @@ static void *egl_display(void *handle)
     any_function found = find("eglGetPlatformDisplayEXT");
     memcpy(&get, &found, sizeof found);
     setenv("EGL_LOG_LEVEL", "fatal", 0);
+    // in software, as OSMesa is: pictures do not depend on a graphics card
+    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
     void *opened = get ? get(EGL_PLATFORM_SURFACELESS, NULL, NULL) : NULL;
     if (opened != NULL && initialise(opened, NULL, NULL)) {
         display = opened;
@@ -454,27 +456,27 @@ const char *gl_offscreen_renderer(const gl_offscreen *g)
     return g->renderer;
 }
 
-status gl_offscreen_draw(gl_offscreen *g, const gl_vertex *vertices, size_t vertex_count,
-                         const unsigned *corners, size_t corner_count, int x, int y, int width,
-                         int height, uint32_t *pixels, fault *f)
+status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region region, uint32_t *pixels,
+                         fault *f)
 {
-    assert(g != NULL && vertices != NULL && corners != NULL && pixels != NULL);
+    assert(g != NULL && t != NULL && pixels != NULL);
     if (!make_current(g)) {
         return fault_set(f, STATUS_CANNOT_WRITE, "OpenGL's context is lost");
     }
 
     // only the part of the picture that is wanted
     g->Viewport(0, 0, g->width, g->height);
-    g->Scissor(x, y, width, height);
+    g->Scissor(region.x, region.y, region.width, region.height);
     g->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 
     // triangles in, pixels out
-    g->BufferData(GL_ARRAY_BUFFER, (ptrdiff_t)(vertex_count * sizeof *vertices), vertices,
+    g->BufferData(GL_ARRAY_BUFFER, (ptrdiff_t)(t->vertex_count * sizeof *t->vertices), t->vertices,
                   GL_STREAM_DRAW);
-    g->BufferData(GL_ELEMENT_ARRAY_BUFFER, (ptrdiff_t)(corner_count * sizeof *corners), corners,
-                  GL_STREAM_DRAW);
-    g->DrawElements(GL_TRIANGLES, (int)corner_count, GL_UNSIGNED_INT, NULL);
-    g->ReadPixels(x, y, width, height, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, pixels);
+    g->BufferData(GL_ELEMENT_ARRAY_BUFFER, (ptrdiff_t)(t->corner_count * sizeof *t->corners),
+                  t->corners, GL_STREAM_DRAW);
+    g->DrawElements(GL_TRIANGLES, (int)t->corner_count, GL_UNSIGNED_INT, NULL);
+    g->ReadPixels(region.x, region.y, region.width, region.height, GL_BGRA,
+                  GL_UNSIGNED_INT_8_8_8_8_REV, pixels);
 
     // one question for all calls
     unsigned error = g->GetError();

@@ -26,8 +26,20 @@ void gl_offscreen_destroy(gl_offscreen *g);
 // What draws: library, renderer and version, "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...".
 const char *gl_offscreen_renderer(const gl_offscreen *g);
 
-// Draws triangles (three corners each) on a transparent ground with a depth test and stores the
-// rectangle of width by height pixels at (x, y) as rows of 0xAARRGGBB, opacity multiplied in.
-status gl_offscreen_draw(gl_offscreen *g, const gl_vertex *vertices, size_t vertex_count,
-                         const unsigned *corners, size_t corner_count, int x, int y, int width,
-                         int height, uint32_t *pixels, fault *f);
+// Triangles, three corners each, as numbers of vertices.
+typedef struct gl_triangles {
+    const gl_vertex *vertices;
+    size_t vertex_count;
+    const unsigned *corners;
+    size_t corner_count;
+} gl_triangles;
+
+// A rectangle of pixels.
+typedef struct gl_region {
+    int x, y, width, height;
+} gl_region;
+
+// Draws triangles on a transparent ground with a depth test and stores the
+// region as rows of 0xAARRGGBB, opacity multiplied in.
+status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region region, uint32_t *pixels,
+                         fault *f);

@@ -6,11 +6,9 @@
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 
-#define TITLE_LETTERS 15.0 // [pixels of a picture 720 high]
-#define FACT_LETTERS  13.0
+#define TITLE_LETTERS 18.0 // [pixels of a picture 720 high]
+#define FACT_LETTERS  LABELS_LEAST
 #define MARGIN        22.0
-
-static const colour ink_strong = {0.13, 0.14, 0.16}, ink_faint = {0.38, 0.40, 0.43};
 
 static double draw_text(const labels *l, double x, double y, const char *markup, double size,
                         bool bold, colour ink)
@@ -21,8 +19,7 @@ static double draw_text(const labels *l, double x, double y, const char *markup,
     return text_draw(l->cr, l->context, &t);
 }
 
-// Pixels of a length at a place.
-static double pixels_of(const camera *c, vector place, double length)
+double labels_pixels(const camera *c, vector place, double length)
 {
     return length * c->focal_y * c->height / 2 / camera_project(c, place).z;
 }
@@ -32,7 +29,7 @@ void labels_flash(const labels *l, vector place, double radius, double strength)
     assert(l != NULL && radius > 0);
     enum { RAYS = 12 };
     vector at = camera_project(l->camera, place);
-    double r = pixels_of(l->camera, place, radius) * (0.55 + 0.45 * strength);
+    double r = labels_pixels(l->camera, place, radius) * (0.55 + 0.45 * strength);
 
     // a glow that fades outward
     cairo_pattern_t *glow = cairo_pattern_create_radial(at.x, at.y, 0, at.x, at.y, r);
@@ -85,10 +82,18 @@ void labels_caption(const labels *l, const char *title, const char *facts)
     double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale;
     char *escaped = text_escape(title);
     draw_text(l, left, bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale, escaped,
-              TITLE_LETTERS, true, ink_strong);
+              TITLE_LETTERS, true, l->strong);
     draw_text(l, left, bottom - FACT_LETTERS * 1.25 * l->scale, facts, FACT_LETTERS, false,
-              ink_faint);
+              l->faint);
     g_free(escaped);
+}
+
+void labels_inset(const labels *l, double left, double bottom, double larger)
+{
+    assert(l != NULL && larger > 0);
+    char text[64];
+    decimal_print(text, sizeof text, "contact, %.1f times", larger);
+    draw_text(l, left, bottom + 4 * l->scale, text, FACT_LETTERS, false, l->faint);
 }
 
 // "12.3 ms" in the letters of facts. Returns its width.
@@ -117,7 +122,7 @@ void labels_instants(const labels *l, const double *times, const colour *inks, i
     for (int i = 0; i < count; i++) {
         double y = bottom - (count - i) * step;
         double own = print_instant(l, times[i], text, sizeof text, &height);
-        draw_text(l, right - own, y, text, FACT_LETTERS, false, ink_faint);
+        draw_text(l, right - own, y, text, FACT_LETTERS, false, l->faint);
         set_colour(l->cr, inks[i]);
         cairo_rectangle(l->cr, right - width - 10 * l->scale - swatch,
                         y + height / 2 - 2.5 * l->scale, swatch, 5 * l->scale);

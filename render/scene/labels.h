@@ -5,11 +5,14 @@
 
 #include "render/scene/camera.h"
 
+#define LABELS_LEAST 16.0 // least letters [pixels of a picture 720 high]
+
 typedef struct labels {
     cairo_t *cr;
     PangoContext *context;
     const camera *camera;
-    double scale; // of letters and lines: 1 for a picture 720 pixels high
+    colour strong, faint; // inks of titles and of facts
+    double scale;         // of letters and lines: 1 for a picture 720 pixels high
 } labels;
 
 // A flash at a place, of a radius [m], strength 0 to 1.
@@ -20,6 +23,12 @@ void labels_force(const labels *l, vector from, vector end, double force, colour
 
 // Title and a line of facts at the lower left corner; `facts` is markup, `title` plain.
 void labels_caption(const labels *l, const char *title, const char *facts);
+
+// Pixels that a length [m] has at a place.
+double labels_pixels(const camera *c, vector place, double length);
+
+// "contact, 1.8 times" below the left corner of an inset [pixels].
+void labels_inset(const labels *l, double left, double bottom, double larger);
 
 // A key of instants [s] with their colours at the lower right corner.
 void labels_instants(const labels *l, const double *times, const colour *inks, int count);

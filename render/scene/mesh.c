@@ -172,14 +172,14 @@ static void add_face(mesh *m, vector centre, vector out, vector u, vector v, dou
     }
 }
 
-void mesh_box(mesh *m, vector centre, vector u, vector v, vector w, double cell, material of)
+void mesh_box(mesh *m, const box *b, double cell, material of)
 {
-    assert(m != NULL && cell > 0);
-    const vector half[] = {u, v, w};
+    assert(m != NULL && b != NULL && cell > 0);
+    const vector half[] = {b->u, b->v, b->w};
     for (int face = 0; face < 3; face++) {
-        vector out = half[face], a = half[(face + 1) % 3], b = half[(face + 2) % 3];
-        add_face(m, centre, out, a, b, cell, of);
-        add_face(m, centre, vector_scaled(out, -1), b, a, cell, of);
+        vector out = half[face], along = half[(face + 1) % 3], across = half[(face + 2) % 3];
+        add_face(m, b->centre, out, along, across, cell, of);
+        add_face(m, b->centre, vector_scaled(out, -1), across, along, cell, of);
     }
 }
 

@@ -50,9 +50,13 @@ typedef struct lathe_ring {
 // A solid turned about the axis (a unit vector) through base, from one ring to the next.
 void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of);
 
-// A box with half edges u, v, w, its faces cut into cells of about the given size, so that a
-// painter can sort them.
-void mesh_box(mesh *m, vector centre, vector u, vector v, vector w, double cell, material of);
+// A box: its centre and half edges.
+typedef struct box {
+    vector centre, u, v, w; // [m]
+} box;
+
+// A box whose faces are cut into cells of about the given size: light is computed at corners alone.
+void mesh_box(mesh *m, const box *b, double cell, material of);
 
 // A strip on edge along the places: thickness across it in the x-y plane, height along z.
 void mesh_ribbon(mesh *m, const vector *places, int count, double height, double thickness,

@@ -9,18 +9,12 @@
 
 #include "render/scene/gl_offscreen.h"
 
-enum { SAMPLES = 2 }; // along each edge of a pixel
-
-// A rectangle of pixels.
-typedef struct region {
-    int x, y, width, height;
-} region;
-
 struct scene_painter {
     gl_offscreen *gl; // NULL: the depth buffer below is used
     int width, height;
+    int samples; // of a pixel along each edge
     char name[300];
-    uint32_t *samples; // 0xAARRGGBB, a region's rows without gaps
+    uint32_t *pixels; // of all samples: 0xAARRGGBB, a region's rows without gaps
     gl_vertex *vertices;
     size_t vertex_capacity;
     float *depths; // of the samples; NULL where OpenGL paints
@@ -48,7 +42,7 @@ static status complain_memory(const scene_painter *p, fault *f)
 // Opens the renderer asked for, or the first that is there.
 static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
 {
-    int width = SAMPLES * p->width, height = SAMPLES * p->height;
+    int width = p->samples * p->width, height = p->samples * p->height;
     status code = STATUS_OK;
 
     // OSMesa is tried first: it needs no driver
@@ -74,18 +68,20 @@ static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
 }
 
 status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
-                            fault *f)
+                            int samples, fault *f)
 {
-    assert(out != NULL && width > 0 && height > 0);
+    assert(out != NULL && width > 0 && height > 0 && samples > 0);
     scene_painter *p = calloc(1, sizeof *p);
     *out = NULL;
     if (p != NULL) {
         p->width = width;
         p->height = height;
-        p->samples = malloc((size_t)width * (size_t)height * SAMPLES * SAMPLES * sizeof(uint32_t));
+        p->samples = samples;
+        p->pixels =
+            malloc((size_t)width * (size_t)height * (size_t)(samples * samples) * sizeof(uint32_t));
     }
 
-    if (p == NULL || p->samples == NULL) {
+    if (p == NULL || p->pixels == NULL) {
         scene_painter_destroy(p);
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width,
                          height);
@@ -104,7 +100,7 @@ void scene_painter_destroy(scene_painter *p)
 {
     if (p != NULL) {
         gl_offscreen_destroy(p->gl);
-        free(p->samples);
+        free(p->pixels);
         free(p->vertices);
         free(p->depths);
         free(p);
@@ -171,7 +167,7 @@ static status make_room(scene_painter *p, const mesh *m, fault *f)
 
 // Lights the vertices and finds their places: clip coordinates whose w is the depth. Returns the
 // pixels that they cover.
-static region project(scene_painter *p, const mesh *m, const camera *c, vector light)
+static gl_region project(scene_painter *p, const mesh *m, const camera *c, vector light)
 {
     double left = p->width, right = 0, top = p->height, bottom = 0;
     double span = c->farthest - c->nearest;
@@ -198,7 +194,7 @@ static region project(scene_painter *p, const mesh *m, const camera *c, vector l
     // whole pixels within the picture
     int x = (int)fmax(0, floor(left)), y = (int)fmax(0, floor(top));
     int x_end = (int)fmin(p->width, ceil(right)), y_end = (int)fmin(p->height, ceil(bottom));
-    return (region){x, y, x_end - x, y_end - y};
+    return (gl_region){x, y, x_end - x, y_end - y};
 }
 
 // A quantity that is linear over the picture: value at the first corner and growth per sample.
@@ -261,22 +257,22 @@ static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_ver
             if (ramp_at(share[0], x, y) >= 0 && ramp_at(share[1], x, y) >= 0 &&
                 ramp_at(share[2], x, y) >= 0 && z < p->depths[at]) {
                 p->depths[at] = z;
-                p->samples[at] = 0xFF000000U | channel(ramp_at(tint[0], x, y)) << 16 |
-                                 channel(ramp_at(tint[1], x, y)) << 8 |
-                                 channel(ramp_at(tint[2], x, y));
+                p->pixels[at] = 0xFF000000U | channel(ramp_at(tint[0], x, y)) << 16 |
+                                channel(ramp_at(tint[1], x, y)) << 8 |
+                                channel(ramp_at(tint[2], x, y));
             }
         }
     }
 }
 
 // Paints without OpenGL: every triangle into a depth buffer of our own.
-static void paint_by_hand(scene_painter *p, const mesh *m, region r)
+static void paint_by_hand(scene_painter *p, const mesh *m, gl_region r)
 {
-    int width = SAMPLES * r.width, height = SAMPLES * r.height;
+    int width = p->samples * r.width, height = p->samples * r.height;
     size_t count = (size_t)width * (size_t)height;
 
     // empty, and farther than everything
-    memset(p->samples, 0, count * sizeof *p->samples);
+    memset(p->pixels, 0, count * sizeof *p->pixels);
     for (size_t i = 0; i < count; i++) {
         p->depths[i] = 2;
     }
@@ -290,9 +286,10 @@ static void paint_by_hand(scene_painter *p, const mesh *m, region r)
         for (size_t k = 0; k < 3; k++) {
             v[k] = &p->vertices[m->corners[i + k]];
             const float *at = v[k]->place;
-            t.x[k] = (at[0] / at[3] + 1) * (float)(p->width * SAMPLES) / 2 - (float)(SAMPLES * r.x);
-            t.y[k] =
-                (at[1] / at[3] + 1) * (float)(p->height * SAMPLES) / 2 - (float)(SAMPLES * r.y);
+            t.x[k] = (at[0] / at[3] + 1) * (float)(p->width * p->samples) / 2 -
+                     (float)(p->samples * r.x);
+            t.y[k] = (at[1] / at[3] + 1) * (float)(p->height * p->samples) / 2 -
+                     (float)(p->samples * r.y);
         }
 
         // those seen edge-on cover nothing
@@ -304,71 +301,89 @@ static void paint_by_hand(scene_painter *p, const mesh *m, region r)
     }
 }
 
-// Two channels at once: the mean of four samples over what was there before.
-static uint32_t mean_over(const uint32_t *upper, const uint32_t *lower, uint32_t before)
-{
-    // two channels at a time, with room for the sum of four
-    const uint32_t pair = 0x00FF00FF, half = 0x00020002;
-    uint32_t even =
-        (((upper[0] & pair) + (upper[1] & pair) + (lower[0] & pair) + (lower[1] & pair) + half) >>
-         2) &
-        pair;
-    uint32_t odd = (((upper[0] >> 8 & pair) + (upper[1] >> 8 & pair) + (lower[0] >> 8 & pair) +
-                     (lower[1] >> 8 & pair) + half) >>
-                    2) &
-                   pair;
+// Two of a pixel's four channels, with room for sums.
+#define PAIR 0x00FF00FFU
 
-    // of what lies below only as much as the samples let through
-    uint32_t left = 255 - (odd >> 16); // what the samples let through
-    if (left == 255) {
-        return before;
+// The mean of a pixel's samples, as much of it as the opacity [1/256] lets through.
+static uint32_t mean_of(const scene_painter *p, const uint32_t *first, ptrdiff_t across,
+                        uint32_t opacity)
+{
+    uint32_t even = 0, odd = 0, count = (uint32_t)(p->samples * p->samples);
+    for (int row = 0; row < p->samples; row++) {
+        for (int column = 0; column < p->samples; column++) {
+            uint32_t one = first[row * across + column];
+            even += one & PAIR;
+            odd += one >> 8 & PAIR;
+        }
     }
-    uint32_t below_even = ((before & pair) * left + 0x00800080) >> 8 & pair;
-    uint32_t below_odd = ((before >> 8 & 0xFF) * left + 0x80) >> 8;
-    return ((even + below_even) & pair) | ((odd & 0xFF) + below_odd) << 8;
+    if (odd == 0) {
+        return 0;
+    }
+
+    // four numbers of 0 to 255, rounded
+    uint32_t channels[4] = {even & 0xFFFF, odd & 0xFFFF, even >> 16, odd >> 16}, mean = 0;
+    for (int i = 0; i < 4; i++) {
+        mean |= (channels[i] * opacity + 128 * count) / (256 * count) << (8 * i);
+    }
+    return mean;
 }
 
-static void lay_over(const scene_painter *p, region r, cairo_surface_t *onto)
+// A colour, opacity multiplied in, over another one.
+static uint32_t over(uint32_t upper, uint32_t below)
+{
+    uint32_t left = 255 - (upper >> 24); // what it lets through
+    uint32_t even = ((below & PAIR) * left + 0x00800080) >> 8 & PAIR;
+    uint32_t odd = ((below >> 8 & PAIR) * left + 0x00800080) >> 8 & PAIR;
+    return upper + (even | odd << 8);
+}
+
+static void lay_over(const scene_painter *p, gl_region r, double opacity, cairo_surface_t *onto)
 {
     cairo_surface_flush(onto);
     unsigned char *data = cairo_image_surface_get_data(onto);
-    ptrdiff_t stride = cairo_image_surface_get_stride(onto), across = (ptrdiff_t)SAMPLES * r.width;
+    ptrdiff_t stride = cairo_image_surface_get_stride(onto),
+              across = (ptrdiff_t)p->samples * r.width;
+    uint32_t share = (uint32_t)(256 * opacity + 0.5);
+
     for (int row = 0; row < r.height; row++) {
         uint32_t *to = (uint32_t *)(void *)(data + (r.y + row) * stride) + r.x;
-        const uint32_t *upper = p->samples + SAMPLES * row * across, *lower = upper + across;
+        const uint32_t *from = p->pixels + p->samples * row * across;
         for (int i = 0; i < r.width; i++) {
-            to[i] = mean_over(upper + SAMPLES * i, lower + SAMPLES * i, to[i]);
+            uint32_t mean = mean_of(p, from + (ptrdiff_t)p->samples * i, across, share);
+            to[i] = mean != 0 ? over(mean, to[i]) : to[i];
         }
     }
     cairo_surface_mark_dirty(onto);
 }
 
-status scene_painter_paint(scene_painter *p, const mesh *m, const camera *c, vector light,
-                           cairo_surface_t *onto, fault *f)
+status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto, fault *f)
 {
-    assert(p != NULL && m != NULL && c != NULL && onto != NULL);
+    assert(p != NULL && what != NULL && onto != NULL);
+    assert(what->opacity >= 0 && what->opacity <= 1);
+    const mesh *m = what->mesh;
     status code = make_room(p, m, f);
     if (code != STATUS_OK) {
         return code;
     }
 
     // only the part of the picture that holds something
-    region r = project(p, m, c, light);
+    gl_region r = project(p, m, what->camera, what->light);
     if (r.width <= 0 || r.height <= 0) {
         return STATUS_OK;
     }
 
     // samples, by OpenGL or by hand
     if (p->gl != NULL) {
-        code = gl_offscreen_draw(p->gl, p->vertices, m->vertex_count, m->corners, m->corner_count,
-                                 SAMPLES * r.x, SAMPLES * r.y, SAMPLES * r.width,
-                                 SAMPLES * r.height, p->samples, f);
+        const gl_triangles all = {p->vertices, m->vertex_count, m->corners, m->corner_count};
+        const gl_region sampled = {p->samples * r.x, p->samples * r.y, p->samples * r.width,
+                                   p->samples * r.height};
+        code = gl_offscreen_draw(p->gl, &all, sampled, p->pixels, f);
     } else {
         paint_by_hand(p, m, r);
     }
 
     if (code == STATUS_OK) {
-        lay_over(p, r, onto);
+        lay_over(p, r, what->opacity, onto);
     }
     return code;
 }

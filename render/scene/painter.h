@@ -13,17 +13,27 @@ typedef struct scene_painter scene_painter;
 // "auto", "osmesa", "egl" or "cairo"; false if it is none of them.
 bool scene_renderer_find(const char *name, scene_renderer *which);
 
-// A painter of pictures of width by height pixels, each made of 2 x 2 samples. RENDER_AUTO takes
-// the first of OSMesa, EGL and cairo that is there. STATUS_CANNOT_WRITE if the one that was named
-// is not.
+// Samples of a pixel along each of its edges.
+enum { SAMPLES_QUICK = 2, SAMPLES_FINE = 4 };
+
+// A painter of pictures of width by height pixels, each made of samples x samples. RENDER_AUTO
+// takes the first of OSMesa, EGL and cairo that is there. STATUS_CANNOT_WRITE if the one that was
+// named is not.
 status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
-                            fault *f);
+                            int samples, fault *f);
 void scene_painter_destroy(scene_painter *p);
 
 // What paints, for the picture's metadata.
 const char *scene_painter_name(const scene_painter *p);
 
-// Paints the mesh over what the image surface (RGB24, of the painter's size) shows. `light` is the
-// unit vector towards the lamp. STATUS_NO_MEMORY or STATUS_CANNOT_WRITE if it cannot.
-status scene_painter_paint(scene_painter *p, const mesh *m, const camera *c, vector light,
-                           cairo_surface_t *onto, fault *f);
+// What is painted, and how.
+typedef struct painting {
+    const mesh *mesh;
+    const camera *camera;
+    vector light;   // unit vector towards the lamp
+    double opacity; // of the whole mesh, 0 to 1
+} painting;
+
+// Paints the mesh over what the image surface (RGB24 or ARGB32, of the painter's size) shows.
+// STATUS_NO_MEMORY or STATUS_CANNOT_WRITE if it cannot.
+status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto, fault *f);

@@ -44,6 +44,9 @@ enum {
 #define FLASH_RADIUS   0.075
 #define FLASH_FADE     0.010 // the flash has faded to a third after that [s]
 #define PALEST         0.80  // share of the ground in the palest of several arms
+#define TIP_AROUND     0.04  // what the camera at the tip shows round the contact
+#define INSET_SHARE    0.30  // of the picture's width, for the inset
+#define INSET_MARGIN   0.02  // of the picture's width
 
 static const material beam_steel = {{0.00, 0.447, 0.698}, 0.7};
 static const material hub_steel = {{0.31, 0.34, 0.39}, 0.8};
@@ -52,7 +55,26 @@ static const material wall_stone = {{0.76, 0.73, 0.68}, 0.1};
 static const material pin_steel = {{0.40, 0.40, 0.42}, 0.9};
 static const material force_paint = {{0.835, 0.369, 0.0}, 0.3};
 static const material trail_paint = {{0.902, 0.624, 0.0}, 0.1};
-static const colour ground_colour = {0.94, 0.945, 0.955};
+
+// Colours of what surrounds the arm.
+typedef struct surroundings {
+    colour page, ground, line; // beyond the floor, of it and of its grid
+    colour far;                // what is long past tends to it
+    colour strong, faint;      // of letters
+} surroundings;
+
+static const surroundings light_surroundings = {.page = {1, 1, 1},
+                                                .ground = {0.953, 0.957, 0.965},
+                                                .line = {0.816, 0.835, 0.859},
+                                                .far = {0.94, 0.945, 0.955},
+                                                .strong = {0.13, 0.14, 0.16},
+                                                .faint = {0.34, 0.36, 0.39}};
+static const surroundings dark_surroundings = {.page = {0.07, 0.075, 0.085},
+                                               .ground = {0.12, 0.13, 0.145},
+                                               .line = {0.23, 0.245, 0.27},
+                                               .far = {0.14, 0.15, 0.165},
+                                               .strong = {0.94, 0.945, 0.955},
+                                               .faint = {0.72, 0.74, 0.77}};
 
 struct scene {
     const scenario *scenario;
@@ -68,7 +90,9 @@ struct scene {
     scene_floor floor;
     scene_painter *painter;
     PangoContext *context;
-    mesh mesh;
+    const surroundings *around;
+    struct scene *tip; // the inset's own scene, or NULL
+    mesh mesh, ghost;
     vector *joints, *curve;
     vector trail[TRAIL_POINTS];
     material trail_of[TRAIL_POINTS];
@@ -81,11 +105,12 @@ static double between(double a, double b, double share)
     return a + share * (b - a);
 }
 
-static material paler(material m, double share)
+static material paler(const scene *sc, material m, double share)
 {
-    m.colour.red = between(m.colour.red, ground_colour.red, share);
-    m.colour.green = between(m.colour.green, ground_colour.green, share);
-    m.colour.blue = between(m.colour.blue, ground_colour.blue, share);
+    const colour *far = &sc->around->far;
+    m.colour.red = between(m.colour.red, far->red, share);
+    m.colour.green = between(m.colour.green, far->green, share);
+    m.colour.blue = between(m.colour.blue, far->blue, share);
     m.shine *= 1 - share;
     return m;
 }
@@ -123,9 +148,11 @@ static void build_hub(scene *sc, double angle)
 
     // the jaws that hold the beam
     for (int side = -1; side <= 1; side += 2) {
-        mesh_box(&sc->mesh, at_angle(angle, 0.078 * l, side * 0.014 * l, 0),
-                 at_angle(angle, 0.030 * l, 0, 0), at_angle(angle, 0, 0.008 * l, 0),
-                 (vector){0, 0, 0.036 * l}, 0.02 * l, hub_steel);
+        const box jaw = {.centre = at_angle(angle, 0.078 * l, side * 0.014 * l, 0),
+                         .u = at_angle(angle, 0.030 * l, 0, 0),
+                         .v = at_angle(angle, 0, 0.008 * l, 0),
+                         .w = {0, 0, 0.036 * l}};
+        mesh_box(&sc->mesh, &jaw, 0.02 * l, hub_steel);
     }
 }
 
@@ -149,10 +176,12 @@ static void build_wall(scene *sc)
     } else if (w->kind == WALL_PLANE) {
         double off = (SLAB_THICKNESS / 2 + BEAM_THICKNESS / 2) * l;
         double half = (SLAB_TO - SLAB_FROM) / 2 * l, rise = (SLAB_TOP * l - floor_z) / 2;
-        vector middle = at_angle(w->angle, (SLAB_FROM + SLAB_TO) / 2 * l, off, floor_z + rise);
-        mesh_box(&sc->mesh, middle, at_angle(w->angle, half, 0, 0),
-                 at_angle(w->angle, 0, SLAB_THICKNESS / 2 * l, 0), (vector){0, 0, rise}, 0.03 * l,
-                 wall_stone);
+        const box slab = {
+            .centre = at_angle(w->angle, (SLAB_FROM + SLAB_TO) / 2 * l, off, floor_z + rise),
+            .u = at_angle(w->angle, half, 0, 0),
+            .v = at_angle(w->angle, 0, SLAB_THICKNESS / 2 * l, 0),
+            .w = {0, 0, rise}};
+        mesh_box(&sc->mesh, &slab, 0.03 * l, wall_stone);
     }
 }
 
@@ -175,22 +204,36 @@ static bool force_arrow(const scene *sc, const sample *row, vector *start, vecto
     return row->contact > 0 && row->force > 0 && length > 0.01 * l;
 }
 
-static void build_arm(scene *sc, double time, double pale)
+// The joints at an instant with the bending exaggerated: what lies across the line from hub to tip
+// is drawn larger, so that hub and tip stay where they are.
+static sample shape_at(scene *sc, double time)
+{
+    sample row = scene_joints(&sc->result->trace, &sc->scenario->parameters, time, sc->joints);
+    double factor = sc->options.exaggerate;
+    vector along = vector_unit(vector_sum(sc->joints[sc->links], -1, sc->joints[0]));
+    vector across = {-along.y, along.x, 0};
+    for (int i = 0; i <= sc->links && factor > 0; i++) {
+        double off = vector_dot(vector_sum(sc->joints[i], -1, sc->joints[0]), across);
+        sc->joints[i] = vector_sum(sc->joints[i], (factor - 1) * off, across);
+    }
+    return row;
+}
+
+static void build_arm(scene *sc, mesh *into, double time)
 {
     const double l = sc->length;
     vector start, end;
-    sample row = scene_joints(&sc->result->trace, &sc->scenario->parameters, time, sc->joints);
+    sample row = shape_at(sc, time);
     int count = scene_curve(sc->joints, sc->links, sc->curve);
 
-    // where several arms lie in one place the latest is the outermost
-    mesh_ribbon(&sc->mesh, sc->curve, count, BEAM_HEIGHT * l * (1 - 0.04 * pale),
-                BEAM_THICKNESS * l * (1 - 0.2 * pale), paler(beam_steel, pale));
+    mesh_ribbon(into, sc->curve, count, BEAM_HEIGHT * l, BEAM_THICKNESS * l, beam_steel);
 
-    // the wall's force
-    if (force_arrow(sc, &row, &start, &end)) {
+    // the wall's force; the ghosts of a film go without
+    bool bare = into == &sc->ghost && sc->options.keyless;
+    if (!bare && force_arrow(sc, &row, &start, &end)) {
         vector along = vector_sum(end, -1, start);
-        mesh_arrow(&sc->mesh, start, vector_unit(along), sqrt(vector_dot(along, along)),
-                   ARROW_RADIUS * l, paler(force_paint, pale));
+        mesh_arrow(into, start, vector_unit(along), sqrt(vector_dot(along, along)),
+                   ARROW_RADIUS * l, force_paint);
     }
 }
 
@@ -211,7 +254,7 @@ static void build_trail(scene *sc, double from, double time)
         // a tip at rest leaves one point, not a knot of them
         if (count == 0 || vector_dot(step, step) > 1e-6 * sc->length * sc->length) {
             sc->trail[count] = tip;
-            sc->trail_of[count++] = paler(trail_paint, 0.85 * (1 - share) * (1 - share));
+            sc->trail_of[count++] = paler(sc, trail_paint, 0.85 * (1 - share) * (1 - share));
         }
     }
 
@@ -229,6 +272,18 @@ static int extent(scene *sc, vector *points)
     const parameters *p = &sc->scenario->parameters;
     const double l = sc->length, low = FLOOR_LEVEL * l, high = PIN_TOP * l;
     int count = 0;
+
+    // the contact alone, or where the tip ends
+    if (sc->options.camera.kind == CAMERA_TIP) {
+        scene_joints(t, p, t->rows[t->row_count - 1].time, sc->joints);
+        vector tip = contact_place(sc, sc->joints);
+        for (int i = 0; i < 8; i++) {
+            double a = i & 1 ? TIP_AROUND * l : -TIP_AROUND * l;
+            double b = i & 2 ? TIP_AROUND * l : -TIP_AROUND * l;
+            points[count++] = (vector){tip.x + a, tip.y + b, i & 4 ? high : -high};
+        }
+        return count;
+    }
 
     // the motor
     for (int i = 0; i < 8; i++) {
@@ -290,6 +345,11 @@ static status set_view(scene *sc, fault *f)
     camera_window window = {0.05, 0.05, 0.95, sc->options.plain ? 0.95 : 0.88};
     sc->camera = camera_fit(sc->options.camera, heading(sc), points, count, sc->options.width,
                             sc->options.height, window);
+    if (sc->options.camera.kind == CAMERA_TIP) {
+        // the rest of the arm lies before and behind what is looked at
+        sc->camera.nearest *= 0.2;
+        sc->camera.farthest += 2.5 * sc->length;
+    }
 
     // a lamp to the left of who looks
     for (int i = 0; i < count; i++) {
@@ -306,6 +366,9 @@ static status set_view(scene *sc, fault *f)
                       .grid = sc->grid,
                       .middle = vector_scaled(vector_add(low, high), 0.5),
                       .reach = 0.62 * hypot(high.x - low.x, high.y - low.y) + 0.35 * sc->length,
+                      .page = sc->around->page,
+                      .ground_colour = sc->around->ground,
+                      .line = sc->around->line,
                       .light = sc->light};
     return scene_floor_init(&sc->floor, &sc->camera, f);
 }
@@ -323,6 +386,18 @@ static status check_options(const scene *sc, fault *f)
         return fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw");
     }
     return text_check_font(f);
+}
+
+// The inset: a scene of its own, from near by.
+static status open_inset(scene *sc, fault *f)
+{
+    scene_options o = sc->options;
+    o.camera = (camera_view){.kind = CAMERA_TIP};
+    o.width = (int)(INSET_SHARE * o.width) / 2 * 2;
+    o.height = (int)(0.72 * o.width) / 2 * 2;
+    o.plain = true;
+    o.inset = o.transparent = false;
+    return scene_create(&sc->tip, sc->scenario, sc->result, &o, f);
 }
 
 static status prepare(scene *sc, fault *f)
@@ -350,9 +425,12 @@ static status prepare(scene *sc, fault *f)
 
     sc->context = text_context_create();
     code = set_view(sc, f);
-    return code == STATUS_OK ? scene_painter_create(&sc->painter, sc->options.renderer,
-                                                    sc->options.width, sc->options.height, f)
-                             : code;
+    if (code == STATUS_OK) {
+        int samples = sc->options.samples > 0 ? sc->options.samples : SAMPLES_FINE;
+        code = scene_painter_create(&sc->painter, sc->options.renderer, sc->options.width,
+                                    sc->options.height, samples, f);
+    }
+    return code == STATUS_OK && sc->options.inset ? open_inset(sc, f) : code;
 }
 
 status scene_create(scene **out, const scenario *s, const run_result *result,
@@ -368,6 +446,7 @@ status scene_create(scene **out, const scenario *s, const run_result *result,
     sc->scenario = s;
     sc->result = result;
     sc->options = *options;
+    sc->around = options->theme == THEME_DARK ? &dark_surroundings : &light_surroundings;
 
     if (options->width == 0 && options->height == 0) {
         sc->options.width = 1280;
@@ -390,9 +469,11 @@ status scene_create(scene **out, const scenario *s, const run_result *result,
 void scene_destroy(scene *sc)
 {
     if (sc != NULL) {
+        scene_destroy(sc->tip);
         scene_painter_destroy(sc->painter);
         scene_floor_finish(&sc->floor);
         mesh_finish(&sc->mesh);
+        mesh_finish(&sc->ghost);
         g_clear_object(&sc->context);
         free(sc->joints);
         free(sc->curve);
@@ -429,6 +510,8 @@ static void draw_labels(scene *sc, const double *times, const colour *inks, int 
     labels l = {.cr = cairo_create(onto),
                 .context = sc->context,
                 .camera = &sc->camera,
+                .strong = sc->around->strong,
+                .faint = sc->around->faint,
                 .scale = fmin(sc->camera.height / 720, sc->camera.width / 800)};
     double time = times[count - 1];
     vector start, end;
@@ -436,50 +519,118 @@ static void draw_labels(scene *sc, const double *times, const colour *inks, int 
 
     // what a plain scene goes without
     if (!sc->options.plain) {
-        char facts[160];
-        sample row = scene_joints(&sc->result->trace, &sc->scenario->parameters, time, sc->joints);
+        char facts[160], bending[64] = "";
+        sample row = shape_at(sc, time);
 
         if (force_arrow(sc, &row, &start, &end)) {
-            labels_force(&l, start, end, row.force, (colour){0.70, 0.28, 0});
+            bool dark = sc->options.theme == THEME_DARK;
+            labels_force(&l, start, end, row.force,
+                         dark ? (colour){1, 0.62, 0.30} : (colour){0.70, 0.28, 0});
         }
 
-        decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m",
-                      1e3 * time, sc->grid);
+        // what is not as it is has to be said
+        if (sc->options.exaggerate > 0 && sc->options.exaggerate != 1) {
+            decimal_print(bending, sizeof bending, " \u00b7 bending drawn %g times as large",
+                          sc->options.exaggerate);
+        }
+        decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s",
+                      1e3 * time, sc->grid, bending);
         labels_caption(&l, sc->scenario->title, facts);
-        if (count > 1) {
+        if (count > 1 && !sc->options.keyless) {
             labels_instants(&l, times, inks, count);
         }
     }
     cairo_destroy(l.cr);
 }
 
+// The ground on which all else is painted, with the shadow of what does not hover.
+static void paint_ground(scene *sc, cairo_surface_t *onto)
+{
+    if (!sc->options.transparent) {
+        scene_floor_paint(&sc->floor, &sc->mesh, onto);
+        return;
+    }
+    cairo_t *cr = cairo_create(onto);
+    cairo_set_operator(cr, CAIRO_OPERATOR_CLEAR);
+    cairo_paint(cr);
+    cairo_destroy(cr);
+}
+
+// The contact from near by, framed, in the upper right corner.
+static status paint_inset(scene *sc, const double *times, int count, cairo_surface_t *onto,
+                          fault *f)
+{
+    scene *tip = sc->tip;
+    int width = tip->options.width, height = tip->options.height;
+    cairo_surface_t *view = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    status code = scene_paint(tip, times, count, view, f);
+
+    // its frame and how much larger it is than the picture, at the contact
+    if (code == STATUS_OK) {
+        double margin = INSET_MARGIN * sc->options.width, left = sc->options.width - width - margin;
+        vector at = contact_place(sc, sc->joints);
+        const double larger =
+            labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
+        labels l = {.cr = cairo_create(onto),
+                    .context = sc->context,
+                    .camera = &sc->camera,
+                    .strong = sc->around->strong,
+                    .faint = sc->around->faint,
+                    .scale = fmin(sc->camera.height / 720, sc->camera.width / 800)};
+        cairo_set_source_surface(l.cr, view, left, margin);
+        cairo_paint(l.cr);
+        set_colour(l.cr, sc->around->faint);
+        cairo_set_line_width(l.cr, fmax(1, l.scale));
+        cairo_rectangle(l.cr, left, margin, width, height);
+        cairo_stroke(l.cr);
+        if (!sc->options.plain) {
+            labels_inset(&l, left, margin + height, larger);
+        }
+        cairo_destroy(l.cr);
+    }
+    cairo_surface_destroy(view);
+    return code;
+}
+
 status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto, fault *f)
 {
     assert(sc != NULL && times != NULL && count > 0 && onto != NULL);
     colour inks[SCENE_INSTANTS];
+    status code = STATUS_OK;
+    double now = times[count - 1];
+    painting full = {.mesh = &sc->mesh, .camera = &sc->camera, .light = sc->light, .opacity = 1};
 
-    // every instant's arm, the last one full
+    // what is there now, and its shadow
     mesh_clear(&sc->mesh);
-    for (int i = 0; i < count; i++) {
-        double pale = count > 1 ? PALEST * (count - 1 - i) / (count - 1) : 0;
-        inks[i] = paler(beam_steel, pale).colour;
-        build_arm(sc, times[i], pale);
-    }
-
-    // what does not move
-    sample last =
-        scene_joints(&sc->result->trace, &sc->scenario->parameters, times[count - 1], sc->joints);
+    build_arm(sc, &sc->mesh, now);
+    sample last = scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
     build_hub(sc, last.hub_angle);
     build_wall(sc);
-    scene_floor_paint(&sc->floor, &sc->mesh, onto);
+    paint_ground(sc, onto);
+
+    // ghosts of earlier instants behind it
+    for (int i = 0; i < count && code == STATUS_OK; i++) {
+        double pale = count > 1 ? PALEST * (count - 1 - i) / (count - 1) : 0;
+        inks[i] = paler(sc, beam_steel, pale).colour;
+        if (i < count - 1) {
+            painting ghost = full;
+            ghost.mesh = &sc->ghost;
+            ghost.opacity = 1 - pale;
+            mesh_clear(&sc->ghost);
+            build_arm(sc, &sc->ghost, times[i]);
+            code = scene_painter_paint(sc->painter, &ghost, onto, f);
+        }
+    }
 
     // the trail hovers and throws no shadow
-    build_trail(sc, sc->result->trace.rows[0].time, times[count - 1]);
-    status code = scene_painter_paint(sc->painter, &sc->mesh, &sc->camera, sc->light, onto, f);
+    build_trail(sc, sc->result->trace.rows[0].time, now);
+    if (code == STATUS_OK) {
+        code = scene_painter_paint(sc->painter, &full, onto, f);
+    }
     if (code == STATUS_OK) {
         draw_labels(sc, times, inks, count, onto);
     }
-    return code;
+    return code == STATUS_OK && sc->tip != NULL ? paint_inset(sc, times, count, onto, f) : code;
 }
 
 // ---- files
@@ -551,7 +702,8 @@ status scene_write(const scenario *s, const run_result *result, const scene_opti
     }
 
     cairo_surface_t *surface =
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, sc->options.width, sc->options.height);
+        cairo_image_surface_create(options->transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24,
+                                   sc->options.width, sc->options.height);
     code = scene_paint(sc, times, count, surface, f);
     if (code == STATUS_OK) {
         code = write_surface(sc, surface, path, f);

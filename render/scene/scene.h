@@ -13,10 +13,16 @@
 enum { SCENE_INSTANTS = 32 }; // most instants in one picture
 
 typedef struct scene_options {
-    camera_kind camera;
+    camera_view camera;
     scene_renderer renderer;
-    int width, height; // [pixels]; 0: 1280 x 720
-    bool plain;        // no text
+    int width, height;  // [pixels]; 0: 1280 x 720
+    int samples;        // of a pixel along each edge; 0: SAMPLES_FINE
+    bool plain;         // no text
+    bool keyless;       // no key of the instants
+    double exaggerate;  // bending is drawn that many times as large, and this is said; 0: as it is
+    bool inset;         // the contact from near by in a corner
+    figure_theme theme; // THEME_DARK, else light
+    bool transparent;   // without floor and ground, for a surface ARGB32
 } scene_options;
 
 typedef struct scene scene;
@@ -31,8 +37,9 @@ void scene_destroy(scene *sc);
 // What paints, for metadata.
 const char *scene_renderer_name(const scene *sc);
 
-// Paints the arm at the instants [s], ascending, the last in full colour and earlier ones paler,
-// over the whole image surface (RGB24, of the scene's size).
+// Paints the arm at the instants [s], ascending, the last in full colour and earlier ones as ghosts
+// behind it, fainter the earlier, over the whole image surface (RGB24, or ARGB32 where the scene is
+// transparent, of the scene's size).
 status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto, fault *f);
 
 // Instants [s] for a picture of the whole approach: `count` of them, evenly spaced along the tip's

@@ -30,8 +30,8 @@ static void show_progress(void *context, int done, int total)
 static film_options options_of(const arguments *a)
 {
     scene_options view = read_view(a);
-    return (film_options){.camera = view.camera,
-                          .renderer = view.renderer,
+    return (film_options){.view = view,
+                          .ghosts = (int)a->ghosts,
                           .width = view.width,
                           .height = view.height,
                           .frames_per_second = (int)a->fps,
@@ -92,8 +92,12 @@ static int animate(const arguments *a)
 {
     fault f = {0};
     if (a->output == NULL) {
-        return complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, FILE.gif, or "
-                        "a folder for PNG frames");
+        return complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, FILE.gif, "
+                        "FILE.webp, or a folder for PNG frames");
+    }
+    int code = check_view(a);
+    if (code != EXIT_DONE) {
+        return code;
     }
     if (film_file_check(a->output, &f) != STATUS_OK) {
         return complain_fault(&f);
@@ -123,6 +127,18 @@ static const option_row rows[] = {
      .low = 0.1,
      .high = 3600,
      .unit = "s"},
+    {.name = "theme",
+     .type = OPTION_CHOICE,
+     .value = "light|dark",
+     .help = "on a light or a dark ground (light)",
+     PLACE(theme)},
+    {.name = "ghosts",
+     .type = OPTION_WHOLE,
+     .value = "N",
+     .help = "earlier arms behind the present one, 20 ms apart (0)",
+     PLACE(ghosts),
+     .low = 0,
+     .high = 31},
     {.name = "slow",
      .type = OPTION_NUMBER,
      .value = "N",
@@ -138,7 +154,8 @@ const command animate_command = {
     .group = GROUP_PICTURES,
     .operands = "SCENARIO",
     .summary = "Make a film of a run: the arm in space and its traces",
-    .help = "-o FILE.mp4, FILE.webm or FILE.gif needs the program ffmpeg; any other name is that "
+    .help = "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any other "
+            "name is that "
             "of a folder, to\nbe made, for PNG frames. The first impact is slowed down against "
             "the rest.\n",
     .least = 1,

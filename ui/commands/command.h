@@ -50,6 +50,9 @@ typedef struct arguments {
     const char *overlay;  // CSV
     number_list instants; // --at [s]
     const char *gl, *camera;
+    double exaggerate;
+    uint64_t ghosts;
+    bool inset;
     grid_size size;            // [pixels], of the lab [characters]
     double fps, seconds, slow; // of a film [1/s], [s], [1]; 0 if not given
 

@@ -14,19 +14,39 @@ static int ascending(const void *a, const void *b)
 
 scene_options read_view(const arguments *a)
 {
-    scene_options o = {.width = a->size.width, .height = a->size.height};
-    // the words were checked when the command line was read
+    scene_options o = {.width = a->size.width,
+                       .height = a->size.height,
+                       .exaggerate = a->exaggerate,
+                       .inset = a->inset,
+                       .transparent = a->transparent};
+    o.theme = a->theme != NULL && strcmp(a->theme, "dark") == 0 ? THEME_DARK : THEME_COLOUR;
+
+    // the words were checked before
     bool known = (a->gl == NULL || scene_renderer_find(a->gl, &o.renderer)) &&
-                 (a->camera == NULL || camera_kind_find(a->camera, &o.camera));
+                 (a->camera == NULL || camera_read(a->camera, &o.camera));
     assert(known);
     (void)known;
     return o;
+}
+
+int check_view(const arguments *a)
+{
+    camera_view unused;
+    if (a->camera != NULL && !camera_read(a->camera, &unused)) {
+        return complain("there is no camera '%s', expected three-quarter, top, side, tip, or two "
+                        "angles such as -60,40 (elevation 1 to 90 degrees)",
+                        a->camera);
+    }
+    return EXIT_DONE;
 }
 
 int check_scene(const arguments *a)
 {
     assert(a != NULL);
     fault f = {0};
+    if (check_view(a) != EXIT_DONE) {
+        return EXIT_BAD_ARGUMENTS;
+    }
     if (a->instants.count > SCENE_INSTANTS) {
         return complain("--at was given %d times, expected at most %d", a->instants.count,
                         SCENE_INSTANTS);

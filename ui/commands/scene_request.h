@@ -7,6 +7,9 @@
 // The view that --gl, --camera and --size ask for.
 scene_options read_view(const arguments *a);
 
+// Whether --camera says something. Returns the exit status.
+int check_view(const arguments *a);
+
 // Whether run --scene could write its file, and --at does not ask for too many instants. Returns
 // the exit status.
 int check_scene(const arguments *a);
