@@ -189,7 +189,7 @@ expect 2 run hit.yaml --quiet --scene arm.gif
 expect 2 run hit.yaml --quiet --scene arm.png --at 9
 says err "0 to 0.5 s"
 expect 2 run hit.yaml --quiet --scene arm.png --camera above
-says err "three-quarter, top or side"
+says err "three-quarter, top, side, tip, or two angles"
 expect 2 run hit.yaml --quiet --scene arm.png --gl mesa
 expect 2 run hit.yaml --quiet --scene arm.png --size 12
 expect 0 animate hit.yaml -o film --gl cairo --size 320x240 --seconds 0.3 --fps 10

@@ -205,6 +205,7 @@ static int store_value(arguments *a, const option_row *o, char *text)
         return EXIT_DONE;
     }
     case OPTION_TEXT:
+    case OPTION_WORD:
     case OPTION_CHOICE:
     case OPTION_FILE:
     case OPTION_RESULT:

@@ -13,7 +13,7 @@
 // What a shell offers for a value or an operand.
 typedef enum offer {
     OFFER_NOTHING,
-    OFFER_WORDS, // of OPTION_CHOICE
+    OFFER_WORDS, // of OPTION_CHOICE and OPTION_WORD
     OFFER_FILES,
     OFFER_PARAMETERS,
     OFFER_SCENARIOS, // and files
@@ -24,6 +24,7 @@ static offer offer_of(const option_row *o)
 {
     switch (o->type) {
     case OPTION_CHOICE:
+    case OPTION_WORD:
         return OFFER_WORDS;
     case OPTION_FILE:
     case OPTION_RESULT:

@@ -52,10 +52,10 @@ static const option_row view_rows[] = {
      .help = "what draws the arm (auto: the first that is installed)",
      PLACE(gl)},
     {.name = "camera",
-     .type = OPTION_TEXT,
-     .value = "three-quarter|top|side|tip|AZ,EL",
-     .help = "where it is seen from (three-quarter); two angles in degrees, from the arm's heading "
-             "and above the floor",
+     .type = OPTION_WORD,
+     .value = "three-quarter|top|side|tip",
+     .help = "where it is seen from (three-quarter); or two angles as -60,40: degrees from "
+             "the arm's heading and above the floor",
      PLACE(camera)},
     {.name = "exaggerate",
      .type = OPTION_NUMBER,

@@ -11,6 +11,7 @@
 typedef enum option_type {
     OPTION_FLAG,       // nothing; bool
     OPTION_TEXT,       // any text; const char *
+    OPTION_WORD,       // as OPTION_TEXT, but its `value` names words worth offering; const char *
     OPTION_CHOICE,     // one of the words of `value`, "a|b|c"; const char *
     OPTION_FILE,       // a file that is read; const char *
     OPTION_RESULT,     // a file that is written whole, "-": the standard output; const char *
