@@ -212,14 +212,16 @@ static void press_something(soak *s)
 {
     // all keys but those that end or suspend the lab, or hold the terminal's output
     static const char *const keys[] = {
-        " ",       " ",      "h",      "l",       "n",       "N",       "g",        "G",
-        "+",       "-",      "\177",   "r",       "j",       "k",       "\r",       ">",
-        "<",       "p",      "P",      "t",       "x",       "b",       "B",        "c",
-        "u",       "U",      "\022",   "m",       "\t",      "z",       "Z",        "0",
-        "1",       "5",      "9",      "o",       "]",       "[",       "s",        "\014",
-        "?",       "/",      ":",      "\033[A",  "\033[B",  "\033[C",  "\033[D",   "\033[H",
-        "\033[F",  "\033OA", "\033OP", "\033[5~", "\033[6~", "\033[3~", "\025",     "\b",
-        "\033[1~", "\033[Z", "=",      "2",       "3",       "8",       "\033[M !!"};
+        " ",       " ",      "h",      "l",       "n",       "N",       "g",         "G",
+        "+",       "-",      "\177",   "r",       "j",       "k",       "\r",        ">",
+        "<",       "p",      "P",      "t",       "x",       "b",       "B",         "c",
+        "u",       "U",      "\022",   "m",       "\t",      "z",       "Z",         "0",
+        "1",       "5",      "9",      "o",       "]",       "[",       "s",         "\014",
+        "?",       "/",      ":",      "\033[A",  "\033[B",  "\033[C",  "\033[D",    "\033[H",
+        "\033[F",  "\033OA", "\033OP", "\033[5~", "\033[6~", "\033[3~", "\025",      "\b",
+        "\033[1~", "\033[Z", "=",      "2",       "3",       "8",       "\033[M !!", "R",
+        "D",       "M",      "T",      "X",       "A",       "y",       "\020",      "L",
+        "F",       "C",      "H",      "e",       "w"};
     send_text(s, keys[chance(s, sizeof keys / sizeof keys[0])]);
 }
 
@@ -234,12 +236,17 @@ static void give_command(soak *s)
         "glyphs ascii", "glyphs braille", "glyphs blocks", "theme mono", "theme light", "mouse off",
         "mouse on", "save a.csv", "save a.yaml", "save a.txt", "stop", "undo", "redo", "branch",
         "forget", "compare", "remember", "wait 0.%d", "set method.name newmark", "extend %d",
-        "restart", "model",
+        "restart", "model", "pin run %d", "take %d", "hide %d", "baseline %d", "unpin %d",
+        "rename %d other", "difference 0.0%d", "difference off", "sweep motor.voltage=1:%d:4",
+        "sweep arm.k2=4,5,6", "sweep off", "metric", "lanes all", "lanes off", "lanes auto",
+        "phase force gap", "spectrum force", "statistics", "lesson hybrid-law", "lesson step-size",
+        "answer %d", "continue", "lesson off", "palette volt",
         // none of these can be done
         "frobnicate %d", "set arm.k2 NaN", "set arm.links -%d", "open nothing/such", "set",
         "set motor.voltage", "seek", "save", "save a.doc", "save /proc/none/a.csv", "speed 0",
-        "zoom sideways", "set run.duration 1e9", "set method.step 1e-9", "trace nonsense",
-        "glyphs %d", "push 1e999", "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80", "\xff\xfe broken"};
+        "zoom sideways", "take 99", "sweep motor.voltage=1:2", "phase force", "answer x",
+        "set run.duration 1e9", "set method.step 1e-9", "trace nonsense", "glyphs %d", "push 1e999",
+        "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80", "\xff\xfe broken"};
     char line[200];
     const char *form = commands[chance(s, sizeof commands / sizeof commands[0])];
 #pragma GCC diagnostic push

@@ -141,6 +141,8 @@ static void test_a_narrow_screen_reaches_the_side(void **state)
     press(&ex, "<Tab>");
     assert_has(&ex, 60, 20, "hub_angle");
     press(&ex, "<Tab>");
+    assert_has(&ex, 60, 20, "statistics");
+    press(&ex, "<Tab>");
     assert_has(&ex, 60, 20, "\u25b81      N");
     // too many panes for the rows: the one in focus is there
     press(&ex, ":panes 123456789<Enter>ww");

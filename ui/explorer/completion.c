@@ -102,7 +102,8 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
         name = i < parameter_count ? parameter_table[i].path : NULL;
     } else if (strcmp(p->command, "metric") == 0) {
         name = i < summary_count ? summary_table[i].key : NULL;
-    } else if (strcmp(p->command, "trace") == 0) {
+    } else if (strcmp(p->command, "trace") == 0 || strcmp(p->command, "phase") == 0 ||
+               strcmp(p->command, "spectrum") == 0) {
         name = i < signal_count ? signal_table[i].name : NULL;
     } else if (strcmp(p->command, "law") == 0) {
         name = law_name(i);

@@ -12,6 +12,10 @@ action_result act_select_parameter(explorer_state *st, const char *argument)
         st->scroll[PANEL_VALUES] += direction;
         return result_done();
     }
+    if (st->side.panel == PANEL_STATISTICS) {
+        st->scroll[PANEL_STATISTICS] += direction;
+        return result_done();
+    }
     if (st->side.panel == PANEL_SWEEP) {
         act_select_swept(st, direction);
         return result_done();
@@ -96,8 +100,10 @@ action_result act_set_mark(explorer_state *st, const char *argument)
     (void)argument;
     st->mark.set = !st->mark.set;
     st->mark.time = st->session.now;
-    return result_news("%s",
-                       st->mark.set ? "mark set: values now show the difference to it" : "no mark");
+    return result_news(
+        "%s", st->mark.set ? "mark set: values now show the difference to it, X statistics from "
+                             "it to the cursor"
+                           : "no mark");
 }
 
 action_result act_other_side(explorer_state *st, const char *argument)
@@ -118,6 +124,32 @@ action_result act_other_side(explorer_state *st, const char *argument)
     return result_done();
 }
 
+// Fills a pane with the signals of an argument, as many as fit.
+static action_result read_signals(const char *argument, pane *own)
+{
+    char words[LINE_TEXT], *rest = words;
+    snprintf(words, sizeof words, "%s", argument);
+    for (char *word; (word = strtok_r(rest, " ,", &rest)) != NULL && own->count < PANE_SIGNALS;) {
+        const int signal = signal_find(word);
+        if (signal < 0) {
+            return result_refused("there is no signal '%s' (Tab completes)", word);
+        }
+        own->signals[own->count++] = signal;
+    }
+    return result_done();
+}
+
+// Shows a pane in the place of the user's own.
+static action_result show_own(explorer_state *st, pane own)
+{
+    own.shown = true;
+    own.grown = value_range_empty;
+    st->panes.pane[PANES - 1] = own;
+    st->panes.chosen = true;
+    st->panes.focus = PANES - 1;
+    return result_done();
+}
+
 // Shows or hides a pane by number, or makes one of signals by name.
 action_result act_trace_pane(explorer_state *st, const char *argument)
 {
@@ -135,22 +167,45 @@ action_result act_trace_pane(explorer_state *st, const char *argument)
     }
 
     // the user's own pane, of as many signals as fit
-    pane own = {.shown = true, .grown = value_range_empty};
-    char words[LINE_TEXT], *rest = words;
-    snprintf(words, sizeof words, "%s", argument);
-    for (char *word; (word = strtok_r(rest, " ,", &rest)) != NULL && own.count < PANE_SIGNALS;) {
-        int signal = signal_find(word);
-        if (signal < 0) {
-            return result_refused("there is no signal '%s' (Tab completes)", word);
-        }
-        own.signals[own.count++] = signal;
+    pane own = {.view = VIEW_TIME};
+    const action_result read = read_signals(argument, &own);
+    if (!result_ok(&read)) {
+        return read;
     }
     if (own.count == 0) {
         return result_refused("trace takes a number from 1 to 9 or names of signals");
     }
-    st->panes.pane[PANES - 1] = own;
-    st->panes.chosen = true;
-    st->panes.focus = PANES - 1;
+    return show_own(st, own);
+}
+
+action_result act_phase_pane(explorer_state *st, const char *argument)
+{
+    pane own = {.view = VIEW_PHASE};
+    const action_result read = read_signals(argument, &own);
+    if (!result_ok(&read)) {
+        return read;
+    }
+    return own.count == 2
+               ? show_own(st, own)
+               : result_refused("phase takes two signals: what goes up, and what across");
+}
+
+action_result act_spectrum_pane(explorer_state *st, const char *argument)
+{
+    pane own = {.view = VIEW_SPECTRUM};
+    const action_result read = read_signals(argument, &own);
+    if (!result_ok(&read)) {
+        return read;
+    }
+    return own.count == 1 ? show_own(st, own) : result_refused("spectrum takes one signal");
+}
+
+action_result act_statistics(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    const bool there = st->side.panel == PANEL_STATISTICS;
+    st->side.panel = there ? panel_first_on_side() : PANEL_STATISTICS;
+    st->side.in_front = !there;
     return result_done();
 }
 

@@ -6,6 +6,7 @@
 
 #include "src/rig/controller.h"
 #include "ui/explorer/panels/lanes.h"
+#include "ui/explorer/panels/pane_views.h"
 #include "ui/explorer/panels/plot_axes.h"
 #include "ui/explorer/panels/run_lines.h"
 
@@ -250,6 +251,18 @@ static void draw_pane_title(const explorer_state *st, screen *s, int index, area
         screen_text(s, x + room + 1, a.y, 14, INK_EVENT, "minus baseline");
     }
 
+    // what is not over time has no values at the cursor
+    if (p->view == VIEW_PHASE) {
+        screen_print(s, x, a.y, room, INK_SERIES_0, "%s over %s", signal_table[p->signals[0]].name,
+                     signal_table[p->signals[1]].name);
+        return;
+    }
+    if (p->view == VIEW_SPECTRUM) {
+        screen_print(s, x, a.y, room, INK_SERIES_0, "amplitudes of %s",
+                     signal_table[p->signals[0]].name);
+        return;
+    }
+
     // as many words as fit
     legend how = LEGEND_NAMES;
     while (how < LEGEND_BARE && draw_legend(st, s, p, how, x, a.y, 0) > room) {
@@ -356,6 +369,20 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     plot_frame f = {
         .canvas = {s, a.x + LABEL_WIDTH + 1, a.y + 1, a.width - LABEL_WIDTH - 1, a.height - 1}};
     draw_pane_title(st, s, index, a);
+
+    // another axis than time: nothing to click at, nothing to scale
+    const pane *shown = &st->panes.pane[index];
+    if (shown->view != VIEW_TIME) {
+        const area inside = {f.canvas.x, f.canvas.y, f.canvas.width, f.canvas.height};
+        const area column = {a.x, a.y + 1, LABEL_WIDTH + 1, a.height - 1};
+        layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_VIEW, index, inside});
+        if (draw_pane_view(st, s, shown, inside, &f.axis)) {
+            draw_value_axis(s, column, f.axis);
+        } else {
+            screen_text(s, inside.x, inside.y, inside.width, INK_DIM, "nothing to see yet");
+        }
+        return;
+    }
     state_window(st, &f.from, &f.to);
     if (!state_pane_axis(st, index, &f.axis)) {
         screen_text(s, f.canvas.x, a.y + 1, f.canvas.width, INK_DIM, "this run has no such values");
@@ -521,6 +548,8 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
         return point_at_plot(st, g);
     case PART_TIME_AXIS:
         return point_at_time_axis(st, g);
+    case PART_VIEW:
+        return true;
     case PART_LANES:
     case PART_MAP:
         return lanes_point(st, g);

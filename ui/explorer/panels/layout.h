@@ -21,6 +21,7 @@ typedef enum hit_part {
     PART_SLIDER,    // index: the parameter
     PART_LABELS,    // an axis of values; index: the pane
     PART_TIME_AXIS, // below curves
+    PART_VIEW,      // a pane that is not over time; index: the pane
     PART_LANES,     // bands below that
     PART_MAP        // of the whole run
 } hit_part;

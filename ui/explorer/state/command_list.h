@@ -56,6 +56,10 @@
     X("", "axis", "auto|grow|LOW HIGH [PANE]", "range: what is visible, was seen, or yours",       \
       act_axis)                                                                                    \
     X("", "trace", "1-9|SIGNAL...", "show or hide a pane of curves", act_trace_pane)               \
+    X("", "phase", "SIGNAL OVER", "a pane of one signal over another: phase gap force",            \
+      act_phase_pane)                                                                              \
+    X("", "spectrum", "SIGNAL", "a pane of its amplitudes in the visible part", act_spectrum_pane) \
+    X("", "statistics", "", "min, max, mean, rms, integral from mark to cursor", act_statistics)   \
     X("", "lanes", "auto|all|off", "contact, modes, changes... below the curves; alone: next",     \
       act_set_lanes)                                                                               \
     X("Scenarios", "open", "[NAME|+1|-1]", "another scenario, from a list", act_open_scenario_by)  \

@@ -14,6 +14,7 @@ typedef struct binding {
 } binding;
 
 static const binding bindings[] = {
+    // time
     {"Space", "play"},
     {"Right", "step 1"},
     {"l", "step 1"},
@@ -34,6 +35,7 @@ static const binding bindings[] = {
     {"-", "speed down"},
     {"Backspace", "restart"},
     {"r", "restart"},
+    // changing the run
     {"Down", "select"},
     {"j", "select"},
     {"Up", "select -1"},
@@ -48,6 +50,7 @@ static const binding bindings[] = {
     {"F", "lock off"},
     {"t", "model"},
     {"x", "extend"},
+    // several runs, undo
     {"b", "branch"},
     {"B", "forget"},
     {"R", "runs"},
@@ -57,8 +60,10 @@ static const binding bindings[] = {
     {"u", "undo"},
     {"U", "redo"},
     {"C-r", "redo"},
+    // looking
     {"m", "mark"},
     {"Tab", "side"},
+    // curves and their axes
     {"z", "zoom in"},
     {"Z", "zoom out"},
     {"0", "zoom all"},
@@ -74,6 +79,7 @@ static const binding bindings[] = {
     {"V", "axis out"},
     {"S-Up", "axis up"},
     {"S-Down", "axis down"},
+    // panes
     {"1", "trace 1"},
     {"2", "trace 2"},
     {"3", "trace 3"},
@@ -83,6 +89,8 @@ static const binding bindings[] = {
     {"7", "trace 7"},
     {"8", "trace 8"},
     {"9", "trace 9"},
+    // scenarios, lessons, files
+    {"X", "statistics"},
     {"T", "lanes"},
     {"o", "open"},
     {"A", "answer"},

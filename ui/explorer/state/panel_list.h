@@ -23,6 +23,7 @@ typedef enum panel_place {
     X(PANEL_CURVES, PLACE_MAIN, curves_panel)                                                      \
     X(PANEL_PARAMETERS, PLACE_SIDE, parameters_panel)                                              \
     X(PANEL_VALUES, PLACE_SIDE, values_panel)                                                      \
+    X(PANEL_STATISTICS, PLACE_SIDE, statistics_panel)                                              \
     X(PANEL_SWEEP, PLACE_SIDE, sweep_panel)                                                        \
     X(PANEL_RUNS, PLACE_STACK, runs_panel)                                                         \
     X(PANEL_CONTROLLER, PLACE_STACK, controller_panel)                                             \

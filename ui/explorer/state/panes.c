@@ -72,6 +72,7 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
         set->pane[i].shown = false;
     }
     set->pane[PANES - 1].count = 0;
+    set->pane[PANES - 1].view = VIEW_TIME;
     for (int i = 0; i < wishes->signal_count; i++) {
         show_signal(set, wishes->signals[i]);
         set->focus = i == 0 ? 0 : set->focus;

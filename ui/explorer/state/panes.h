@@ -26,11 +26,19 @@ extern const value_range value_range_empty;
 // Widens a range so that it holds another one.
 void value_range_widen(value_range *r, value_range other);
 
+// What a pane shows its signals over.
+typedef enum pane_view {
+    VIEW_TIME,
+    VIEW_PHASE,   // the first one over the second
+    VIEW_SPECTRUM // the amplitudes of the first one over frequency
+} pane_view;
+
 // A pane of curves: signals that are read on one axis.
 typedef struct pane {
     int signals[PANE_SIGNALS]; // indices in the signal table
     int count;                 // 0: not defined
     bool shown;
+    pane_view view;
     axis_scaling scaling;
     value_range fixed; // the axis where it is fixed
     value_range grown; // what has been seen, where it grows

@@ -321,6 +321,9 @@ bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
     assert(st != NULL && index >= 0 && index < PANES && axis != NULL);
     const pane *p = &st->panes.pane[index];
     double from, to;
+    if (p->view != VIEW_TIME) {
+        return false;
+    }
     state_window(st, &from, &to);
     value_range found = range_between(st, p, from, to, state_run_count(st));
     if (!(found.high >= found.low)) {
@@ -361,7 +364,7 @@ static void grow_axes(explorer_state *st)
 {
     for (int i = 0; i < PANES; i++) {
         pane *p = &st->panes.pane[i];
-        if (p->scaling == AXIS_GROW && p->shown) {
+        if (p->scaling == AXIS_GROW && p->shown && p->view == VIEW_TIME) {
             value_range_widen(&p->grown, range_between(st, p, 0, st->session.seen, 1));
         }
     }

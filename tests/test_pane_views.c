@@ -1,0 +1,88 @@
+// Panes that are not over time, and the panel of statistics.
+#include "tests/explorer_on_screen.h"
+
+#include <math.h>
+
+#include "src/run/statistics.h"
+
+static void test_a_spectrum_names_the_highest_line(void **state)
+{
+    (void)state;
+    explorer ex;
+
+    // the command follows a sine of 5 Hz on the commanded force
+    open_explorer(&ex, "compare/force-pd");
+    press(&ex, ":set control.force_amplitude 0.2<Enter>:set control.force_frequency 5<Enter><End>");
+    press(&ex, ":zoom 0.7 1.5<Enter>:spectrum command<Enter>e");
+    char *text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "highest at 5 Hz"));
+    free(text);
+    press(&ex, ":spectrum<Enter>");
+    assert_true(ex.state.message.warning);
+    press(&ex, ":spectrum force gap<Enter>");
+    assert_true(ex.state.message.warning);
+    explorer_finish(&ex);
+}
+
+static void test_a_phase_pane_ends_where_the_signals_end(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "<End>:phase force gap<Enter>e");
+    assert_int_equal(ex.state.panes.pane[PANES - 1].signals[1], SIGNAL_INDEX(gap));
+    char *text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
+    const trace *t = &ex.state.session.run.trace;
+    char wanted[64], number[32];
+    draw_number(number, sizeof number, trace_statistics(t, SIGNAL_INDEX(gap), 0, HUGE_VAL).maximum);
+    snprintf(wanted, sizeof wanted, "gap %s", number);
+    assert_non_null(strstr(text, wanted));
+    assert_non_null(strstr(text, "force over gap"));
+    free(text);
+
+    // neither its axis nor a click in it does anything to the time
+    const double now = ex.state.session.now;
+    press(&ex, "vVaz");
+    for (int i = 0; i < ex.layout.hit_count; i++) {
+        const hit_area h = ex.layout.hits[i];
+        if (h.part == PART_VIEW) {
+            explorer_point(
+                &ex, (pointer_event){POINTER_PRESS, h.area.x + 2, h.area.y + 1, false, false});
+        }
+    }
+    check_close(ex.state.session.now, now, 0);
+    press(&ex, ":trace force<Enter>");
+    assert_int_equal(ex.state.panes.pane[PANES - 1].view, VIEW_TIME);
+    explorer_finish(&ex);
+}
+
+static void test_statistics_are_from_the_mark_to_the_cursor(void **state)
+{
+    (void)state;
+    explorer ex;
+    char wanted[64], number[32];
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "<End>:seek 0.45<Enter>m:seek 0.25<Enter>X");
+    const signal_statistics s =
+        trace_statistics(&ex.state.session.run.trace, SIGNAL_INDEX(force), 0.25, 0.45);
+    draw_number(number, sizeof number, s.maximum);
+    snprintf(wanted, sizeof wanted, "max %s", number);
+    assert_shows(&ex, "mark and cursor, 0.25 to 0.45 s");
+    assert_shows(&ex, wanted);
+    draw_number(number, sizeof number, s.integral);
+    snprintf(wanted, sizeof wanted, "integral %s s", number);
+    assert_shows(&ex, wanted);
+    press(&ex, "X");
+    assert_hides(&ex, "mark and cursor,");
+    explorer_finish(&ex);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_spectrum_names_the_highest_line),
+        cmocka_unit_test(test_a_phase_pane_ends_where_the_signals_end),
+        cmocka_unit_test(test_statistics_are_from_the_mark_to_the_cursor),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

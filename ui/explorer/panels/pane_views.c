@@ -1,0 +1,189 @@
+#include "ui/explorer/panels/pane_views.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "src/base/fourier.h"
+#include "ui/explorer/panels/plot_axes.h"
+
+enum { SERIES = 1024 }; // values of which a spectrum is computed
+
+// A plane of two ranges on a canvas.
+typedef struct plane {
+    canvas canvas;
+    value_range x, y;
+} plane;
+
+static double dot_x(const plane *p, double x)
+{
+    return (x - p->x.low) / (p->x.high - p->x.low) * (2.0 * p->canvas.width - 1);
+}
+
+static double dot_y(const plane *p, double y)
+{
+    return (p->y.high - y) / (p->y.high - p->y.low) * (4.0 * p->canvas.height - 1);
+}
+
+// A range that is not a point.
+static value_range opened(value_range r)
+{
+    return r.high - r.low < 1e-12 ? (value_range){r.low - 0.5, r.high + 0.5} : r;
+}
+
+// The ends of the axis across, in the corners of the lowest row, and what it is.
+static void draw_ends(screen *s, area a, value_range x, const char *name)
+{
+    char low[32], high[32], text[96];
+    draw_number(low, sizeof low, x.low);
+    draw_number(high, sizeof high, x.high);
+    const int y = a.y + a.height - 1;
+    screen_text(s, a.x, y, a.width, INK_DIM, low);
+    const int length = snprintf(text, sizeof text, "%.48s %s", name, high);
+    screen_text(s, a.x + a.width - length, y, length, INK_DIM, text);
+}
+
+// --- one signal over another ------------------------------------------------------------------
+
+// The rows of a run that are looked at, from the first to the last.
+static void rows_between(const trace *t, double from, double to, size_t *first, size_t *last)
+{
+    *first = trace_row_at(t, from);
+    *last = trace_row_at(t, to);
+}
+
+static void widen_by(value_range *r, const trace *t, int signal, double from, double to)
+{
+    size_t first, last;
+    rows_between(t, from, to, &first, &last);
+    for (size_t i = first; i <= last; i++) {
+        const double value = signal_value(&t->rows[i], signal);
+        if (isfinite(value)) {
+            value_range_widen(r, (value_range){value, value});
+        }
+    }
+}
+
+static void draw_path(const plane *p, const trace *t, const pane *of, double from, double to,
+                      ink colour)
+{
+    size_t first, last;
+    double x0 = (double)NAN, y0 = (double)NAN;
+    rows_between(t, from, to, &first, &last);
+    for (size_t i = first; i <= last; i++) {
+        const double x = dot_x(p, signal_value(&t->rows[i], of->signals[1]));
+        const double y = dot_y(p, signal_value(&t->rows[i], of->signals[0]));
+        canvas_line(&p->canvas, x0, y0, x, y, colour);
+        x0 = x;
+        y0 = y;
+    }
+}
+
+// The path of the visible part, that of the baseline behind it, the cursor on it.
+static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area a,
+                       value_range *axis)
+{
+    const session *e = &st->session;
+    const trace *t = state_run(st, 0).trace;
+    value_range x = value_range_empty, y = value_range_empty;
+    double from, to;
+    state_window(st, &from, &to);
+    widen_by(&x, t, of->signals[1], from, to);
+    widen_by(&y, t, of->signals[0], from, to);
+    if (!(x.high >= x.low) || !(y.high >= y.low)) {
+        return false;
+    }
+    const plane p = {{s, a.x, a.y, a.width, a.height}, opened(x), opened(y)};
+    *axis = p.y;
+    if (e->has_other && !st->difference.on) {
+        draw_path(&p, &e->other.trace, of, from, to, INK_OTHER);
+    }
+    draw_path(&p, t, of, from, fmin(to, e->seen), INK_SERIES_0);
+
+    // where the cursor is, and the ends of the axis
+    draw_ends(s, a, p.x, signal_table[of->signals[1]].name);
+    const sample *row = &t->rows[trace_row_at(t, e->now)];
+    const double at_x = dot_x(&p, signal_value(row, of->signals[1])) / 2;
+    const double at_y = dot_y(&p, signal_value(row, of->signals[0])) / 4;
+    if (at_x >= 0 && at_x < a.width && at_y >= 0 && at_y < a.height) {
+        screen_put(s, a.x + (int)at_x, a.y + (int)at_y, 0x25cf, INK_CURSOR);
+    }
+    return true;
+}
+
+// --- a spectrum -------------------------------------------------------------------------------
+
+// A signal at even instants, straight between rows; what has no value counts as 0.
+static void sample_evenly(const trace *t, int signal, double from, double to, double *series)
+{
+    size_t r = trace_row_at(t, from);
+    for (int i = 0; i < SERIES; i++) {
+        const double time = from + (to - from) * i / SERIES;
+        while (r + 1 < t->row_count && t->rows[r + 1].time <= time) {
+            r++;
+        }
+        double value = signal_value(&t->rows[r], signal);
+        if (r + 1 < t->row_count && t->rows[r + 1].time > t->rows[r].time) {
+            const double share = (time - t->rows[r].time) / (t->rows[r + 1].time - t->rows[r].time);
+            value += share * (signal_value(&t->rows[r + 1], signal) - value);
+        }
+        series[i] = isfinite(value) ? value : 0;
+    }
+}
+
+// The number of lines that hold nearly all of what there is.
+static int lines_that_matter(const double *amplitude)
+{
+    double all = 0, sum = 0;
+    int lines = 0;
+    for (int k = 0; k < SERIES / 2; k++) {
+        all += amplitude[k] * amplitude[k];
+    }
+    while (lines < SERIES / 2 && sum < 0.99 * all) {
+        sum += amplitude[lines] * amplitude[lines];
+        lines++;
+    }
+    lines += lines / 4 + 8;
+    return lines < SERIES / 2 ? lines : SERIES / 2;
+}
+
+// The amplitudes of the visible part, as far as it has been seen, up to where there is anything.
+static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, area a,
+                          value_range *axis)
+{
+    static double series[SERIES], scratch[2 * SERIES], amplitude[SERIES / 2];
+    const trace *t = state_run(st, 0).trace;
+    char name[64];
+    double from, to, highest = 0;
+    int peak = 0;
+    state_window(st, &from, &to);
+    to = fmin(to, st->session.seen);
+    if (!(to > from)) {
+        return false;
+    }
+    sample_evenly(t, of->signals[0], from, to, series);
+    fourier_amplitudes(series, SERIES, scratch, amplitude);
+    const int lines = lines_that_matter(amplitude);
+    for (int k = 0; k < lines; k++) {
+        peak = amplitude[k] > highest ? k : peak;
+        highest = fmax(highest, amplitude[k]);
+    }
+
+    // the highest line is named
+    const plane p = {{s, a.x, a.y, a.width, a.height},
+                     {0, lines / (to - from)},
+                     opened((value_range){0, highest})};
+    *axis = p.y;
+    snprintf(name, sizeof name, "highest at %.4g Hz, up to [Hz]", peak / (to - from));
+    for (int k = 1; k < lines; k++) {
+        canvas_line(&p.canvas, dot_x(&p, (k - 1) / (to - from)), dot_y(&p, amplitude[k - 1]),
+                    dot_x(&p, k / (to - from)), dot_y(&p, amplitude[k]), INK_SERIES_0);
+    }
+    draw_ends(s, a, p.x, name);
+    return true;
+}
+
+bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a, value_range *axis)
+{
+    assert(st != NULL && s != NULL && p != NULL && p->view != VIEW_TIME && axis != NULL);
+    return p->view == VIEW_PHASE ? draw_phase(st, s, p, a, axis) : draw_spectrum(st, s, p, a, axis);
+}
