@@ -308,7 +308,7 @@ static void test_many_links_are_predicted_while_the_run_rests(void **state)
     check_close(w[0], row->hub_velocity, 0);
     check_close(w[1], row->first_velocity, 0); // behind the beam's root
     check_close(w[t->angle_count - 1], row->last_velocity, 0);
-    assert_shows(&ex, "linearised      2.615 N in 7 ms");
+    assert_shows(&ex, "linearised      2.614 N in 7 ms");
     press(&ex, ":seek 0.1<Enter><Space>");
     assert_shows(&ex, "linearised      -");
     explorer_finish(&ex);
