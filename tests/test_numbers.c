@@ -1,9 +1,11 @@
 // Numbers as text: short, exact, and nothing read that people would not write.
 #include "src/base/numbers.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/random.h"
 #include "tests/check.h"
 
 static void numbers_are_short_and_read_back(void **state)
@@ -87,9 +89,75 @@ static void what_is_no_decimal_is_refused(void **state)
     }
 }
 
+// Numbers of all sizes, also powers of two, whose neighbour below is nearer than that above.
+static double some_number(random_generator *g, int i)
+{
+    double value;
+    const uint64_t bits = random_bits(g) & INT64_MAX;
+    memcpy(&value, &bits, sizeof value);
+    return i % 3 == 0   ? random_uniform(g)
+           : i % 3 == 1 ? ldexp(1, (int)(bits % 2098) - 1074)
+                        : value;
+}
+
+// What is written reads back to the last bit, and no number of one digit less does.
+static void digits_are_as_few_as_read_back(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 20261122);
+    for (int i = 0; i < 200000; i++) {
+        const double value = some_number(&g, i);
+        if (!isfinite(value) || value == 0) {
+            continue;
+        }
+        char text[NUMBER_TEXT], less[NUMBER_TEXT];
+        number_format(text, value);
+        assert_true(strtod(text, NULL) == value);
+
+        int digits = 0;
+        for (const char *c = text; *c != '\0' && *c != 'e'; c++) {
+            digits += *c >= '0' && *c <= '9' && (digits > 0 || *c != '0');
+        }
+        if (digits > 1 && digits <= 17 && strchr(text, 'e') != NULL) {
+            snprintf(less, sizeof less, "%.*e", digits - 2, value);
+            assert_true(strtod(less, NULL) != value);
+        }
+    }
+}
+
+static void digits_of_known_numbers(void **state)
+{
+    (void)state;
+    const struct {
+        double value;
+        const char *text;
+    } known[] = {
+        {5e-324, "5e-324"},
+        {2.2250738585072014e-308, "2.2250738585072014e-308"},
+        {1.7976931348623157e308, "1.7976931348623157e+308"},
+        {0x1p-44, "5.684341886080802e-14"}, // printf needs 17 digits
+        {9007199254740993.0, "9007199254740992"},
+        {1e15, "1e+15"},
+        {123456789012345.0, "123456789012345"},
+        {1e23, "1e+23"},
+        {-0.0001, "-0.0001"},
+        {0.00001234, "1.234e-05"},
+        {100.5, "100.5"},
+        {0.1 + 0.2, "0.30000000000000004"},
+    };
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        char text[NUMBER_TEXT];
+        number_format(text, known[i].value);
+        assert_string_equal(text, known[i].text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(digits_are_as_few_as_read_back),
+        cmocka_unit_test(digits_of_known_numbers),
         cmocka_unit_test(numbers_are_short_and_read_back),
         cmocka_unit_test(short_numbers_have_exponents_from_a_million),
         cmocka_unit_test(what_is_not_finite_has_a_word),

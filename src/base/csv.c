@@ -67,12 +67,14 @@ void csv_text(csv_writer *w, const char *text)
 void csv_number(csv_writer *w, double value)
 {
     assert(w != NULL && w->stream != NULL);
-    char text[NUMBER_TEXT];
-    begin_field(w);
+    char text[1 + NUMBER_TEXT] = ",";
+    char *number = text + w->in_row;
+    *number = '\0';
     if (!isnan(value)) {
-        number_format(text, value);
-        fputs(text, w->stream);
+        number_format(number, value);
     }
+    w->in_row = true;
+    fputs_unlocked(text, w->stream);
 }
 
 void csv_end_row(csv_writer *w)

@@ -6,6 +6,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "src/base/shortest_digits.h"
 
 // Gives the calling thread the "C" locale; returns the one to go back to. The C library keeps the
 // "C" locale for good: it is neither allocated here nor freed.
@@ -48,20 +51,72 @@ double decimal_parse(const char *text, char **end)
     return value;
 }
 
-// Writes with the fewest digits, from `least` on, that read back as the same number.
-static void write_digits(char *text, double value, int least)
+// The decimal digits of a number above zero; returns how many there are.
+static int write_whole(char *text, uint64_t number)
+{
+    char backwards[20];
+    int count = 0;
+    for (; number > 0; number /= 10) {
+        backwards[count++] = (char)('0' + number % 10);
+    }
+    for (int i = 0; i < count; i++) {
+        text[i] = backwards[count - 1 - i];
+    }
+    return count;
+}
+
+// Digits d1 d2 ... dn as 0.000d1d2, as d1d2.d3, as d1d2000, or as d1.d2e+10; `place` is that of the
+// point after d1. Returns the end.
+static char *write_plain(char *text, const char *digits, int count, int place)
+{
+    for (int zeros = place; zeros < 0; zeros++) {
+        *text++ = '0';
+        if (zeros == place) {
+            *text++ = '.';
+        }
+    }
+    for (int i = 0; i < count || i <= place; i++) {
+        *text++ = i < count ? digits[i] : '0';
+        if (i == place && i + 1 < count) {
+            *text++ = '.';
+        }
+    }
+    return text;
+}
+
+static char *write_with_exponent(char *text, const char *digits, int count, int place)
+{
+    const unsigned size = (unsigned)abs(place);
+    text = write_plain(text, digits, count, 0);
+    *text++ = 'e';
+    *text++ = place < 0 ? '-' : '+';
+    if (size < 10) {
+        *text++ = '0'; // two digits at least
+    }
+    return text + write_whole(text, size);
+}
+
+// Writes with the fewest digits that read back as the same number: with an exponent below 1e-4, and
+// from 10^(digits) on, but not for less than `most_plain` of them.
+static void write_digits(char *text, double value, int most_plain)
 {
     if (!isfinite(value)) {
         snprintf(text, NUMBER_TEXT, "%s", isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
         return;
     }
-
-    for (int digits = least; digits <= 17; digits++) {
-        decimal_print(text, NUMBER_TEXT, "%.*g", digits, value);
-        if (digits == 17 || decimal_parse(text, NULL) == value) {
-            return;
-        }
+    if (signbit(value)) {
+        *text++ = '-';
     }
+    if (value == 0) {
+        memcpy(text, "0", 2);
+        return;
+    }
+
+    char digits[20];
+    const decimal d = shortest_decimal(fabs(value));
+    const int count = write_whole(digits, d.digits), place = count - 1 + d.exponent;
+    const bool plain = place >= -4 && place < (count > most_plain ? count : most_plain);
+    *(plain ? write_plain : write_with_exponent)(text, digits, count, place) = '\0';
 }
 
 void number_format(char *text, double value)

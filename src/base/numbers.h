@@ -12,8 +12,9 @@
 
 enum { NUMBER_TEXT = 32 }; // room for any number written below
 
-// Writes value with as few digits as read back as the same number ("0.1", "1e-05", "1000000"; -0
-// is written "0", a number that is not finite "nan", "inf" or "-inf"). text has NUMBER_TEXT bytes.
+// Writes value with as few digits as read back as the same number (shortest_digits.h): "0.1",
+// "1e-05", "1000000"; -0 is written "0", a number that is not finite "nan", "inf" or "-inf". text
+// has NUMBER_TEXT bytes.
 void number_format(char *text, double value);
 
 // The same with an exponent from a million on ("1e+06"), as people write parameters, and with the

@@ -15,8 +15,8 @@
 #define PROJECTION_GAP       1e-14 // drift that is projected away in contact [m]
 #define PROJECTION_RATE      1e-13 // [m/s]
 
-// Some last bits of an angle, as a share of 1e-9, which counts as zero in a soft arm [s2/rad].
-#define SPRING_ROUNDING 4e-6
+// Some last bits of an acceleration, as a share of 1e-9, which counts as zero in a slow soft arm.
+#define LAST_BITS 4e-4
 
 static void choose_engine(const arm *a, motion *m, const method_parameters *method)
 {
@@ -132,12 +132,13 @@ void motion_watch(motion *m)
 
 double motion_rounding(const arm *a, const motion *m)
 {
-    const double *q = state_angles(m, m->state);
-    double largest = 0;
+    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    double angle = 0, rate = 0;
     for (int i = 0; i < m->dof; i++) {
-        largest = fmax(largest, fabs(q[i]));
+        angle = fmax(angle, fabs(q[i]));
+        rate = fmax(rate, fabs(w[i]));
     }
-    return 1 + SPRING_ROUNDING * a->highest_frequency * a->highest_frequency * largest;
+    return 1 + LAST_BITS * (a->highest_frequency * a->highest_frequency * angle + rate * rate);
 }
 
 double motion_energy_residual(const arm *a, const motion *m, double *state)

@@ -141,7 +141,7 @@ static void leave_edge(polynomial *p, double value, double rounding)
 
     // how many coefficients are
     while (edge < 3 && fabs(p->terms[edge]) <= limit) {
-        limit = rounding * (edge == 0 ? EDGE_RATE : EDGE_MORE);
+        limit = fmax(rounding * EDGE_RATE, edge == 0 ? 0 : EDGE_MORE);
         edge++;
     }
 
