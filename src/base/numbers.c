@@ -51,35 +51,45 @@ double decimal_parse(const char *text, char **end)
     return value;
 }
 
-// The decimal digits of a number above zero; returns how many there are.
+// The decimal digits of a number above zero, two at a time from the last; returns how many.
 static int write_whole(char *text, uint64_t number)
 {
-    char backwards[20];
-    int count = 0;
-    for (; number > 0; number /= 10) {
-        backwards[count++] = (char)('0' + number % 10);
+    static const char pairs[] = "00010203040506070809101112131415161718192021222324"
+                                "25262728293031323334353637383940414243444546474849"
+                                "50515253545556575859606162636465666768697071727374"
+                                "75767778798081828384858687888990919293949596979899";
+    char digits[20], *first = digits + sizeof digits;
+    for (; number >= 10; number /= 100) {
+        first -= 2;
+        memcpy(first, pairs + 2 * (number % 100), 2);
     }
-    for (int i = 0; i < count; i++) {
-        text[i] = backwards[count - 1 - i];
+    if (number > 0) {
+        *--first = (char)('0' + number);
     }
+
+    const int count = (int)(digits + sizeof digits - first);
+    memcpy(text, first, (size_t)count);
     return count;
 }
 
-// Digits d1 d2 ... dn as 0.000d1d2, as d1d2.d3, as d1d2000, or as d1.d2e+10; `place` is that of the
-// point after d1. Returns the end.
+// Digits d1 d2 ... dn as 0.000d1d2, as d1d2.d3 or as d1d2000; `place` is how many of them stand
+// between d1 and the point, negative for zeros behind it. Returns the end.
 static char *write_plain(char *text, const char *digits, int count, int place)
 {
-    for (int zeros = place; zeros < 0; zeros++) {
-        *text++ = '0';
-        if (zeros == place) {
-            *text++ = '.';
-        }
+    if (place < 0) {
+        memcpy(text, "0.0000", 6);
+        memcpy(text + 1 - place, digits, (size_t)count);
+        return text + 1 - place + count;
     }
-    for (int i = 0; i < count || i <= place; i++) {
-        *text++ = i < count ? digits[i] : '0';
-        if (i == place && i + 1 < count) {
-            *text++ = '.';
-        }
+
+    const int whole = count <= place ? count : place + 1;
+    memcpy(text, digits, (size_t)whole);
+    memset(text + whole, '0', (size_t)(place + 1 - whole));
+    text += place + 1;
+    if (whole < count) {
+        *text = '.';
+        memcpy(text + 1, digits + whole, (size_t)(count - whole));
+        text += 1 + count - whole;
     }
     return text;
 }
