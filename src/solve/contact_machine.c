@@ -134,8 +134,12 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
 
     // what the event itself has ended would violate something an instant later: what it left for is
     // taken although rounding speaks against it
-    int preferred = event == MOTION_RELEASE ? choices : event == MOTION_SLIP ? 2 : 0;
-    const double rounding = FORCE_TOLERANCE * motion_rounding(a, m);
+    const bool accelerates = event == MOTION_RELEASE || event == MOTION_SLIP;
+    const int preferred = event == MOTION_RELEASE || event == MOTION_TOUCH ? choices
+                          : event == MOTION_SLIP                           ? 2
+                          : event == MOTION_STICK                          ? 1
+                                                                           : 0;
+    const double rounding = FORCE_TOLERANCE * (accelerates ? motion_rounding(a, m) : 1);
     double least = 0;
     contact_state best = {false, sliding};
 

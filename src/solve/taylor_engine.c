@@ -132,16 +132,12 @@ static double bend_of(const polynomial *p, double t)
     return bound[0] + t * bound[1];
 }
 
-// Divides the function by the time as often as its first coefficients are nothing but rounding, of
-// which there may be `rounding` times as much as in a soft arm.
-static void leave_edge(polynomial *p, double value, double rounding)
+// Divides the function by the time as often as its first coefficients are nothing but rounding,
+// below the limits.
+static void leave_edge(polynomial *p, const double limits[3])
 {
     int edge = 0;
-    double limit = value;
-
-    // how many coefficients are
-    while (edge < 3 && fabs(p->terms[edge]) <= limit) {
-        limit = fmax(rounding * EDGE_RATE, edge == 0 ? 0 : EDGE_MORE);
+    while (edge < 3 && fabs(p->terms[edge]) <= limits[edge]) {
         edge++;
     }
 
@@ -244,10 +240,10 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
     if (now.contact) {
         set_polynomial(&s->watched[WATCH_FORCE], s->block + AT_FORCE, order, 1);
     } else {
-        polynomial *gap = &s->watched[WATCH_GAP];
-        set_polynomial(gap, s->block + AT_GAP, order + 2, 1);
-        if (gap->terms[0] < 0 && gap->terms[0] > -EDGE_DEPTH) {
-            gap->terms[0] = 0;
+        polynomial *distance = &s->watched[WATCH_GAP];
+        set_polynomial(distance, s->block + AT_GAP, order + 2, 1);
+        if (distance->terms[0] < 0 && distance->terms[0] > -EDGE_DEPTH) {
+            distance->terms[0] = 0;
             wall_at_edge = true;
         }
     }
@@ -265,13 +261,17 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
     }
 
     // just after an event they may begin at zero, as the gap does after a bounce cut short
+    const double acceleration = EDGE_RATE * (wall_at_edge || jumped ? motion_rounding(a, m) : 0);
+    const double reaction[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
+    const double gap[] = {EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, acceleration)};
+    const double hub_rate[] = {0, acceleration, EDGE_MORE};
     if (wall_at_edge) {
         leave_edge(&s->watched[now.contact ? WATCH_FORCE : WATCH_GAP],
-                   now.contact ? EDGE_VALUE : EDGE_GAP, motion_rounding(a, m));
+                   now.contact ? reaction : gap);
     }
     if (jumped) {
-        leave_edge(&s->watched[now.friction != HUB_STICK ? WATCH_HUB : WATCH_STICTION],
-                   now.friction != HUB_STICK ? 0 : EDGE_VALUE, motion_rounding(a, m));
+        const bool stuck = now.friction == HUB_STICK;
+        leave_edge(&s->watched[stuck ? WATCH_STICTION : WATCH_HUB], stuck ? reaction : hub_rate);
     }
 }
 
