@@ -160,6 +160,8 @@ static void test_a_sweep_gives_what_single_runs_give(void **state)
     // what cannot be run says so
     press(&ex, ":sweep motor.voltage=1:2:40<Enter>");
     assert_true(ex.state.message.warning);
+    press(&ex, ":sweep stiction=0.01:0.05:3<Enter>");
+    assert_int_equal(sweep->axis.parameter, PARAMETER_INDEX(motor.stiction));
     press(&ex, ":sweep motor.volts=1:2:4<Enter>");
     assert_shows(&ex, "did you mean");
     explorer_finish(&ex);

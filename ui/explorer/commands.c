@@ -35,7 +35,7 @@ action_result explorer_execute(explorer_state *st, const char *line)
 {
     assert(st != NULL && line != NULL);
     char text[LINE_TEXT];
-    int begin = (int)strspn(line, " \t"), index;
+    int begin = (int)strspn(line, " \t:"), index;
     line += begin;
     if (*line == '\0' || *line == '#') {
         return result_done();

@@ -257,8 +257,12 @@ action_result act_sweep(explorer_state *st, const char *argument)
         slider_scale scale = {0};
         const int parameter = st->parameters.parameter;
         const parameters p = state_parameters(st);
+        const double value = parameter_get(&p, parameter);
         snprintf(line, sizeof line, "sweep %s=", parameter_table[parameter].path);
-        if (slider_scale_of(parameter, parameter_get(&p, parameter), &scale)) {
+        if (slider_scale_of(parameter, value, &scale) && scale.logarithmic) {
+            prompt_open(&st->prompt, "%s%g:%g:8:log", line, fmax(scale.low, value / 4),
+                        fmin(scale.high, value * 4));
+        } else if (slider_scale_of(parameter, value, &scale)) {
             prompt_open(&st->prompt, "%s%g:%g:8", line, scale.low, scale.high);
         } else {
             prompt_open(&st->prompt, "%s", line);

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "ui/explorer/state/parameter_list.h"
+
 bool lab_sweep_is_on(const lab_sweep *sweep)
 {
     assert(sweep != NULL);
@@ -41,8 +43,12 @@ status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
 
     // the parameter, then its values as --vary has them
     *values++ = '\0';
-    axis.parameter = parameter_look_up(text, f);
+    axis.parameter = parameter_of_name(text);
+    if (axis.parameter == -2) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'", text);
+    }
     if (axis.parameter < 0) {
+        parameter_look_up(text, f);
         return STATUS_BAD_ARGUMENT;
     }
     status code = sweep_axis_parse(&axis, values, false, f);
