@@ -19,6 +19,14 @@ static int side_width(int screen_width)
     return 0;
 }
 
+// Whether a panel of the stack leaves its rows to the chosen one, which has more to show than they
+// have: that of a sweep or of statistics.
+static bool gives_way(const explorer_state *st, panel_id id)
+{
+    const bool wants_room = st->side.panel == PANEL_SWEEP || st->side.panel == PANEL_STATISTICS;
+    return wants_room && (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
+}
+
 // What stands on the right: the chosen panel, and below it all that have room.
 static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
 {
@@ -28,7 +36,8 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
     // the rows of those below; the chosen one gets what they leave
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         const panel *p = panel_of((panel_id)id);
-        if (panel_place_of((panel_id)id) == PLACE_STACK && panel_fits(p, body)) {
+        if (panel_place_of((panel_id)id) == PLACE_STACK && panel_fits(p, body) &&
+            !gives_way(st, (panel_id)id)) {
             rows[id] = p->rows(st, body);
             taken += rows[id];
         }

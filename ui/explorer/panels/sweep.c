@@ -82,6 +82,9 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
         const int y = a.y + i - first;
         char value[SWEEP_VALUE_TEXT], metric[32];
         sweep_axis_format(&sweep->axis, r->value, value, sizeof value);
+        if (sweep_axis_parameter(&sweep->axis)->type == PARAMETER_REAL) {
+            draw_number(value, sizeof value, r->value);
+        }
         draw_number(metric, sizeof metric, summary_value(&r->run.summary, sweep->metric));
         screen_print(s, a.x, y, VALUE, INK_TITLE, "%.12s", value);
         screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s", metric,

@@ -23,8 +23,11 @@ static void define_panes(explorer_state *st)
     enum { FEWEST = 3, ROWS = 6, HEAD = 8 };
     const scenario *base = &st->session.base;
     const int room = (st->size.height - HEAD) * 3 / 5 / ROWS;
+
+    // a lesson leaves little room beside the panes that it asks for
+    const int least = st->lesson.on ? 2 : FEWEST;
     const pane_wishes wishes = {state_has_law(st), base->panes, base->pane_count,
-                                room < FEWEST ? FEWEST : room};
+                                room < least ? least : room};
     panes_define(&st->panes, &wishes);
 }
 
