@@ -2,18 +2,24 @@
 
 #include <assert.h>
 #include <dirent.h>
+#include <dlfcn.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <limits.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "src/base/build_config.h"
 #include "src/scenario/scenario.h"
 #include "src/scenario/yaml_tree.h"
 #include "src/base/words.h"
 
-enum { MAX_FOLDER_DEPTH = 8 }; // stops at links that lead in a circle
+enum {
+    MAX_FOLDER_DEPTH = 8, // stops at links that lead in a circle
+    MAX_FOLDERS = 32      // of IMPACTLAB_SCENARIOS and the one that ships
+};
 
 static const char suffix[] = ".yaml";
 
@@ -94,20 +100,92 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
 
 // ---- the folder ---------------------------------------------------------------------------------
 
-static const char *scenario_folder(void)
+// The file that this very code was loaded from: the program, or the shared library in another one.
+// path has PATH_MAX bytes; false if nobody knows.
+static bool own_file(char *path)
 {
-    const char *chosen = getenv("IMPACTLAB_SCENARIOS");
-    if (chosen != NULL && chosen[0] != '\0') {
-        return chosen;
+    Dl_info about;
+    if (dladdr(suffix, &about) != 0 && about.dli_fname != NULL &&
+        strstr(about.dli_fname, ".so") != NULL) {
+        return realpath(about.dli_fname, path) != NULL;
     }
-    return is_folder(IMPACTLAB_SOURCE_SCENARIOS) ? IMPACTLAB_SOURCE_SCENARIOS
-                                                 : IMPACTLAB_DATA_SCENARIOS;
+    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
+    path[length > 0 ? length : 0] = '\0';
+    return length > 0;
+}
+
+// The folder of the scenarios that ship, on the heap; NULL without memory. What was built in a tree
+// has the tree's, what was installed its own, also after the installation has moved.
+static char *shipped_folder(void)
+{
+    char path[PATH_MAX];
+    const size_t build = strlen(IMPACTLAB_BUILD_FOLDER);
+    bool known = own_file(path);
+    if (known && strncmp(path, IMPACTLAB_BUILD_FOLDER, build) == 0 && path[build] == '/') {
+        return text_of("%s", IMPACTLAB_SOURCE_SCENARIOS);
+    }
+
+    // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1: PREFIX/share is near
+    char *end = known ? strrchr(path, '/') : NULL;
+    for (int above = 0; above < 4 && end != NULL && end != path; above++) {
+        *end = '\0';
+        char *folder = text_of("%s/share/impactlab/scenarios", path);
+        if (folder == NULL || is_folder(folder)) {
+            return folder;
+        }
+        free(folder);
+        end = strrchr(path, '/');
+    }
+    return text_of("%s", IMPACTLAB_DATA_SCENARIOS);
+}
+
+// The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that ship.
+typedef struct folder_list {
+    char *folders[MAX_FOLDERS];
+    int count;
+} folder_list;
+
+static folder_list open_folders(void)
+{
+    folder_list all = {.count = 0};
+    const char *chosen = getenv("IMPACTLAB_SCENARIOS");
+    while (chosen != NULL && *chosen != '\0' && all.count < MAX_FOLDERS - 1) {
+        size_t length = strcspn(chosen, ":");
+        if (length > 0) {
+            all.folders[all.count] = strndup(chosen, length);
+            all.count += all.folders[all.count] != NULL;
+        }
+        chosen += length + (chosen[length] == ':');
+    }
+    all.folders[all.count] = shipped_folder();
+    all.count += all.folders[all.count] != NULL;
+    return all;
+}
+
+static void close_folders(folder_list *all)
+{
+    for (int i = 0; i < all->count; i++) {
+        free(all->folders[i]);
+    }
+}
+
+// The file of that name in the first folder that has it, else in the last; NULL without memory.
+static char *find_file(const char *name, const char *ending)
+{
+    folder_list all = open_folders();
+    char *path = NULL;
+    for (int i = 0; i < all.count && (path == NULL || !is_file(path)); i++) {
+        free(path);
+        path = text_of("%s/%s%s", all.folders[i], name, ending);
+    }
+    close_folders(&all);
+    return path;
 }
 
 char *scenario_folder_file(const char *name)
 {
     assert(name != NULL);
-    return text_of("%s/%s", scenario_folder(), name);
+    return find_file(name, "");
 }
 
 static bool add_name(name_list *list, const char *name, size_t length)
@@ -179,6 +257,24 @@ static int compare_names(const void *a, const void *b)
     return strverscmp(*(char *const *)a, *(char *const *)b);
 }
 
+// Sorts the names; one that several folders have stays once.
+static void sort_once(name_list *list)
+{
+    if (list->count == 0) {
+        return;
+    }
+    qsort(list->names, (size_t)list->count, sizeof *list->names, compare_names);
+    int kept = 1;
+    for (int i = 1; i < list->count; i++) {
+        if (strcmp(list->names[i], list->names[kept - 1]) == 0) {
+            free(list->names[i]);
+        } else {
+            list->names[kept++] = list->names[i];
+        }
+    }
+    list->count = kept;
+}
+
 static void free_names(char **names, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -191,27 +287,33 @@ status scenario_list(char ***names, int *count, fault *f)
 {
     assert(names != NULL && count != NULL);
     name_list list = {0};
-    const char *folder = scenario_folder();
     *names = NULL;
     *count = 0;
 
-    if (!is_folder(folder)) {
-        return fault_set(f, STATUS_CANNOT_READ,
-                         "%.500s: no such folder, expected the scenarios there (set "
-                         "IMPACTLAB_SCENARIOS to the folder that holds them)",
-                         folder);
+    // those of every folder
+    folder_list all = open_folders();
+    status result = all.count > 0 ? STATUS_OK : fault_no_memory(f);
+    for (int i = 0; i < all.count && result == STATUS_OK; i++) {
+        const bool shipped = i == all.count - 1;
+        if (shipped && i > 0 && !is_folder(all.folders[i])) {
+            break; // those that were named are enough
+        }
+        if (!is_folder(all.folders[i])) {
+            result = fault_set(f, STATUS_CANNOT_READ,
+                               "%.500s: no such folder, expected the scenarios there "
+                               "(IMPACTLAB_SCENARIOS adds folders, separated by colons)",
+                               all.folders[i]);
+        } else if (!walk(&list, all.folders[i], "", 0)) {
+            result = fault_no_memory(f);
+        }
     }
-
-    // all names below it
-    if (!walk(&list, folder, "", 0)) {
+    close_folders(&all);
+    if (result != STATUS_OK) {
         free_names(list.names, list.count);
-        return fault_set(f, STATUS_NO_MEMORY, "out of memory");
+        return result;
     }
 
-    // in the order of the alphabet
-    if (list.count > 0) {
-        qsort(list.names, (size_t)list.count, sizeof *list.names, compare_names);
-    }
+    sort_once(&list);
     *names = list.names;
     *count = list.count;
     return STATUS_OK;
@@ -262,7 +364,7 @@ static bool find_name(const char *wanted, char **path)
     for (int i = 0; i < count && !found; i++) {
         if (strcmp(names[i], wanted) == 0) {
             found = true;
-            *path = text_of("%s/%s%s", scenario_folder(), wanted, suffix);
+            *path = find_file(wanted, suffix);
         }
     }
     free_names(names, count);

@@ -105,10 +105,12 @@ status scenario_override_all(scenario *s, char *const *assignments, int count, f
 // if there is neither; the sentence then names the nearest scenario.
 status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context);
 
-// Path of a file in the scenario folder, on the heap; NULL without memory.
+// Path of a file in the first scenario folder that has it, on the heap; NULL without memory.
 char *scenario_folder_file(const char *name);
 
 // The names of all scenarios in and below the scenario folder, sorted with numbers as numbers
 // (fig-3-2 before fig-3-10); free each and the array. STATUS_CANNOT_READ if there is no folder.
-// The folder is $IMPACTLAB_SCENARIOS, or the source tree's when built there, or the installed one.
+// The folders are those of IMPACTLAB_SCENARIOS, separated by colons, of which the first that has a
+// name counts, and that of the scenarios that ship: the source tree's for what was built there,
+// else the one beside the installation, wherever that has moved.
 status scenario_list(char ***names, int *count, fault *f);

@@ -123,7 +123,7 @@ static const term exit_status[] = {
 
 static const term environment[] = {
     {"IMPACTLAB_SCENARIOS",
-     "The folder with the scenarios, instead of the one that came with the program."},
+     "Folders with further scenarios, separated by colons; of two of one name theirs counts."},
     {"NO_COLOR", "If not empty, the terminal lab shows no colours unless --colours or its settings "
                  "ask for them."},
     {"COLORTERM", "If truecolor or 24bit, the terminal has colours by red, green and blue."},

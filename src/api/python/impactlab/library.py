@@ -1,0 +1,250 @@
+"""The shared library: where it is, its functions and structures, and its errors as exceptions."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import POINTER, c_char, c_char_p, c_double, c_int, c_size_t, c_void_p
+from pathlib import Path
+from typing import Any, Iterator, Optional
+
+KEEP_ROWS = 1
+COMMAND = 2
+SONAME = "libimpactlab.so.1"
+
+
+class Error(Exception):
+    """What the library could not do: a sentence, with `status` and the path of the `parameter`."""
+
+    def __init__(self, sentence: str, status: int = 0, parameter: str = "") -> None:
+        super().__init__(sentence)
+        self.status = status
+        self.parameter = parameter
+
+
+class ErrorStruct(ctypes.Structure):
+    _fields_ = [("status", c_int), ("line", c_int), ("column", c_int),
+                ("parameter", c_char * 64), ("sentence", c_char * 1024)]
+
+
+class ParameterStruct(ctypes.Structure):
+    _fields_ = [("path", c_char_p), ("type", c_char_p), ("unit", c_char_p), ("choices", c_char_p),
+                ("description", c_char_p), ("initial", c_double), ("minimum", c_double),
+                ("maximum", c_double), ("timed", c_int)]
+
+
+class SignalStruct(ctypes.Structure):
+    _fields_ = [("name", c_char_p), ("symbol", c_char_p), ("unit", c_char_p),
+                ("description", c_char_p)]
+
+
+class QuantityStruct(ctypes.Structure):
+    _fields_ = [("key", c_char_p), ("label", c_char_p), ("unit", c_char_p),
+                ("description", c_char_p), ("timing", c_int)]
+
+
+class SeriesStruct(ctypes.Structure):
+    _fields_ = [("values", c_void_p), ("count", c_size_t), ("stride", c_size_t)]
+
+
+class TableStruct(ctypes.Structure):
+    _fields_ = [("values", c_void_p), ("rows", c_size_t), ("columns", c_size_t)]
+
+
+class EventStruct(ctypes.Structure):
+    _fields_ = [("time", c_double), ("kind", c_char_p), ("impulse", c_double),
+                ("speed", c_double), ("loss", c_double)]
+
+
+class ReadingStruct(ctypes.Structure):
+    """What the sensors read; NaN where one is not fitted."""
+
+    _fields_ = [(name, c_double) for name in
+                ("time", "encoder", "tachometer", "force", "piezo_force", "film", "accelerometer")]
+
+
+class OutcomeStruct(ctypes.Structure):
+    _fields_ = [("index", c_size_t), ("status", c_int), ("word", c_char_p), ("message", c_char_p),
+                ("quantities", POINTER(c_double)), ("quantity_count", c_size_t)]
+
+
+class PredictionStruct(ctypes.Structure):
+    _fields_ = [("method", c_char_p), ("known", c_int), ("holds", c_int), ("peak", c_double),
+                ("time_to_peak", c_double), ("impulse", c_double), ("message", c_char * 1024)]
+
+
+# controller.h
+
+class InputStruct(ctypes.Structure):
+    """What a controller sees at a sample: the sensors' readings and the command in effect."""
+
+    _fields_ = [("time", c_double), ("encoder", c_double), ("tachometer", c_double),
+                ("force", c_double), ("voltage", c_double), ("piezo_force", c_double),
+                ("film", c_double), ("accelerometer", c_double), ("wanted_mode", c_int)]
+
+
+class OutputStruct(ctypes.Structure):
+    _fields_ = [("command", c_double), ("mode", c_int), ("desired_angle", c_double),
+                ("desired_velocity", c_double), ("calculated_force", c_double)]
+
+
+SampleFunction = ctypes.CFUNCTYPE(None, c_void_p, POINTER(InputStruct), POINTER(OutputStruct))
+TakeFunction = ctypes.CFUNCTYPE(c_int, c_void_p, POINTER(OutcomeStruct))
+
+
+class ControllerStruct(ctypes.Structure):
+    _fields_ = [("interface", c_int), ("name", c_char_p), ("modes", POINTER(c_char_p)),
+                ("lockable", ctypes.c_bool), ("parameters", c_void_p), ("parameter_count", c_int),
+                ("memory_size", c_size_t), ("start", c_void_p), ("sample", SampleFunction),
+                ("tune", c_void_p)]
+
+
+CONTROLLER_INTERFACE = 4
+
+
+def _places() -> Iterator[str]:
+    """Where the library may be: as told, beside an installed package, in a build of the tree."""
+    told = os.environ.get("IMPACTLAB_LIBRARY")
+    if told:
+        yield told
+        return
+    here = Path(__file__).resolve()
+    for folder in list(here.parents)[1:6]:
+        for library in sorted(folder.glob("lib*/" + SONAME)) + sorted(folder.glob("*/" + SONAME)):
+            yield str(library)
+        for library in sorted(folder.glob("lib*/*/" + SONAME)):
+            yield str(library)
+        if (folder / "meson.build").exists():
+            for library in sorted(folder.glob("build*/src/api/" + SONAME)):
+                yield str(library)
+    yield SONAME
+
+
+def _load() -> ctypes.CDLL:
+    failures = []
+    for place in _places():
+        try:
+            return ctypes.CDLL(place)
+        except OSError as failure:
+            failures.append(str(failure))
+    raise ImportError("libimpactlab cannot be loaded; install it (meson install) or name it in "
+                      "IMPACTLAB_LIBRARY: " + "; ".join(failures[:3]))
+
+
+lib = _load()
+
+_handle, _error, _text = c_void_p, POINTER(ErrorStruct), c_char_p
+_SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
+    "version": (_text, []),
+    "parameter_at": (POINTER(ParameterStruct), [c_size_t]),
+    "signal_at": (POINTER(SignalStruct), [c_size_t]),
+    "quantity_at": (POINTER(QuantityStruct), [c_size_t]),
+    "scenario_names": (c_int, [POINTER(POINTER(c_char_p)), POINTER(c_size_t), _error]),
+    "names_free": (None, [POINTER(c_char_p), c_size_t]),
+    "scenario_open": (c_int, [POINTER(_handle), _text, _error]),
+    "scenario_parse": (c_int, [POINTER(_handle), _text, c_size_t, _error]),
+    "scenario_create": (c_int, [POINTER(_handle), _error]),
+    "scenario_copy": (c_int, [POINTER(_handle), _handle, _error]),
+    "scenario_destroy": (None, [_handle]),
+    "scenario_name": (_text, [_handle]),
+    "scenario_title": (_text, [_handle]),
+    "scenario_description": (_text, [_handle]),
+    "scenario_set": (c_int, [_handle, _text, _text, _error]),
+    "scenario_set_number": (c_int, [_handle, _text, c_double, _error]),
+    "scenario_set_all": (c_int, [_handle, POINTER(c_char_p), c_size_t, _error]),
+    "scenario_number": (c_int, [_handle, _text, POINTER(c_double), _error]),
+    "scenario_text": (c_int, [_handle, _text, _text, c_size_t, _error]),
+    "scenario_is_set": (c_int, [_handle, _text]),
+    "scenario_add_change": (c_int, [_handle, c_double, _text, _text, _error]),
+    "scenario_add_push": (c_int, [_handle, c_double, c_double, _error]),
+    "scenario_allow_code": (None, [_handle, c_int]),
+    "scenario_yaml": (c_int, [_handle, POINTER(c_void_p), _error]),
+    "text_free": (None, [c_void_p]),
+    "run_create": (c_int, [POINTER(_handle), _handle, c_int, _error]),
+    "run_create_with": (c_int, [POINTER(_handle), _handle, c_int, POINTER(ControllerStruct),
+                                c_void_p, _error]),
+    "run_destroy": (None, [_handle]),
+    "run_status": (_text, [_handle]),
+    "run_message": (_text, [_handle]),
+    "run_quantities": (c_size_t, [_handle, POINTER(c_double), c_size_t]),
+    "run_signal": (c_int, [_handle, _text, POINTER(SeriesStruct), _error]),
+    "run_angles": (c_int, [_handle, POINTER(TableStruct), _error]),
+    "run_velocities": (c_int, [_handle, POINTER(TableStruct), _error]),
+    "run_event_count": (c_size_t, [_handle]),
+    "run_event": (c_int, [_handle, c_size_t, POINTER(EventStruct)]),
+    "run_json": (c_int, [_handle, POINTER(c_void_p), _error]),
+    "run_csv": (c_int, [_handle, POINTER(c_void_p), _error]),
+    "run_predictions": (c_int, [_handle, POINTER(PredictionStruct), c_size_t, POINTER(c_size_t),
+                                _error]),
+    "loop_create": (c_int, [POINTER(_handle), _handle, c_int, _error]),
+    "loop_destroy": (None, [_handle]),
+    "loop_step": (c_int, [_handle, _error]),
+    "loop_step_until": (c_int, [_handle, c_double, _error]),
+    "loop_time": (c_double, [_handle]),
+    "loop_ended": (c_int, [_handle]),
+    "loop_command": (c_int, [_handle, c_double, _error]),
+    "loop_set_input": (c_int, [_handle, _text, c_double, _error]),
+    "loop_push": (c_int, [_handle, c_double, _error]),
+    "loop_read_sensors": (c_int, [_handle, POINTER(ReadingStruct), _error]),
+    "loop_signal": (c_int, [_handle, _text, POINTER(c_double), _error]),
+    "loop_state": (c_int, [_handle, POINTER(TableStruct), _error]),
+    "loop_state_size": (c_size_t, [_handle]),
+    "loop_save_state": (c_int, [_handle, c_void_p, c_size_t, _error]),
+    "loop_restore_state": (c_int, [_handle, c_void_p, c_size_t, _error]),
+    "loop_run": (c_int, [_handle, POINTER(_handle), _error]),
+    "batch": (c_int, [_handle, POINTER(c_char_p), c_size_t, POINTER(c_double), c_size_t, c_int,
+                      TakeFunction, c_void_p, _error]),
+    "freedoms": (c_size_t, [_handle]),
+    "modes": (c_int, [_handle, c_int, c_int, POINTER(c_double), POINTER(c_double), c_size_t,
+                      POINTER(c_size_t), _error]),
+}
+for _name, (_result, _arguments) in _SIGNATURES.items():
+    _function = getattr(lib, "impactlab_" + _name)
+    _function.restype, _function.argtypes = _result, _arguments
+
+
+def call(name: str, *arguments: Any) -> None:
+    """Calls a function that can fail; raises Error with its sentence."""
+    error = ErrorStruct()
+    if getattr(lib, "impactlab_" + name)(*arguments, ctypes.byref(error)) != 0:
+        raise_error(error)
+
+
+def raise_error(error: ErrorStruct) -> None:
+    raise Error(error.sentence.decode(errors="replace"), error.status, error.parameter.decode())
+
+
+def take_text(name: str, handle: Any) -> str:
+    """The text that a function makes, which is freed."""
+    place = c_void_p()
+    call(name, handle, ctypes.byref(place))
+    try:
+        return ctypes.string_at(place).decode(errors="replace")
+    finally:
+        lib.impactlab_text_free(place)
+
+
+def rows(function: str) -> Iterator[Any]:
+    """The rows of one of the library's tables."""
+    index = 0
+    while row := getattr(lib, "impactlab_" + function)(index):
+        yield row.contents
+        index += 1
+
+
+def version() -> str:
+    """The version of the library."""
+    return lib.impactlab_version().decode()
+
+
+def program() -> Optional[str]:
+    """The program `impactlab` beside the library, in the build tree or on the path."""
+    import shutil
+    told = os.environ.get("IMPACTLAB_PROGRAM")
+    if told:
+        return told
+    for folder in Path(lib._name).resolve().parents if os.sep in str(lib._name) else []:
+        for place in (folder / "bin" / "impactlab", folder / "impactlab"):
+            if place.is_file() and os.access(place, os.X_OK):
+                return str(place)
+    return shutil.which("impactlab")

@@ -1,0 +1,294 @@
+"""Runs: signals as arrays without a copy, events, quantities, and how they show themselves."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import subprocess
+import tempfile
+from ctypes import POINTER, byref, c_char_p, c_double, c_size_t, c_void_p
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, NamedTuple, Optional
+
+import numpy as np
+
+from . import library
+from .library import Error, ErrorStruct, call, lib
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
+
+
+class Signal(NamedTuple):
+    """A recorded signal."""
+
+    name: str
+    symbol: str
+    unit: str
+    description: str
+
+
+class Quantity(NamedTuple):
+    """A number that a run comes to."""
+
+    key: str
+    label: str
+    unit: str
+    description: str
+
+
+class Event(NamedTuple):
+    """What happened at an instant: impact, contact, release, stick, slip, change, push ..."""
+
+    time: float
+    kind: str
+    impulse: float
+    speed: float
+    loss: float
+
+
+class Prediction(NamedTuple):
+    """What a predictor says of the instant before the first contact; None where it has no answer."""
+
+    method: str
+    holds: Optional[bool]
+    peak_N: float
+    time_to_peak_s: float
+    impulse_Ns: float
+    message: str
+
+
+SIGNALS: Dict[str, Signal] = {
+    row.name.decode(): Signal(row.name.decode(), row.symbol.decode(), row.unit.decode(),
+                              row.description.decode())
+    for row in library.rows("signal_at")}
+QUANTITIES: Dict[str, Quantity] = {
+    row.key.decode(): Quantity(row.key.decode(), row.label.decode(), row.unit.decode(),
+                               row.description.decode())
+    for row in library.rows("quantity_at")}
+_INDEX = {key: i for i, key in enumerate(QUANTITIES)}
+
+
+def _view(owner: Any, address: Optional[int], rows: int, columns: int) -> np.ndarray:
+    """An array over memory of the owner, which lives as long as the array does."""
+    if not address or rows == 0:
+        return np.empty((0, columns))
+    buffer = (c_double * (rows * columns)).from_address(address)
+    buffer._owner = owner
+    array = np.frombuffer(buffer).reshape(rows, columns)
+    array.flags.writeable = False
+    return array
+
+
+class Run:
+    """A run. `run["force"]` is a signal as an array, `run.peak_force_N` one of its quantities."""
+
+    _handle: c_void_p
+    _scenario: Optional["Scenario"] = None
+
+    @classmethod
+    def _create(cls, scenario: "Scenario", flags: int, law: Any = None) -> "Run":
+        run = cls.__new__(cls)
+        run._handle = c_void_p()
+        error = ErrorStruct()
+        if law is None:
+            code = lib.impactlab_run_create(byref(run._handle), scenario._handle, flags,
+                                            byref(error))
+            run._scenario = scenario.copy() if flags else None
+        else:
+            code = lib.impactlab_run_create_with(byref(run._handle), scenario._handle, flags,
+                                                 byref(law), None, byref(error))
+        run._read()
+        if code != 0:
+            failure = Error(error.sentence.decode(errors="replace"), code, error.parameter.decode())
+            failure.run = run if run._handle else None  # type: ignore[attr-defined]
+            raise failure
+        return run
+
+    @classmethod
+    def _of(cls, handle: c_void_p) -> "Run":
+        run = cls.__new__(cls)
+        run._handle = handle
+        run._read()
+        return run
+
+    def _read(self) -> None:
+        self._quantities = np.full(len(QUANTITIES), np.nan)
+        if self._handle:
+            lib.impactlab_run_quantities(self._handle,
+                                         self._quantities.ctypes.data_as(POINTER(c_double)),
+                                         len(self._quantities))
+
+    def __del__(self) -> None:
+        if getattr(self, "_handle", None):
+            lib.impactlab_run_destroy(self._handle)
+
+    @property
+    def status(self) -> str:
+        """"ok", "inaccurate" or "failed"."""
+        return lib.impactlab_run_status(self._handle).decode()
+
+    @property
+    def message(self) -> str:
+        """What stopped the run, or a remark."""
+        return lib.impactlab_run_message(self._handle).decode(errors="replace")
+
+    @property
+    def quantities(self) -> Dict[str, float]:
+        """Every number that the run comes to, NaN where one did not occur."""
+        return dict(zip(QUANTITIES, map(float, self._quantities)))
+
+    def __getattr__(self, key: str) -> float:
+        index = _INDEX.get(key)
+        if index is None:
+            raise AttributeError(f"a run has no quantity {key}")
+        return float(self._quantities[index])
+
+    def __dir__(self) -> List[str]:
+        return [*super().__dir__(), *QUANTITIES]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        series = library.SeriesStruct()
+        call("run_signal", self._handle, name.encode(), byref(series))
+        columns = max(series.stride // 8, 1)
+        if not series.values or series.count == 0:
+            return np.empty(0)
+        # the last row ends with the signal itself
+        length = (series.count - 1) * columns + 1
+        flat = _view(self, series.values, length, 1)[:, 0]
+        return flat[::columns]
+
+    @property
+    def time(self) -> np.ndarray:
+        """Instants of the rows [s]."""
+        return self["time"]
+
+    def _table(self, function: str) -> np.ndarray:
+        table = library.TableStruct()
+        call(function, self._handle, byref(table))
+        return _view(self, table.values, table.rows, table.columns)
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Angles of all degrees of freedom [rad], a row an instant."""
+        return self._table("run_angles")
+
+    @property
+    def velocities(self) -> np.ndarray:
+        """Their velocities [rad/s]."""
+        return self._table("run_velocities")
+
+    @property
+    def events(self) -> List[Event]:
+        found = []
+        event = library.EventStruct()
+        for i in range(lib.impactlab_run_event_count(self._handle)):
+            lib.impactlab_run_event(self._handle, i, byref(event))
+            found.append(Event(event.time, event.kind.decode(), event.impulse, event.speed,
+                               event.loss))
+        return found
+
+    @property
+    def predictions(self) -> List[Prediction]:
+        """What the predictors say of the instant before the first contact."""
+        said, count = (library.PredictionStruct * 16)(), c_size_t()
+        call("run_predictions", self._handle, said, len(said), byref(count))
+        return [Prediction(p.method.decode(), bool(p.holds) if p.known else None, p.peak,
+                           p.time_to_peak, p.impulse, p.message.decode(errors="replace"))
+                for p in said[:count.value]]
+
+    @staticmethod
+    def unit(name: str) -> str:
+        """The unit of a signal or quantity."""
+        return SIGNALS[name].unit if name in SIGNALS else QUANTITIES[name].unit
+
+    @property
+    def json(self) -> str:
+        """What `impactlab run --json` writes."""
+        return library.take_text("run_json", self._handle)
+
+    @property
+    def csv(self) -> str:
+        """What `impactlab run --csv` writes."""
+        return library.take_text("run_csv", self._handle)
+
+    def to_dataframe(self) -> Any:
+        """All recorded signals as a pandas DataFrame over time; units are in `frame.attrs`."""
+        import pandas
+        columns = {name: self[name] for name in SIGNALS if name != "time"}
+        frame = pandas.DataFrame({name: values for name, values in columns.items()
+                                  if len(values) and not np.isnan(values).all()},
+                                 index=pandas.Index(self.time, name="time"))
+        frame.attrs["units"] = {name: SIGNALS[name].unit for name in frame.columns}
+        return frame
+
+    def _repr_svg_(self) -> Optional[str]:
+        """The figure that `impactlab run --plot` draws, for Jupyter."""
+        program = library.program()
+        if program is None or self._scenario is None:
+            return None
+        with tempfile.TemporaryDirectory() as folder:
+            scenario, figure = os.path.join(folder, "run.yaml"), os.path.join(folder, "run.svg")
+            with open(scenario, "w", encoding="utf-8") as file:
+                file.write(self._scenario.yaml)
+            subprocess.run([program, "run", scenario, "--quiet", "--plot", figure], check=False,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            if not os.path.exists(figure):
+                return None
+            with open(figure, encoding="utf-8") as file:
+                return file.read()
+
+    def __repr__(self) -> str:
+        return (f"<Run {self.status}: first contact {self.first_contact_s:.6g} s, peak force "
+                f"{self.peak_force_N:.6g} N, {len(self.time)} rows>")
+
+
+class Batch:
+    """The outcomes of many runs: `batch["peak_force_N"]` is an array, one number a run."""
+
+    def __init__(self, parameters: Mapping[str, np.ndarray], quantities: np.ndarray,
+                 status: List[str], messages: List[str]) -> None:
+        self.parameters = dict(parameters)
+        self.status = status
+        self.messages = messages
+        self._quantities = quantities
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __getitem__(self, key: str) -> np.ndarray:
+        return self._quantities[:, _INDEX[key]]
+
+    def to_dataframe(self) -> Any:
+        """Parameters, status and quantities as a pandas DataFrame, a row a run."""
+        import pandas
+        return pandas.DataFrame({**self.parameters, "status": self.status,
+                                 **{key: self[key] for key in QUANTITIES}})
+
+
+def run_with(scenario: "Scenario", flags: int, function: Callable[[Any], Any]) -> Run:
+    """A run with a Python function as its controller; what it raises is raised again."""
+    raised: List[BaseException] = []
+
+    def sample(memory: Any, reading: Any, answer: Any) -> None:
+        out = answer.contents
+        try:
+            answered = function(reading.contents)
+            if isinstance(answered, Mapping):
+                for name, value in answered.items():
+                    setattr(out, name, value)
+            else:
+                out.command = float(answered)
+        except BaseException as failure:  # it cannot pass through the library
+            raised.append(failure)
+            out.command = float("nan")
+
+    modes = (c_char_p * 2)(b"python", None)
+    law = library.ControllerStruct(interface=library.CONTROLLER_INTERFACE, name=b"python",
+                                   modes=modes, memory_size=ctypes.sizeof(c_void_p),
+                                   sample=library.SampleFunction(sample))
+    try:
+        return Run._create(scenario, flags, law)
+    except Error:
+        if raised:
+            raise raised[0]
+        raise
