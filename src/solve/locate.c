@@ -4,6 +4,7 @@
 #include <string.h>
 
 #define TOUCH_TOLERANCE   1e-12 // penetration that counts as crossing the wall [m]
+#define GAP_ROUNDING      4e-15 // penetration that may be rounding [m]
 #define TORQUE_TOLERANCE  1e-12 // excess that counts as breaking away [N m]
 #define UNRESOLVED_IMPACT 0.1 // share of a step that an impact takes where steps do not resolve it
 #define LOCATION_TIME     1e-15 // width to which the bracket of an event is narrowed [s]
@@ -169,19 +170,24 @@ static double guess_crossing(const arm *a, const motion *m, double h, watch w, d
     return s;
 }
 
-// Narrows the bracket [lo, hi] of a sign change until it is as narrow as LOCATION_TIME; m->trial
-// ends as the state at its far side *hi. Starts at `s` and goes on by Chandrupatla's method:
-// inverse quadratic interpolation where the last three values allow it, else bisection.
-static status narrow(const arm *a, motion *m, watch w, double s, double lo, double v_lo, double *hi,
-                     double v_hi)
+// Where a function changes sign within a step, and its values there above its edge.
+typedef struct bracket {
+    double lo, v_lo, hi, v_hi;
+    double edge; // in the function's unit, commonly zero
+} bracket;
+
+// Narrows a bracket until it is as narrow as LOCATION_TIME; m->trial ends as the state at its far
+// side. Starts at `s` and goes on by Chandrupatla's method: inverse quadratic interpolation where
+// the last three values allow it, else bisection.
+static status narrow(const arm *a, motion *m, watch w, double s, bracket *b)
 {
     // the velocities of an implicit step are differences of angles over it: it must not be tiny
     const double least = motion_unresolved(a, m) ? 1e-6 * m->nominal_step : LOCATION_TIME;
     const double resolution = fmax(least, LOCATION_TIME * m->state[SLOT_TIME]);
 
     double evaluated = -1;
-    for (int i = 0; i < 200 && *hi - lo > resolution; i++) {
-        s = fmin(fmax(s, lo + 0.5 * resolution), *hi - 0.5 * resolution);
+    for (int i = 0; i < 200 && b->hi - b->lo > resolution; i++) {
+        s = fmin(fmax(s, b->lo + 0.5 * resolution), b->hi - 0.5 * resolution);
         status failed = motion_try_step(a, m, s);
         if (failed != STATUS_OK) {
             return failed;
@@ -189,13 +195,13 @@ static status narrow(const arm *a, motion *m, watch w, double s, double lo, doub
         evaluated = s;
 
         // the bracket, and the end that the new point replaces
-        double v = watch_value(a, m, m->trial, w), other, v_other, old, v_old;
+        double v = watch_value(a, m, m->trial, w) - b->edge, other, v_other, old, v_old;
         if (v > 0) {
-            old = lo, v_old = v_lo, other = *hi, v_other = v_hi;
-            lo = s, v_lo = v;
+            old = b->lo, v_old = b->v_lo, other = b->hi, v_other = b->v_hi;
+            b->lo = s, b->v_lo = v;
         } else {
-            old = *hi, v_old = v_hi, other = lo, v_other = v_lo;
-            *hi = s, v_hi = v;
+            old = b->hi, v_old = b->v_hi, other = b->lo, v_other = b->v_lo;
+            b->hi = s, b->v_hi = v;
         }
 
         // where the three values let an inverse parabola go, else the middle
@@ -209,7 +215,7 @@ static status narrow(const arm *a, motion *m, watch w, double s, double lo, doub
         double next = s + t * (other - s);
         s = fabs(next - s) < 0.5 * resolution ? s + copysign(resolution, other - s) : next;
     }
-    return evaluated == *hi ? STATUS_OK : motion_try_step(a, m, *hi);
+    return evaluated == b->hi ? STATUS_OK : motion_try_step(a, m, b->hi);
 }
 
 // Looks for the first instant in (0, *h] at which `w` leaves its admissible side; if there is one,
@@ -257,9 +263,14 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
         guess = 0.5 * (lo + hi);
     }
 
-    // narrowed to the width that time resolves
+    // narrowed to the width that time resolves; a gap that was nowhere found open closes where it
+    // is less than rounding makes it: flights too low for that to tell (after an impact that leaves
+    // the arm with hardly any force) end at once
+    const double edge = w == WATCH_GAP && !(v0 > 0) && !m->wall_gives ? -GAP_ROUNDING : 0;
     *found = true;
-    status s = narrow(a, m, w, guess, lo, v0, &hi, v1);
+    bracket between = {lo, v0 - edge, hi, v1 - edge, edge};
+    status s = narrow(a, m, w, guess, &between);
+    hi = between.hi;
 
     // an unresolved impact happens within its step: nothing is located inside its first part
     double least = fmin(*h, UNRESOLVED_IMPACT * m->nominal_step);

@@ -4,15 +4,17 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 
 enum {
-    LINKS_MAX = 8,
+    LINKS_MAX = 64,
     BODIES_MAX = LINKS_MAX + 1,
     UNKNOWNS_MAX = BODIES_MAX + 2,
-    // angles, velocities, motor work, viscous loss, Coulomb loss, integral of the force
-    STATE_MAX = 2 * BODIES_MAX + 4,
+    // angles, velocities, motor work, viscous, Coulomb and damping loss, integral of the force
+    EXTRA = 5,
+    STATE_MAX = 2 * BODIES_MAX + EXTRA,
 };
 
 #define STEADY_WINDOW    0.1
@@ -20,6 +22,7 @@ enum {
 #define REST_SPEED       1e-4 // slower impacts are plastic [m/s]
 #define EVENT_RESOLUTION 1e-14
 #define GAP_ROUNDING     1e-15 // of a gap [m]
+#define EDGE_ROUNDING    4e-15 // of a gap, at most [m]
 
 // math.h's are floats, which clang minds
 #define NOTHING ((double)NAN)
@@ -33,6 +36,7 @@ typedef struct body_chain {
     double own_inertia[BODIES_MAX];           // about the centre of mass, with the hub's [kg m2]
     double coupling[BODIES_MAX][BODIES_MAX];  // A_ij [kg m2]
     double stiffness[BODIES_MAX];             // joint between body i and i + 1 [N m/rad]
+    double damping[BODIES_MAX];               // of the same joint [N m s/rad]
     double motor_torque, motor_drag, coulomb; // [N m], [N m s/rad], [N m]
     double direction;                         // of the wall [rad]
     double restitution;
@@ -58,6 +62,36 @@ typedef struct flow {
 
 // ---------------------------------------------------------------------------------------------
 // the arm
+
+// First frequency of the straight chain whose hub is held, or with it the first link where that is
+// fixed to it.
+static double first_clamped_frequency(const body_chain *arm)
+{
+    const int n = arm->bodies - 1; // body 0 rests
+    gsl_matrix *k = gsl_matrix_calloc((size_t)n, (size_t)n);
+    gsl_matrix *m = gsl_matrix_calloc((size_t)n, (size_t)n);
+    gsl_vector *squares = gsl_vector_alloc((size_t)n);
+    gsl_eigen_gensymm_workspace *work = gsl_eigen_gensymm_alloc((size_t)n);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            double own = i == j ? arm->own_inertia[i + 1] : 0;
+            gsl_matrix_set(m, (size_t)i, (size_t)j, arm->coupling[i + 1][j + 1] + own);
+        }
+        gsl_matrix_set(k, (size_t)i, (size_t)i,
+                       arm->stiffness[i] + (i + 1 < n ? arm->stiffness[i + 1] : 0));
+        if (i + 1 < n) {
+            gsl_matrix_set(k, (size_t)i, (size_t)i + 1, -arm->stiffness[i + 1]);
+            gsl_matrix_set(k, (size_t)i + 1, (size_t)i, -arm->stiffness[i + 1]);
+        }
+    }
+    gsl_eigen_gensymm(k, m, squares, work);
+    double least = gsl_vector_min(squares);
+    gsl_eigen_gensymm_free(work);
+    gsl_vector_free(squares);
+    gsl_matrix_free(m);
+    gsl_matrix_free(k);
+    return sqrt(least);
+}
 
 static void arm_build(body_chain *arm, const reference_case *c)
 {
@@ -89,6 +123,12 @@ static void arm_build(body_chain *arm, const reference_case *c)
     for (int i = 0; i + 1 < arm->bodies; i++) {
         double root = c->beam_root ? k2 * c->links : k1;
         arm->stiffness[i] = i < arm->first_link ? root : 0.5 * k2 * c->links;
+    }
+    if (c->damping > 0) {
+        double per_stiffness = 2 * c->damping / first_clamped_frequency(arm);
+        for (int i = 0; i + 1 < arm->bodies; i++) {
+            arm->damping[i] = per_stiffness * arm->stiffness[i];
+        }
     }
     arm->motor_torque = gain * kt / resistance * c->voltage;
     arm->motor_drag = kt * kb / resistance + 5.4192e-3;
@@ -154,9 +194,14 @@ static double gap(const body_chain *arm, const double *q, const double *w)
 
 static void mass_matrix(const body_chain *arm, const double *q, double m[BODIES_MAX][BODIES_MAX])
 {
+    double c[BODIES_MAX], s[BODIES_MAX];
+    for (int i = 0; i < arm->bodies; i++) {
+        c[i] = cos(q[i]);
+        s[i] = sin(q[i]);
+    }
     for (int i = 0; i < arm->bodies; i++) {
         for (int j = 0; j < arm->bodies; j++) {
-            m[i][j] = arm->coupling[i][j] * cos(q[i] - q[j]);
+            m[i][j] = arm->coupling[i][j] * (c[i] * c[j] + s[i] * s[j]);
         }
         m[i][i] += arm->own_inertia[i];
     }
@@ -258,13 +303,18 @@ static bool balance_find(const body_chain *arm, const double *y, contact_mode mo
     const int n = arm->bodies;
     const double *q = y, *w = y + n;
     double right[BODIES_MAX] = {0}, gradient[BODIES_MAX], bias;
+    double c[BODIES_MAX], s[BODIES_MAX];
+    for (int i = 0; i < n; i++) {
+        c[i] = cos(q[i]);
+        s[i] = sin(q[i]);
+    }
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            right[i] -= arm->coupling[i][j] * sin(q[i] - q[j]) * w[j] * w[j];
+            right[i] -= arm->coupling[i][j] * (s[i] * c[j] - c[i] * s[j]) * w[j] * w[j];
         }
     }
     for (int i = 0; i + 1 < n; i++) {
-        double torque = arm->stiffness[i] * (q[i + 1] - q[i]);
+        double torque = arm->stiffness[i] * (q[i + 1] - q[i]) + arm->damping[i] * (w[i + 1] - w[i]);
         right[i] += torque;
         right[i + 1] -= torque;
     }
@@ -353,6 +403,11 @@ static int derivative(double t, const double y[], double dydt[], void *context)
     dydt[2 * n + 1] = arm->motor_drag * y[n] * y[n];
     dydt[2 * n + 2] = arm->coulomb * fabs(y[n]);
     dydt[2 * n + 3] = b.force;
+    dydt[2 * n + 4] = 0.0;
+    for (int i = 0; i + 1 < n; i++) {
+        double rate = y[n + i + 1] - y[n + i];
+        dydt[2 * n + 4] += arm->damping[i] * rate * rate;
+    }
     return GSL_SUCCESS;
 }
 
@@ -369,8 +424,10 @@ typedef struct simulation {
     double middle[STATE_MAX]; // state half way through it
     double end[STATE_MAX];    // and at its end
     double impact_loss;
-    double phase_gap;   // largest gap of the present free phase
-    double steady_from; // integral of the force where the steady window begins
+    double start_energy; // kinetic [J]
+    double impulses;     // of all impacts [N s]
+    double phase_gap;    // largest gap of the present free phase
+    double steady_from;  // integral of the force where the steady window begins
     bool in_first_pulse;
     int idle_events; // events in a row without time passing
     reference_answer *answer;
@@ -543,16 +600,20 @@ static double event_offset(simulation *s, event_function e)
         return NEVER;
     }
     // just after a change of mode the function starts at zero, up to rounding: find where it rose
+    double edge = 0.0;
     if (lo == 0.0 && v0 <= 0.0) {
-        double probe = hi;
+        double probe = hi, value;
         do {
             probe *= 0.5;
-        } while (probe > EVENT_RESOLUTION && !(event_value_at(s, e, probe) > 0.0));
-        lo = probe;
+            value = event_value_at(s, e, probe);
+        } while (probe > EVENT_RESOLUTION && !(value > 0.0));
+        // nowhere, as far as rounding tells: a flight too low for that ends beyond it
+        edge = e == GAP_OPEN && !(value > 0.0) ? -EDGE_ROUNDING : 0.0;
+        lo = edge < 0.0 ? 0.0 : probe;
     }
     while (hi - lo > EVENT_RESOLUTION) {
         double x = 0.5 * (lo + hi);
-        if (event_value_at(s, e, x) < 0.0) {
+        if (event_value_at(s, e, x) < edge) {
             hi = x;
         } else {
             lo = x;
@@ -611,7 +672,7 @@ static void note_energy(simulation *s)
 {
     const int n = s->arm.bodies;
     double residual = energy(&s->arm, s->y, s->y + n) - s->y[2 * n] + s->y[2 * n + 1] +
-                      s->y[2 * n + 2] + s->impact_loss;
+                      s->y[2 * n + 2] + s->y[2 * n + 4] + s->impact_loss - s->start_energy;
     s->answer->energy_residual = fmax(s->answer->energy_residual, fabs(residual));
 }
 
@@ -675,6 +736,7 @@ static bool impact(simulation *s)
             s->y[n + i] += dw[i];
         }
         s->impact_loss += before - energy(arm, s->y, s->y + n);
+        s->impulses += p;
         a->impacts++;
         a->last_impact = s->time;
         a->slowest_approach = fmin(a->slowest_approach, approach);
@@ -757,6 +819,11 @@ static bool run(simulation *s)
     const int n = s->arm.bodies;
     const double window_start = c->duration - STEADY_WINDOW;
     bool window_open = false;
+    for (int i = 0; i < n; i++) {
+        s->y[i] = c->angle;
+        s->y[n + i] = c->velocity;
+    }
+    s->start_energy = energy(&s->arm, s->y, s->y + n);
     if (!mode_resolve(&s->arm, s->y, false, &s->flow.mode)) {
         return complain(s, "no mode is admissible");
     }
@@ -766,6 +833,15 @@ static bool run(simulation *s)
             window_open = true;
         }
         double until = window_open ? c->duration : window_start;
+        reference_answer *a = s->answer;
+        if (!isnan(a->first_contact) && a->samples < REFERENCE_SAMPLES) {
+            double sample = a->first_contact + a->samples * REFERENCE_INTERVAL;
+            if (sample - s->time < 1e-12) {
+                a->momentum[a->samples++] = s->impulses + s->y[2 * n + 3];
+                continue;
+            }
+            until = fmin(until, sample);
+        }
         double left = until - s->time;
         if (left < 1e-12) {
             s->time = until;
@@ -783,6 +859,7 @@ static bool run(simulation *s)
     s->answer->motor_work = s->y[2 * n];
     s->answer->viscous_loss = s->y[2 * n + 1];
     s->answer->friction_loss = s->y[2 * n + 2];
+    s->answer->damping_loss = s->y[2 * n + 4];
     s->answer->impact_loss = s->impact_loss;
     return true;
 }
@@ -805,7 +882,7 @@ bool reference_simulate(const reference_case *c, reference_answer *answer, char 
     gsl_set_error_handler_off();
     arm_build(&s.arm, c);
     s.flow.arm = &s.arm;
-    s.size = 2 * s.arm.bodies + 4;
+    s.size = 2 * s.arm.bodies + EXTRA;
     s.system = (gsl_odeiv2_system){derivative, NULL, (size_t)s.size, &s.flow};
     s.driver = gsl_odeiv2_driver_alloc_y_new(&s.system, gsl_odeiv2_step_rk8pd, c->longest_step,
                                              c->tolerance, c->tolerance);

@@ -6,10 +6,14 @@
 
 #include <stdbool.h>
 
-// What is simulated. The arm starts at rest with all angles zero.
+enum { REFERENCE_SAMPLES = 501 }; // of the momentum, from first contact on
+
+#define REFERENCE_INTERVAL 1e-4 // between them [s]
+
+// What is simulated. The arm starts straight, at rest and at angle zero unless said otherwise.
 typedef struct reference_case {
     const char *name;
-    int links;           // N, 1 to 8
+    int links;           // N, 1 to 64
     bool spring_hub;     // hub on the spring k1 instead of rigidly on the first link
     bool plane_wall;     // flat wall for the tip instead of the fixed point
     double voltage;      // command [V]
@@ -18,6 +22,9 @@ typedef struct reference_case {
     double tolerance;    // absolute and relative, of the integrator
     double longest_step; // between two looks at the event functions [s]
     bool beam_root;      // the hub on the beam's root, a spring k2 N
+    double damping;      // of the first clamped mode, structural [-]
+    double angle;        // of all links at the start [rad]
+    double velocity;     // of all links at the start [rad/s]
 } reference_case;
 
 // What comes out. What did not occur is NaN.
@@ -42,10 +49,16 @@ typedef struct reference_answer {
     double final_hub_angle;     // [rad]
     double motor_work;          // of the torque the command makes, back EMF not taken off [J]
     double viscous_loss;        // back EMF and viscous friction [J]
+    double damping_loss;        // structural damping [J]
     double friction_loss;       // Coulomb friction [J]
     double impact_loss;         // [J]
     double energy_residual;     // largest |energy - work + losses| over the run [J]
     double largest_gap_error;   // largest |gap| of a step in contact before its projection [m]
+
+    // impulses and integral of the force until k intervals after first contact [N s]; as many of
+    // them as the run is long enough for
+    double momentum[REFERENCE_SAMPLES];
+    int samples;
 } reference_answer;
 
 // Simulates the case. On failure returns false with a sentence in message (size bytes).
