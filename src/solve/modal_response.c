@@ -6,23 +6,33 @@
 
 enum { SERIES_TERMS = 30 };
 
-// e^x for x <= 0 from IEEE operations alone, within a few units of the last place.
-static double decay(double x)
+// 1/i.
+static const double reciprocal[] = {
+    0,       1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,  1. / 7,  1. / 8,  1. / 9,
+    1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17, 1. / 18, 1. / 19,
+    1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24, 1. / 25, 1. / 26, 1. / 27, 1. / 28, 1. / 29,
+    1. / 30, 1. / 31, 1. / 32, 1. / 33, 1. / 34, 1. / 35, 1. / 36, 1. / 37, 1. / 38, 1. / 39,
+    1. / 40, 1. / 41, 1. / 42, 1. / 43, 1. / 44, 1. / 45};
+
+double modal_decay(double x)
 {
-    if (x < -700) {
-        return 0;
+    if (x == 0 || x < -700) {
+        return x == 0 ? 1 : 0;
     }
+
     const double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
     const double n = floor(x * 1.44269504088896338700 + 0.5);
     const double r = (x - n * ln2_high) - n * ln2_low;
     double sum = 1;
     for (int i = 14; i >= 1; i--) {
-        sum = 1 + sum * r / i;
+        sum = 1 + sum * r * reciprocal[i];
     }
     return ldexp(sum, (int)n);
 }
 
-// Small t: powers of t. g_m = -2 a g_{m-1} - w^2 g_{m-2} are the derivatives of G at 0.
+// Small t: powers of t. g_m = -2 a g_{m-1} - w^2 g_{m-2} are the derivatives of G at 0. The two
+// highest of F by F_j = t^(j+2) sum g_m t^m / (j + m + 2)!, the others downwards, where nothing
+// cancels: F_{j-2} = t^j / j! - 2 a F_{j-1} - w^2 F_j.
 static void respond_by_series(double a, double w, double t, int powers, modal_response *r)
 {
     // the derivatives, scaled: g_m t^m
@@ -34,23 +44,31 @@ static void respond_by_series(double a, double w, double t, int powers, modal_re
         g[i] = p * g[i - 1] + q * g[i - 2];
     }
 
-    // F_j = t^(j+2) sum g_m t^m / (j + m + 2)!, and so on downwards to G' (j = -2)
-    double scale = 1;
-    for (int j = -2; j < powers; j++) {
+    // t^j / j!
+    double term[MODAL_POWERS + 2];
+    term[0] = 1;
+    for (int j = 1; j < powers + 2; j++) {
+        term[j] = term[j - 1] * t * reciprocal[j];
+    }
+
+    // f[j + 2] = F_j, with F_-1 = G and F_-2 = G'
+    double f[MODAL_POWERS + 2];
+    const int top = powers - 1;
+    for (int j = top - 1; j <= top; j++) {
         double sum = 0;
         for (int i = SERIES_TERMS; i >= 0; i--) {
-            sum = g[i] + sum / (j + i + 3);
+            sum = g[i] + sum * reciprocal[j + i + 3];
         }
-        if (j >= -1) {
-            scale *= t / (j + 2);
-        }
-        if (j == -2) {
-            r->impulse_rate = sum;
-        } else if (j == -1) {
-            r->impulse = scale * sum;
-        } else {
-            r->power[j] = scale * sum;
-        }
+        f[j + 2] = term[j + 2] * sum;
+    }
+    for (int j = top; j >= 0; j--) {
+        f[j] = term[j] - 2 * a * f[j + 1] - w * w * f[j + 2];
+    }
+
+    r->impulse_rate = f[0];
+    r->impulse = f[1];
+    for (int j = 0; j < powers; j++) {
+        r->power[j] = f[j + 2];
     }
 }
 
@@ -79,7 +97,7 @@ static void phi(double x, double t, int count, double *out)
         for (int k = 0; k < count; k++) {
             double sum = 0;
             for (int i = SERIES_TERMS; i >= 0; i--) {
-                sum = 1 + sum * z / (k + i + 1);
+                sum = 1 + sum * z * reciprocal[k + i + 1];
             }
             out[k] = scale * sum;
             scale *= t / (k + 1);
@@ -88,7 +106,7 @@ static void phi(double x, double t, int count, double *out)
     }
 
     double term = 1;
-    out[0] = decay(z);
+    out[0] = modal_decay(z);
     for (int k = 1; k < count; k++) {
         out[k] = (out[k - 1] - term) / x;
         term *= t / k;
@@ -105,7 +123,7 @@ void modal_respond(double a, double w, double t, int powers, modal_response *r)
 
     // vibrating
     if (a <= w) {
-        double rate = sqrt((w - a) * (w + a)), s, c, e = decay(-a * t);
+        double rate = sqrt((w - a) * (w + a)), s, c, e = modal_decay(-a * t);
         inline_sincos(rate * t, &s, &c);
         double sine = rate * t > 1e-4 ? s / rate : t;
         r->impulse = e * sine;

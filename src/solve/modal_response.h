@@ -13,4 +13,7 @@ typedef struct modal_response {
     double power[MODAL_POWERS];
 } modal_response;
 
+// e^x for x <= 0 from IEEE operations alone, within a few units of the last place.
+double modal_decay(double x);
+
 void modal_respond(double a, double w, double t, int powers, modal_response *r);

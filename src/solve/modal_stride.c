@@ -6,10 +6,12 @@
 #include "src/arm/chain_momentum.h"
 #include "src/solve/modal_response.h"
 
-enum { COLUMNS = 2 * (MODAL_NODES - 1), HUB_STEPS = 32, MOST_SWEEPS = 6 };
+enum { COLUMNS = 2 * MODAL_NODES, LEAST_HUB_STEPS = 6, FEW_SWEEPS = 4, MOST_SWEEPS = 30 };
 
-#define CONVERGED 1e-9 // change of a sweep that ends them, of the modes' momenta
-#define LOW_TURN  24   // rate times time up to which modes are taken together
+#define CONVERGED   3e-8 // change of a sweep that ends them, of the modes' momenta
+#define SLOW_SWEEPS 0.6  // of the last change is left: a shorter stride costs less
+#define HUB_TURN    0.75 // of the fastest of them from step to step [rad]
+#define LOW_TURN    24   // rate times time up to which modes are taken together
 
 // Lobatto's points on [0, 1].
 static const double points[MODAL_NODES] = {0, 0.27639320225002103, 0.72360679774997897, 1};
@@ -21,13 +23,31 @@ static size_t table_size(int n)
     return (size_t)n * (MODAL_POWERS + 2);
 }
 
+// Powers of time that are wanted at a point of collocation: all at the stride's end.
+static int kept_powers(int point)
+{
+    return point < MODAL_NODES - 1 ? MODAL_NODES + 1 : MODAL_POWERS;
+}
+
+static size_t kept_size(int n)
+{
+    size_t doubles = 0;
+    for (int i = 1; i < MODAL_NODES; i++) {
+        doubles += (size_t)n * (size_t)(kept_powers(i) + 2);
+    }
+    return doubles;
+}
+
 size_t modal_stride_size(const arm *a)
 {
     const size_t n = (size_t)a->dof;
 
     // bases and their scratch, tables, vectors
-    size_t doubles = MODAL_CONTACT_STATES * modal_basis_size(a->dof) + modal_basis_scratch(a->dof);
-    doubles += (MODAL_NODES + 1) * table_size(a->dof);
+    size_t doubles =
+        MODAL_CONTACT_STATES * (modal_basis_size(a->dof) + modal_vibrations_size(a->dof)) +
+        modal_basis_scratch(a->dof);
+    doubles += 2 * table_size(a->dof);
+    doubles += (1 + MODAL_CONTACT_STATES * MODAL_KEPT_LEVELS) * kept_size(a->dof);
     doubles += n * (8 + 8 * MODAL_NODES + 3 * COLUMNS + 3);
     return sizeof(modal_stride) + doubles * sizeof(double);
 }
@@ -39,12 +59,19 @@ static double *take(double **storage, size_t count)
     return taken;
 }
 
-static void place_table(modal_table *at, double **storage, size_t n)
+static void place_table(modal_table *at, double **storage, size_t n, int powers)
 {
     at->impulse = take(storage, n);
     at->impulse_rate = take(storage, n);
-    for (int j = 0; j < MODAL_POWERS; j++) {
+    for (int j = 0; j < powers; j++) {
         at->power[j] = take(storage, n);
+    }
+}
+
+static void place_kept(modal_kept *keep, double **storage, size_t n)
+{
+    for (int i = 1; i < MODAL_NODES; i++) {
+        place_table(&keep->at[i], storage, n, kept_powers(i));
     }
 }
 
@@ -58,12 +85,13 @@ void modal_stride_place(modal_stride *s, const arm *a)
     // bases
     for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
         modal_basis_place(&s->basis[i], a->dof, take(&storage, modal_basis_size(a->dof)));
+        modal_vibrations_place(&s->vibrations[i], a->dof,
+                               take(&storage, modal_vibrations_size(a->dof)));
     }
     s->scratch = take(&storage, modal_basis_scratch(a->dof));
 
     // what there is once a point of collocation
     for (int i = 0; i < MODAL_NODES; i++) {
-        place_table(&s->at[i], &storage, n);
         s->point_angles[i] = take(&storage, n);
         s->point_velocities[i] = take(&storage, n);
         s->walk.force[i] = take(&storage, n);
@@ -91,7 +119,14 @@ void modal_stride_place(modal_stride *s, const arm *a)
     s->momenta = take(&storage, n);
     s->walk.x = take(&storage, n);
     s->walk.y = take(&storage, n);
-    place_table(&s->walk.at, &storage, n);
+    place_table(&s->walk.at, &storage, n, MODAL_POWERS);
+    place_table(&s->at[0], &storage, n, MODAL_POWERS);
+    for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
+        for (int j = 0; j < MODAL_KEPT_LEVELS; j++) {
+            place_kept(&s->kept[i][j], &storage, n);
+        }
+    }
+    place_kept(&s->passing, &storage, n);
 }
 
 // --- the linear part --------------------------------------------------------------------------
@@ -178,8 +213,12 @@ static void to_momenta(const modal_stride *s, const arm *a, const double *x, dou
 
 void modal_stride_modes(modal_stride *s, double t)
 {
-    fill_table(s, t, MODAL_POWERS, s->count, &s->at[0]);
-    modal_state(s, &s->at[0], s->place, s->momenta);
+    s->time = t;
+    s->ending = t == s->length ? &s->at[MODAL_NODES - 1] : &s->at[0];
+    if (t != s->length) {
+        fill_table(s, t, MODAL_POWERS, s->count, &s->at[0]);
+    }
+    modal_state(s, s->ending, s->place, s->momenta);
 }
 
 void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double t, const double *q,
@@ -206,11 +245,22 @@ void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double
 
 // --- start ------------------------------------------------------------------------------------
 
-// The basis of a contact state, computed when it is first wanted.
-static const modal_basis *basis_of(modal_stride *s, const arm *a, contact_state mode)
+// Damping of all modes, and the hub's part of it.
+static void take_damping(modal_stride *s, const arm *a)
 {
-    const double now[4] = {a->hub_stiffness, a->joint_stiffness, a->hub_joint_damping,
-                           a->joint_damping};
+    s->per_stiffness = a->joint_stiffness > 0 ? a->joint_damping / a->joint_stiffness : 0;
+    for (int k = 0; k < s->modes->count; k++) {
+        const double rate = s->modes->rate[k], hub = s->modes->by_dof[k];
+        s->viscous[k] = k == s->modes->across ? 0 : a->motor.damping * hub * hub;
+        s->damping[k] = (s->per_stiffness * rate * rate + s->viscous[k]) / 2;
+    }
+}
+
+// Takes the basis of a contact state, computed when it is first wanted. False if it is singular.
+static bool take_basis(modal_stride *s, const arm *a, contact_state mode)
+{
+    const double now[5] = {a->hub_stiffness, a->joint_stiffness, a->hub_joint_damping,
+                           a->joint_damping, a->motor.damping};
 
     // springs that changed make all bases wrong
     if (memcmp(now, s->stiffness, sizeof now) != 0) {
@@ -222,11 +272,21 @@ static const modal_basis *basis_of(modal_stride *s, const arm *a, contact_state 
     const int i = mode.contact + 2 * stuck;
     if (!s->known[i]) {
         if (modal_basis_compute(&s->basis[i], a, mode.contact, stuck, s->scratch) != STATUS_OK) {
-            return NULL;
+            return false;
         }
+    }
+
+    s->modes = &s->basis[i];
+    s->now = &s->vibrations[i];
+    take_damping(s, a);
+    if (!s->known[i]) {
+        for (int j = 0; j < MODAL_KEPT_LEVELS; j++) {
+            s->kept[i][j].known = false;
+        }
+        modal_vibrations_compute(s->now, s->modes, s->damping);
         s->known[i] = true;
     }
-    return &s->basis[i];
+    return true;
 }
 
 // r and s of one instant from x, y, the velocities there and dT/dq + J'^T L in s->rates; columns
@@ -281,11 +341,11 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
                           const double *q, const double *w)
 {
     const int n = a->dof;
-    s->per_stiffness = a->joint_stiffness > 0 ? a->joint_damping / a->joint_stiffness : 0;
-    s->modes = basis_of(s, a, mode);
-    if (s->modes == NULL) {
+    if (!take_basis(s, a, mode)) {
         return STATUS_SINGULAR;
     }
+
+    // momenta, and what the sweeps say
     s->mode = mode;
     s->count = s->modes->count;
     chain_momentum(a, q, w, s->momentum);
@@ -295,10 +355,9 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
     prepare_remainders(s, a, w, s->columns);
     memcpy(s->columns + 2 * n, s->momentum, (size_t)n * sizeof *q);
     modal_from_angles(s->modes, n, 3, s->columns, s->more_columns, n);
+
+    // the same of the modes
     for (int k = 0; k < s->count; k++) {
-        const double rate = s->modes->rate[k], hub = s->modes->by_dof[k];
-        s->viscous[k] = k == s->modes->across ? 0 : a->motor.damping * hub * hub;
-        s->damping[k] = (s->per_stiffness * rate * rate + s->viscous[k]) / 2;
         s->start[k] = s->more_columns[2 * n + k];
     }
     memset(s->columns, 0, (size_t)n * sizeof *q);
@@ -362,6 +421,60 @@ static double fit_polynomials(modal_stride *s, double h)
     return sqrt(square);
 }
 
+// Whether a mode vibrates too fast in the stride to be seen in r and s.
+static bool is_fast(const modal_stride *s, int k)
+{
+    const double rate = s->modes->rate[k];
+    return k != s->modes->across && s->damping[k] < rate && rate * s->length > MODAL_FAST;
+}
+
+// What a mode with a spring does under the polynomials without vibrating: x = sum p[j] t^j / j!.
+static void follow(const modal_stride *s, int k, double p[MODAL_NODES + 2])
+{
+    const double twice = 2 * s->damping[k], stiff = s->modes->rate[k] * s->modes->rate[k];
+    p[MODAL_NODES] = p[MODAL_NODES + 1] = 0;
+    for (int j = MODAL_NODES - 1; j >= 0; j--) {
+        const double turn = j + 1 < MODAL_NODES ? s->drift[j + 1][k] : 0;
+        const double n = s->force[j][k] + twice * s->drift[j][k] + turn;
+        p[j] = (n - twice * p[j + 1] - p[j + 2]) / stiff;
+    }
+}
+
+// Such a mode without its vibration, at t within the stride: what follows the polynomials.
+static void without_vibration(const modal_stride *s, int k, double t, double *x, double *y)
+{
+    double p[MODAL_NODES + 2], place = 0, speed = 0, drift = 0, power = 1;
+    follow(s, k, p);
+    for (int j = 0; j < MODAL_NODES; j++) {
+        place += p[j] * power;
+        speed += p[j + 1] * power;
+        drift += s->drift[j][k] * power;
+        power *= t / (j + 1);
+    }
+    *x = place;
+    *y = speed - drift;
+}
+
+// The modes' responses at the points of collocation: of a length that is a power of two they are
+// computed once a basis.
+static void take_tables(modal_stride *s, double length)
+{
+    int exponent;
+    const bool round = frexp(length, &exponent) == 0.5;
+    const int slot = 1 - exponent - MODAL_LONGEST_LEVEL;
+    const bool kept = round && slot >= 0 && slot < MODAL_KEPT_LEVELS;
+    modal_kept *keep = kept ? &s->kept[s->modes - s->basis][slot] : &s->passing;
+    if (!kept || !keep->known) {
+        for (int i = 1; i < MODAL_NODES; i++) {
+            fill_table(s, points[i] * length, kept_powers(i), s->count, &keep->at[i]);
+        }
+        keep->known = true;
+    }
+    for (int i = 1; i < MODAL_NODES; i++) {
+        s->at[i] = keep->at[i];
+    }
+}
+
 // r and s at the points of collocation from the present polynomials.
 static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, const double *q)
 {
@@ -369,18 +482,28 @@ static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, co
     const size_t pair = 2 * (size_t)n;
 
     // the modes' places and momenta, as angles
-    for (int i = 1; i < MODAL_NODES; i++) {
-        double *x = s->columns + (size_t)(i - 1) * pair;
-        modal_state(s, &s->at[i], x, x + n);
-        memcpy(s->modal + (size_t)(i - 1) * pair, x, pair * sizeof *x);
+    for (int i = 0; i < MODAL_NODES; i++) {
+        double *x = s->columns + (size_t)i * pair;
+        if (i > 0) {
+            modal_state(s, &s->at[i], x, x + n);
+        } else {
+            memset(x, 0, (size_t)n * sizeof *x);
+            memcpy(x + n, s->start, (size_t)s->count * sizeof *x);
+        }
+        for (int k = 0; k < s->count; k++) {
+            if (is_fast(s, k)) {
+                without_vibration(s, k, points[i] * s->length, x + k, x + n + k);
+            }
+        }
+        memcpy(s->modal + (size_t)i * pair, x, pair * sizeof *x);
         to_momenta(s, a, x, x + n);
     }
     modal_to_angles(s->modes, n, COLUMNS, s->columns, s->more_columns, n);
 
     // velocities and forces there by the sweeps
-    for (int i = 1; i < MODAL_NODES; i++) {
-        double *turn = s->more_columns + (size_t)(i - 1) * pair;
-        double *momentum = s->columns + (size_t)(i - 1) * pair, impulse;
+    for (int i = 0; i < MODAL_NODES; i++) {
+        double *turn = s->more_columns + (size_t)i * pair;
+        double *momentum = s->columns + (size_t)i * pair, impulse;
         modal_mass_times(a, turn + n, momentum);
         for (int k = 0; k < n; k++) {
             s->angles[k] = q[k] + turn[k];
@@ -395,9 +518,9 @@ static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, co
 
     // brought back to the modes
     modal_from_angles(s->modes, n, COLUMNS, s->more_columns, s->columns, n);
-    for (int i = 1; i < MODAL_NODES; i++) {
-        const double *x = s->modal + (size_t)(i - 1) * pair;
-        take_remainders(s, i, x, x + n, s->columns + (size_t)(i - 1) * pair);
+    for (int i = 0; i < MODAL_NODES; i++) {
+        const double *x = s->modal + (size_t)i * pair;
+        take_remainders(s, i, x, x + n, s->columns + (size_t)i * pair);
     }
 }
 
@@ -409,8 +532,8 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
 
     // first guess: what holds at the start
     double speed = 1e-30;
+    take_tables(s, length);
     for (int i = 1; i < MODAL_NODES; i++) {
-        fill_table(s, points[i] * length, MODAL_NODES + 1, s->count, &s->at[i]);
         memcpy(s->drifts[i], s->drifts[0], size);
         memcpy(s->forces[i], s->forces[0], size);
     }
@@ -423,8 +546,11 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
     fit_polynomials(s, length);
     for (int i = 0; i < MOST_SWEEPS; i++) {
         evaluate_points(s, a, links, q);
+        const double last = fit.change;
         fit.change = fit_polynomials(s, length) / sqrt(speed);
-        if (!(fit.change < 1e3) || fit.change < CONVERGED) {
+        fit.sweeps = i + 1;
+        bool idle = i >= FEW_SWEEPS && fit.change > SLOW_SWEEPS * last;
+        if (!(fit.change < 1e3) || fit.change < CONVERGED || idle) {
             break;
         }
     }
@@ -438,6 +564,54 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
     }
     fit.cut = sqrt(fit.cut / speed);
     return fit;
+}
+
+double modal_stride_fastest(const modal_stride *s)
+{
+    double fastest = 1e-300;
+    for (int k = 0; k < s->count; k++) {
+        if (k != s->modes->across && s->damping[k] < s->modes->rate[k]) {
+            fastest = fmax(fastest, s->modes->rate[k]);
+        }
+    }
+    return fastest;
+}
+
+double modal_stride_quickest(const modal_stride *s)
+{
+    double quickest = 1e-300;
+    for (int e = 0; e < s->now->count; e++) {
+        quickest = fmax(quickest, s->now->square[e]);
+    }
+    return sqrt(quickest);
+}
+
+bool modal_stride_vibration(modal_stride *s, const arm *a, chain_link *links, const double *q,
+                            double *along)
+{
+    const int n = s->dof;
+    double *y = s->columns, *turn = s->more_columns, *momentum = turn + n, impulse;
+    bool any = false;
+
+    // momenta of the modes, beyond what follows the polynomials
+    for (int k = 0; k < s->count; k++) {
+        double x = 0, slow = 0;
+        bool fast = is_fast(s, k);
+        if (fast) {
+            without_vibration(s, k, s->time, &x, &slow);
+        }
+        y[k] = fast ? s->momenta[k] - slow : 0;
+        any |= fast;
+    }
+    if (!any) {
+        return false;
+    }
+
+    // velocities that belong to them
+    modal_to_angles(s->modes, n, 1, y, turn, n);
+    modal_mass_times(a, turn, momentum);
+    chain_from_momentum(a, links, s->mode, q, momentum, along, s->rates, &impulse);
+    return true;
 }
 
 // --- walks ------------------------------------------------------------------------------------
@@ -526,7 +700,7 @@ static double product_integral(const double *p, const double *q, double t)
 // Moments of a mode: of x, integral of t^j / j! x, and of v = x', the same.
 static void moments(const modal_stride *s, int k, double t, double *of_x, double *of_v)
 {
-    const modal_table *at = &s->at[0];
+    const modal_table *at = s->ending;
     const double twice = 2 * s->damping[k];
 
     // x integrated i times
@@ -555,9 +729,44 @@ static void moments(const modal_stride *s, int k, double t, double *of_x, double
     }
 }
 
-// What the hub's viscous damping takes from the low modes together: the trapezoidal rule with
-// corrected ends on a walk that resolves them.
-static double hub_loss(modal_stride *s, const arm *a, double t, int low)
+// The hub's velocity without what vibrates fast, beyond the low modes: a polynomial, and decays.
+typedef struct hub_motion {
+    double power[MODAL_NODES]; // sum power[j] t^j / j! [rad/s]
+    double *slow, *rate;       // decays [rad/s], [1/s]
+    int decays;
+} hub_motion;
+
+// Adds a mode that is not a low one; returns the loss of its own that is in its vibration alone, of
+// the `loss` of all its motion.
+static double add_to_hub(const modal_stride *s, int k, double t, double loss, hub_motion *h)
+{
+    const double hub = s->modes->by_dof[k], damping = s->damping[k], rate = s->modes->rate[k];
+    double p[MODAL_NODES + 2];
+    follow(s, k, p);
+    for (int j = 0; j < MODAL_NODES; j++) {
+        h->power[j] += hub * p[j + 1];
+    }
+
+    // a vibration
+    if (damping < rate) {
+        const double own = loss - 2 * damping * product_integral(p + 1, p + 1, t);
+        return damping > 0 ? own * s->viscous[k] / (2 * damping) : 0;
+    }
+
+    // two decays, of which the fast one is over in no time
+    const double root = fmax(sqrt((damping - rate) * (damping + rate)), 1e-4 * rate);
+    const double slow = rate * rate / (damping + root), fast = damping + root;
+    const double place = -p[0], speed = s->start[k] + s->drift[0][k] - p[1];
+    const double kept = (fast * place + speed) / (fast - slow);
+    const double lost = fast * (slow * place + speed) / (fast - slow);
+    h->slow[h->decays] = -hub * slow * kept;
+    h->rate[h->decays++] = slow;
+    return s->viscous[k] * lost * lost * (1 - modal_decay(-2 * fast * t)) / (2 * fast);
+}
+
+// What the hub's viscous damping takes from the low modes and the rest's slow motion together: the
+// trapezoidal rule with corrected ends on a walk that resolves them.
+static double hub_loss(modal_stride *s, const arm *a, double t, int low, const hub_motion *rest)
 {
     const double *hub = s->modes->by_dof;
     double sum = 0, first_slope = 0, last_slope = 0;
@@ -565,19 +774,28 @@ static double hub_loss(modal_stride *s, const arm *a, double t, int low)
 
     // hub's velocity and its slope from step to step
     modal_walk_begin(s, low);
-    modal_walk_set_step(s, t / HUB_STEPS);
-    for (int i = 0; i <= HUB_STEPS; i++) {
-        double speed = 0, slope = 0;
+    const double turn = low > 0 ? s->modes->rate[low - 1] * t : 0;
+    const int steps = (int)fmax(LEAST_HUB_STEPS, ceil(turn / HUB_TURN));
+    modal_walk_set_step(s, t / steps);
+    for (int i = 0; i <= steps; i++) {
+        const double *p = rest->power, x = w->time, x2 = x * x / 2;
+        double speed = p[0] + x * p[1] + x2 * p[2] + x * x2 / 3 * p[3];
+        double slope = p[1] + x * p[2] + x2 * p[3];
+        for (int k = 0; k < rest->decays; k++) {
+            const double now = rest->slow[k] * modal_decay(-rest->rate[k] * x);
+            speed += now;
+            slope -= rest->rate[k] * now;
+        }
         for (int k = 0; k < low; k++) {
             const double rate = s->modes->rate[k];
             speed += hub[k] * (w->y[k] + w->drift[0][k]);
             slope += hub[k] * (w->force[0][k] + w->drift[1][k] - rate * rate * w->x[k] -
                                2 * s->damping[k] * w->y[k]);
         }
-        sum += (i == 0 || i == HUB_STEPS ? 0.5 : 1) * speed * speed;
+        sum += (i == 0 || i == steps ? 0.5 : 1) * speed * speed;
         first_slope = i == 0 ? 2 * speed * slope : first_slope;
         last_slope = 2 * speed * slope;
-        if (i < HUB_STEPS) {
+        if (i < steps) {
             modal_walk_on(s);
         }
     }
@@ -592,8 +810,15 @@ modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t)
 
     // modes slow enough to be taken together
     int low = 0;
-    while (low < s->count && low != e && s->modes->rate[low] * t < LOW_TURN) {
+    while (low < s->count && low != e && s->modes->rate[low] * t < LOW_TURN &&
+           s->damping[low] * t < LOW_TURN) {
         low++;
+    }
+
+    // the hub's motion beyond them
+    hub_motion rest = {.slow = s->columns, .rate = s->more_columns};
+    for (int j = 0; e >= 0 && j < MODAL_NODES; j++) {
+        rest.power[j] = s->modes->by_dof[e] * s->drift[j][e];
     }
 
     for (int k = 0; k < s->count; k++) {
@@ -617,7 +842,9 @@ modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t)
         // in the springs, and at the hub beyond what the slow modes do together
         if (twice > 0) {
             lost.damping += loss * s->per_stiffness * rate * rate / twice;
-            lost.viscous += k >= low ? loss * s->viscous[k] / twice : 0;
+        }
+        if (a->motor.damping > 0 && k >= low) {
+            lost.viscous += add_to_hub(s, k, t, loss, &rest);
         }
 
         // between this mode and the vector across the constraint
@@ -636,6 +863,6 @@ modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t)
         }
         lost.damping += s->per_stiffness * s->modes->pull[e] * product_integral(across, across, t);
     }
-    lost.viscous += a->motor.damping > 0 ? hub_loss(s, a, t, low) : 0;
+    lost.viscous += a->motor.damping > 0 ? hub_loss(s, a, t, low, &rest) : 0;
     return lost;
 }

@@ -16,14 +16,26 @@
 #include "src/arm/chain_momentum.h"
 #include "src/solve/modal_basis.h"
 #include "src/solve/modal_response.h"
+#include "src/solve/modal_sum.h"
 
 enum { MODAL_NODES = 4, MODAL_CONTACT_STATES = 4 };
+
+// Strides of 2^-MODAL_LONGEST_LEVEL s and so many shorter powers of two keep their responses.
+enum { MODAL_LONGEST_LEVEL = 9, MODAL_KEPT_LEVELS = 14 };
+
+#define MODAL_FAST 4 // rate times length of a stride from which on a vibration stays out of r and s
 
 // Responses of all modes at one instant, arrays of as many as there are modes.
 typedef struct modal_table {
     double *impulse, *impulse_rate;
     double *power[MODAL_POWERS];
 } modal_table;
+
+// Responses at the points of collocation of a stride of one length; [0] is unused.
+typedef struct modal_kept {
+    modal_table at[MODAL_NODES];
+    bool known;
+} modal_kept;
 
 // The modes on a walk through the stride in steps of one length.
 typedef struct modal_walk {
@@ -37,15 +49,20 @@ typedef struct modal_walk {
 typedef struct modal_stride {
     // bases of the contact states, by contact + 2 * stuck, as far as they were wanted yet
     modal_basis basis[MODAL_CONTACT_STATES];
+    modal_vibrations vibrations[MODAL_CONTACT_STATES];
     bool known[MODAL_CONTACT_STATES];
-    double stiffness[4]; // of hub and joints, and their damping: what the bases were computed for
+    modal_kept kept[MODAL_CONTACT_STATES][MODAL_KEPT_LEVELS], passing;
+    // of hub and joints, and all damping: what the bases were computed for
+    double stiffness[5];
     double *scratch;
 
     // the stride
     const modal_basis *modes; // of its contact state
+    modal_vibrations *now;    // the same
     contact_state mode;
     int dof, count;
     double length;               // [s]
+    double start_energy;         // kinetic and strain [J]
     double per_stiffness;        // c, structural damping over stiffness [s]
     double *damping;             // a, by mode [1/s]
     double *viscous;             // kv V_0k^2, by mode [1/s]
@@ -58,9 +75,11 @@ typedef struct modal_stride {
     double *columns, *more_columns, *modal;            // 2 * (MODAL_NODES - 1) vectors of dof each
     double *angles, *velocities, *rates;               // at one instant
     double *point_angles[MODAL_NODES], *point_velocities[MODAL_NODES]; // at the points; [0] unused
-    double *place, *momenta; // x and y at the instant of the state last asked for
-    modal_walk walk;         // through the stride in steps of one length
-    double next;             // length proposed for the next stride [s]
+    double *place, *momenta;   // x and y at the instant of the state last asked for
+    double time;               // that instant [s]
+    const modal_table *ending; // responses there
+    modal_walk walk;           // through the stride in steps of one length
+    double next;               // length proposed for the next stride [s]
 } modal_stride;
 
 // Bytes that the stride of an arm wants, and its arrays laid into so many.
@@ -75,6 +94,7 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
 // what the highest power of time does, both as shares of the greatest velocity.
 typedef struct modal_fit {
     double change, cut;
+    int sweeps; // that were made
 } modal_fit;
 modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
                            double length);
@@ -88,6 +108,17 @@ void modal_polynomial(const double values[MODAL_NODES], double length, double ou
 // Angles and velocities at t within the stride, and the impulse of the contact force until then.
 void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double t, const double *q,
                         double *qt, double *wt, double *impulse);
+
+// Rate of the fastest mode that vibrates, of those in hand [rad/s].
+double modal_stride_fastest(const modal_stride *s);
+
+// The same of all modes, decays included [1/s].
+double modal_stride_quickest(const modal_stride *s);
+
+// Velocities along[dof] at angles q of the fast vibrations alone, at the instant of the state last
+// asked for, admissible in its contact state. False if there are none.
+bool modal_stride_vibration(modal_stride *s, const arm *a, chain_link *links, const double *q,
+                            double *along);
 
 // Energy lost until the instant of the state last asked for [J]: to back EMF and viscous friction,
 // and in the springs. Integrals of the modes' own motion, not of samples.

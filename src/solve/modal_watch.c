@@ -5,17 +5,18 @@
 
 #include "src/base/sincos.h"
 #include "src/solve/locate.h"
+#include "src/solve/modal_state.h"
 
-#define PHASE_A_SAMPLE 0.6   // of the fastest mode that matters, from sample to sample [rad]
-#define SLACK_GAP      1e-10 // [m]
-#define SLACK_SHARE    1e-3  // of what all modes can do to any other function
-#define SLACK_OTHER    1e-9  // and at least so much, in its unit
-#define FAR_FROM_EDGE  4     // times what the modes that are passed over can do
+#define SLOW_TURN    1     // of a mode in the stride, or its decay, that the series takes [rad]
+#define SLACK_GAP    1e-10 // [m]
+#define SLACK_SHARE  1e-3  // of what all modes can do to any other function
+#define SLACK_OTHER  1e-9  // and at least so much, in its unit
+#define GAP_ROUNDING 4e-15 // [m]
 
-enum { SAMPLES_A_BLOCK = 16, MOST_HALVINGS = 40, MOST_ROOT_STEPS = 60, MOST_POLISHING = 12 };
+enum { SAMPLES_A_BLOCK = 4, MOST_HALVINGS = 40, MOST_ROOT_STEPS = 60, MOST_POLISHING = 12 };
 
 // How far beyond its edge a function is where it has left its admissible side.
-static const double far_side[] = {[WATCH_GAP] = 1e-13,
+static const double far_side[] = {[WATCH_GAP] = 1e-14,
                                   [WATCH_FORCE] = FORCE_TOLERANCE,
                                   [WATCH_HUB] = 1e-13,
                                   [WATCH_STICTION] = 1e-11};
@@ -125,6 +126,119 @@ static double functional(const modal_function *f, const modal_stride *s, const d
     return sum;
 }
 
+// Derivatives at the start of a mode that turns little in the stride, g_j of x = sum g_j t^j / j!,
+// under n(t) = sum n_j t^j / j!; x = 0 at the start.
+static void slow_mode(double damping, double rate, double speed, const double *n, double *g)
+{
+    g[0] = 0;
+    g[1] = speed;
+    for (int j = 0; j + 2 <= MODAL_SERIES; j++) {
+        g[j + 2] = (j < MODAL_NODES ? n[j] : 0) - 2 * damping * g[j + 1] - rate * rate * g[j];
+    }
+}
+
+// The same of what a mode does under n(t) without vibrating.
+static void followed(double damping, double rate, const double *n, double *g)
+{
+    memset(g, 0, (MODAL_SERIES + 1) * sizeof *g);
+    for (int j = MODAL_NODES - 1; j >= 0; j--) {
+        g[j] = (n[j] - 2 * damping * g[j + 1] - g[j + 2]) / (rate * rate);
+    }
+}
+
+// The vibration that takes a mode from `place` and `speed` [of x], into the function's amplitudes.
+static void add_vibration(modal_function *f, const modal_vibrations *v, int mode, double place,
+                          double speed)
+{
+    const int e = v->entry[mode];
+    const double p = f->place[mode], s = f->speed[mode];
+    double *cosine = f->sum.cosine, *sine = f->sum.sine;
+    if (e < v->vibrating) {
+        const double a = v->decay[e], turn = v->turn[e], b = (speed + a * place) / turn;
+        cosine[e] = p * place + s * (turn * b - a * place);
+        sine[e] = p * b - s * (a * b + turn * place);
+        return;
+    }
+
+    // two decays
+    const int other = e + v->overdamped;
+    const double slow = v->decay[e], fast = v->decay[other], per = 1 / (fast - slow);
+    cosine[e] = per * (fast * place + speed) * (p - s * slow);
+    cosine[other] = -per * (slow * place + speed) * (p - s * fast);
+}
+
+// The function on the whole stride from its value, functional and rest.
+static void fit_sum(modal_function *f, const modal_stride *s)
+{
+    const modal_vibrations *v = s->now;
+    modal_sum *sum = &f->sum;
+    const double h = s->length;
+    double total[MODAL_SERIES + 1] = {f->value}, g[MODAL_SERIES + 1];
+    sum->vibrations = s->now;
+    sum->length = h;
+    sum->first = 0;
+    sum->last = v->count;
+    memset(sum->cosine, 0, (size_t)v->count * sizeof(double));
+    memset(sum->sine, 0, (size_t)v->count * sizeof(double));
+    for (int j = 0; j < MODAL_NODES; j++) {
+        total[j] += f->rest[j];
+    }
+
+    // mode by mode
+    for (int k = 0; k < s->count; k++) {
+        const double rate = s->modes->rate[k], damping = s->damping[k];
+        const double speed =
+            k == s->modes->across ? s->drifts[0][k] : s->start[k] + s->drifts[0][k];
+        double n[MODAL_NODES];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const double turn = j + 1 < MODAL_NODES ? s->drift[j + 1][k] : 0;
+            n[j] = s->force[j][k] + 2 * damping * s->drift[j][k] + turn;
+        }
+        if (k == s->modes->across) {
+            memset(g, 0, sizeof g);
+            for (int j = 0; j < MODAL_NODES; j++) {
+                g[j + 1] = s->drift[j][k];
+            }
+        } else if (v->entry[k] < 0 || (rate * h <= SLOW_TURN && 2 * damping * h <= SLOW_TURN)) {
+            slow_mode(damping, rate, speed, n, g);
+            sum->first =
+                v->entry[k] >= 0 && v->entry[k] == sum->first ? sum->first + 1 : sum->first;
+        } else {
+            followed(damping, rate, n, g);
+            add_vibration(f, v, k, -g[0], speed - g[1]);
+        }
+        total[0] -= f->speed[k] * speed;
+        for (int j = 0; j < MODAL_SERIES; j++) {
+            total[j] += f->place[k] * g[j] + f->speed[k] * g[j + 1];
+        }
+    }
+
+    // in powers of the share of the stride
+    double scale = 1, most = 0;
+    sum->terms = 1;
+    for (int j = 0; j < MODAL_SERIES; j++) {
+        sum->series[j] = total[j] * scale;
+        most = fmax(most, fabs(sum->series[j]));
+        sum->terms = fabs(sum->series[j]) > 1e-19 * most ? j + 1 : sum->terms;
+        scale *= h / (j + 1);
+    }
+}
+
+size_t modal_function_size(int n)
+{
+    return 10 * (size_t)n;
+}
+
+void modal_function_place(modal_function *f, int n, double *storage)
+{
+    f->place = storage;
+    f->speed = storage + n;
+    f->sum.cosine = storage + 2 * n;
+    f->sum.sine = storage + 4 * n;
+    f->sum.a = storage + 6 * n;
+    f->sum.b = storage + 8 * n;
+}
+
 void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const arm *a, motion *m)
 {
     f->kind = kind;
@@ -133,19 +247,13 @@ void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const ar
                         state_velocities(m, m->state), s->columns);
     double values[MODAL_NODES] = {0};
     for (int i = 1; i < MODAL_NODES; i++) {
-        const double *x = s->modal + (size_t)(2 * (i - 1)) * (size_t)s->dof;
+        const double *x = s->modal + (size_t)(2 * i) * (size_t)s->dof;
         double exact =
             exact_at(kind, a, m, s->mode, s->point_angles[i], s->point_velocities[i], s->columns);
         values[i] = exact - f->value - functional(f, s, x, x + s->dof, s->drifts[i], s->drifts[0]);
     }
     modal_polynomial(values, s->length, f->rest);
-}
-
-static glance rest_at(const modal_function *f, double t)
-{
-    const double *r = f->rest;
-    return (glance){r[0] + t * (r[1] + t / 2 * (r[2] + t / 3 * r[3])),
-                    r[1] + t * (r[2] + t / 2 * r[3])};
+    fit_sum(f, s);
 }
 
 // Friction counts by its size: what is left of it.
@@ -158,98 +266,14 @@ static glance as_watched(const modal_function *f, const arm *a, glance g)
 }
 
 // Value and slope where the walk is.
-static glance walked(const modal_function *f, const modal_stride *s, const arm *a)
+static glance walked(const modal_function *f, const arm *a)
 {
-    const modal_walk *w = &s->walk;
-    const int e = s->modes->across;
-    const double *drift0 = s->drifts[0], *rates = s->modes->rate;
-    glance rest = rest_at(f, w->time);
-    double value = f->value + rest.value, slope = rest.slope;
-    for (int k = 0; k < w->count; k++) {
-        const double start = k == e ? drift0[k] : s->start[k] + drift0[k];
-        const double v = w->y[k] + w->drift[0][k];
-        const double rate = w->force[0][k] + w->drift[1][k] - rates[k] * rates[k] * w->x[k] -
-                            2 * s->damping[k] * w->y[k];
-        value += f->place[k] * w->x[k] + f->speed[k] * (v - start);
-        slope += f->place[k] * v + f->speed[k] * rate;
-    }
-    return as_watched(f, a, (glance){value, slope});
+    return as_watched(f, a, f->sum.now);
 }
 
-glance modal_function_at(const modal_function *f, modal_stride *s, const arm *a, double t)
+glance modal_function_at(const modal_function *f, const arm *a, double t)
 {
-    const int e = s->modes->across;
-    const double *drift0 = s->drifts[0], *rates = s->modes->rate, *x = s->place, *y = s->momenta;
-    const double t2 = t * t / 2, t3 = t * t2 / 3;
-    double *const *r = s->drift, *const *force = s->force;
-    modal_stride_modes(s, t);
-    glance rest = rest_at(f, t);
-    double value = f->value + rest.value, slope = rest.slope;
-    for (int k = 0; k < s->count; k++) {
-        const double drift = r[0][k] + t * r[1][k] + t2 * r[2][k] + t3 * r[3][k];
-        const double turn = r[1][k] + t * r[2][k] + t2 * r[3][k];
-        const double pushed = force[0][k] + t * force[1][k] + t2 * force[2][k] + t3 * force[3][k];
-        const double v = k == e ? drift : y[k] + drift;
-        const double start = k == e ? drift0[k] : s->start[k] + drift0[k];
-        const double rate =
-            k == e ? turn : pushed + turn - rates[k] * rates[k] * x[k] - 2 * s->damping[k] * y[k];
-        value += f->place[k] * x[k] + f->speed[k] * (v - start);
-        slope += f->place[k] * v + f->speed[k] * rate;
-    }
-    return as_watched(f, a, (glance){value, slope});
-}
-
-// --- how finely to look -----------------------------------------------------------------------
-
-// What the modes can do to the function from where the walk is, sorted by how finely one would have
-// to look at them: by_halvings[i] is of those that need i halvings of `length`.
-static double sort_modes(const modal_function *f, const modal_stride *s, double length,
-                         double by_halvings[MOST_HALVINGS + 1])
-{
-    const modal_walk *w = &s->walk;
-    double all = 0;
-    memset(by_halvings, 0, (MOST_HALVINGS + 1) * sizeof(double));
-    for (int k = 0; k < w->count; k++) {
-        const double rate = s->modes->rate[k], damping = s->damping[k];
-        if (rate == 0) {
-            continue;
-        }
-        // deviation from the slow answer to the forces
-        double x = w->x[k] - (w->force[0][k] + 2 * damping * w->drift[0][k]) / (rate * rate);
-        double v = w->y[k] + w->drift[0][k] - w->force[1][k] / (rate * rate);
-        double parts[2], rates[2] = {rate, rate};
-        if (damping < rate) {
-            parts[0] = sqrt(x * x + v * v / (rate * rate));
-            parts[1] = 0;
-        } else {
-            const double root = sqrt(damping * damping - rate * rate);
-            rates[0] = rate * rate / (damping + root);
-            rates[1] = damping + root;
-            parts[0] = root > 0 ? fabs((v + rates[1] * x) / (2 * root)) : fabs(x);
-            parts[1] = root > 0 ? fabs((v + rates[0] * x) / (2 * root)) : fabs(x);
-        }
-        for (int i = 0; i < 2; i++) {
-            double part = parts[i] * (fabs(f->place[k]) + fabs(f->speed[k]) * rates[i]);
-            int halvings = 0;
-            if (rates[i] * length > PHASE_A_SAMPLE) {
-                (void)frexp(rates[i] * length / PHASE_A_SAMPLE, &halvings);
-            }
-            by_halvings[halvings < MOST_HALVINGS ? halvings : MOST_HALVINGS] += part;
-            all += part;
-        }
-    }
-    return all;
-}
-
-// Halvings of the length so that what they pass over stays below `slack`; *passed is what that is.
-static int halvings_for(const double *by_halvings, double slack, double *passed)
-{
-    int i = MOST_HALVINGS;
-    *passed = 0;
-    while (i > 0 && *passed + by_halvings[i] <= slack) {
-        *passed += by_halvings[i--];
-    }
-    return i;
+    return as_watched(f, a, modal_sum_at(&f->sum, t));
 }
 
 // --- events -------------------------------------------------------------------------------------
@@ -258,6 +282,11 @@ typedef struct look_at {
     double time;
     glance at;
 } look_at;
+
+static look_at look_of(const modal_function *f, const arm *a, double time)
+{
+    return (look_at){time, modal_function_at(f, a, time)};
+}
 
 // Where in (0, 1) the cubic through two samples is least, or -1.
 static double dip_of(look_at lo, look_at hi)
@@ -273,39 +302,37 @@ static double dip_of(look_at lo, look_at hi)
 }
 
 // Narrows [lo, hi] with the function's slope rising through zero to its least value.
-static look_at least_of(const modal_function *f, modal_stride *s, const arm *a, look_at lo,
-                        look_at hi)
+static look_at least_of(const modal_function *f, const arm *a, look_at lo, look_at hi)
 {
+    const double resolution = fmax(1e-3 * (hi.time - lo.time), 1e-14);
     look_at best = lo.at.value < hi.at.value ? lo : hi;
-    for (int i = 0; i < 12 && best.at.value > 0; i++) {
+    for (int i = 0; i < 12 && best.at.value > 0 && hi.time - lo.time > resolution; i++) {
         double share = lo.at.slope / (lo.at.slope - hi.at.slope);
         share = i % 3 == 2 ? 0.5 : fmin(fmax(share, 1e-3), 1 - 1e-3);
-        look_at now = {lo.time + share * (hi.time - lo.time), {0}};
-        now.at = modal_function_at(f, s, a, now.time);
+        look_at now = look_of(f, a, lo.time + share * (hi.time - lo.time));
         best = now.at.value < best.at.value ? now : best;
         if (now.at.slope < 0) {
             lo = now;
         } else {
             hi = now;
         }
-        if (hi.time - lo.time < 1e-3 * s->walk.step || hi.time - lo.time < 1e-14) {
-            break;
-        }
     }
     return best;
 }
 
 // The exact function at t, of the state that a stride to there ends in.
-static double exact_value(const modal_function *f, const arm *a, motion *m, double t)
+static double exact_value(const modal_function *f, modal_stride *s, const arm *a, motion *m,
+                          double t)
 {
-    if (motion_try_step(a, m, t) != STATUS_OK) {
-        return 0;
+    double *state = m->between;
+    if (f->kind == WATCH_GAP) {
+        return modal_gap_at(s, a, m, t) - f->edge;
     }
-    const double *state = m->trial;
-    glance g = {f->kind == WATCH_GAP     ? state[SLOT_GAP]
-                : f->kind == WATCH_FORCE ? state[SLOT_FORCE]
-                : f->kind == WATCH_HUB   ? state[SLOT_FRICTION] * state_velocities(m, m->trial)[0]
-                                         : state[SLOT_FRICTION_TORQUE],
+    memcpy(state, m->state, SLOT_COUNT * sizeof *state);
+    (void)modal_state_at(s, a, m, t, state);
+    glance g = {f->kind == WATCH_FORCE ? state[SLOT_FORCE]
+                : f->kind == WATCH_HUB ? s->mode.friction * state_velocities(m, state)[0]
+                                       : state[SLOT_FRICTION_TORQUE],
                 0};
     return as_watched(f, a, g).value;
 }
@@ -314,9 +341,9 @@ static double exact_value(const modal_function *f, const arm *a, motion *m, doub
 static double root_of(const modal_function *f, modal_stride *s, const arm *a, motion *m, look_at lo,
                       look_at hi)
 {
-    double from = lo.time, to = hi.time, t = to, slope = -1;
+    double from = lo.time, to = hi.time, t = to, slope = hi.at.slope;
     for (int i = 0; i < MOST_ROOT_STEPS && to - from > 1e-16 + 1e-16 * to; i++) {
-        glance g = modal_function_at(f, s, a, t);
+        glance g = modal_function_at(f, a, t);
         slope = g.slope;
         if (g.value > 0) {
             from = t;
@@ -335,7 +362,7 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
     // what the functional leaves out moves the root by little
     double target = far_side[f->kind];
     for (int i = 0; i < MOST_POLISHING && slope < 0; i++) {
-        double value = exact_value(f, a, m, t);
+        double value = exact_value(f, s, a, m, t);
         double next = t - (value + target) / slope;
         if ((value <= 0 && value >= -2 * target) || !(next > lo.time) || !(next <= s->length)) {
             break;
@@ -347,27 +374,37 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
     return t;
 }
 
-// A function that starts at its edge and is below it at `hi`: where it is above it in between, if
-// it is anywhere.
-static look_at risen_between(const modal_function *f, modal_stride *s, const arm *a, look_at hi)
+// A function that starts at its edge and is below it at `hi`: where it leaves it. If it is nowhere
+// above in between, a gap has left its edge where that is beyond rounding.
+static double root_from_edge(modal_function *f, modal_stride *s, const arm *a, motion *m,
+                             look_at hi)
 {
     look_at now = hi;
     for (int i = 0; i < MOST_HALVINGS && !(now.at.value > 0); i++) {
-        now.time /= 2;
-        now.at = modal_function_at(f, s, a, now.time);
+        now = look_of(f, a, now.time / 2);
     }
-    return now;
+    if (now.at.value > 0) {
+        return root_of(f, s, a, m, now, hi);
+    }
+    if (f->kind != WATCH_GAP) {
+        return now.time;
+    }
+    f->edge -= GAP_ROUNDING;
+    hi.at.value += GAP_ROUNDING;
+    return hi.at.value < 0 ? root_of(f, s, a, m, look_of(f, a, 0), hi) : hi.time;
 }
 
 // Looks at one piece of the walk between two samples.
 static bool falls_between(const modal_function *f, modal_stride *s, const arm *a, motion *m,
-                          look_at lo, look_at hi, bool armed, double *h)
+                          look_at lo, look_at hi, double *h)
 {
-    if (hi.at.value < 0 && armed) {
+    if (hi.at.value < 0) {
         *h = root_of(f, s, a, m, lo, hi);
         return true;
     }
-    const double dip = armed ? dip_of(lo, hi) : -1;
+
+    // a dip between them
+    const double dip = dip_of(lo, hi);
     if (dip < 0 || dip > 1) {
         return false;
     }
@@ -375,9 +412,9 @@ static bool falls_between(const modal_function *f, modal_stride *s, const arm *a
     if (fmin(lo.at.value, hi.at.value) > scale + f->slack) {
         return false;
     }
-    look_at least = least_of(f, s, a, lo, hi);
+    look_at least = least_of(f, a, lo, hi);
     if (least.at.value >= 0 && least.at.value < f->slack) {
-        least.at.value = exact_value(f, a, m, least.time);
+        least.at.value = exact_value(f, s, a, m, least.time);
     }
     if (least.at.value >= 0) {
         return false;
@@ -386,64 +423,56 @@ static bool falls_between(const modal_function *f, modal_stride *s, const arm *a
     return true;
 }
 
+// How far the walk may leap, and how finely it has to go where it may not.
+static int leap(const modal_function *f, const arm *a, int *fine)
+{
+    if (f->kind != WATCH_STICTION) {
+        return modal_sum_leap(&f->sum, 1, f->edge, f->slack, fine);
+    }
+    const double most = a->motor.stiction - f->edge;
+    const int up = modal_sum_leap(&f->sum, -1, most, f->slack, fine);
+    const int down = modal_sum_leap(&f->sum, 1, -most, f->slack, fine);
+    return up > down ? up : down;
+}
+
 bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, motion *m, double *h)
 {
-    const double length = *h;
-    double by_halvings[MOST_HALVINGS + 1], passed = 0;
-    modal_walk_begin(s, s->count);
+    modal_sum_begin(&f->sum);
     f->edge = 0;
-    glance first = walked(f, s, a);
-    bool armed = fabs(first.value) > far_side[f->kind] * ON_EDGE;
+    look_at lo = {0, walked(f, a)};
+    bool armed = fabs(lo.at.value) > far_side[f->kind] * ON_EDGE;
     if (!armed) {
-        f->edge = first.value;
+        f->edge = lo.at.value;
+        lo.at.value = 0;
     }
-    double all = sort_modes(f, s, length, by_halvings);
-    f->slack = f->kind == WATCH_GAP ? SLACK_GAP : fmax(SLACK_OTHER, SLACK_SHARE * all);
-    look_at start = {0, walked(f, s, a)};
+    f->slack = f->kind == WATCH_GAP ? SLACK_GAP
+                                    : fmax(SLACK_OTHER, SLACK_SHARE * modal_sum_reach(&f->sum));
 
-    // a look at the slow modes alone, where the others cannot reach the edge
-    int fine = halvings_for(by_halvings, f->slack, &passed);
-    int coarse = halvings_for(by_halvings, start.at.value / (2 * FAR_FROM_EDGE), &passed);
-    coarse = coarse < 3 ? 3 : coarse;
-    if (coarse < fine) {
-        modal_walk_set_step(s, ldexp(length, -coarse));
-        bool clear = true;
-        for (int i = 0; i < 1 << coarse && clear; i++) {
-            look_at before = {s->walk.time, walked(f, s, a)};
-            modal_walk_on(s);
-            look_at now = {s->walk.time, walked(f, s, a)};
-            double dip = dip_of(before, now), least = fmin(before.at.value, now.at.value);
-            if (dip > 0 && dip < 1) {
-                least -= 0.2 * fmax(fabs(before.at.slope), fabs(now.at.slope)) * s->walk.step;
-            }
-            clear = least > FAR_FROM_EDGE * passed;
+    // leaps where no event is certain, else a few samples as fine as the modes ask for
+    const double length = *h;
+    while (lo.time < length) {
+        int fine, far = leap(f, a, &fine);
+        if (armed && far < fine) {
+            modal_sum_step(&f->sum, far);
+            lo = (look_at){f->sum.time, walked(f, a)};
+            continue;
         }
-        if (clear) {
-            return false;
-        }
-        modal_walk_begin(s, s->count);
-    }
-
-    // all modes that matter, as finely as they ask for it at the time
-    look_at lo = start;
-    while (lo.time < length * (1 - 1e-12)) {
-        sort_modes(f, s, length, by_halvings);
-        int halvings = halvings_for(by_halvings, f->slack, &passed);
-        double step = ldexp(length, -(halvings < 3 ? 3 : halvings));
-        modal_walk_set_step(s, step);
-        for (int i = 0; i < SAMPLES_A_BLOCK && lo.time < length * (1 - 1e-12); i++) {
-            if (lo.time + step > length) {
-                modal_walk_set_step(s, length - lo.time);
+        for (int i = 0; i < SAMPLES_A_BLOCK && lo.time < length; i++) {
+            modal_sum_step(&f->sum, fine);
+            look_at hi = {f->sum.time, walked(f, a)};
+            bool falls = false;
+            if (armed) {
+                falls = falls_between(f, s, a, m, lo, hi, h);
+            } else if (hi.at.value < 0) {
+                *h = root_from_edge(f, s, a, m, hi);
+                falls = true;
             }
-            modal_walk_on(s);
-            look_at hi = {s->walk.time, walked(f, s, a)};
-            if (falls_between(f, s, a, m, lo, hi, armed, h)) {
+            if (falls && *h <= length) {
                 return true;
             }
-            if (!armed && hi.at.value < 0) {
-                look_at risen = risen_between(f, s, a, hi);
-                *h = risen.at.value > 0 ? root_of(f, s, a, m, risen, hi) : risen.time;
-                return true;
+            if (falls) { // beyond the stride
+                *h = length;
+                return false;
             }
             armed = true;
             lo = hi;
@@ -452,17 +481,18 @@ bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, moti
     return false;
 }
 
+// --- peaks
+// ----------------------------------------------------------------------------------------
+
 // Narrows [lo, hi], the slope falling through zero, to the greatest value.
-static look_at summit_of(const modal_function *f, modal_stride *s, const arm *a, look_at lo,
-                         look_at hi)
+static look_at summit_of(const modal_function *f, const arm *a, look_at lo, look_at hi)
 {
     look_at best = lo.at.value > hi.at.value ? lo : hi;
     const double resolution = 1e-6 * (hi.time - lo.time);
     for (int i = 0; i < 12 && hi.time - lo.time > resolution; i++) {
         double share = lo.at.slope / (lo.at.slope - hi.at.slope);
         share = i % 4 == 3 ? 0.5 : fmin(fmax(share, 1e-4), 1 - 1e-4);
-        look_at now = {lo.time + share * (hi.time - lo.time), {0}};
-        now.at = modal_function_at(f, s, a, now.time);
+        look_at now = look_of(f, a, lo.time + share * (hi.time - lo.time));
         best = now.at.value > best.at.value ? now : best;
         if (now.at.slope > 0) {
             lo = now;
@@ -481,42 +511,35 @@ static void note_force(motion *m, look_at p)
     }
 }
 
-void modal_function_peak(modal_function *f, modal_stride *s, const arm *a, motion *m, double h)
+void modal_function_peak(modal_function *f, const arm *a, motion *m, double h)
 {
-    double by_halvings[MOST_HALVINGS + 1], passed = 0;
-    modal_walk_begin(s, s->count);
-    double all = sort_modes(f, s, h, by_halvings);
-    look_at lo = {0, walked(f, s, a)};
+    f->edge = 0;
+    look_at end = look_of(f, a, h);
+    modal_sum_begin(&f->sum);
+    look_at lo = {0, walked(f, a)};
     note_force(m, lo);
+    note_force(m, end);
 
-    // can the modes together reach the peak there is?
-    int coarse = halvings_for(by_halvings, m->pulse_peak / FAR_FROM_EDGE, &passed);
-    coarse = coarse < 3 ? 3 : coarse;
-    modal_walk_set_step(s, ldexp(h, -coarse));
-    double most = lo.at.value;
-    for (int i = 0; i < 1 << coarse; i++) {
-        modal_walk_on(s);
-        glance now = walked(f, s, a);
-        most = fmax(most, now.value + 0.1 * fabs(now.slope) * s->walk.step);
-    }
-    if (most + 2 * passed <= m->pulse_peak) {
-        return;
-    }
-
-    // every summit
-    int fine = halvings_for(by_halvings, SLACK_SHARE * SLACK_SHARE * all, &passed);
-    fine = fine < 3 ? 3 : fine;
-    modal_walk_begin(s, s->count);
-    modal_walk_set_step(s, ldexp(h, -fine));
-    for (int i = 0; i < 1 << fine; i++) {
-        modal_walk_on(s);
-        look_at hi = {s->walk.time, walked(f, s, a)};
-        double reach = fmax(fabs(lo.at.slope), fabs(hi.at.slope)) * s->walk.step;
-        note_force(m, hi);
-        if (lo.at.slope > 0 && hi.at.slope < 0 &&
-            fmax(lo.at.value, hi.at.value) + 0.3 * reach > m->pulse_peak) {
-            note_force(m, summit_of(f, s, a, lo, hi));
+    // leaps over what cannot reach the peak there is, every summit else
+    const double slack = SLACK_SHARE * SLACK_SHARE * modal_sum_reach(&f->sum);
+    while (lo.time < h) {
+        int fine, far = modal_sum_leap(&f->sum, -1, m->pulse_peak, slack, &fine);
+        if (far < fine) {
+            modal_sum_step(&f->sum, far);
+            lo = (look_at){f->sum.time, walked(f, a)};
+            continue;
         }
-        lo = hi;
+        for (int i = 0; i < SAMPLES_A_BLOCK && lo.time < h; i++) {
+            modal_sum_step(&f->sum, fine);
+            look_at hi = {f->sum.time, walked(f, a)};
+            hi = hi.time < h ? hi : end;
+            double reach = fmax(fabs(lo.at.slope), fabs(hi.at.slope)) * (hi.time - lo.time);
+            note_force(m, hi);
+            if (lo.at.slope > 0 && hi.at.slope < 0 &&
+                fmax(lo.at.value, hi.at.value) + 0.3 * reach > m->pulse_peak) {
+                note_force(m, summit_of(f, a, lo, hi));
+            }
+            lo = hi;
+        }
     }
 }

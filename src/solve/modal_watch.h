@@ -1,15 +1,17 @@
 // Watched functions within a stride of the chain's modes (modal_stride.h): events and peaks.
 //
 // A function is what it is at the start, a linear functional of the modes that its gradient there
-// gives, and a polynomial through what is left of its exact values at the points of collocation.
-// That costs O(N) at an instant. On a walk through the stride it is looked at POINTS_A_PERIOD times
-// in the shortest period of all modes that matter: those left out could together move it by less
-// than `slack`. Wherever it comes near its edge the exact function is asked, and a root is one of
-// the exact function. So what can be missed is a dip below the edge by less than `slack`: 1e-10 m
-// of the gap, a thousandth of what the modes do to the force.
+// gives, and a polynomial through what is left of its exact values at the points of collocation: a
+// sum of vibrations and a power series (modal_sum.h), along which a walk leaps as far as no event
+// is certain. Where the function comes near its edge the walk looks at it a few times in the
+// shortest period of all modes that matter, those left out being able to move it by less than
+// `slack`. There the exact function is asked, and a root is one of the exact function. So what can
+// be missed is a dip below the edge by less than `slack`: 1e-10 m of the gap, a thousandth of what
+// the modes do to the force.
 #pragma once
 
 #include "src/solve/modal_stride.h"
+#include "src/solve/modal_sum.h"
 #include "src/solve/motion.h"
 
 typedef struct modal_function {
@@ -17,18 +19,23 @@ typedef struct modal_function {
     double value;             // at the start, in its unit
     double *place, *speed;    // functional of x and of v = x', by mode
     double rest[MODAL_NODES]; // polynomial sum rest[j] t^j / j!
+    modal_sum sum;            // all of it
     double slack;
     double edge; // its value at a start on its edge, where it counts as zero
 } modal_function;
 
-// Prepares a function on the stride in hand; its two arrays have room for all modes.
+// Doubles that the arrays of a function want for n degrees of freedom, and those laid out.
+size_t modal_function_size(int n);
+void modal_function_place(modal_function *f, int n, double *storage);
+
+// Prepares a function on the stride in hand.
 void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const arm *a, motion *m);
 
 // Its value and slope at t within the stride.
-glance modal_function_at(const modal_function *f, modal_stride *s, const arm *a, double t);
+glance modal_function_at(const modal_function *f, const arm *a, double t);
 
 // The first instant in (0, *h] at which it leaves its admissible side; *h is then moved there.
 bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, motion *m, double *h);
 
 // Raises m->pulse_peak to the largest force in [0, h].
-void modal_function_peak(modal_function *f, modal_stride *s, const arm *a, motion *m, double h);
+void modal_function_peak(modal_function *f, const arm *a, motion *m, double h);

@@ -6,14 +6,13 @@
 #include <string.h>
 
 // The event method takes the modes of the straight chain where the explicit formula would need more
-// substeps a step than this: fewer where overdamped modes, which it only has to outlive, set them.
-#define MOST_SUBSTEPS        900
-#define MOST_SUBSTEPS_DAMPED 90
+// substeps a step than this.
+#define MOST_SUBSTEPS   90
 
-#define CACHE_LINE           64 // [bytes]
+#define CACHE_LINE      64 // [bytes]
 
-#define PROJECTION_GAP       1e-14 // drift that is projected away in contact [m]
-#define PROJECTION_RATE      1e-13 // [m/s]
+#define PROJECTION_GAP  1e-14 // drift that is projected away in contact [m]
+#define PROJECTION_RATE 1e-13 // [m/s]
 
 // Some last bits of an acceleration, as a share of 1e-9, which counts as zero in a slow soft arm.
 #define LAST_BITS 4e-4
@@ -24,8 +23,7 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall);
 
     // how many explicit substeps a step would take
-    int most = a->fastest_rate > a->highest_frequency ? MOST_SUBSTEPS_DAMPED : MOST_SUBSTEPS;
-    bool too_stiff = a->fastest_rate * method->step > EXPLICIT_RESOLUTION * most;
+    bool too_stiff = a->fastest_rate * method->step > EXPLICIT_RESOLUTION * MOST_SUBSTEPS;
 
     // the engine, and its coefficients
     if (method->name == METHOD_NEWMARK) {
