@@ -1,5 +1,6 @@
 #include "src/arm/wall.h"
 #include "src/base/sincos.h"
+#include "src/base/plain_math.h"
 
 #include <assert.h>
 #include <math.h>
@@ -52,8 +53,8 @@ double wall_rate(const wall_model *w, double compliance, double depth, double ra
     // without its damper the wall stops the mass at the deepest point
     double n = w->exponent, energy = 0.5 * rate * rate / compliance;
     energy = (rate > 0 ? energy : 0) + wall_stored_energy(w, depth);
-    double deepest = pow((n + 1) * energy / w->stiffness, 1 / (n + 1));
-    double stiffness = n == 1 ? w->stiffness : n * w->stiffness * pow(deepest, n - 1);
-    double damping = w->law == WALL_KELVIN_VOIGT ? w->damping : w->damping * pow(deepest, n);
+    double deepest = plain_pow((n + 1) * energy / w->stiffness, 1 / (n + 1));
+    double stiffness = n == 1 ? w->stiffness : n * w->stiffness * plain_pow(deepest, n - 1);
+    double damping = w->law == WALL_KELVIN_VOIGT ? w->damping : w->damping * plain_pow(deepest, n);
     return fmax(sqrt(stiffness * compliance), damping * compliance);
 }

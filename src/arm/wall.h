@@ -26,6 +26,7 @@
 #include <stdbool.h>
 
 #include "src/quantities/parameters.h"
+#include "src/base/plain_math.h"
 
 typedef struct wall_model {
     wall_kind kind;
@@ -72,7 +73,7 @@ static inline double wall_power(const wall_model *w, double depth)
     return depth <= 0           ? 0
            : w->exponent == 1.0 ? depth
            : w->exponent == 1.5 ? depth * sqrt(depth)
-                                : pow(depth, w->exponent);
+                                : plain_pow(depth, w->exponent);
 }
 
 // Force of the wall's spring at a depth [N]; none in front of it.

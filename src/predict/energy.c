@@ -6,6 +6,7 @@
 #include "src/arm/arm.h"
 #include "src/predict/two_link.h"
 #include "src/base/sincos.h"
+#include "src/base/plain_math.h"
 
 void quasi_principle_deflections(int n, const double *k, double energy, double *deflection)
 {
@@ -93,7 +94,7 @@ static double share_undamped(const parameters *p, const two_link *t, const three
     double frequency = sqrt(fmax(square - damping * damping, 0));
     double bend = s->angle[2] - s->angle[1], rate = s->velocity[2] - s->velocity[1];
     double phase = atan2(fabs(rate), frequency * copysign(bend, rate * bend));
-    return frequency > 0 ? exp(-2 * damping * phase / frequency) : 0;
+    return frequency > 0 ? plain_exp(-2 * damping * phase / frequency) : 0;
 }
 
 // Corrected form: whole energy (4.23), shared by (4.24), and (4.28) without the k2 term that does

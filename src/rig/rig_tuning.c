@@ -5,6 +5,7 @@
 
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
+#include "src/base/sincos.h"
 
 static const double turn = 2 * 3.14159265358979323846; // [rad]
 
@@ -96,8 +97,9 @@ status rig_follow_setpoint(rig *r, double time, fault *f)
     const double way = c->force - r->ramp, most = c->force_rate * (time - r->ramp_time);
     r->ramp = c->force_rate > 0 && fabs(way) > most ? r->ramp + copysign(most, way) : c->force;
     r->ramp_time = time;
-    const double wave =
-        c->force_amplitude > 0 ? c->force_amplitude * sin(turn * c->force_frequency * time) : 0;
+    const double wave = c->force_amplitude > 0
+                            ? c->force_amplitude * inline_sin(turn * c->force_frequency * time)
+                            : 0;
     const double wanted = fmax(0, r->ramp + wave);
 
     // the controller hears of a change only

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "src/base/sincos.h"
+#include "src/base/plain_math.h"
 
 // 10 % to 90 % of a first-order lag takes ln 9 time constants.
 #define RISE_OVER_TIME_CONSTANT 2.1972245773362196
@@ -29,7 +30,7 @@ static double random_normal(noise_source *n)
         double x = 2 * random_uniform(&n->random) - 1, y = 2 * random_uniform(&n->random) - 1;
         double r = x * x + y * y;
         if (r > 0 && r < 1) {
-            double factor = sqrt(-2 * log(r) / r);
+            double factor = sqrt(-2 * plain_log(r) / r);
             n->spare = y * factor;
             return x * factor;
         }
@@ -121,7 +122,7 @@ static void lag_follow(first_order_lag *y, double h, double first, double last, 
     double r = lag / h;
     double at_start = first - r * slope + 2 * r * r * curve;
     double at_end = last - r * (slope + 2 * curve) + 2 * r * r * curve;
-    y->value = at_end + (y->value - at_start) * exp(-h / lag);
+    y->value = at_end + (y->value - at_start) * plain_exp(-h / lag);
 }
 
 // Under a pulse of the input, given by its integral.
@@ -189,7 +190,8 @@ double fsr_volts(const sensor_parameters *p, double force)
     if (!(force > 0)) {
         return 0;
     }
-    double resistance = p->fsr_resistance * pow(fmin(force, p->fsr_saturation), -p->fsr_exponent);
+    double resistance =
+        p->fsr_resistance * plain_pow(fmin(force, p->fsr_saturation), -p->fsr_exponent);
     return p->fsr_gain * p->fsr_supply * p->fsr_divider / (p->fsr_divider + resistance);
 }
 
@@ -203,7 +205,7 @@ double fsr_force(const sensor_parameters *p, double volts)
         return p->fsr_saturation;
     }
     double resistance = p->fsr_divider * (1 - share) / share;
-    double force = pow(resistance / p->fsr_resistance, -1 / p->fsr_exponent);
+    double force = plain_pow(resistance / p->fsr_resistance, -1 / p->fsr_exponent);
     return fmin(force, p->fsr_saturation);
 }
 

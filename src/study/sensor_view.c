@@ -5,6 +5,7 @@
 
 #include "src/solve/contact_machine.h"
 #include "src/base/instant.h"
+#include "src/base/plain_math.h"
 
 // A parabola is right to 1e-4 of the fastest mode's force over so much of (fastest rate) x (time).
 #define PARABOLA_REACH 0.25
@@ -37,19 +38,19 @@ void sensor_lag_impulse(sensor_lag *s, double impulse)
     look(s, s->time, s->value);
 }
 
-// y(t) = a + b t + c t^2 + d exp(-t / tau), the response to a parabola.
+// y(t) = a + b t + c t^2 + d plain_exp(-t / tau), the response to a parabola.
 typedef struct response {
     double a, b, c, d, rate;
 } response;
 
 static double response_value(const response *r, double t)
 {
-    return r->a + t * (r->b + t * r->c) + r->d * exp(-r->rate * t);
+    return r->a + t * (r->b + t * r->c) + r->d * plain_exp(-r->rate * t);
 }
 
 static double response_slope(const response *r, double t)
 {
-    return r->b + 2 * r->c * t - r->rate * r->d * exp(-r->rate * t);
+    return r->b + 2 * r->c * t - r->rate * r->d * plain_exp(-r->rate * t);
 }
 
 void sensor_lag_force(sensor_lag *s, double length, double first, double last, double mean)
@@ -260,7 +261,7 @@ status sensor_view_compute(const scenario *s, int links, sensor_view *view, faul
 static double beam_constant(const parameters *p, double speed)
 {
     double bending = p->arm.k2 * p->arm.length / 2, density = p->arm.mass / p->arm.length;
-    return speed * pow(bending, 0.25) * pow(density, 0.75) / sqrt(2 * M_PI);
+    return speed * plain_pow(bending, 0.25) * plain_pow(density, 0.75) / sqrt(2 * M_PI);
 }
 
 double sensor_beam_momentum(const parameters *p, double speed, double time)

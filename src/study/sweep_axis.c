@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
+#include "src/base/plain_math.h"
 
 const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
 {
@@ -58,7 +59,7 @@ static double range_point(const sweep_axis *axis, size_t i, size_t n)
         return i == 0 ? axis->low : axis->high;
     }
     if (axis->logarithmic) {
-        value = axis->low * pow(axis->high / axis->low, x / last);
+        value = axis->low * plain_pow(axis->high / axis->low, x / last);
     } else {
         value = (axis->low * (last - x) + axis->high * x) / last;
     }
@@ -241,7 +242,7 @@ double sweep_axis_value_at(const sweep_axis *axis, double share)
     bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
     // each whole number owns the unit interval round it
     double from = whole ? low - 0.5 : low, to = whole ? high + 0.5 : high;
-    double value =
-        axis->logarithmic ? from * exp(share * log(to / from)) : from + share * (to - from);
+    double value = axis->logarithmic ? from * plain_exp(share * plain_log(to / from))
+                                     : from + share * (to - from);
     return fmin(fmax(whole ? floor(value + 0.5) : value, low), high);
 }

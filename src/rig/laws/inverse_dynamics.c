@@ -17,19 +17,18 @@
 // and the second gives the torque. (+-s are the zeros of the transfer function from torque to tip:
 // one of them unstable, since a tip that is pushed through a bend first goes the other way.)
 //
-// The inverse. At every frequency (a) is a division: a part U exp(iwt) of u takes
-// d = -U exp(iwt)/(w^2 + s^2), which is bounded though (a) integrated forwards is not. The plan
-// consists of three pieces with few frequencies each,
+// The inverse. At every frequency (a) is a division: a part U plain_exp(iwt) of u takes
+// d = -U plain_exp(iwt)/(w^2 + s^2), which is bounded though (a) integrated forwards is not. The
+// plan consists of three pieces with few frequencies each,
 //
-//     travel   y'' = A sin(wt) + B (1 - cos(wt)),     w = 2 pi/travel_time,    to the wall
-//     rise     f = F/2 (1 - cos(pi t/transition_time)), y at the wall
-//     hold     f = F
+//     travel   y'' = A inline_sin(wt) + B (1 - inline_cos(wt)),     w = 2 pi/travel_time,    to the
+//     wall rise     f = F/2 (1 - inline_cos(pi t/transition_time)), y at the wall hold     f = F
 //
 // so that neither a discrete transform nor its padding is needed: summed over all frequencies, the
 // transform of a piece gives the piece's own within it and, from the poles at w = +-is,
-// exp(-s |t - t_k|) before and after each joint t_k of two pieces, with the heights that make d
-// continuous. What runs ahead of a joint is why the method is not causal: the hub starts before the
-// tip, bends the beam for it, and turns on into the press before the tip has arrived.
+// plain_exp(-s |t - t_k|) before and after each joint t_k of two pieces, with the heights that make
+// d continuous. What runs ahead of a joint is why the method is not causal: the hub starts before
+// the tip, bends the beam for it, and turns on into the press before the tip has arrived.
 //
 // The touch. A tip that arrives with the rate v is stopped by the wall's impulse P, plastically.
 // The plan holds this too: y'' and f contain -v and P times a delta, P being such that the torque
@@ -37,6 +36,8 @@
 #include <math.h>
 
 #include "src/rig/laws/laws.h"
+#include "src/base/plain_math.h"
+#include "src/base/sincos.h"
 
 enum { MODE_TRAVEL, MODE_PRESS };
 static const char *const mode_names[] = {"travel", "press", NULL};
@@ -89,7 +90,7 @@ static moment piece_at(const inverse_memory *m, int piece, double time)
         return (moment){.tip = m->start_angle};
     }
     if (piece == TRAVEL) {
-        const double w = m->travel, c = cos(w * time), s = sin(w * time), A = m->sine;
+        const double w = m->travel, c = inline_cos(w * time), s = inline_sin(w * time), A = m->sine;
         const double B = m->cosine, at_w = -m->per_tip / (w * w + s2), at_0 = -m->per_tip / s2;
         return (moment){
             .tip =
@@ -107,9 +108,9 @@ static moment piece_at(const inverse_memory *m, int piece, double time)
     if (piece == RISE) {
         const double w = m->rise, t = time - m->joint[TOUCH], half = m->force / 2;
         const double at_w = -m->per_force / (w * w + s2);
-        pressed.force = half * (1 - cos(w * t));
-        pressed.bend = pressed.bend / 2 - at_w * half * cos(w * t);
-        pressed.bend_rate = at_w * half * w * sin(w * t);
+        pressed.force = half * (1 - inline_cos(w * t));
+        pressed.bend = pressed.bend / 2 - at_w * half * inline_cos(w * t);
+        pressed.bend_rate = at_w * half * w * inline_sin(w * t);
     }
     return pressed;
 }
@@ -145,7 +146,7 @@ static moment plan_at(const inverse_memory *m, double time)
     const int piece = piece_of(m, time);
     moment now = piece_at(m, piece, time);
     for (int k = 0; k < JOINTS; k++) {
-        double decay = exp(-m->zero * fabs(time - m->joint[k]));
+        double decay = plain_exp(-m->zero * fabs(time - m->joint[k]));
         now.bend += (k < piece ? m->behind[k] : m->ahead[k]) * decay;
         now.bend_rate += m->zero * (k < piece ? -m->behind[k] : m->ahead[k]) * decay;
     }

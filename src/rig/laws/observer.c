@@ -11,6 +11,7 @@
 #include "src/rig/arm_observer.h"
 #include "src/rig/laws/laws.h"
 #include "src/rig/riccati.h"
+#include "src/base/plain_math.h"
 
 enum { TRAVEL, PRESS, HOLD, RECOVER };
 static const char *const mode_names[] = {"travel", "press", "hold", "recover", NULL};
@@ -179,8 +180,8 @@ static void find_speeds(observer_memory *m, double force)
     // the touch is slow enough to be stopped
     if (p * h > 1) {
         double s = sqrt(square / (p * h - 1));
-        double stopped =
-            force * h * arm->length * s / (square * p) * exp(-s * (m->rig.period + m->rig.delay));
+        double stopped = force * h * arm->length * s / (square * p) *
+                         plain_exp(-s * (m->rig.period + m->rig.delay));
         m->touch_speed = fmin(m->touch_speed, TOUCH_SHARE * stopped);
     }
 

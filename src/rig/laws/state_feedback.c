@@ -1,4 +1,5 @@
 #include "src/rig/laws/state_feedback.h"
+#include "src/base/plain_math.h"
 
 #include <assert.h>
 #include <math.h>
@@ -91,7 +92,7 @@ const char *state_feedback_start(void *memory, const controller_setup *setup)
     double output[2] = {m->spring_force + per_torque * m->stiffness,
                         per_torque * setup->hub_damping};
     if (!optimal_gain(&plant, output, -per_torque * setup->torque_per_volt, EFFORT,
-                      exp(URGENCY * setup->period), m->gain)) {
+                      plain_exp(URGENCY * setup->period), m->gain)) {
         return "the Riccati equation of its gains has no stabilising solution";
     }
     return NULL;
@@ -184,7 +185,7 @@ static double force_of_touch(const optimal_memory *m)
     const double *z = m->e.z;
     double x = (z[FREE_FIRST] - z[FREE_LAST]) / 2;
     double rate = m->jump[0] * z[FREE_FIRST_RATE] + m->jump[1] * z[FREE_LAST_RATE];
-    double noticed = exp(m->divergence * (m->rig.period + m->rig.delay));
+    double noticed = plain_exp(m->divergence * (m->rig.period + m->rig.delay));
     return braking_force(m, m->spring_force * (x + rate / m->divergence) * noticed);
 }
 

@@ -1,0 +1,72 @@
+// Exponential, logarithm and power of the project against the C library's in extended precision.
+#include "src/base/plain_math.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "src/base/random.h"
+#include "tests/check.h"
+
+enum { TRIALS = 20000 };
+
+// How far a result is from the exact one, in units in its last place.
+static double units_off(double found, long double exact)
+{
+    const double unit = nextafter(fabs((double)exact), HUGE_VAL) - fabs((double)exact);
+    return (double)(fabsl((long double)found - exact) / (long double)unit);
+}
+
+static void exponentials_are_right_to_two_units(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 1);
+    for (int i = 0; i < TRIALS; i++) {
+        const double size = i % 2 == 0 ? 1 : 700, x = size * (2 * random_uniform(&g) - 1);
+        assert_true(units_off(plain_exp(x), expl((long double)x)) < 2);
+    }
+    check_close(plain_exp(0), 1, 0);
+    assert_true(isinf(plain_exp(710)) && isinf(plain_exp((double)INFINITY)));
+    check_close(plain_exp(-800), 0, 0);
+    assert_true(isnan(plain_exp((double)NAN)));
+}
+
+static void logarithms_are_right_to_two_units(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 2);
+    for (int i = 0; i < TRIALS; i++) {
+        const double u = random_uniform(&g);
+        const double x = i % 2 == 0 ? 0.5 + u : ldexp(u + DBL_MIN, i % 2000 - 1000);
+        if (x > DBL_MIN && x != 1) {
+            assert_true(units_off(plain_log(x), logl((long double)x)) < 2);
+        }
+    }
+    check_close(plain_log(1), 0, 0);
+    assert_true(isinf(plain_log(0)) && plain_log(0) < 0);
+}
+
+static void powers_are_those_of_the_library(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 3);
+    for (int i = 0; i < TRIALS; i++) {
+        const double x = 1e-6 + random_uniform(&g) * (i % 2 == 0 ? 1 : 1e4);
+        const double y = 6 * random_uniform(&g) - 3, exact = pow(x, y);
+        check_close(plain_pow(x, y), exact, 1e-14 * exact);
+    }
+    check_close(plain_pow(0, 0), 1, 0);
+    check_close(plain_pow(0, 2), 0, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exponentials_are_right_to_two_units),
+        cmocka_unit_test(logarithms_are_right_to_two_units),
+        cmocka_unit_test(powers_are_those_of_the_library),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
