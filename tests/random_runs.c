@@ -227,6 +227,11 @@ static bool run_one(uint64_t i, bool wide, bool always_said, tally *t)
     return true;
 }
 
+// Wide runs that were found wrong.
+static const uint64_t once_wrong[] = {46,    57,    63,    321,   446,   523,   862,   1524,  1726,
+                                      2011,  2404,  2949,  10962, 12852, 17099, 17671, 33177, 48363,
+                                      52431, 56521, 57075, 76751, 94705, 97571, 114341};
+
 int main(int argc, char **argv)
 {
     const uint64_t count = argc > 1 ? strtoull(argv[1], NULL, 10) : 2000;
@@ -235,6 +240,10 @@ int main(int argc, char **argv)
     tally t = {0};
     signal(SIGPROF, time_is_up);
 
+    // the old acquaintances first, but where one run is asked for
+    for (size_t i = 0; count > 1 && i < sizeof once_wrong / sizeof once_wrong[0]; i++) {
+        t.wrong += !run_one(once_wrong[i], true, false, &t);
+    }
     for (uint64_t i = from; i < from + count; i++) {
         const bool wide = *kind != '\0' ? strcmp(kind, "wide") == 0 : i % 2 == 1;
         t.wrong += !run_one(i, wide, count == 1, &t);

@@ -22,8 +22,8 @@
 #define EDGE_RATE  1e-9
 #define EDGE_MORE  1e-7
 #define EDGE_GAP   1e-12 // [m]
-// As deep in the wall an arm in free flight may be by the truncation of the series that led there.
-#define EDGE_DEPTH 1e-9 // [m]
+// As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
+#define EDGE_DEPTH 1e-6 // [m]
 
 enum { MOST_TERMS = TAYLOR_MOST + 2, ANGLES = 3 };
 
@@ -204,6 +204,7 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
     for (int i = 0; i < m->dof; i++) {
         rate = fmax(rate, 1.2 * fabs(w[i]));
     }
+    rate = fmax(rate, 1.2 * fabs(w[a->first + 1] - w[a->first])); // the bend turns, too
     double wanted = fmin(remaining, LONGEST_REACH / rate);
     if (a->fastest_decay * wanted > LONGEST_DECAY) {
         wanted = LONGEST_DECAY / a->fastest_decay;
@@ -242,7 +243,7 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
     } else {
         polynomial *distance = &s->watched[WATCH_GAP];
         set_polynomial(distance, s->block + AT_GAP, order + 2, 1);
-        if (distance->terms[0] < 0 && distance->terms[0] > -EDGE_DEPTH) {
+        if (distance->terms[0] < 0 && distance->terms[0] > -EDGE_DEPTH && distance->terms[1] > 0) {
             distance->terms[0] = 0;
             wall_at_edge = true;
         }
@@ -271,7 +272,11 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
     }
     if (jumped) {
         const bool stuck = now.friction == HUB_STICK;
-        leave_edge(&s->watched[stuck ? WATCH_STICTION : WATCH_HUB], stuck ? reaction : hub_rate);
+        if (!stuck) {
+            leave_edge(&s->watched[WATCH_HUB], hub_rate);
+        } else if (fabs(s->watched[WATCH_STICTION].terms[0]) <= EDGE_VALUE) {
+            s->watched[WATCH_STICTION].terms[0] = EDGE_VALUE; // what holds it may hold as much more
+        }
     }
 }
 
