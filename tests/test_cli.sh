@@ -205,6 +205,10 @@ expect 0 list
 says out "thesis/fig-3-4"
 [ "$(wc -l <out)" = "$(find "$IMPACTLAB_SCENARIOS" -name '*.yaml' -not -path '*/recipes/*' | wc -l)" ] ||
     fail "list does not have a line for every scenario"
+expect 0 list --json -
+says out '"name": "thesis/fig-3-4"'
+expect 0 show hit.yaml --set arm.k2=6 --json -
+says out '"arm.k2": 6'
 expect 0 show hit.yaml --set arm.k2=6
 grep -q '^arm.k2 *= *6 N m/rad' out || fail "show does not mark what was set"
 grep -q '^arm.mass  *0.40108 kg' out || fail "show does not give a default without a mark"

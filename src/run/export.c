@@ -24,8 +24,9 @@ static json_t *parameter_value(const parameters *p, int index)
     return json_number(parameter_get(p, index));
 }
 
-static json_t *parameters_object(const parameters *p)
+json_t *export_parameters(const parameters *p)
 {
+    assert(p != NULL);
     json_t *object = json_object();
     for (int i = 0; i < parameter_count; i++) {
         json_object_set_new(object, parameter_table[i].path, parameter_value(p, i));
@@ -104,7 +105,7 @@ json_t *export_run(const scenario *s, const run_result *result)
     json_object_set_new(object, "method_used", json_text(m->method));
 
     // what went in and what came out
-    json_object_set_new(object, "parameters", parameters_object(&s->parameters));
+    json_object_set_new(object, "parameters", export_parameters(&s->parameters));
     for (int i = 0; i < summary_count; i++) {
         json_object_set_new(object, summary_table[i].key, json_number(summary_value(m, i)));
     }

@@ -11,6 +11,9 @@
 // without memory. The caller calls json_decref.
 json_t *export_run(const scenario *s, const run_result *result);
 
+// The value of every parameter by its path, as it stands there. The caller calls json_decref.
+json_t *export_parameters(const parameters *p);
+
 // Writes a trace as CSV: one header row of name[unit], then a row for each sample; for more than
 // two links the angle of every body follows as angle_1[rad], angle_2[rad]... Errors stay in the
 // stream.

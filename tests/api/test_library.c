@@ -156,7 +156,8 @@ static void mistakes_are_told(void **state)
     // wrong values change nothing
     assert_int_not_equal(impactlab_scenario_set(scenario, "motor.voltage", "much", &error), 0);
     assert_string_equal(error.parameter, "motor.voltage");
-    assert_int_not_equal(impactlab_scenario_set_number(scenario, "wall.angle", NAN, &error), 0);
+    assert_int_not_equal(impactlab_scenario_set_number(scenario, "wall.angle", (double)NAN, &error),
+                         0);
     check_done(impactlab_scenario_number(scenario, "motor.voltage", &value, &error), &error);
     check_same(value, 1);
 
@@ -391,7 +392,7 @@ static void batches_are_runs(void **state)
     assert_int_equal(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &few, &error),
                      IMPACTLAB_STOPPED);
     assert_int_equal(few.count, 7);
-    volts[499] = NAN;
+    volts[499] = (double)NAN;
     assert_int_not_equal(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &few, &error),
                          0);
     assert_non_null(strstr(error.sentence, "run 499"));

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/json.h"
+
 // A scenario with faults is listed all the same, without a title.
 static void ignore_fault(void *context, const char *sentence)
 {
@@ -21,9 +23,23 @@ static void print_scenario(const char *name, int width)
     scenario_finish(&s);
 }
 
+// An object of name and title; the title of one with faults is null.
+static json_t *scenario_object(const char *name)
+{
+    scenario s;
+    json_t *object = json_object();
+    json_object_set_new(object, "name", json_text(name));
+    if (scenario_open(&s, name, ignore_fault, NULL) != STATUS_OK) {
+        json_object_set_new(object, "title", json_null());
+        return object;
+    }
+    json_object_set_new(object, "title", json_text(s.title ? s.title : ""));
+    scenario_finish(&s);
+    return object;
+}
+
 static int list(const arguments *a)
 {
-    (void)a;
     char **names;
     int count, width = 0;
     fault f = {0};
@@ -32,19 +48,27 @@ static int list(const arguments *a)
         return complain_fault(&f);
     }
 
-    // titles stand in a column
+    // for a program
+    json_t *all = a->json != NULL ? json_array() : NULL;
+    for (int i = 0; i < count && a->json != NULL; i++) {
+        json_array_append_new(all, scenario_object(names[i]));
+    }
+
+    // or for people: titles stand in a column
     for (int i = 0; i < count; i++) {
         int length = (int)strlen(names[i]);
         width = length > width ? length : width;
     }
 
     for (int i = 0; i < count; i++) {
-        print_scenario(names[i], width);
+        if (a->json == NULL) {
+            print_scenario(names[i], width);
+        }
         free(names[i]);
     }
 
     free(names);
-    return EXIT_DONE;
+    return a->json != NULL ? write_json(a->json, all) : EXIT_DONE;
 }
 
 const command list_command = {
@@ -53,5 +77,6 @@ const command list_command = {
     .operands = "",
     .summary = "Name and title of every scenario",
     .help = "",
+    .options = {&json_options},
     .run = list,
 };

@@ -4,6 +4,8 @@
 
 #include "src/quantities/summary.h"
 #include "src/quantities/parameters.h"
+#include "src/base/json.h"
+#include "src/run/export.h"
 
 static void print_range(const parameter_info *info)
 {
@@ -56,9 +58,28 @@ static void print_expectations(const scenario *s)
     }
 }
 
+// The same for a program: values by path, and which of them were given.
+static json_t *show_object(const scenario *s)
+{
+    json_t *object = json_object(), *given = json_array();
+    for (int i = 0; i < parameter_count; i++) {
+        if (s->parameters.set[i]) {
+            json_array_append_new(given, json_string(parameter_table[i].path));
+        }
+    }
+    json_object_set_new(object, "scenario", json_text(s->name));
+    json_object_set_new(object, "title", json_text(s->title));
+    json_object_set_new(object, "description", json_text(s->description));
+    json_object_set_new(object, "parameters", export_parameters(&s->parameters));
+    json_object_set_new(object, "given", given);
+    return object;
+}
+
 static int print_scenario(const arguments *a, scenario *s)
 {
-    (void)a;
+    if (a->json != NULL) {
+        return write_json(a->json, show_object(s));
+    }
     say("%s: %s\n", s->name, s->title);
     print_wrapped(stdout, s->description, (int)strlen(s->description), 96);
 
@@ -97,6 +118,6 @@ const command show_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .options = {&set_options},
+    .options = {&set_options, &json_options},
     .run = show,
 };
