@@ -2,6 +2,7 @@
 #include "tests/arm_fixture.h"
 
 #include "src/arm/motor.h"
+#include "src/solve/contact_machine.h"
 
 static motor_parameters drive(void)
 {
@@ -70,6 +71,72 @@ static void energy_in_is_heat_and_work(void **state)
     check_close(motor_electrical_energy(&p, 99, 1, 0), motor_electrical_energy(&p, 10, 1, 0), 0);
 }
 
+// An amplifier that holds a current: torque whatever the speed, and a limit in amperes.
+static void a_current_drive_knows_no_back_emf(void **state)
+{
+    (void)state;
+    motor_parameters p = drive();
+    motor_model m;
+    p.drive = DRIVE_CURRENT;
+    p.transconductance = 0.2;
+    motor_init(&m, &p);
+    check_close(m.torque_per_volt, 0.2 * 2.5, 1e-15);
+    check_close(m.damping, 0.01, 0);
+    check_close(motor_command_limit(&p), 10, 0);
+
+    // 0.5 A are 2.5 V of command
+    p.current_limit = 0.5;
+    motor_init(&m, &p);
+    motor_set_voltage(&m, 7);
+    check_close(m.voltage, 2.5, 0);
+    check_relative(m.torque, 0.5 * 2.5, 1e-15);
+
+    // what goes in: heat, and work against back EMF
+    const double duration = 0.3, turn = 0.51, heat = 0.4 * 0.4 * p.resistance * duration;
+    check_relative(motor_electrical_energy(&p, 2, duration, turn), heat + p.back_emf * 0.4 * turn,
+                   1e-14);
+}
+
+// A single link without friction in free motion: constant acceleration under a current, an
+// exponential approach to the idle speed under a voltage.
+static void free_motion_is_that_of_the_drive(void **state)
+{
+    (void)state;
+    for (int current = 0; current <= 1; current++) {
+        parameters p = fixture_parameters(SETTINGS(
+            "arm.links=1", "wall.kind=none", "motor.stiction=0", "motor.viscous_friction=0",
+            "motor.voltage=2", current ? "motor.drive=current" : "motor.drive=voltage"));
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        motion_report report;
+        const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
+        const double torque = 2 * 6.02 * p.motor.torque_constant / p.motor.resistance, t = 0.4;
+        motion_start(&a, m, 0, 0);
+        assert_int_equal(motion_advance(&a, m, t, 1e-3, &report), STATUS_OK);
+        double rate = motor_damping(&p.motor) / inertia;
+        double speed = current ? torque / inertia * t
+                               : torque / motor_damping(&p.motor) * (1 - exp(-rate * t));
+        check_relative(state_velocities(m, m->state)[0], speed, 1e-9);
+        check_close(motion_energy_residual(&a, m, m->state), 0, 1e-10);
+        motion_destroy(m);
+    }
+}
+
+static void what_belongs_to_a_current_drive_is_refused_with_a_voltage(void **state)
+{
+    (void)state;
+    const char *const paths[] = {"motor.current_limit", "motor.transconductance"};
+    for (int i = 0; i < 2; i++) {
+        parameters p;
+        fault f;
+        parameters_defaults(&p, ARM_CORRECTED);
+        assert_int_equal(parameter_set_text(&p, parameter_find(paths[i]), "0.5", &f), STATUS_OK);
+        assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+        assert_string_equal(f.path, paths[i]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -77,6 +144,9 @@ int main(void)
         cmocka_unit_test(commands_saturate_both_ways),
         cmocka_unit_test(the_command_in_force_leaves_the_parameter_alone),
         cmocka_unit_test(energy_in_is_heat_and_work),
+        cmocka_unit_test(a_current_drive_knows_no_back_emf),
+        cmocka_unit_test(free_motion_is_that_of_the_drive),
+        cmocka_unit_test(what_belongs_to_a_current_drive_is_refused_with_a_voltage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -110,7 +110,8 @@ static void defaults_are_in_range(void **state)
             assert_true(!derived || strcmp(info->path, "arm.link_inertia") == 0 ||
                         strcmp(info->path, "arm.EI") == 0 ||
                         strcmp(info->path, "wall.stiffness") == 0 ||
-                        strcmp(info->path, "wall.damping") == 0);
+                        strcmp(info->path, "wall.damping") == 0 ||
+                        strcmp(info->path, "motor.transconductance") == 0);
         }
     }
 }

@@ -3,6 +3,15 @@
 #include <assert.h>
 #include <math.h>
 
+double motor_command_limit(const motor_parameters *p)
+{
+    assert(p != NULL);
+    if (p->drive != DRIVE_CURRENT || p->current_limit == 0 || p->transconductance == 0) {
+        return p->voltage_limit;
+    }
+    return fmin(p->voltage_limit, p->current_limit / p->transconductance);
+}
+
 static double limited(double volts, double limit)
 {
     return fmax(-limit, fmin(volts, limit));
@@ -11,18 +20,24 @@ static double limited(double volts, double limit)
 double motor_limited_voltage(const motor_parameters *p, double volts)
 {
     assert(p != NULL);
-    return limited(volts, p->voltage_limit);
+    return limited(volts, motor_command_limit(p));
 }
 
 double motor_torque_per_volt(const motor_parameters *p)
 {
     assert(p != NULL);
+    if (p->drive == DRIVE_CURRENT) {
+        return p->transconductance * p->torque_constant;
+    }
     return p->amplifier_gain * p->torque_constant / p->resistance;
 }
 
 double motor_damping(const motor_parameters *p)
 {
     assert(p != NULL);
+    if (p->drive == DRIVE_CURRENT) {
+        return p->viscous_friction; // the amplifier overcomes back EMF
+    }
     return p->viscous_friction + p->torque_constant * p->back_emf / p->resistance;
 }
 
@@ -30,14 +45,20 @@ double motor_electrical_energy(const motor_parameters *p, double volts, double d
                                double turn)
 {
     assert(p != NULL);
-    double amplified = p->amplifier_gain * limited(volts, p->voltage_limit);
+    double command = motor_limited_voltage(p, volts);
+    if (p->drive == DRIVE_CURRENT) {
+        // heat of the current, and its work against back EMF
+        double current = p->transconductance * command;
+        return current * (current * p->resistance * duration + p->back_emf * turn);
+    }
+    double amplified = p->amplifier_gain * command;
     return amplified / p->resistance * (amplified * duration - p->back_emf * turn);
 }
 
 void motor_init(motor_model *m, const motor_parameters *p)
 {
     assert(m != NULL && p != NULL);
-    *m = (motor_model){.voltage_limit = p->voltage_limit,
+    *m = (motor_model){.voltage_limit = motor_command_limit(p),
                        .torque_per_volt = motor_torque_per_volt(p),
                        .damping = motor_damping(p),
                        .stiction = p->stiction};

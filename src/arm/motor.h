@@ -6,6 +6,12 @@
 //
 //     torque = gain kT / Ra u - (kfr + kT kB / Ra) w - Coulomb friction.
 //
+// An amplifier that holds a current (motor.drive = current) gives G u amperes whatever the speed,
+//
+//     torque = G kT u - kfr w - Coulomb friction,
+//
+// and its limit of current is one of the command.
+//
 // `motor.voltage` among the parameters is the command of an arm without a controller, and the one
 // every arm starts with. The command in force is `voltage` here: a controller changes it from
 // sample to sample, and leaves the parameter alone.
@@ -14,7 +20,7 @@
 #include "src/quantities/parameters.h"
 
 typedef struct motor_model {
-    double voltage_limit;   // of the D/A converter [V]
+    double voltage_limit;   // largest command, of converter and current limit [V]
     double torque_per_volt; // of the command [N m/V]
     double damping;         // viscous friction and back EMF [N m s/rad]
     double stiction;        // Coulomb friction torque, kst [N m]
@@ -28,16 +34,21 @@ void motor_init(motor_model *m, const motor_parameters *p);
 // Another command [V], which the converter limits; costs a multiplication.
 void motor_set_voltage(motor_model *m, double volts);
 
-// A command after the limit of the D/A converter [V].
+// Largest command either way: of the converter, and of the current a current drive may give [V].
+double motor_command_limit(const motor_parameters *p);
+
+// A command after that limit [V].
 double motor_limited_voltage(const motor_parameters *p, double volts);
 
-// Torque per volt of command, gain kT / Ra [N m/V].
+// Torque per volt of command, gain kT / Ra, of a current drive G kT [N m/V].
 double motor_torque_per_volt(const motor_parameters *p);
 
-// Damping torque per hub velocity, viscous friction plus back EMF, kfr + kT kB / Ra [N m s/rad].
+// Damping torque per hub velocity, viscous friction plus back EMF, kfr + kT kB / Ra; of a current
+// drive kfr alone [N m s/rad].
 double motor_damping(const motor_parameters *p);
 
 // What the amplifier feeds into the motor [J] while a command [V] is in force for `duration` [s]
-// and the hub turns by `turn` [rad]: the integral of V (V - kB w) / Ra, V = gain x limited command.
+// and the hub turns by `turn` [rad]: the integral of V (V - kB w) / Ra, V = gain x limited command;
+// of a current drive that of i (Ra i + kB w).
 double motor_electrical_energy(const motor_parameters *p, double volts, double duration,
                                double turn);

@@ -52,7 +52,7 @@ bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
         .stiffness = 4 * p->arm.k2,
         .damping = motor_damping(&p->motor),
         .stiction = p->motor.stiction,
-        .torque_limit = motor_torque_per_volt(&p->motor) * p->motor.voltage_limit,
+        .torque_limit = motor_torque_per_volt(&p->motor) * motor_command_limit(&p->motor),
         .spring_force = 2 * p->arm.k2 / l,
         .mass_force = (quarter - p->arm.link_inertia) / l,
     };

@@ -15,6 +15,7 @@ typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
 typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING, HUB_BEAM } hub_joint_kind;
 typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
 typedef enum wall_law { WALL_RIGID, WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY } wall_law;
+typedef enum motor_drive { DRIVE_VOLTAGE, DRIVE_CURRENT } motor_drive;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
 typedef enum listing_reevaluation {
     REEVALUATE_RHS,
@@ -38,9 +39,12 @@ typedef struct arm_parameters {
 } arm_parameters;
 
 typedef struct motor_parameters {
+    int drive;               // motor_drive: what the amplifier gives for a command
     double voltage;          // command before the amplifier [V]
     double voltage_limit;    // largest command the D/A gives [V]
     double amplifier_gain;   // [-]
+    double transconductance; // of a current drive, amperes per volt of command [A/V]
+    double current_limit;    // of a current drive, 0: none [A]
     double torque_constant;  // kT [N m/A]
     double back_emf;         // kB [V s/rad]
     double resistance;       // Ra [ohm]

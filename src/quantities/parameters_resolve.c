@@ -78,6 +78,31 @@ static status resolve_stiffness(parameters *p, fault *f)
 }
 
 // The shape of the arm, and where it starts.
+// A current drive has a gain and a limit of its own, a voltage drive has neither.
+static status resolve_motor(parameters *p, fault *f)
+{
+    motor_parameters *m = &p->motor;
+    if (isnan(m->transconductance)) {
+        m->transconductance = m->amplifier_gain / m->resistance;
+    }
+    if (m->drive == DRIVE_CURRENT) {
+        return STATUS_OK;
+    }
+
+    // under a voltage the current follows from the speed, and a limit on it would have to as well
+    if (m->current_limit > 0) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, motor.current_limit, motor.drive),
+                            "motor.current_limit is for motor.drive = current; under a voltage "
+                            "the current follows from the speed");
+    }
+    if (IS_SET(p, motor.transconductance)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, motor.transconductance, motor.drive),
+                            "motor.transconductance is for motor.drive = current; with voltage "
+                            "motor.amplifier_gain says what a command gives");
+    }
+    return STATUS_OK;
+}
+
 // Walls nobody has measured: docs/physics.md says where these come from.
 #define SOFT_STIFFNESS  75e3 // Kelvin-Voigt [N/m]
 #define SOFT_DAMPING    20.0 // [N s/m]
@@ -249,6 +274,7 @@ status parameters_resolve(parameters *p, fault *f)
     assert(p != NULL);
     resolve_defaults(p);
     status code = resolve_arm(p, f);
+    code = code == STATUS_OK ? resolve_motor(p, f) : code;
     code = code == STATUS_OK ? resolve_wall(p, f) : code;
     code = code == STATUS_OK ? check_control(p, f) : code;
     code = code == STATUS_OK ? resolve_piezo(p, f) : code;

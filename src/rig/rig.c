@@ -155,7 +155,7 @@ status rig_create_with(rig **created, const parameters *p, const given_law *give
     r->period = 1 / p->control.rate;
     r->delay = p->control.delay + p->control.delay_periods * r->period;
     r->jitter = p->control.jitter;
-    r->voltage_limit = p->motor.voltage_limit;
+    r->voltage_limit = motor_command_limit(&p->motor);
     r->effect_time = HUGE_VAL;
     r->read_time = -1;
     r->output = no_answer();

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/arm/motor.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 #include "src/base/sincos.h"
@@ -71,7 +72,7 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
     told->belief = p->belief;
     told->motor.voltage_limit = p->motor.voltage_limit;
     memcpy(told->set, p->set, sizeof told->set);
-    r->voltage_limit = p->motor.voltage_limit;
+    r->voltage_limit = motor_command_limit(&p->motor);
     r->jitter = p->control.jitter;
 
     // the next sample comes one new period after the last
