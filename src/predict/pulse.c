@@ -237,7 +237,8 @@ static bool friction_changes(follower *f)
 
     if (friction != HUB_STICK) {
         // at a start from rest the velocity may be zero and grow
-        double before = friction * f->now.w[0], after = friction * f->then.w[0];
+        const double way = friction == HUB_FORWARD ? 1 : -1;
+        double before = way * f->now.w[0], after = way * f->then.w[0];
         if (!(after < 0)) {
             return false;
         }
