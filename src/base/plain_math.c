@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 
 // log(2), the first part with so few bits that its product with an exponent is exact
 static const double log2_high = 0x1.62e42feep-1, log2_low = 0x1.a39ef35793c76p-33;
@@ -23,9 +24,11 @@ double plain_exp(double x)
     const double r = (x - n * log2_high) - n * log2_low;
 
     // e^r - 1 - r by its series, the terms left out below 1e-18
+    static const double shares[] = {1. / 14, 1. / 13, 1. / 12, 1. / 11, 1. / 10, 1. / 9, 1. / 8,
+                                    1. / 7,  1. / 6,  1. / 5,  1. / 4,  1. / 3,  1. / 2};
     double tail = 0;
-    for (int k = 14; k >= 2; k--) {
-        tail = (tail + 1) * (r / k);
+    for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++) {
+        tail = (tail + 1) * (r * shares[i]);
     }
     return ldexp(1 + (r + r * tail), (int)n);
 }
@@ -47,9 +50,11 @@ double plain_log(double x)
 
     // log(m) = 2 artanh(s), s = f/(2 + f): f - s (f - tail), as f is exact and s is not
     const double f = m - 1, s = f / (2 + f), z = s * s;
+    static const double shares[] = {2. / 21, 2. / 19, 2. / 17, 2. / 15, 2. / 13,
+                                    2. / 11, 2. / 9,  2. / 7,  2. / 5,  2. / 3};
     double tail = 0;
-    for (int k = 21; k >= 3; k -= 2) {
-        tail = (tail + 2.0 / k) * z;
+    for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++) {
+        tail = (tail + shares[i]) * z;
     }
     return n * log2_high + (f - (s * (f - tail) - n * log2_low));
 }
