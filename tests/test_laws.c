@@ -294,6 +294,36 @@ static void recovering_law_returns_to_position_control(void **state)
     run_finish(&r);
 }
 
+// Spring and beam in series: a wall believed d rad off costs d k K/(k + K) of torque, K = 4 k2.
+static void impedance_gives_way_by_its_stiffness(void **state)
+{
+    (void)state;
+    static const double stiffness[] = {5, 20, 40};
+    for (size_t i = 0; i < sizeof stiffness / sizeof stiffness[0]; i++) {
+        char setting[64];
+        snprintf(setting, sizeof setting, "control.settings=stiffness=%g", stiffness[i]);
+        summary right = rig_summary(SETTINGS("control.law=impedance", "motor.stiction=0", setting));
+        summary off = rig_summary(SETTINGS("control.law=impedance", "motor.stiction=0", setting,
+                                           "belief.wall_error=0.02"));
+        double k = stiffness[i], beam = 4 * 4.92;
+        check_close(off.steady_force_N - right.steady_force_N, 0.02 * k * beam / (k + beam), 0.02);
+        check_close(right.steady_error_N, 0, 0.02);
+    }
+}
+
+// Admittance ends where the reading is right, wherever the wall is and however stiff the beam.
+static void admittance_ends_with_the_force(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"belief.wall_error=0.02", "belief.k2_factor=0.75",
+                                        "belief.torque_factor=0.85", "control.force=2"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        summary s = rig_summary(SETTINGS("control.law=admittance", "run.duration=2", wrong[i]));
+        check_close(s.steady_error_N, 0, 0.05);
+        check_below(s.force_over_command_N, 0.2 * s.force_command_N);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -311,6 +341,8 @@ int main(void)
         cmocka_unit_test(slower_approach_hits_softer),
         cmocka_unit_test(every_law_ends_near_its_force),
         cmocka_unit_test(recovering_law_returns_to_position_control),
+        cmocka_unit_test(impedance_gives_way_by_its_stiffness),
+        cmocka_unit_test(admittance_ends_with_the_force),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

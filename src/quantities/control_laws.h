@@ -27,7 +27,11 @@
     LAW(INVERSE_DYNAMICS, inverse_dynamics, "inverse-dynamics",                                    \
         "computed torque through the inverse of the flexible arm, played back open-loop")          \
     LAW(OBSERVER, observer, "observer",                                                            \
-        "observer of arm, wall and unknown torque, feedback by synthesis, contact found again")
+        "observer of arm, wall and unknown torque, feedback by synthesis, contact found again")    \
+    LAW(IMPEDANCE, impedance, "impedance",                                                         \
+        "a spring and a damper tie the hub to a point that moves into the wall")                   \
+    LAW(ADMITTANCE, admittance, "admittance",                                                      \
+        "the force's error moves a mass that the hub follows under position control")
 
 // Values of control.law.
 typedef enum control_law {

@@ -1,0 +1,92 @@
+// Admittance control: the force's error moves a mass against a damper, and the hub follows that
+// mass under position control.
+//
+//     m_a v' + d_a v = f - reading,    theta_a' = v,
+//     T = kp (theta_a - theta) + kv (v - w) + D v + friction + 2 l reading
+//
+// In flight the reading is nothing and the mass comes to the speed f/d_a; in contact it comes to
+// rest where the reading is f, whatever wall and stiffness are. One law for both, without a switch.
+// The last term carries what the beam presses, so that the position control has its error only.
+#include <math.h>
+
+#include "src/rig/laws/laws.h"
+
+enum { APPROACH, CONTACT };
+static const char *const mode_names[] = {"approach", "contact", NULL};
+
+enum { FORCE_WANTED, KP, KV, THRESHOLD, DAMPING, MASS_TIME, PARAMETERS };
+static const controller_parameter table[PARAMETERS] = {
+    [FORCE_WANTED] = {.name = "force"},
+    [KP] = {.name = "kp"},
+    [KV] = {.name = "kv"},
+    [THRESHOLD] = {.name = "contact_threshold"},
+    [DAMPING] = {.name = "damping",
+                 .unit = "N s/rad",
+                 .initial = 3,
+                 .minimum = 0.01,
+                 .maximum = 1000,
+                 .description = "force's error over the speed that it moves the hub with"},
+    [MASS_TIME] = {.name = "mass_time",
+                   .unit = "s",
+                   .initial = 0.02,
+                   .minimum = 0,
+                   .maximum = 10,
+                   .description = "in which the hub takes up that speed"},
+};
+
+typedef struct admittance_memory {
+    controller_setup rig;
+    double p[PARAMETERS];
+    double angle; // theta_a [rad]
+    double speed; // v [rad/s]
+    bool started;
+    int mode;
+} admittance_memory;
+
+static const char *tune(void *memory, const controller_setup *setup)
+{
+    admittance_memory *m = memory;
+    m->rig = *setup;
+    for (int i = 0; i < PARAMETERS; i++) {
+        m->p[i] = setup->parameters[i];
+    }
+    return NULL;
+}
+
+static void sample(void *memory, const controller_input *in, controller_output *out)
+{
+    admittance_memory *m = memory;
+    const controller_setup *r = &m->rig;
+    if (!m->started) {
+        m->started = true;
+        m->angle = in->encoder;
+    }
+    m->mode = in->force > m->p[THRESHOLD] ? CONTACT : APPROACH;
+
+    // the mass, exactly over a period
+    double wanted = (m->p[FORCE_WANTED] - in->force) / m->p[DAMPING];
+    double kept = m->p[MASS_TIME] > 0 ? exp(-r->period / m->p[MASS_TIME]) : 0;
+    m->speed = wanted + kept * (m->speed - wanted);
+    m->angle += m->speed * r->period;
+
+    out->mode = m->mode;
+    out->desired_angle = m->angle;
+    out->desired_velocity = m->speed;
+    double friction = m->speed > 0 ? r->stiction : m->speed < 0 ? -r->stiction : 0;
+    double torque = m->p[KP] * (m->angle - in->encoder) + m->p[KV] * (m->speed - in->tachometer);
+    out->command =
+        (torque + r->hub_damping * m->speed + friction + 2 * r->link_length * in->force) /
+        r->torque_per_volt;
+}
+
+const controller admittance_law = {
+    .interface = CONTROLLER_INTERFACE,
+    .name = "admittance",
+    .modes = mode_names,
+    .parameters = table,
+    .parameter_count = PARAMETERS,
+    .memory_size = sizeof(admittance_memory),
+    .start = tune,
+    .sample = sample,
+    .tune = tune,
+};

@@ -1,0 +1,98 @@
+// Impedance control (Hogan, Impedance control, ASME Journal of Dynamic Systems, Measurement and
+// Control 107, 1985): the hub behaves as if a spring and a damper tied it to a point that moves
+// into the wall.
+//
+//     T = k (theta_v - theta) + d (theta_v' - w) + friction of the point's motion
+//
+// The point goes with the speed that the approach's voltage holds from where the arm starts to
+//
+//     theta_e = theta_f + 2 f l/k,      theta_f = theta_imp + f l/(2 k2) (5.23)
+//
+// where spring and beam balance with the wanted force f. It looks at no force: what a wrong wall or
+// stiffness makes of f is what k is made for, k/(k + 4 k2) of a hard position control's error. The
+// damper makes the arm in contact critical, d = 2 sqrt(M (k + 4 k2)) with M = I1 + 2 I + m l^2/2.
+#include <math.h>
+
+#include "src/rig/laws/laws.h"
+
+enum { APPROACH, CONTACT };
+static const char *const mode_names[] = {"approach", "contact", NULL};
+
+enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, STIFFNESS, PARAMETERS };
+static const controller_parameter table[PARAMETERS] = {
+    [FORCE_WANTED] = {.name = "force"},
+    [APPROACH_VOLTAGE] = {.name = "approach_voltage"},
+    [THRESHOLD] = {.name = "contact_threshold"},
+    [STIFFNESS] = {.name = "stiffness",
+                   .unit = "N m/rad",
+                   .initial = 10,
+                   .minimum = 0.1,
+                   .maximum = 1000,
+                   .description = "of the spring between the hub and the point that leads it"},
+};
+
+typedef struct impedance_memory {
+    controller_setup rig;
+    double p[PARAMETERS];
+    double speed;   // of the point [rad/s]
+    double damping; // d [N m s/rad]
+    double point;   // theta_v [rad]
+    bool started;
+    int mode;
+} impedance_memory;
+
+static const char *tune(void *memory, const controller_setup *setup)
+{
+    impedance_memory *m = memory;
+    m->rig = *setup;
+    for (int i = 0; i < PARAMETERS; i++) {
+        m->p[i] = setup->parameters[i];
+    }
+
+    // the approach's speed, and the damper
+    double held = setup->torque_per_volt * fabs(m->p[APPROACH_VOLTAGE]) - setup->stiction;
+    double inertia = setup->hub_inertia + 2 * setup->link_inertia +
+                     setup->link_mass * setup->link_length * setup->link_length / 2;
+    m->speed = copysign(fmax(0, held) / fmax(setup->hub_damping, 1e-9), m->p[APPROACH_VOLTAGE]);
+    m->damping = 2 * sqrt(inertia * (m->p[STIFFNESS] + 4 * setup->k2)) - setup->hub_damping;
+    return NULL;
+}
+
+static void sample(void *memory, const controller_input *in, controller_output *out)
+{
+    impedance_memory *m = memory;
+    const controller_setup *r = &m->rig;
+    const double k = m->p[STIFFNESS], torque = 2 * m->p[FORCE_WANTED] * r->link_length;
+    const double end = r->wall_angle + torque / (4 * r->k2) + torque / k;
+    if (!m->started) {
+        m->started = true;
+        m->point = in->encoder;
+    }
+    m->mode = m->mode == CONTACT || in->force > m->p[THRESHOLD] ? CONTACT : APPROACH;
+
+    // the point moves on until it is where it belongs
+    double step = m->speed * r->period, left = end - m->point;
+    bool moves = step * left > 0 && fabs(step) < fabs(left);
+    double rate = moves ? m->speed : 0;
+    m->point = moves ? m->point + step : end;
+
+    out->mode = m->mode;
+    out->desired_angle = m->point;
+    out->desired_velocity = rate;
+    double friction = rate > 0 ? r->stiction : rate < 0 ? -r->stiction : 0;
+    out->command = (k * (m->point - in->encoder) + m->damping * (rate - in->tachometer) +
+                    r->hub_damping * rate + friction) /
+                   r->torque_per_volt;
+}
+
+const controller impedance_law = {
+    .interface = CONTROLLER_INTERFACE,
+    .name = "impedance",
+    .modes = mode_names,
+    .parameters = table,
+    .parameter_count = PARAMETERS,
+    .memory_size = sizeof(impedance_memory),
+    .start = tune,
+    .sample = sample,
+    .tune = tune,
+};
