@@ -179,6 +179,12 @@ printf 'tables:\n  - {file: map.sqlite, x: motor.voltage, y: arm.k2, z: peak_for
 expect 0 plot map.yaml -o map.svg --quiet
 [ "$(grep -c '^[^,]*,[^,]*,' map.csv)" -ge 5 ] || fail "a map's numbers are missing: $(cat map.csv)"
 
+# a report of one's own
+expect 0 report hit.yaml "$IMPACTLAB_SCENARIOS/recipes/voltages.yaml" -o own --quiet
+grep -q 'data-panels=' own/report.html || fail "the report's page has no panels for its script"
+[ -s own/report.pdf ] || fail "no PDF of the report"
+expect 2 report nowhere/at-all -o own2 --quiet
+
 # the arm in space
 expect 0 run hit.yaml --quiet --scene arm.png --gl cairo --size 320x180
 expect 0 run hit.yaml --quiet --scene again-arm.png --gl cairo --size 320x180

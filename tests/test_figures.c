@@ -440,11 +440,15 @@ static void the_report_stands_alone(void **state)
     (void)state;
     fault f = {0};
     size_t length;
-    if (report_write(path_of("report"), &f) != STATUS_OK) {
+    if (report_write(path_of("report"), NULL, 0, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
     char *html = read_file(path_of("report/report.html"), &length);
-    assert_null(strstr(html, "src="));
+    for (const char *at = strstr(html, "src="); at != NULL; at = strstr(at + 1, "src=")) {
+        assert_int_equal(strncmp(at, "src=\"data:image/png;base64,", 27), 0);
+    }
+    assert_true(length < 2000000);
+    assert_non_null(strstr(html, "aria-label=\"Fig. 3.4"));
     assert_null(strstr(html, "href=\"http"));
     assert_null(strstr(html, "@import"));
     for (int i = 0; i < thesis_figure_count; i++) {
@@ -464,6 +468,8 @@ static void the_report_stands_alone(void **state)
     char *pdf = read_file(path_of("report/report.pdf"), &length);
     assert_non_null(memmem(pdf, length, "%PDF-", 5));
     assert_null(memmem(pdf, length, "/Type3", 6));
+    assert_non_null(memmem(pdf, length, "/Outlines", 9));
+    assert_non_null(memmem(pdf, length, "/Annots", 7));
     free(pdf);
 }
 
@@ -471,7 +477,7 @@ static void a_report_without_a_folder_is_complained_about(void **state)
 {
     (void)state;
     fault f = {0};
-    assert_int_equal(report_write("/proc/nowhere", &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(report_write("/proc/nowhere", NULL, 0, &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "/proc/nowhere"));
 }
 

@@ -175,6 +175,7 @@ artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *
     artwork a = {.title = fig->title,
                  .caption = fig->caption,
                  .parameters = fig->parameters,
+                 .plotted = fig,
                  .what = p,
                  .paint = paint_plotted,
                  .write_csv = write_plotted,

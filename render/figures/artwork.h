@@ -23,6 +23,8 @@ typedef struct artwork {
     const char *caption;            // markup, NULL for none
     char *alternative;              // plain: what it shows, for those who cannot see it; owned
     const table_page *table;        // of a table, else NULL
+    const figure *plotted;          // of a plotted figure, else NULL
+    bool cells;                     // a picture of very many cells
     void *what;                     // owned; for the functions below
     // draws it with the page's top left corner at the origin of cr, in points; *report (may be
     // NULL) is filled

@@ -7,6 +7,7 @@
 
 #include "render/figures/publication.h"
 #include "render/figures/recipe_figure.h"
+#include "render/figures/recipe_parts.h"
 #include "render/page/text.h"
 #include "render/plot/opened_run.h"
 #include "render/plot/overlay.h"
@@ -377,4 +378,20 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
     describe(fig, o);
     *out = artwork_of_figure(&fig->figure, fig, release);
     return STATUS_OK;
+}
+
+bool recipe_is(const char *path)
+{
+    assert(path != NULL);
+    gchar *text = NULL;
+    gsize length = 0;
+    if (!g_file_get_contents(path, &text, &length, NULL)) {
+        return false;
+    }
+    fault unused = {0};
+    tree_node *root = tree_parse(text, length, &unused);
+    bool is = root != NULL && root->kind == TREE_MAP && recipe_child(root, "panels") != NULL;
+    tree_free(root);
+    g_free(text);
+    return is;
 }

@@ -1,6 +1,8 @@
 // Figures from recipes: files that say which runs, data and tables a figure shows, and how.
 #pragma once
 
+#include <stdbool.h>
+
 #include "render/figures/artwork.h"
 #include "src/scenario/scenario.h"
 
@@ -10,3 +12,6 @@
 // files return.
 status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
                    artwork *out, fault *f);
+
+// Whether a file is a recipe: YAML with panels in it. False for what cannot be read.
+bool recipe_is(const char *path);

@@ -362,6 +362,7 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
     *out = (artwork){.title = m->title,
                      .caption = m->caption,
                      .parameters = m->parameters,
+                     .cells = true,
                      .what = m,
                      .paint = paint_map,
                      .write_csv = write_map,

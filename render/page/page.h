@@ -45,9 +45,16 @@ typedef struct figure_text {
     char text[64];     // its beginning, without markup
 } figure_text;
 
+// What the edges of a panel stand for.
+typedef struct figure_range {
+    double x_low, x_high, y_low, y_high;
+    bool x_logarithmic, y_logarithmic;
+} figure_range;
+
 // What was drawn where.
 typedef struct figure_report {
     figure_rect page;
+    figure_range ranges[FIGURE_PANELS];
     figure_rect panels[FIGURE_PANELS];  // inside the axes
     figure_rect legends[FIGURE_PANELS]; // width 0: none
     figure_rect insets[FIGURE_PANELS];  // with their labels; width 0: none

@@ -87,3 +87,58 @@ char *svg_renumber_ids(const char *svg)
     g_hash_table_destroy(names);
     return g_string_free(out, FALSE);
 }
+
+// Ids of this SVG whose outlines are known, with the ids to use instead; the symbols go.
+static GString *drop_known(const char *svg, GHashTable *known, GHashTable *renamed)
+{
+    static const char opening[] = "<symbol ", closing[] = "</symbol>";
+    GString *out = g_string_sized_new(strlen(svg));
+    while (*svg != '\0') {
+        const char *start = strstr(svg, opening), *id = start ? strstr(start, " id=\"") : NULL;
+        const char *inside = id != NULL ? strchr(id, '>') : NULL;
+        const char *end = inside != NULL ? strstr(inside, closing) : NULL;
+        if (end == NULL) {
+            g_string_append(out, svg);
+            break;
+        }
+
+        // by what is in it
+        id += strlen(" id=\"");
+        char *name = g_strndup(id, id_length(id));
+        char *outline = g_strndup(inside + 1, (gsize)(end - inside - 1));
+        const char *earlier = g_hash_table_lookup(known, outline);
+        const char *after = end + strlen(closing);
+        g_string_append_len(out, svg, (gssize)(earlier != NULL ? start - svg : after - svg));
+        if (earlier != NULL) {
+            g_hash_table_insert(renamed, name, g_strdup(earlier));
+            g_free(outline);
+        } else {
+            g_hash_table_insert(known, outline, name);
+        }
+        svg = after;
+    }
+    return out;
+}
+
+char *svg_share_symbols(const char *svg, GHashTable *known)
+{
+    assert(svg != NULL && known != NULL);
+    GHashTable *renamed = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    GString *kept = drop_known(svg, known, renamed), *out = g_string_sized_new(kept->len);
+
+    // references to what went
+    for (const char *at = kept->str; *at != '\0';) {
+        if (strncmp(at, "\"#", 2) == 0) {
+            char *name = g_strndup(at + 2, id_length(at + 2));
+            const char *other = g_hash_table_lookup(renamed, name);
+            g_string_append_printf(out, "\"#%s", other != NULL ? other : name);
+            at += 2 + strlen(name);
+            g_free(name);
+        } else {
+            g_string_append_c(out, *at++);
+        }
+    }
+    g_string_free(kept, TRUE);
+    g_hash_table_destroy(renamed);
+    return g_string_free(out, FALSE);
+}

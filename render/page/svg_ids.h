@@ -1,6 +1,8 @@
 // Makes the ids of an SVG independent of what was drawn before it.
 #pragma once
 
+#include <glib.h>
+
 // cairo names things after counters of the whole process ("surface96"), so that the second figure
 // of a program differs from the first. Returns the SVG with the number in every id="name<number>",
 // and in every reference to it, replaced by its place in the order of the ids. Free the result with
@@ -10,3 +12,8 @@ char *svg_renumber_ids(const char *svg);
 // Puts a prefix before every id and every reference to one, so that several SVGs can stand in one
 // page. Free the result with g_free.
 char *svg_prefix_ids(const char *svg, const char *prefix);
+
+// Leaves out the letters' outlines (symbols) that an earlier SVG of the same page has already, and
+// refers to those. `known` has outline to id, both owned by it; new ones are added. Free the result
+// with g_free.
+char *svg_share_symbols(const char *svg, GHashTable *known);

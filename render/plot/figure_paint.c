@@ -147,6 +147,11 @@ static void draw_panel(drawing *d, int index)
 
     // where they went
     if (d->report != NULL) {
+        const axis_scale *x = &l->plane.x, *y = &l->plane.y;
+        d->report->ranges[index] =
+            (figure_range){scale_value(x->kind, x->low), scale_value(x->kind, x->high),
+                           scale_value(y->kind, y->low), scale_value(y->kind, y->high),
+                           x->kind == SCALE_LOGARITHMIC, y->kind == SCALE_LOGARITHMIC};
         d->report->panels[index] = l->plane.box;
         d->report->legends[index] = l->legend;
         d->report->insets[index] = l->inset;

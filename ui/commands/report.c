@@ -8,7 +8,7 @@ static int report(const arguments *a)
 {
     fault f = {0};
     const char *folder = a->output ? a->output : DEFAULT_FOLDER;
-    if (report_write(folder, &f) != STATUS_OK) {
+    if (report_write(folder, a->operands, a->operand_count, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     if (!a->quiet) {
@@ -30,11 +30,14 @@ static const option_table options = OPTION_TABLE("Options", rows);
 const command report_command = {
     .name = "report",
     .group = GROUP_THESIS,
-    .operands = "",
-    .summary = "All figures and tables as one web page and one PDF",
-    .help = "Into the folder 'report' unless -o says otherwise. The page needs no other file and "
+    .operands = "[SCENARIO|RECIPE.yaml]...",
+    .summary = "Figures and tables as one web page and one PDF",
+    .help = "Of the scenarios and recipes named, or without any of the whole thesis. Into the "
+            "folder 'report' unless -o says otherwise. The page needs no other file and "
             "no network. Under\neach item stand its scenario, its model and the command that "
             "makes it again.\n",
+    .most = 64,
+    .takes_scenarios = true,
     .options = {&options, &quiet_options},
     .run = report,
 };

@@ -1,0 +1,27 @@
+// Inside the report: its items, and the two forms they are written in.
+#pragma once
+
+#include <glib.h>
+
+#include "render/figures/artwork.h"
+
+// One thing the report shows.
+typedef struct report_item {
+    const char *scenario, *model; // scenario may be NULL
+    char *command;                // NULL: nothing to run
+    artwork drawn;
+    int page; // of the PDF, counted from 1
+} report_item;
+
+typedef struct report {
+    GArray *items;       // of report_item
+    const char *preface; // what it is, a sentence or two
+    char *heading;
+} report;
+
+report_item *report_item_at(const report *r, guint index);
+
+// FOLDER/report.html: report_html.c. FOLDER/report.pdf: report_pdf.c. Both return what painting and
+// writing return.
+status report_write_html(const report *r, const char *path, fault *f);
+status report_write_pdf(const report *r, const char *path, fault *f);

@@ -1,0 +1,213 @@
+#include "render/page/svg_compact.h"
+
+#include <assert.h>
+#include <glib.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+
+// ---- inside a tag
+
+// A length to a hundredth, without zeros at its end: "123.457031" gives "123.46".
+static void add_length(GString *out, double value)
+{
+    char text[32];
+    decimal_print(text, sizeof text, "%.2f", value);
+    size_t length = strlen(text);
+    while (text[length - 1] == '0') {
+        text[--length] = '\0';
+    }
+    if (text[length - 1] == '.') {
+        text[--length] = '\0';
+    }
+    g_string_append(out, strcmp(text, "-0") == 0 ? "0" : text);
+}
+
+// "rgb(0%, 44.7%, 69.8%)" as "#0072b2"; returns what follows it, or NULL if it is none.
+static const char *add_colour(GString *out, const char *at)
+{
+    if (strncmp(at, "rgb(", 4) != 0) {
+        return NULL;
+    }
+    double share[3];
+    const char *rest = at + 4;
+    for (int i = 0; i < 3; i++) {
+        if (!decimal_read(rest, &share[i], &rest) || *rest != '%') {
+            return NULL;
+        }
+        rest += 1 + strspn(rest + 1, ", ");
+    }
+    if (*rest != ')') {
+        return NULL;
+    }
+    g_string_append_printf(out, "#%02x%02x%02x", (unsigned)(2.55 * share[0] + 0.5),
+                           (unsigned)(2.55 * share[1] + 0.5), (unsigned)(2.55 * share[2] + 0.5));
+    return rest + 1;
+}
+
+// Length of a property at `at` that says what goes without saying, 0 if there is none.
+static size_t default_length(const char *at)
+{
+    static const char *const defaults[] = {"stroke-opacity:1;", "fill-opacity:1;",
+                                           "stroke-miterlimit:10;", "fill-rule:nonzero;"};
+    for (size_t i = 0; i < G_N_ELEMENTS(defaults); i++) {
+        if (strncmp(at, defaults[i], strlen(defaults[i])) == 0) {
+            return strlen(defaults[i]);
+        }
+    }
+    return 0;
+}
+
+// A number of tenths with its separator: " 12.3", "-.4".
+static void add_tenths(GString *out, long tenths)
+{
+    char last = out->str[out->len - 1];
+    bool letter = g_ascii_isalpha(last);
+    long size = labs(tenths);
+    g_string_append(out, tenths < 0 ? "-" : letter ? "" : " ");
+    if (size >= 10 || size == 0) {
+        g_string_append_printf(out, "%ld", size / 10);
+    }
+    if (size % 10 != 0) {
+        g_string_append_printf(out, ".%ld", size % 10);
+    }
+}
+
+// The data of a path of lines alone, up to its quote: to a tenth of a point, lines relative to
+// where the last one ended. Returns the quote.
+static const char *add_lines(GString *out, const char *at)
+{
+    long x = 0, y = 0;
+    char command = ' ', written = ' ';
+    while (*at != '"' && *at != '\0') {
+        double to[2];
+        const char *rest;
+        if (*at == ' ') {
+            at++;
+        } else if (strchr("MLZ", *at) != NULL) {
+            command = *at++;
+            if (command == 'Z') {
+                g_string_append_c(out, 'z');
+                written = 'z';
+            }
+        } else if (decimal_read(at, &to[0], &rest) && decimal_read(rest, &to[1], &rest)) {
+            // rounded where it is, so that no error adds up
+            long next_x = lround(10 * to[0]), next_y = lround(10 * to[1]);
+            char wanted = command == 'M' ? 'M' : 'l';
+            if (written != wanted || wanted == 'M') {
+                g_string_append_c(out, wanted);
+            }
+            add_tenths(out, wanted == 'M' ? next_x : next_x - x);
+            add_tenths(out, wanted == 'M' ? next_y : next_y - y);
+            x = next_x;
+            y = next_y;
+            written = wanted;
+            at = rest;
+        } else {
+            return at;
+        }
+    }
+    return at;
+}
+
+// Whether the data of a path, up to its quote, are straight lines alone.
+static bool has_lines_alone(const char *data)
+{
+    return data[strcspn(data, "\"CcSsQqTtAaHhVv")] == '"';
+}
+
+// A tag from its '<' to its '>' in fewer bytes. Returns what follows the tag.
+static const char *add_tag(GString *out, const char *at)
+{
+    // outlines of letters are small: they keep their hundredths
+    bool path = g_str_has_prefix(at, "<path style=\"fill:none;");
+    char before = '<';
+    while (*at != '\0' && *at != '>') {
+        const char *rest = add_colour(out, at);
+        size_t skipped = rest == NULL ? default_length(at) : 0;
+        bool number = g_ascii_isdigit(*at) || (*at == '-' && g_ascii_isdigit(at[1]));
+        bool starts =
+            before == ' ' || before == '"' || before == '(' || before == ',' || before == ':';
+        double value;
+
+        if (rest != NULL) {
+            at = rest;
+        } else if (skipped > 0) {
+            at += skipped;
+        } else if (path && g_str_has_prefix(at, " d=\"") && has_lines_alone(at + 4)) {
+            g_string_append(out, " d=\"");
+            at = add_lines(out, at + 4);
+        } else if (number && starts && decimal_read(at, &value, &rest)) {
+            add_length(out, value);
+            at = rest;
+            while (at[-1] == ' ') {
+                at--;
+            }
+        } else {
+            g_string_append_c(out, *at++);
+        }
+        before = at[-1];
+    }
+    g_string_append_c(out, '>');
+    return *at == '>' ? at + 1 : at;
+}
+
+// ---- from tag to tag
+
+// Where the data of a path begin in what was written of it last, if that is a line of the style of
+// the tag written at `tag`; SIZE_MAX if the two are not to be one.
+static size_t joint_of(const GString *out, size_t last, size_t tag)
+{
+    const char *a = out->str + last, *b = out->str + tag;
+    const char *data = strstr(b, "d=\"");
+    size_t style = data != NULL ? (size_t)(data - b) : 0;
+    bool lines = strncmp(b, "<path style=\"fill:none;", 23) == 0 && style > 0 && data[3] == 'M';
+    bool alike = lines && strncmp(a, b, style + 3) == 0 && strstr(b, "transform=") == NULL &&
+                 strncmp(a, "<path", 5) == 0;
+    return alike ? tag + style + 3 : (size_t)-1;
+}
+
+char *svg_compact(const char *svg)
+{
+    assert(svg != NULL);
+    GString *out = g_string_sized_new(strlen(svg) / 2);
+    size_t last = (size_t)-1; // where the last path was written
+
+    while (*svg != '\0') {
+        // the page that holds the picture says what it is
+        if (g_str_has_prefix(svg, "<metadata>")) {
+            const char *end = strstr(svg, "</metadata>");
+            svg = end != NULL ? end + strlen("</metadata>") : svg + strlen(svg);
+            continue;
+        }
+        if (*svg != '<') {
+            // blanks between tags are none of the picture
+            if (*svg != '\n') {
+                g_string_append_c(out, *svg);
+                last = *svg == ' ' ? last : (size_t)-1;
+            }
+            svg++;
+            continue;
+        }
+
+        size_t tag = out->len;
+        svg = add_tag(out, svg);
+        size_t joint = last != (size_t)-1 ? joint_of(out, last, tag) : (size_t)-1;
+        if (joint != (size_t)-1) {
+            // the data go to the end of the path before, in place of its quote and slash
+            char *data = g_strdup(out->str + joint);
+            g_string_truncate(out, tag);
+            g_string_truncate(out, out->len - strlen("\"/>"));
+            g_string_append(out, data);
+            g_free(data);
+            continue;
+        }
+        last = strncmp(out->str + tag, "<path", 5) == 0 && g_str_has_suffix(out->str, "\"/>")
+                   ? tag
+                   : (size_t)-1;
+    }
+    return g_string_free(out, FALSE);
+}
