@@ -65,14 +65,6 @@ const parameter_info parameter_table[] = {
      MEANING("command to the amplifier, held constant")},
     {PATH(motor.voltage_limit), REAL("V", 0, 1000), DEFAULT(10), TIMED,
      MEANING("largest command either way; beyond it the command saturates")},
-    {PATH(motor.drive), CHOICE(1, "voltage|current"), DEFAULT(DRIVE_VOLTAGE),
-     MEANING("what the amplifier gives for a command: a voltage, against which back EMF works, or "
-             "a current, which it holds")},
-    {PATH(motor.transconductance), REAL("A/V", 0, 1000), DEFAULT(DERIVED),
-     MEANING("current per volt of command (motor.drive = current), amplifier_gain/resistance if "
-             "not given: the same torque at rest")},
-    {PATH(motor.current_limit), REAL("A", 0, 1e6), DEFAULT(0),
-     MEANING("largest current either way (motor.drive = current); 0: none")},
     {PATH(motor.amplifier_gain), REAL("", 0, 1000), DEFAULT(6.02),
      MEANING("volts at the motor per volt of command")},
     {PATH(motor.torque_constant), REAL("N m/A", 0, 1000), DEFAULT(TORQUE_CONSTANT),
@@ -85,6 +77,14 @@ const parameter_info parameter_table[] = {
      MEANING("viscous friction at the hub (kfr)")},
     {PATH(motor.stiction), REAL("N m", 0, 1000), DEFAULT(0.045), TIMED,
      MEANING("Coulomb friction torque at the hub, sliding and sticking (kst)")},
+    {PATH(motor.drive), CHOICE(1, "voltage|current"), DEFAULT(DRIVE_VOLTAGE),
+     MEANING("what the amplifier gives for a command: a voltage, against which back EMF works, or "
+             "a current, which it holds")},
+    {PATH(motor.transconductance), REAL("A/V", 0, 1000), DEFAULT(DERIVED),
+     MEANING("current per volt of command (motor.drive = current), amplifier_gain/resistance if "
+             "not given: the same torque at rest")},
+    {PATH(motor.current_limit), REAL("A", 0, 1e6), DEFAULT(0),
+     MEANING("largest current either way (motor.drive = current); 0: none")},
 
     {PATH(wall.kind), CHOICE(2, "point|plane|none"), DEFAULT(WALL_POINT),
      MEANING("a fixed point the last link's line may not pass, a flat wall the tip may not pass, "
