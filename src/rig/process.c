@@ -272,10 +272,9 @@ static bool exchange(process *p, const char *text, size_t length)
         if (ends[2].revents != 0) {
             ssize_t count =
                 send(p->program.input, text + sent, length - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
-            if (count < 0 && errno != EAGAIN && errno != EINTR) {
-                return fail(p, "does not listen any more");
-            }
-            sent += count > 0 ? (size_t)count : 0;
+            // one that listens no more may have answered before; its answer, or its end, tells
+            const bool deaf = count < 0 && errno != EAGAIN && errno != EINTR;
+            sent = deaf ? length : sent + (count > 0 ? (size_t)count : 0);
         }
         if (ends[1].revents != 0) {
             errors_open = drain_errors(p);
