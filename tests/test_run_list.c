@@ -105,6 +105,18 @@ static void test_hidden_runs_are_not_drawn(void **state)
     explorer_finish(&ex);
 }
 
+static void test_a_run_of_a_few_rows_is_pinned_too(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":set run.duration 0.005<Enter>b");
+    assert_int_equal(ex.state.pinned.count, 1);
+    press(&ex, ":set motor.voltage<Enter>>");
+    assert_true(ex.state.session.has_ghost);
+    explorer_finish(&ex);
+}
+
 static void test_the_difference_is_that_of_the_runs(void **state)
 {
     (void)state;
@@ -174,6 +186,7 @@ int main(void)
         cmocka_unit_test(test_no_more_than_seven_and_none_is_lost),
         cmocka_unit_test(test_taking_a_run_brings_all_of_it_back),
         cmocka_unit_test(test_hidden_runs_are_not_drawn),
+        cmocka_unit_test(test_a_run_of_a_few_rows_is_pinned_too),
         cmocka_unit_test(test_the_difference_is_that_of_the_runs),
         cmocka_unit_test(test_a_sweep_gives_what_single_runs_give),
     };

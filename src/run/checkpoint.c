@@ -25,7 +25,10 @@ static bool keeps_history(const recording *r)
 bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected)
 {
     assert(h != NULL && size >= sizeof(checkpoint));
-    size_t least = rows_expected / ROWS_PER_RESERVED, most = recording_most_rows(rows_expected);
+    const size_t most = recording_most_rows(rows_expected);
+
+    // of a run of a few rows, too, there is room for one
+    const size_t least = rows_expected / ROWS_PER_RESERVED + 1;
     return force_history_reserve(&h->forces, rows_expected, most) &&
            shared_array_reserve(&h->checkpoints, size, least, most);
 }
