@@ -270,9 +270,14 @@ static bool solve_bordered(const body_chain *arm, const double *q, const double 
                            bool touching, bool sticking, const double *right, double along,
                            double *x, double *f, double *s)
 {
-    double a[UNKNOWNS_MAX][UNKNOWNS_MAX] = {{0}}, b[UNKNOWNS_MAX] = {0};
+    double a[UNKNOWNS_MAX][UNKNOWNS_MAX], b[UNKNOWNS_MAX] = {0};
     double m[BODIES_MAX][BODIES_MAX];
     int n = arm->bodies, size = n;
+
+    // as much of the matrix as this chain has
+    for (int i = 0; i < n + 2; i++) {
+        memset(a[i], 0, (size_t)(n + 2) * sizeof(double));
+    }
     mass_matrix(arm, q, m);
     for (int i = 0; i < n; i++) {
         memcpy(a[i], m[i], (size_t)n * sizeof(double));
