@@ -95,9 +95,48 @@ static void modes_agree_with_the_explicit_formula(void **state)
     check_close(answers[0].impacts, answers[1].impacts, 0);
 }
 
+// What a chain with 1 % damping gives the wall in the first 50 ms of contact, impulses and forces.
+static double momentum_of_50_ms(int links)
+{
+    char n[32];
+    snprintf(n, sizeof n, "arm.links=%d", links);
+    scenario s = {.parameters = fixture_parameters(
+                      SETTINGS(n, "arm.hub_joint=beam", "arm.damping_ratio=0.01", "wall.kind=plane",
+                               "motor.voltage=1", "initial.angle=0.095", "initial.velocity=0.7",
+                               "run.duration=0.0571"))};
+
+    // the run is shorter than the window of the steady force, which is then the mean of all of it
+    run_result r;
+    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    assert_string_equal(summary_status(&r.summary), "ok");
+    check_close(r.summary.impacts, 1, 0);
+    double momentum =
+        r.summary.contact_impulse_Ns + r.summary.steady_force_N * s.parameters.run.duration;
+    run_finish(&r);
+    return momentum;
+}
+
+// The links become a beam with the square of their length.
+static void momentum_converges_to_a_beams(void **state)
+{
+    (void)state;
+    double momentum[4], last = 0;
+    for (int i = 0; i < 4; i++) {
+        momentum[i] = momentum_of_50_ms(16 << i);
+    }
+    for (int i = 2; i < 4; i++) {
+        last = momentum[i] - momentum[i - 1];
+        check_close(log2((momentum[i - 1] - momentum[i - 2]) / last), 2, 0.1);
+    }
+    double beam = momentum[3] + last / 3;
+    check_relative(momentum[2], beam, 1e-3);
+    check_relative(momentum[3], beam, 1e-3);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(runs_stay_stable),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(momentum_converges_to_a_beams),
+                                       cmocka_unit_test(runs_stay_stable),
                                        cmocka_unit_test(the_event_method_stays_exact),
                                        cmocka_unit_test(modes_agree_with_the_explicit_formula)};
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
