@@ -113,6 +113,9 @@ expect 2 run hostile.yaml --quiet --overlay overlay.csv --plot o.svg
 holds_controls err && fail "control characters of an overlay's cell in err"
 
 # --- an overlay that lays nothing over anything is a mistake
+: >overlay.csv
+expect 2 run corrected/first-impact --quiet --overlay overlay.csv --plot o.svg
+says err "expected a heading"
 for rows in "" "1,\n2,\n" ",3\n" "nan,1\n"; do
     # shellcheck disable=SC2059
     printf "time[s],force[N]\n$rows" >overlay.csv

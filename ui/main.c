@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "render/page/text.h"
 #include "src/base/json.h"
 #include "src/base/whole_file.h"
 #include "src/base/version.h"
@@ -116,6 +117,14 @@ static void end_cleanly(int number)
     raise(number);
 }
 
+// GLib found no memory for a picture: our sentence, no half-written file, no signal.
+static void end_without_memory(const char *reason)
+{
+    whole_file_remove_unfinished();
+    complain("out of memory for a picture: %s", reason);
+    _exit(EXIT_FAILED);
+}
+
 static void catch_endings(void)
 {
     static const int endings[] = {SIGINT, SIGTERM, SIGHUP};
@@ -143,6 +152,7 @@ static bool open_missing_descriptors(void)
 int main(int argc, char **argv)
 {
     if (!open_missing_descriptors()) {
+        complain("/dev/null cannot be opened: %s", strerror(errno));
         return EXIT_FAILED;
     }
 
@@ -153,5 +163,6 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN);
     catch_endings();
     json_watch_memory();
+    text_when_giving_up(end_without_memory);
     return close_output(dispatch(argc, argv));
 }

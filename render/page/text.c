@@ -363,6 +363,23 @@ void text_append(GString *text, const char *format, ...)
     va_end(list);
 }
 
+static void (*end_of_program)(const char *reason);
+
+static void on_log(const char *domain, GLogLevelFlags level, const char *reason, void *context)
+{
+    if ((level & G_LOG_LEVEL_ERROR) != 0) {
+        end_of_program(reason);
+    }
+    g_log_default_handler(domain, level, reason, context);
+}
+
+void text_when_giving_up(void (*end)(const char *reason))
+{
+    assert(end != NULL);
+    end_of_program = end;
+    g_log_set_default_handler(on_log, NULL);
+}
+
 void text_release(void)
 {
     pango_cairo_font_map_set_default(NULL);

@@ -76,6 +76,10 @@ char *text_escape(const char *bytes);
 char *text_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void text_append(GString *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+// What happens where GLib, and so Pango, gives up, mostly for want of memory: `end` is called with
+// its reason and must not return. Otherwise GLib ends the program by a signal.
+void text_when_giving_up(void (*end)(const char *reason));
+
 // Gives back what Pango and cairo keep for later figures (for leak checkers). No figure may be in
 // work.
 void text_release(void);

@@ -181,8 +181,8 @@ static status read_rows(trace *t, const char *text, const overlay_spec *spec,
     int signals[MOST_COLUMNS];
     size_t numbers = 0;
     char **lines = g_strsplit(text, "\n", -1);
-    int columns =
-        lines[0] != NULL ? read_headings(lines[0], signals, spec, panels, panel_count, f) : 0;
+    const char *headings = lines[0] != NULL ? lines[0] : ""; // none in an empty file
+    int columns = read_headings(headings, signals, spec, panels, panel_count, f);
 
     // line by line
     status code = columns > 0 ? STATUS_OK : STATUS_BAD_ARGUMENT;

@@ -1,0 +1,77 @@
+// Any file in the place of a sweep's database: opened, continued, read, merged or refused with a
+// sentence; never taken for another sweep.
+#include "tests/fuzz/fuzz.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "src/study/sweep_merge.h"
+#include "src/study/sweep_rows.h"
+#include "src/study/sweep_table.h"
+
+static void ignore(void *context, const char *sentence)
+{
+    (void)context;
+    (void)sentence;
+}
+
+// Reads all that a store has.
+static void read_store(sweep_store *store, const sweep *s)
+{
+    unsigned char present[64];
+    double values[64];
+    size_t count, failed;
+    fault f = {0};
+    FUZZ_CHECK(s->run_count <= 64);
+    if (sweep_store_present(store, present, &count, &f) == STATUS_OK) {
+        FUZZ_CHECK(count <= s->run_count);
+    }
+    sweep_store_quantity(store, "peak_force_N", values, &failed, &f);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    FUZZ_CHECK(stream != NULL);
+    sweep_store_csv(store, stream, &f);
+    fclose(stream);
+    free(text);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static char vary[] = "motor.voltage=1:2:3", *lines[] = {vary};
+    static const char yaml[] = "title: base\nrun: {duration: 0.1 s}\n";
+    scenario base;
+    sweep s;
+    fault f = {0};
+    FUZZ_CHECK(scenario_parse(&base, yaml, sizeof yaml - 1, "f", "base", ignore, NULL) ==
+               STATUS_OK);
+    const sweep_request request = {.vary = lines, .vary_count = 1};
+    FUZZ_CHECK(sweep_init(&s, &base, &request, &f) == STATUS_OK);
+    char *path = strdup(fuzz_file(data, size));
+    FUZZ_CHECK(path != NULL);
+
+    // a part, then a table, then the sweep itself: only that may write to it
+    sweep_merged merged;
+    char *parts[] = {path};
+    sweep_merge(parts, 1, "/dev/null", &merged, &f);
+    const char *const keys[] = {"motor.voltage", "peak_force_N"};
+    double *columns[SWEEP_TABLE_COLUMNS] = {NULL};
+    size_t rows;
+    if (sweep_table_read(path, keys, 2, columns, &rows, &f) == STATUS_OK) {
+        free(columns[0]);
+        free(columns[1]);
+    }
+    sweep_store *store;
+    if (sweep_store_open(&store, path, &s, &f) == STATUS_OK) {
+        read_store(store, &s);
+        sweep_store_close(store);
+    } else {
+        FUZZ_CHECK(f.text[0] != '\0');
+    }
+
+    unlink(path);
+    free(path);
+    sweep_finish(&s);
+    scenario_finish(&base);
+    return 0;
+}

@@ -1,0 +1,66 @@
+// Damaged scenario files: the reader may refuse them, with a sentence and a place, but never crash,
+// and what it accepts must keep the promises of scenario.h.
+#include "tests/fuzz/fuzz.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/run/run.h"
+#include "src/scenario/scenario.h"
+
+// Every sentence begins with "f:line:column: " and holds nothing that a terminal would obey.
+static void check_sentence(void *context, const char *sentence)
+{
+    int *count = context;
+    int line = 0, column = 0, length = 0;
+    sscanf(sentence, "f:%d:%d: %n", &line, &column, &length);
+    FUZZ_CHECK(line >= 1 && column >= 1 && length > 0 && sentence[length] != '\0');
+    for (const char *c = sentence; *c != '\0'; c++) {
+        FUZZ_CHECK(!iscntrl((unsigned char)*c) || (unsigned char)*c >= 0x80);
+    }
+    ++*count;
+}
+
+static void check_accepted(const scenario *s)
+{
+    FUZZ_CHECK(s->name && s->file && s->title && s->description);
+    FUZZ_CHECK(strchr(s->title, '\n') == NULL);
+    for (int i = 0; i < parameter_count; i++) {
+        double value = parameter_get(&s->parameters, i);
+        FUZZ_CHECK(isfinite(value));
+        FUZZ_CHECK(!s->parameters.set[i] ||
+                   (value >= parameter_table[i].minimum && value <= parameter_table[i].maximum));
+    }
+    for (int i = 0; i < s->action_count; i++) {
+        const action *a = &s->actions[i];
+        FUZZ_CHECK(isfinite(a->value) && a->time >= 0 && a->time <= s->parameters.run.duration);
+        FUZZ_CHECK(i == 0 || s->actions[i - 1].time <= a->time);
+        FUZZ_CHECK(a->kind == ACTION_PUSH || parameter_table[a->parameter].timed);
+    }
+    for (int i = 0; i < s->expectation_count; i++) {
+        const expectation *e = &s->expectations[i];
+        FUZZ_CHECK(e->is_null || (isfinite(e->value) && e->tolerance >= 0));
+        FUZZ_CHECK(e->line >= 1 && e->column >= 1);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    scenario s;
+    int count = 0;
+    // a copy of exactly this size, so that reading one byte too far is noticed
+    char *text = malloc(size + (size == 0));
+    FUZZ_CHECK(text != NULL);
+    if (size > 0) {
+        memcpy(text, data, size);
+    }
+    status result = scenario_parse(&s, text, size, "f", "name", check_sentence, &count);
+    FUZZ_CHECK((result == STATUS_OK) == (count == 0));
+    if (result == STATUS_OK) {
+        check_accepted(&s);
+        scenario_finish(&s);
+    }
+    free(text);
+    return 0;
+}

@@ -1,0 +1,83 @@
+// The lab under any bytes: two a step. The first chooses a key, a piece of a command, the mouse, a
+// byte of an escape sequence or a new size, the second which; then the screen is drawn, of cells
+// that a terminal may show.
+#include "tests/fuzz/fuzz.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/base/words.h"
+#include "ui/explorer/commands.h"
+#include "ui/explorer/keys.h"
+#include "ui/explorer/mouse.h"
+#include "ui/terminal/escape_sequence.h"
+
+enum { MOST_STEPS = 60 };
+
+static void ignore(void *context, const char *sentence)
+{
+    (void)context;
+    (void)sentence;
+}
+
+static const char *const lines[] = {
+    "set motor.voltage 2",  "set wall.angle 0.1", "seek 0.05",  "branch",       "undo",
+    "set motor.voltage x",  "panes 27",           "theme mono", "law hybrid",   "law none",
+    "set run.duration 0.2", "colours 16",         "mouse off",  "key x seek 0", "redo"};
+
+static void step(explorer *ex, escape_sequence *sequence, uint8_t kind, uint8_t which)
+{
+    pointer_event report;
+    switch (kind % 5) {
+    case 0:
+        // not those that leave, and no files are written: s and the prompt's own words
+        if (which >= ' ' && which != 'q' && which != 'Q' && which != 's' && which != ':') {
+            explorer_key(ex, which);
+        }
+        break;
+    case 1:
+        explorer_carry_out(ex, lines[which % (sizeof lines / sizeof lines[0])]);
+        break;
+    case 2:
+        report =
+            (pointer_event){.kind = (pointer_kind)(kind / 5 % 5), .x = which % 130, .y = which / 3};
+        explorer_point(ex, report);
+        break;
+    case 3:
+        if (sequence->state == SEQUENCE_NONE) {
+            sequence->state = SEQUENCE_ESCAPED;
+        }
+        if (escape_sequence_take(sequence, which, &report) == SEQUENCE_MOUSE) {
+            explorer_point(ex, report);
+        }
+        break;
+    default:
+        ex->state.size = (screen_size){1 + which, 1 + kind / 5};
+        break;
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const char yaml[] = "title: base\nrun: {duration: 0.1 s}\n";
+    scenario s;
+    explorer ex;
+    screen shown = {0};
+    fault f = {0};
+    escape_sequence sequence = {.state = SEQUENCE_NONE};
+    FUZZ_CHECK(scenario_parse(&s, yaml, sizeof yaml - 1, "f", "base", ignore, NULL) == STATUS_OK);
+    FUZZ_CHECK(explorer_init(&ex, &s, HUGE_VAL, &f) == STATUS_OK);
+    ex.state.size = (screen_size){120, 40};
+
+    for (size_t i = 0; i + 1 < size && i < 2 * MOST_STEPS && !ex.state.quit; i += 2) {
+        step(&ex, &sequence, data[i], data[i + 1]);
+        FUZZ_CHECK(screen_resize(&shown, ex.state.size.width, ex.state.size.height));
+        explorer_draw(&ex, &shown);
+        for (long place = 0; place < (long)shown.width * shown.height; place++) {
+            FUZZ_CHECK(!is_unprintable(shown.cells[place].glyph));
+        }
+    }
+    screen_finish(&shown);
+    explorer_finish(&ex);
+    return 0;
+}

@@ -1,0 +1,129 @@
+#!/bin/bash
+# Lets the k-th allocation, write, fsync, rename and open of the program fail, for every k or, where
+# there are very many, for every n-th, and kills it at random instants. Whatever fails: with exit
+# status 0 all results are those of an undisturbed run; otherwise there is a sentence, the file of
+# before stands unchanged (or the whole new one), and nothing is left beside it.
+# $1: the program, $2: fail_kth.so, $3: how many allocations at most fail for each command (default 60)
+set -u
+program=$(readlink -f "$1")
+preload=$(readlink -f "$2")
+most=${3:-60}
+export LC_ALL=C.UTF-8
+folder=$(mktemp -d /tmp/impactlab-faults-XXXXXX)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failures=0 injected=0
+
+if ldd "$program" | grep -q 'lib[atu]*san'; then
+    echo "a sanitizer's allocator takes no other's place"
+    exit 77
+fi
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+cat >hit.yaml <<'END'
+title: An impact
+motor: {voltage: 2 V}
+run: {duration: 0.05 s}
+END
+
+# what a command wrote, the times of the machine removed
+essence() {
+    case $1 in
+    *.json) grep -v '"\(wall\|cpu\)_time_s"' "$1" ;;
+    *.sqlite) "$program" sweep hit.yaml --vary motor.voltage=1:2:3 --db "$1" --quiet --csv - 2>&1 ;;
+    *) cat "$1" ;;
+    esac
+}
+
+# true if a result is that of a run that failed, and says so: in its status, or by its rows being the
+# first ones of the whole result
+tells_of_its_end() {
+    case $1 in
+    *.json) grep -q '"status": "failed"\|"ok": false\|out of memory' "$1" ;;
+    *.csv) head -c "$(stat -c %s "$1")" "expected-$1" | cmp -s - "$1" ;;
+    *) false ;;
+    esac
+}
+
+# attempt CALL K RESULT ARGUMENT...: one call fails; looks at what became of it
+attempt() {
+    local call=$1 k=$2 result=$3 status
+    shift 3
+    rm -f "$result" "$result"-journal
+    [ "${result##*.}" = sqlite ] || echo old >"$result"
+    LD_PRELOAD=$preload FAIL_CALL=$call FAIL_AT=$k FAIL_COUNT=/dev/null "$program" "$@" >out 2>err </dev/null
+    status=$?
+    injected=$((injected + 1))
+    if [ $status -gt 2 ]; then
+        fail "$call $k of: $*: status $status: $(head -c 200 err)"
+    elif [ $status != 0 ] && [ ! -s err ]; then
+        fail "$call $k of: $*: status $status without a sentence"
+    fi
+    if [ "${result##*.}" = sqlite ]; then
+        # the same command goes on from what is there
+        "$program" "$@" >out 2>err </dev/null || fail "$call $k of: $*: cannot be continued: $(head -c 200 err)"
+        essence "$result" | cmp -s - "expected-$result" || fail "$call $k of: $*: other rows afterwards"
+    elif [ "$(cat "$result")" = old ]; then
+        [ $status != 0 ] || fail "$call $k of: $*: status 0 and no result"
+    elif [ $status = 0 ] || ! tells_of_its_end "$result"; then
+        essence "$result" | cmp -s - "expected-$result" || fail "$call $k of: $*: status $status, another result"
+    fi
+    [ -z "$(find . -name '*.part')" ] || fail "$call $k of: $*: a temporary stays"
+    rm -f .impactlab-*.part
+}
+
+# try RESULT ARGUMENT...
+try() {
+    local result=$1 call count step k
+    shift
+    rm -f "$result"
+    "$program" "$@" >out 2>err </dev/null || fail "$*: $(cat err)"
+    essence "$result" >"expected-$result"
+    for call in malloc write fsync rename open; do
+        echo 0 >count
+        rm -f "$result"
+        LD_PRELOAD=$preload FAIL_CALL=$call FAIL_COUNT=$folder/count "$program" "$@" >out 2>err </dev/null
+        count=$(cat count)
+        [ "$call" = rename ] || [ "$count" -gt 0 ] || fail "no $call is counted: is $preload preloaded?"
+        step=$(((count + most - 1) / most))
+        for ((k = 1; k <= count; k += step > 0 ? step : 1)); do
+            attempt "$call" "$k" "$result" "$@"
+        done
+        echo "$call: $count calls, every ${step}th failed: impactlab $*"
+    done
+}
+
+# killed at random instants: the sweep goes on to the same rows, files are the old or the new ones
+kill_at_random() {
+    local result=$1 i
+    shift
+    for ((i = 0; i < 12; i++)); do
+        [ "${result##*.}" = sqlite ] || echo old >"$result"
+        "$program" "$@" >/dev/null 2>&1 </dev/null &
+        sleep "0.0$((RANDOM % 100))"
+        kill -9 $! 2>/dev/null
+        wait $! 2>/dev/null
+        injected=$((injected + 1))
+        if [ "${result##*.}" != sqlite ] && [ "$(cat "$result")" != old ]; then
+            essence "$result" | cmp -s - "expected-$result" || fail "killed: half a result of: $*"
+        fi
+    done
+    "$program" "$@" >out 2>err </dev/null || fail "killed: cannot be continued: $*: $(cat err)"
+    essence "$result" | cmp -s - "expected-$result" || fail "killed: another result of: $*"
+    [ -z "$(find . -name '*.part')" ] || fail "killed: the next run leaves a temporary of: $*"
+}
+
+try r.json run hit.yaml --quiet --json r.json
+try r.csv run hit.yaml --quiet --csv r.csv
+try s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
+try p.svg run hit.yaml --quiet --plot p.svg
+try c.json compare hit.yaml --columns peak_force_N --quiet --json c.json
+kill_at_random r.csv run hit.yaml --quiet --csv r.csv
+kill_at_random s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
+
+echo "$injected faults injected, $failures broken promises"
+[ $failures = 0 ]
