@@ -125,8 +125,28 @@ static void end_without_memory(const char *reason)
     _exit(EXIT_FAILED);
 }
 
+// A crash, as of a font library that finds no memory: the same, and a sentence.
+static void end_crashed(int number)
+{
+    static const char sentence[] = "impactlab: crashed, for want of memory in a library or by a "
+                                   "fault of its own; no half-written file is left\n";
+    ssize_t ignored = write(STDERR_FILENO, sentence, sizeof sentence - 1);
+    (void)ignored;
+    end_cleanly(number);
+}
+
 static void catch_endings(void)
 {
+    static const int crashes[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP};
+    for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++) {
+        struct sigaction before;
+        struct sigaction wanted = {.sa_handler = end_crashed};
+        // a sanitizer or a debugger may have handlers of its own
+        if (sigaction(crashes[i], NULL, &before) == 0 && before.sa_handler == SIG_DFL) {
+            sigaction(crashes[i], &wanted, NULL);
+        }
+    }
+
     static const int endings[] = {SIGINT, SIGTERM, SIGHUP};
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
         struct sigaction before;
