@@ -150,8 +150,8 @@ void motion_project(const arm *a, motion *m, double *state);
 
 // How many times more than in a slow soft arm rounding shows in accelerations, at least 1: a spring
 // of stiffness k between bodies of inertia I turns a last bit of an angle q into a change of
-// (k/I) q 2^-52, where k/I is the square of the arm's highest frequency at most, and what turns at w
-// has accelerations of w^2, to their last bit.
+// (k/I) q 2^-52, where k/I is the square of the arm's highest frequency at most, and what turns at
+// w has accelerations of w^2, to their last bit.
 double motion_rounding(const arm *a, const motion *m);
 
 // Whether the motion's steps are those of an implicit method.
