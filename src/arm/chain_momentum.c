@@ -44,11 +44,15 @@ static void momentum_rate(const arm *a, const chain_link *link, const wall_conta
     const double base_x = vx, base_y = vy;
     double px = 0, py = 0;
     double ex = vx - l * link[last].s * omega[last], ey = vy + l * link[last].c * omega[last];
+
+    // from the tip inwards: px, py is the momentum of the links beyond, ex, ey the end's velocity
     for (int k = last; k >= 0; k--) {
         const double c = link[k].c, s = link[k].s;
         const double dx = -l * s * omega[k], dy = l * c * omega[k];
         const double mx = m * (ex - dx / 2), my = m * (ey - dy / 2);
         double sum = -omega[k] * (c * l * (px + mx / 2) + s * l * (py + my / 2));
+
+        // the impulse's share, at a point with a direction that turns
         if (impulse != 0 && (k < last || !moves)) {
             double turn = -l * omega[k] * (c * wall->ex + s * wall->ey);
             if (moves) { // e = t_N, e' = -w_N r_N
@@ -60,12 +64,16 @@ static void momentum_rate(const arm *a, const chain_link *link, const wall_conta
             sum += impulse * (-wall->penetration * omega[last] -
                               (link[last].c * base_x + link[last].s * base_y));
         }
+
+        // on to the link before
         rate[a->first + k] = sum;
         px += mx;
         py += my;
         ex -= dx;
         ey -= dy;
     }
+
+    // the energy of motion does not depend on the angle of a hub of its own
     if (a->first > 0) {
         rate[0] = 0;
     }

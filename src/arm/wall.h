@@ -120,6 +120,8 @@ wall_contact_at(const wall_model *w, double l, double x, double y, double vx, do
                 double s, double omega)
 {
     wall_contact at;
+
+    // a point pushes across the link, a plane across its own surface
     if (w->kind == WALL_POINT) {
         double dx = w->x - x, dy = w->y - y;
         at.ex = -s;

@@ -56,6 +56,8 @@ bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
         .spring_force = 2 * p->arm.k2 / l,
         .mass_force = (quarter - p->arm.link_inertia) / l,
     };
+
+    // the model has two links on a rigid hub and knows no damping of the beam
     return p->arm.model == ARM_CORRECTED && p->arm.links == 2 && p->arm.hub_joint == HUB_RIGID &&
            p->arm.damping_ratio == 0 && p->wall.kind != WALL_NONE && m->mass_force > 0;
 }

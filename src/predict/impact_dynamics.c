@@ -123,6 +123,8 @@ static double polynomial(const double *c, int degree, double x)
 static double bisect(const double *c, int degree, double low, double high)
 {
     bool rising = polynomial(c, degree, high) > 0;
+
+    // until no number lies in between
     for (int i = 0; i < 200; i++) {
         double middle = low + (high - low) / 2;
         if (middle <= low || middle >= high) {
@@ -299,10 +301,14 @@ static status start(const parameters *p, const three_body_state *s, two_link *t,
                         .delay = (double)NAN,
                         .impulse = (double)NAN,
                         .restitution = (double)NAN};
+
+    // a bad state ends here, with nothing predicted
     status result = three_body_state_check(s, f);
     if (result != STATUS_OK) {
         return result;
     }
+
+    // the jump, and the motion that begins with it
     two_link_at(t, p, form_of(p), s->angle[1], s->angle[2]);
     result = two_link_velocity_jump(t, s, after, &out->impulse, f);
     if (result == STATUS_OK) {

@@ -65,6 +65,8 @@ static flight_state ahead(const flight_state *s, const flight_state *r, double h
 static flight_state advance(const flight *f, flight_state s, double torque)
 {
     const double h = LEAST_TIME_STEP / SUBSTEPS;
+
+    // four slopes: at the start, twice half way and at the end
     for (int i = 0; i < SUBSTEPS; i++) {
         flight_state a = rate(f, &s, torque), at = ahead(&s, &a, h / 2);
         flight_state b = rate(f, &at, torque);
@@ -72,6 +74,8 @@ static flight_state advance(const flight *f, flight_state s, double torque)
         flight_state c = rate(f, &at, torque);
         at = ahead(&s, &c, h);
         flight_state d = rate(f, &at, torque);
+
+        // their weighted mean
         for (int k = 0; k < 2; k++) {
             s.q[k] += h / 6 * (a.q[k] + 2 * b.q[k] + 2 * c.q[k] + d.q[k]);
             s.w[k] += h / 6 * (a.w[k] + 2 * b.w[k] + 2 * c.w[k] + d.w[k]);

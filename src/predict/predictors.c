@@ -44,6 +44,8 @@ static double mean_voltage(const prediction_question *question, double time)
     const voltage_profile *command = &question->command;
     const motor_parameters *motor = &question->parameters->motor;
     double sum = 0, from = 0, volts = motor_limited_voltage(motor, motor->voltage);
+
+    // from one change of the command to the next, the last until `time`
     for (int i = 0; i <= command->count; i++) {
         double to = i < command->count ? fmin(command->times[i], time) : time;
         sum += volts * fmax(to - from, 0);
@@ -171,6 +173,8 @@ const char *prediction_reason(const prediction_answer *answer)
         PREDICTION_DOUBT_LIST(PREDICTION_DOUBT_TEXT)
 #undef PREDICTION_DOUBT_TEXT
     };
+
+    // a failure has its own words, a doubt those of its kind
     assert(answer != NULL);
     if (answer->outcome == PREDICTION_FAILED) {
         return answer->fault.text;

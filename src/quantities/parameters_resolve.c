@@ -67,6 +67,8 @@ static status resolve_stiffness(parameters *p, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.EI),
                             "arm.EI and arm.k2 = 2 EI/length are both given, expected one of them");
     }
+
+    // a beam has its root's stiffness too
     if (p->arm.hub_joint == HUB_BEAM && IS_SET(p, arm.k1)) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.k1),
                             "arm.k1 is for arm.hub_joint = spring, but with beam the root has the "

@@ -110,6 +110,8 @@ size_t background_run_look(background_run *c, run_result *view)
 {
     assert(c != NULL && view != NULL);
     size_t rows = atomic_load_explicit(&c->monitor.rows, memory_order_acquire);
+
+    // what is counted is complete and stays where it is, so the view needs no lock
     if (rows > 0) {
         const trace *t = &c->result.trace;
         view->trace = (trace){.rows = t->rows,

@@ -154,12 +154,16 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
 {
     recording *r = c->recording;
     status failed = action_apply(todo, &r->now, f);
+
+    // the rig has its own view of the parameters
     if (failed == STATUS_OK && r->rig != NULL) {
         failed = rig_lock(r->rig, r->now.control.lock, f);
     }
     if (failed == STATUS_OK && r->rig != NULL) {
         failed = rig_retune(r->rig, &r->now, c->motion->state[SLOT_TIME], f);
     }
+
+    // the motion goes on with the arm that is bound anew
     arm before = c->arm;
     corrected_bind_arm(c);
     motion_rebind(&before, &c->arm, c->motion);

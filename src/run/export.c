@@ -10,6 +10,8 @@
 static json_t *parameter_value(const parameters *p, int index)
 {
     char text[128];
+
+    // only integers and reals are numbers
     switch (parameter_table[index].type) {
     case PARAMETER_CHOICE:
     case PARAMETER_TEXT:

@@ -251,11 +251,15 @@ status loop_set_number(run_loop *l, int parameter, double value, fault *f)
 status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
 {
     assert(l != NULL && parameter >= 0 && parameter < parameter_count && text != NULL);
+
+    // read into a copy, so that a bad text changes nothing
     parameters read = l->recording.now;
     status code = parameter_set_text(&read, parameter, text, f);
     if (code != STATUS_OK) {
         return code;
     }
+
+    // then it is an action like any other
     action todo = {.time = loop_time(l),
                    .kind = ACTION_SET,
                    .parameter = parameter,
@@ -427,14 +431,20 @@ static void restore_rig(run_loop *l, const rig *saved, const char *at)
 {
     rig *r = l->recording.rig;
     const rig own = *r;
+
+    // all but where things lie
     *r = *saved;
     r->law = own.law;
     r->plugin = own.plugin;
     r->process = own.process;
     r->memory = own.memory;
     r->values = own.values;
+
+    // the contents, which were saved one after the other
     memcpy(r->memory, at, memory_size(r));
     memcpy(r->values, at + memory_size(r), values_size(r));
+
+    // the program's address is the present one
     if (l->law.law != NULL) {
         memcpy(r->memory, &l->law.context, sizeof l->law.context);
     }

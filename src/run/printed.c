@@ -216,12 +216,15 @@ static status run_rig(printed_run_state *run, fault *f)
     if (r->rig == NULL) {
         return STATUS_OK;
     }
+
+    // a new command begins at once
     bool changed;
     const double time = run->motion.row.time;
     status failed = rig_act(r->rig, time, &run->sensed, &changed, f);
     if (failed == STATUS_OK && changed) {
         recording_change_command(r, time, run->sensed.angle);
     }
+
     // the controller's command, not motor.voltage
     printed_motion_set_voltage(&run->motion, r->rig->voltage);
     return failed;

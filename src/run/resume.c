@@ -152,6 +152,8 @@ shared_chunks run_compare_rows(const run_result *result, const run_result *other
     assert(result != NULL && other != NULL);
     const trace *a = &result->trace, *b = &other->trace;
     const run_history *h = &result->history, *k = &other->history;
+
+    // compared as far as both go
     size_t rows = fewer(a->row_count, b->row_count);
     size_t events = fewer(a->event_count, b->event_count);
     size_t steps = fewer(h->forces.count, k->forces.count);

@@ -28,12 +28,16 @@ void recording_add_rig_signals(const recording *r, sample *row)
 {
     const rig *on = r->rig;
     bool sampled = on != NULL && on->samples > 0;
+
+    // what the sensors read; before their first sample nothing
     row->encoder = sampled ? on->reading.encoder : (double)NAN;
     row->tachometer = sampled ? on->reading.tachometer : (double)NAN;
     row->force_reading = sampled ? on->reading.force_reading : (double)NAN;
     row->piezo_force = sampled ? on->reading.piezo_force : (double)NAN;
     row->film = sampled ? on->reading.film : (double)NAN;
     row->accelerometer = sampled ? on->reading.accelerometer : (double)NAN;
+
+    // what the controller made of it
     row->command = sampled ? on->output.command : (double)NAN;
     row->controller_mode = sampled ? on->output.mode : (double)NAN;
     row->desired_angle = sampled ? on->output.desired_angle : (double)NAN;

@@ -19,12 +19,16 @@ void scenario_insert_action(scenario *s, action a)
 status action_apply(const action *a, parameters *p, fault *f)
 {
     assert(a != NULL && p != NULL);
+
+    // other actions change no parameter
     if (a->kind != ACTION_SET) {
         return STATUS_OK;
     }
     if (parameter_table[a->parameter].type == PARAMETER_TEXT) {
         return parameter_set_text(p, a->parameter, a->text, f);
     }
+
+    // a number may change others with it
     status code = parameter_set_number(p, a->parameter, a->value, f);
     if (code == STATUS_OK) {
         parameters_follow(p, a->parameter);

@@ -149,6 +149,8 @@ static folder_list open_folders(void)
 {
     folder_list all = {.count = 0};
     const char *chosen = getenv("IMPACTLAB_SCENARIOS");
+
+    // the user's folders; one place is left for the shipped one
     while (chosen != NULL && *chosen != '\0' && all.count < MAX_FOLDERS - 1) {
         size_t length = strcspn(chosen, ":");
         if (length > 0) {
@@ -157,6 +159,8 @@ static folder_list open_folders(void)
         }
         chosen += length + (chosen[length] == ':');
     }
+
+    // it comes last, behind all that the user has
     all.folders[all.count] = shipped_folder();
     all.count += all.folders[all.count] != NULL;
     return all;
@@ -263,6 +267,8 @@ static void sort_once(name_list *list)
     if (list->count == 0) {
         return;
     }
+
+    // equal names become neighbours
     qsort(list->names, (size_t)list->count, sizeof *list->names, compare_names);
     int kept = 1;
     for (int i = 1; i < list->count; i++) {
@@ -360,6 +366,8 @@ static bool find_name(const char *wanted, char **path)
     int count;
     bool found = false;
     *path = NULL;
+
+    // a file is looked for only if the list has its name
     scenario_list(&names, &count, NULL);
     for (int i = 0; i < count && !found; i++) {
         if (strcmp(names[i], wanted) == 0) {

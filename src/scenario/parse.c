@@ -153,12 +153,16 @@ static void complete(reader *r, const char *name)
     scenario *s = r->s;
     s->name = strdup(name != NULL ? name : r->path);
     s->file = strdup(r->path);
+
+    // the name stands in for a title
     if (s->title == NULL) {
         s->title = strdup(name != NULL ? name : r->path);
     }
     if (s->description == NULL) {
         s->description = strdup("");
     }
+
+    // any of the copies may have failed
     reader_have_memory(r, s->name);
     reader_have_memory(r, s->file);
     reader_have_memory(r, s->title);

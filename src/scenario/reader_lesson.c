@@ -22,6 +22,8 @@ void lesson_finish(lesson *l)
             free(step->commands[k]);
         }
     }
+
+    // nothing else of a lesson is allocated
     free(l->steps);
     *l = (lesson){0};
 }
@@ -54,10 +56,14 @@ static char *read_text(reader *r, const tree_node *node, const char *what)
 static int read_texts(reader *r, const tree_node *list, const char *what, char **texts, int most)
 {
     int count = 0;
+
+    // what is no list has no texts
     if (list->kind != TREE_LIST) {
         report_node(r, list, "%s is %s, expected a list", what, node_kind_name(list));
         return 0;
     }
+
+    // a text that cannot be read is left out
     for (const tree_node *child = list->first; child != NULL; child = child->next) {
         if (count == most) {
             report_node(r, child, "%s: more than %d of them", what, most);
@@ -113,10 +119,14 @@ static void read_choice(reader *r, const tree_node *map, lesson_step *step)
     const tree_node *of = value_of(r, map, "of");
     double right = 0;
     step->check = LESSON_CHOICE;
+
+    // without answers there is nothing to choose
     if (of == NULL) {
         report_node(r, map, "a choice has no 'of', expected a list of answers");
         return;
     }
+
+    // the file counts them from 1
     step->choice_count = read_texts(r, of, "of", step->choices, LESSON_CHOICES);
     read_number(r, map, "right", true, &right);
     step->right = (int)right - 1;
@@ -242,6 +252,8 @@ static void read_parameters(reader *r, const tree_node *list, lesson *l)
 {
     char *paths[LESSON_PARAMETERS] = {0};
     const int count = read_texts(r, list, "parameters", paths, LESSON_PARAMETERS);
+
+    // one that does not exist is reported, the others stay
     for (int i = 0; i < count; i++) {
         fault f = {0};
         const int index = parameter_look_up(paths[i], &f);

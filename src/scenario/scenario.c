@@ -45,6 +45,8 @@ status scenario_copy(scenario *copy, const scenario *s)
     assert(copy != NULL && s != NULL);
     void *actions = NULL, *expectations = NULL;
     *copy = *s;
+
+    // all of them, even after a failure: none may still be the original's
     bool good = copy_text(&copy->name, s->name);
     good = copy_text(&copy->file, s->file) && good;
     good = copy_text(&copy->title, s->title) && good;
@@ -55,6 +57,8 @@ status scenario_copy(scenario *copy, const scenario *s)
            good;
     copy->actions = actions;
     copy->expectations = expectations;
+
+    // half a copy is none
     if (!good) {
         scenario_finish(copy);
     }
@@ -136,11 +140,15 @@ static bool override_together(scenario *s, char *const *assignments, int count)
 {
     fault ignored;
     parameters p = s->parameters;
+
+    // one by one into a copy
     for (int i = 0; i < count; i++) {
         if (assign(&p, assignments[i], &ignored) != STATUS_OK) {
             return false;
         }
     }
+
+    // then together, as some depend on others
     if (count > 0 && resolve_changed(s, &p, &ignored) != STATUS_OK) {
         return false;
     }

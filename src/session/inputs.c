@@ -117,6 +117,8 @@ static status begin_adjusting(session *s, int parameter, const char *text, fault
     run_result before;
     const size_t rows = s->run.trace.row_count;
     const bool kept = s->computing == NULL && run_share(&s->run, rows, &before) == STATUS_OK;
+
+    // the ghost takes over the run before, else it is given back
     status code = session_change(s, parameter, text, f);
     if (kept && code == STATUS_OK) {
         session_forget_ghost(s);
@@ -188,6 +190,8 @@ status session_undo(session *s, fault *f)
     if (s->input_count == 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo");
     }
+
+    // computed without the last one, which stays if that fails
     s->input_count--;
     status code = session_compute(s, f);
     if (code != STATUS_OK) {

@@ -297,6 +297,8 @@ static void slip(const arm *a, motion *m)
 void motion_apply(const arm *a, motion *m, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL);
+
+    // the transition that belongs to the event
     switch (report->event) {
     case MOTION_REACHED:
         return;
@@ -316,6 +318,8 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
         slip(a, m);
         break;
     }
+
+    // what holds after each of them
     report->holds = m->state[SLOT_CONTACT] != 0;
     check_invariants(a, m);
 }
@@ -352,6 +356,7 @@ static void come_to_rest(motion *m)
 
 static motion_event event_of(const motion *m, watch w)
 {
+    // the wall: contact begins with an impact only at a speed, and only if it does not give
     switch (w) {
     case WATCH_GAP:
         if (m->wall_gives) {
@@ -360,6 +365,8 @@ static motion_event event_of(const motion *m, watch w)
         return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
     case WATCH_FORCE:
         return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
+
+    // the hub
     case WATCH_HUB:
         return MOTION_STICK;
     case WATCH_STICTION:

@@ -62,6 +62,8 @@ bool watch_active(const arm *a, const motion *m, watch w)
     bool contact = m->state[SLOT_CONTACT] != 0;
     bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
     bool held = m->dof == 1 && contact && !m->wall_gives;
+
+    // a watch is of use only where its event could end the present state
     switch (w) {
     case WATCH_GAP:
         return (!contact || m->wall_gives) && wall_stands(&a->wall);

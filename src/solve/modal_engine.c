@@ -135,6 +135,8 @@ static void first_event(const arm *a, motion *m, double *h, watch *first, bool *
     modal_memory *memory = m->memory;
     *any = false;
     *first = WATCH_GAP;
+
+    // each finds only what comes before the events found so far
     for (watch w = WATCH_GAP; w <= WATCH_STICTION; w++) {
         if (!watch_active(a, m, w)) {
             continue;

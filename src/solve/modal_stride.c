@@ -464,12 +464,16 @@ static void take_tables(modal_stride *s, double length)
     const int slot = 1 - exponent - MODAL_LONGEST_LEVEL;
     const bool kept = round && slot >= 0 && slot < MODAL_KEPT_LEVELS;
     modal_kept *keep = kept ? &s->kept[s->modes - s->basis][slot] : &s->passing;
+
+    // a kept table is filled once, the passing one every time
     if (!kept || !keep->known) {
         for (int i = 1; i < MODAL_NODES; i++) {
             fill_table(s, points[i] * length, kept_powers(i), s->count, &keep->at[i]);
         }
         keep->known = true;
     }
+
+    // from here on it makes no difference where they are kept
     for (int i = 1; i < MODAL_NODES; i++) {
         s->at[i] = keep->at[i];
     }

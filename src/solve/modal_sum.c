@@ -85,6 +85,8 @@ static void know_level(modal_vibrations *v, int level)
     if (v->known[level]) {
         return;
     }
+
+    // decay and turn in one complex factor
     const double step = ldexp(1, -level);
     double *cosine = v->cosine + (size_t)level * (size_t)v->limit;
     double *sine = v->sine + (size_t)level * (size_t)v->limit;
@@ -137,6 +139,8 @@ static void evaluate(modal_sum *f)
     const modal_vibrations *v = f->vibrations;
     double value[LANES] = {0}, slope[LANES] = {0};
     int e = f->first;
+
+    // separate sums, so that no addition waits for another
     for (; e + LANES <= f->last; e += LANES) {
         for (int i = 0; i < LANES; i++) {
             value[i] += f->a[e + i];
@@ -147,6 +151,8 @@ static void evaluate(modal_sum *f)
         value[0] += f->a[e];
         slope[0] += v->turn[e] * f->b[e] - v->decay[e] * f->a[e];
     }
+
+    // the series adds what does not vibrate
     f->now = series_at(f, f->time, NULL);
     f->now.value += (value[0] + value[1]) + (value[2] + value[3]);
     f->now.slope += (slope[0] + slope[1]) + (slope[2] + slope[3]);
@@ -187,6 +193,8 @@ void modal_sum_step(modal_sum *f, int level)
     const double *restrict cosine = v->cosine + (size_t)level * (size_t)v->limit;
     const double *restrict sine = v->sine + (size_t)level * (size_t)v->limit;
     double *restrict a = f->a, *restrict b = f->b;
+
+    // each turns and decays by its own factor
     for (int e = f->first; e < f->last; e++) {
         const double x = a[e], y = b[e];
         a[e] = x * cosine[e] + y * sine[e];

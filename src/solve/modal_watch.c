@@ -29,6 +29,8 @@ static void contact_gradient(const arm *a, const double *q, double *gradient)
 {
     const double l = a->link_length;
     const int last = a->first + a->links - 1;
+
+    // where the last link begins, and the wall as met from there
     double x = 0, y = 0, c = 1, s = 0;
     for (int k = a->first; k < last; k++) {
         inline_sincos(q[k], &s, &c);
@@ -37,6 +39,8 @@ static void contact_gradient(const arm *a, const double *q, double *gradient)
     }
     inline_sincos(q[last], &s, &c);
     wall_contact at = wall_contact_at(&a->wall, l, x, y, 0, 0, c, s, 0);
+
+    // the last link turns about that place, the others move it
     gradient[0] = 0;
     gradient[last] = wall_last_lever(&at, l, c, s);
     for (int k = a->first; k < last; k++) {
@@ -63,20 +67,25 @@ static void fit_functional(modal_function *f, modal_stride *s, const arm *a, mot
     const double *q = state_angles(m, m->state);
     double *direction = s->angles, compliance, impulse;
     const bool stuck = s->mode.friction == HUB_STICK;
+
+    // weights of the modes' angles and speeds; most kinds need no speeds
     memset(f->speed, 0, (size_t)n * sizeof(double));
     if (f->kind == WATCH_GAP) {
+        // the gap shrinks as the penetration grows
         contact_gradient(a, q, direction);
         for (int i = 0; i < n; i++) {
             direction[i] = -direction[i];
         }
         modal_from_angles(s->modes, n, 1, direction, f->place, n);
     } else if (f->kind == WATCH_FORCE) {
+        // the force: springs at work along the contact's response
         chain_contact_response(a, m->links, q, stuck, direction, &compliance);
         for (int i = 0; i < n; i++) {
             direction[i] /= compliance;
         }
         through_springs(f, s, a, direction, stuck ? 0 : a->motor.damping * direction[0]);
     } else if (f->kind == WATCH_HUB) {
+        // the hub's speed in the direction that its friction is for
         memset(f->place, 0, (size_t)n * sizeof(double));
         for (int k = 0; k < s->count; k++) {
             f->speed[k] = s->mode.friction * s->modes->by_dof[k];
@@ -245,6 +254,8 @@ void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const ar
     fit_functional(f, s, a, m);
     f->value = exact_at(kind, a, m, s->mode, state_angles(m, m->state),
                         state_velocities(m, m->state), s->columns);
+
+    // what the modes leave over at the points of collocation
     double values[MODAL_NODES] = {0};
     for (int i = 1; i < MODAL_NODES; i++) {
         const double *x = s->modal + (size_t)(2 * i) * (size_t)s->dof;
@@ -252,6 +263,8 @@ void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const ar
             exact_at(kind, a, m, s->mode, s->point_angles[i], s->point_velocities[i], s->columns);
         values[i] = exact - f->value - functional(f, s, x, x + s->dof, s->drifts[i], s->drifts[0]);
     }
+
+    // both parts as functions of time
     modal_polynomial(values, s->length, f->rest);
     fit_sum(f, s);
 }
@@ -306,6 +319,8 @@ static look_at least_of(const modal_function *f, const arm *a, look_at lo, look_
 {
     const double resolution = fmax(1e-3 * (hi.time - lo.time), 1e-14);
     look_at best = lo.at.value < hi.at.value ? lo : hi;
+
+    // false position, by halves every third time; a value below zero is enough
     for (int i = 0; i < 12 && best.at.value > 0 && hi.time - lo.time > resolution; i++) {
         double share = lo.at.slope / (lo.at.slope - hi.at.slope);
         share = i % 3 == 2 ? 0.5 : fmin(fmax(share, 1e-3), 1 - 1e-3);
@@ -383,9 +398,13 @@ static double root_from_edge(modal_function *f, modal_stride *s, const arm *a, m
     for (int i = 0; i < MOST_HALVINGS && !(now.at.value > 0); i++) {
         now = look_of(f, a, now.time / 2);
     }
+
+    // above in between: an ordinary root
     if (now.at.value > 0) {
         return root_of(f, s, a, m, now, hi);
     }
+
+    // nowhere above: only a gap has still to pass its rounding
     if (f->kind != WATCH_GAP) {
         return now.time;
     }
@@ -489,6 +508,8 @@ static look_at summit_of(const modal_function *f, const arm *a, look_at lo, look
 {
     look_at best = lo.at.value > hi.at.value ? lo : hi;
     const double resolution = 1e-6 * (hi.time - lo.time);
+
+    // false position, by halves every fourth time
     for (int i = 0; i < 12 && hi.time - lo.time > resolution; i++) {
         double share = lo.at.slope / (lo.at.slope - hi.at.slope);
         share = i % 4 == 3 ? 0.5 : fmin(fmax(share, 1e-4), 1 - 1e-4);

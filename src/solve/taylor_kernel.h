@@ -193,12 +193,16 @@ KERNEL real allowed_stride(real wanted, real before_last, real last, real scale,
 {
     real h = wanted;
     const real limit = LAST_TERMS * scale;
+
+    // all lanes go on until the last of them is short enough
     for (int i = 0; i < MOST_SHORTENINGS; i++) {
         real power = (real){0} + 1.0, base = h; // h^(order - 1)
         for (int e = order - 1; e > 0; e >>= 1) {
             power = e & 1 ? power * base : power;
             base *= base;
         }
+
+        // only the lanes that are too long are cut
         const mask bad = ~MASK((last * h + before_last) * power <= limit);
         if (!any(bad)) {
             break;

@@ -47,6 +47,8 @@ static void compute_block(double *block, int width, taylor_form form)
         taylor_series_2(block, form);
         break;
 #endif
+
+    // what every processor can do
     default:
         taylor_series_1(block, form);
         break;

@@ -159,10 +159,14 @@ static void escape(explorer *ex)
 {
     explorer_state *st = &ex->state;
     char *filter = st->filters.text[st->side.panel];
+
+    // a computation goes first, and alone
     if (st->session.computing != NULL) {
         explorer_carry_out(ex, "stop");
         return;
     }
+
+    // the nearest thing: a filter, the sweep, else the mark
     if (filter[0] != '\0') {
         filter[0] = '\0';
     } else if (st->side.panel == PANEL_SWEEP) {
@@ -170,6 +174,8 @@ static void escape(explorer *ex)
     } else {
         st->mark.set = false;
     }
+
+    // what was only shown for a moment goes with it
     session_forget_ghost(&st->session);
     message_clear(&st->message);
 }

@@ -90,6 +90,8 @@ static void turn_wheel(explorer *ex, pointer_event e)
 void explorer_point(explorer *ex, pointer_event e)
 {
     assert(ex != NULL);
+
+    // a gesture is a press, its drags and its release; what is left is the wheel
     switch (e.kind) {
     case POINTER_PRESS:
         press(ex, e);

@@ -122,6 +122,8 @@ void explorer_load_settings(explorer *ex)
 // The axes that are not as they are at first, and the user's keys.
 static void write_axes_and_keys(const explorer_state *st, FILE *stream)
 {
+
+    // every pane but the user's own
     for (int i = 0; i < PANES - 1; i++) {
         const pane *p = &st->panes.pane[i];
         if (p->scaling == AXIS_GROW) {
@@ -130,6 +132,8 @@ static void write_axes_and_keys(const explorer_state *st, FILE *stream)
             fprintf(stream, "axis %.10g %.10g %d\n", p->fixed.low, p->fixed.high, i + 1);
         }
     }
+
+    // a key without a line is one that was taken away
     for (int i = 0; i < st->keys.count; i++) {
         const user_key *own = &st->keys.own[i];
         char name[KEY_NAME];

@@ -422,8 +422,12 @@ static terminal_input after_signal(void)
 {
     char bytes[64];
     struct winsize size;
+
+    // the bytes only woke the loop, the flags tell why
     while (read(tty.wake[0], bytes, sizeof bytes) > 0) {
     }
+
+    // after a stop it goes on below, perhaps in another size
     if (suspending != 0) {
         suspending = 0;
         suspend();
@@ -431,6 +435,8 @@ static terminal_input after_signal(void)
     if (leaving != 0) {
         return (terminal_input){.kind = TERMINAL_LEAVE};
     }
+
+    // whatever the signal was, the size is asked for
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
         resizeterm(size.ws_row, size.ws_col);
     }
@@ -521,6 +527,8 @@ static attr_t attributes_of(ink colour, bool coloured)
     case INK_TITLE:
     case INK_EVENT:
         return A_BOLD;
+
+    // what a colour tells needs another sign where there is none
     case INK_DIM:
     case INK_OTHER:
         return coloured ? A_NORMAL : A_DIM;

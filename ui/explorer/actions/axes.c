@@ -146,6 +146,8 @@ static action_result set_limits(explorer_state *st, int index, const char *from,
     if (!result_ok(&read)) {
         return read;
     }
+
+    // limits the wrong way round, or none at all: NAN is not below anything
     if (!(limits.low < limits.high)) {
         return result_refused("an axis goes from a lower to a higher value, not from %g to %g",
                               limits.low, limits.high);
@@ -193,13 +195,19 @@ static action_result read_pane(const explorer_state *st, const char *word, int *
     char *end;
     long number = strtol(word, &end, 10);
     *index = -1;
+
+    // all panes need no number
     if (strcmp(word, "all") == 0) {
         return result_done();
     }
+
+    // numbered as the keys are: 0 comes last and is the user's own
     if (*end != '\0' || end == word || number < 0 || number > PANES) {
         return result_refused("'%s' is no pane: 1 to 9, 0 for your own, or all", word);
     }
     *index = (int)(number + PANES - 1) % PANES;
+
+    // an empty pane has no axis
     if (st->panes.pane[*index].count == 0) {
         return result_refused("pane %s is empty, :trace SIGNAL... fills it", word);
     }

@@ -121,11 +121,15 @@ static double nudge_step(int parameter, double value)
     enum { LEAST_STEPS = 50 };
     slider_scale scale;
     parameters p;
+
+    // the scale is that of the usual value, so that it stays as the value moves
     parameters_defaults(&p, ARM_CORRECTED);
     const double usual = parameter_get(&p, parameter);
     if (!slider_scale_of(parameter, isfinite(usual) ? usual : value, &scale)) {
         return 0;
     }
+
+    // what rounding leaves just below a power of ten counts as that power
     if (scale.logarithmic) {
         return pow(10, floor(log10(fabs(value)) + 1e-9)) / 10;
     }

@@ -38,9 +38,13 @@ action_result act_law(explorer_state *st, const char *argument)
     const parameters *p = &st->session.effective.parameters;
     const int law = PARAMETER_INDEX(control.law);
     parameter_format(p, law, present, sizeof present);
+
+    // the law of now is the one to come back to
     if (state_has_law(st)) {
         snprintf(st->last_law, sizeof st->last_law, "%s", present);
     }
+
+    // without a name: off, or on again
     if (argument[0] == '\0') {
         const char *again = st->last_law[0] ? st->last_law : "hybrid";
         return change_law(st, state_has_law(st) ? "none" : again);

@@ -37,10 +37,14 @@ action_result act_open_lesson(explorer_state *st, const char *argument)
         st->scenarios.filtering = false;
         return listed;
     }
+
+    // the word that ends one
     if (strcmp(argument, "off") == 0) {
         st->lesson.on = false;
         return result_done();
     }
+
+    // its scenario brings the lesson along
     const char *name = lesson_named(st, argument);
     if (name == NULL) {
         return result_refused("there is no lesson '%.60s' (:lesson lists them)", argument);

@@ -80,13 +80,19 @@ static action_result read_run(const explorer_state *st, const char *text, int *i
 {
     char *end;
     const long number = strtol(text, &end, 10);
+
+    // without a pinned run no number is right
     if (st->pinned.count == 0) {
         return result_refused("no run is pinned (b pins this one)");
     }
+
+    // a number of the list, alone or before a blank
     if (end == text || (*end != '\0' && *end != ' ') || number < 1 || number > st->pinned.count) {
         return result_refused("pinned runs are numbered from 1 to %d (R lists them)",
                               st->pinned.count);
     }
+
+    // the rest begins with a word
     while (*end == ' ') {
         end++;
     }
@@ -227,13 +233,19 @@ action_result act_continue_sweep(explorer_state *st)
     assert(st != NULL);
     fault f = {0};
     lab_sweep *sweep = &st->sweep;
+
+    // asked again and again: a finished sweep stays as it is
     if (lab_sweep_is_done(sweep)) {
         return result_done();
     }
+
+    // one run a call, so that keys are read in between
     const status code = lab_sweep_compute_next(sweep, &st->session.effective, &f);
     if (code != STATUS_OK) {
         return result_of(code, &f);
     }
+
+    // only the last one is news
     if (!lab_sweep_is_done(sweep)) {
         return result_done();
     }

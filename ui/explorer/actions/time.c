@@ -177,6 +177,8 @@ action_result act_seek(explorer_state *st, const char *argument)
 action_result act_set_speed(explorer_state *st, const char *argument)
 {
     double wanted = st->playback.speed;
+
+    // a step up or down, or the speed itself
     if (strcmp(argument, "up") == 0 || strcmp(argument, "down") == 0) {
         wanted = playback_next_speed(&st->playback, argument[0] == 'u' ? 1 : -1);
     } else {
@@ -185,6 +187,8 @@ action_result act_set_speed(explorer_state *st, const char *argument)
             return read;
         }
     }
+
+    // written so that NAN is refused too
     if (!(wanted >= 1e-3 && wanted <= 1e4)) {
         return result_refused("the speed is a number from 0.001 to 10000, 1 is real time");
     }

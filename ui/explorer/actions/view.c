@@ -8,6 +8,8 @@ action_result act_select_parameter(explorer_state *st, const char *argument)
 {
     parameter_line lines[PARAMETER_LINES];
     const int direction = argument[0] == '-' ? -1 : 1;
+
+    // panels in which nothing is selected scroll
     if (st->side.panel == PANEL_VALUES) {
         st->scroll[PANEL_VALUES] += direction;
         return result_done();
@@ -16,10 +18,14 @@ action_result act_select_parameter(explorer_state *st, const char *argument)
         st->scroll[PANEL_STATISTICS] += direction;
         return result_done();
     }
+
+    // the sweep selects among its runs
     if (st->side.panel == PANEL_SWEEP) {
         act_select_swept(st, direction);
         return result_done();
     }
+
+    // the parameters end at both ends, without a way around
     const int count = state_parameter_lines(st, lines);
     const int next = parameter_list_selected(&st->parameters, lines, count) + direction;
     if (next >= 0 && next < count) {
@@ -260,6 +266,8 @@ static action_result read_choice(explorer_state *st, const char *argument, const
             return result_done();
         }
     }
+
+    // none of them: the refusal names them all
     char all[128] = "";
     for (int i = 0; i < count; i++) {
         size_t used = strlen(all);
@@ -329,6 +337,8 @@ action_result act_quit(explorer_state *st, const char *argument)
     (void)argument;
     const session *s = &st->session;
     const bool unsaved = s->input_count > 0 && st->saved_version != state_run_id(st);
+
+    // changes are lost only by who asks twice
     if (!unsaved || st->asked_to_quit) {
         st->quit = true;
         return result_done();

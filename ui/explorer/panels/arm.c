@@ -145,10 +145,14 @@ static void draw_wall(const view *v, const parameters *p)
     double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
     int column = v->canvas.x + (int)(dot_x(v, x) / 2), row = v->canvas.y + (int)(dot_y(v, y) / 4);
     bool inside = row > v->canvas.y && row < v->canvas.y + v->canvas.height;
+
+    // a plane: a stretch of the line that the arm lies along
     if (p->wall.kind == WALL_PLANE) {
         canvas_line(&v->canvas, dot_x(v, 0.8 * x), dot_y(v, 0.8 * y), dot_x(v, 1.1 * x),
                     dot_y(v, 1.1 * y), INK_WALL);
     }
+
+    // where the tip meets a wall of any kind
     if (p->wall.kind != WALL_NONE && inside) {
         // the cell beyond the wall, on the side that the arm cannot reach
         for (int i = 0; i < 3; i++) {
@@ -165,6 +169,7 @@ static void draw_force(const view *v, point tip, double force, double peak)
         return;
     }
     double x = dot_x(v, tip.x), y = dot_y(v, tip.y), length = 1.2 * v->canvas.height * force / peak;
+
     // shaft and head in one column of cells
     const int across = (int)lround(x - 2) / 2, head = (int)(y / 4) - 1;
     const int column = v->canvas.x + across, row = v->canvas.y + head;

@@ -8,9 +8,13 @@ static void draw_change(const explorer_state *st, screen *s, area a, int index)
     const bool later = in->kind != SESSION_INPUT_START && in->time > st->session.now;
     const ink colour = later ? INK_DIM : INK_TEXT;
     char text[LINE_TEXT], when[32] = "from the start";
+
+    // what holds from the start has no instant
     if (in->kind != SESSION_INPUT_START) {
         snprintf(when, sizeof when, "%9.5f s", in->time);
     }
+
+    // what is still to come is hollow and dim
     state_change_text(st, index, text, sizeof text);
     screen_print(s, a.x, a.y, 5, INK_DIM, "%3d %s", index + 1, later ? "\u25cb" : "\u25cf");
     screen_text(s, a.x + 6, a.y, 15, colour, when);

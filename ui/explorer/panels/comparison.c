@@ -11,11 +11,15 @@ static bool compare_quantity(const session *e, int index, int width, char *colum
     double value = summary_value(&e->run.summary, index), other = (double)NAN;
     char one[32], two[32] = "", change[32] = "";
     draw_number(one, sizeof one, value);
+
+    // a single run has no change
     if (e->has_other) {
         other = summary_value(&e->other.summary, index);
         draw_number(two, sizeof two, other);
         draw_number(change, sizeof change, value - other);
     }
+
+    // two runs differ by more than rounding
     *differs = e->has_other && !(isnan(value) && isnan(other)) &&
                !(fabs(value - other) <= 1e-6 * fmax(fabs(value), fabs(other)));
     snprintf(columns, size, "%*s%*s%*s", width, one, width, two, width, change);

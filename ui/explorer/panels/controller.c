@@ -39,9 +39,13 @@ static void draw_lock(const explorer_state *st, screen *s, area a)
 {
     char next[64], off[64];
     parameters p = state_parameters(st);
+
+    // the first key of each, where several do the same
     key_names_of(&st->keys, "lock next", next, sizeof next);
     key_names_of(&st->keys, "lock off", off, sizeof off);
     next[strcspn(next, " ")] = off[strcspn(off, " ")] = '\0';
+
+    // what holds now, with the key that changes it
     if (!st->modes.lockable) {
         screen_text(s, a.x, a.y, a.width, INK_DIM, "takes no lock on a mode");
     } else if (p.control.lock[0] == '\0' || strcmp(p.control.lock, "none") == 0) {
@@ -92,6 +96,8 @@ static void draw_brief(screen *s, area a, const sample *row, const parameters *p
     brief(velocity, sizeof velocity, 2, row->desired_velocity);
     brief(read, sizeof read, 2, row->force_reading);
     brief(calculated, sizeof calculated, 2, row->calculated_force);
+
+    // not every law wants an angle
     if (isfinite(row->desired_angle)) {
         screen_print(s, a.x, a.y, a.width, INK_TEXT, "wants %s rad, %s rad/s", angle, velocity);
     } else {

@@ -317,6 +317,8 @@ static void draw_level(const plot_frame *f, screen *s, double value, const char 
     if (!(value >= f->axis.low && value <= f->axis.high)) {
         return;
     }
+
+    // only where nothing is drawn yet; the name stands at the end
     const int length = (int)strlen(name), end = f->canvas.x + f->canvas.width;
     for (int x = f->canvas.x; x < end; x++) {
         cell *at = &s->cells[(long)y * s->width + x];
@@ -543,6 +545,8 @@ static bool point_at_labels(explorer_state *st, const panel_gesture *g)
 static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
 {
     *result = result_done();
+
+    // each part takes the mouse in its own way
     switch (g->hit.part) {
     case PART_BODY:
         return point_at_plot(st, g);

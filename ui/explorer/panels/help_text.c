@@ -41,6 +41,8 @@ static void add_text(page *p, int column, const char *text, help_line *begun)
     text_line parts[16];
     int room = p->width - column;
     int count = text_wrap(text, room < 1 ? 1 : room, parts, 16, NULL);
+
+    // the first part may go on in the begun line, the others have lines of their own
     for (int i = 0; i < count; i++) {
         help_line *line = i == 0 && begun != NULL ? begun : new_line(p);
         size_t used = strlen(line->text);
@@ -77,6 +79,8 @@ static void add_commands(page *p, const key_bindings *b)
 {
     // wide enough: keys, call and meaning are three columns; else the call goes before the meaning
     bool wide = p->width >= 96;
+
+    // a group's heading stands before its first command
     for (int i = 0; i < explorer_command_count; i++) {
         const explorer_command *c = &explorer_command_table[i];
         char keys[64], call[64], text[LINE_TEXT];
@@ -96,9 +100,13 @@ static void add_user_keys(page *p, const key_bindings *b)
         const user_key *own = &b->own[i];
         const char *before = key_built_in_line(own->key);
         char key[KEY_NAME], text[2 * LINE_TEXT + 32];
+
+        // no heading without a key below it
         if (i == 0) {
             add_heading(p, "Keys of your own");
         }
+
+        // what the key does now, and what it did before
         key_name(own->key, key, sizeof key);
         snprintf(text, sizeof text, "%s%s%s%s", own->line[0] ? own->line : "nothing",
                  before ? " (the lab's: " : "", before ? before : "", before ? ")" : "");

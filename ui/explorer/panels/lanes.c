@@ -68,6 +68,8 @@ static int find_lanes(const explorer_state *st, const lane_survey *known, lane l
 {
     int count = 0;
     lanes[count++] = (lane){LANE_CONTACT, 0};
+
+    // what this run has besides
     if (state_has_law(st)) {
         lanes[count++] = (lane){LANE_MODE, 0};
     }
@@ -80,11 +82,15 @@ static int find_lanes(const explorer_state *st, const lane_survey *known, lane l
     if (has_lock(st)) {
         lanes[count++] = (lane){LANE_LOCK, 0};
     }
+
+    // contact of the other runs, to compare; one place is left
     for (int run = 1; run < state_run_count(st) && count < MOST_LANES - 1; run++) {
         if (state_run_name(st, run)[0] != '\0') {
             lanes[count++] = (lane){LANE_CONTACT, run};
         }
     }
+
+    // sticking tells least
     if (known->sticks) {
         lanes[count++] = (lane){LANE_STICKING, 0};
     }
@@ -135,6 +141,8 @@ static lane_band band_between(const explorer_state *st, lane l, double from, dou
     enum { COLOURS = sizeof mode_colours / sizeof mode_colours[0] };
     const trace *t = state_run(st, l.run).trace;
     lane_band band = {-1, INK_FORCE, ""};
+
+    // on or off, if anything in between is on
     switch (l.kind) {
     case LANE_CONTACT:
         band.value = any_row(t, from, to, offsetof(sample, contact), 0) ? 1 : -1;
@@ -150,6 +158,8 @@ static lane_band band_between(const explorer_state *st, lane l, double from, dou
         band.colour = INK_WARNING;
         break;
     }
+
+    // one value for each name
     case LANE_MODE: {
         const double mode = t->rows[trace_row_at(t, to)].controller_mode;
         if (mode >= 0) {
@@ -168,6 +178,8 @@ static lane_band band_between(const explorer_state *st, lane l, double from, dou
         band.colour = INK_EVENT;
         break;
     }
+
+    // changes have no bands, they are written
     case LANE_CHANGES:
         break;
     }
@@ -241,9 +253,13 @@ static void draw_changes(const explorer_state *st, screen *s, area line)
         const action *c = &scripted->actions[i];
         const int at = (int)floor((c->time - from) / (to - from) * line.width);
         char text[LINE_TEXT], value[PARAMETER_TEXT_SIZE];
+
+        // only what is in sight
         if (c->time < from || at < 0 || at >= line.width) {
             continue;
         }
+
+        // as short as it may be: a parameter goes without its group
         const bool seen = c->time <= st->session.now;
         if (c->kind == ACTION_PUSH) {
             snprintf(text, sizeof text, "push %g", c->value);
@@ -252,6 +268,8 @@ static void draw_changes(const explorer_state *st, screen *s, area line)
             snprintf(text, sizeof text, "%s %s",
                      strchr(parameter_table[c->parameter].path, '.') + 1, value);
         }
+
+        // what is still to come is hollow and dim
         const ink colour = seen ? INK_EVENT : INK_DIM;
         screen_put(s, line.x + at, line.y, seen ? 0x25cf : 0x25cb, colour);
         screen_text(s, line.x + at + 1, line.y, line.width - at - 1, colour, text);

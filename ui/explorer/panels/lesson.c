@@ -48,10 +48,14 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const lesson *l = &st->session.base.lesson;
     char text[1024], title[LINE_TEXT];
     text_line lines[MOST_LINES];
+
+    // the title tells how far the lesson is and how to go on
     write_step(st, text, sizeof text);
     snprintf(title, sizeof title, "lesson, step %d of %d (%s)", st->lesson.step + 1, l->step_count,
              wanted_key(st));
     screen_frame(s, a.x, a.y, a.width, a.height, INK_EVENT, title);
+
+    // as many lines as there is room for
     const int count = text_wrap(text, a.width - 4, lines, MOST_LINES, NULL);
     for (int i = 0; i < count && i < a.height - 2; i++) {
         screen_print(s, a.x + 2, a.y + 1 + i, a.width - 4, st->lesson.passed ? INK_TITLE : INK_TEXT,

@@ -115,12 +115,16 @@ static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area
 // A signal at even instants, straight between rows; what has no value counts as 0.
 static void sample_evenly(const trace *t, int signal, double from, double to, double *series)
 {
+
+    // both go forward, so the row is found in one walk
     size_t r = trace_row_at(t, from);
     for (int i = 0; i < SERIES; i++) {
         const double time = from + (to - from) * i / SERIES;
         while (r + 1 < t->row_count && t->rows[r + 1].time <= time) {
             r++;
         }
+
+        // a share of the way to the next row, if there is one
         double value = signal_value(&t->rows[r], signal);
         if (r + 1 < t->row_count && t->rows[r + 1].time > t->rows[r].time) {
             const double share = (time - t->rows[r].time) / (t->rows[r + 1].time - t->rows[r].time);

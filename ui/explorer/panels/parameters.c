@@ -202,6 +202,8 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
     if (g->hit.part == PART_SLIDER) {
         return point_at_slider(st, g, result);
     }
+
+    // a press folds the group of a heading and selects any other line
     if (g->event.kind == POINTER_PRESS && g->hit.part == PART_HEADING) {
         parameter_list_fold(&st->parameters, g->hit.index);
         return true;

@@ -52,6 +52,8 @@ static size_t free_row(const session *s)
 {
     const trace *t = &s->run.trace;
     size_t r = s->row;
+
+    // in contact: back to the last touch, and on to where the arm was free
     if (t->rows[r].contact != 0) {
         for (size_t i = 0; i < t->event_count && t->events[i].time <= s->now; i++) {
             bool touches = t->events[i].kind == EVENT_IMPACT || t->events[i].kind == EVENT_CONTACT;

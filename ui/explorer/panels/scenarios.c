@@ -42,9 +42,13 @@ static void draw_preview(const scenario_menu *menu, screen *s, area a)
     for (int x = 0; x < a.width; x++) {
         screen_put(s, a.x + x, a.y, 0x2500, INK_FRAME);
     }
+
+    // a filter may hide the selected one
     if (menu->selected >= menu->count || !scenario_menu_shows(menu, menu->selected)) {
         return;
     }
+
+    // as much of it as there is room for
     const char *text = scenario_menu_description(menu, menu->selected);
     const int count = text_wrap(text, a.width, lines, a.height - 1, NULL);
     for (int i = 0; i < count; i++) {
@@ -144,9 +148,13 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
 {
     scenario_menu *menu = &st->scenarios;
     *result = result_done();
+
+    // all else is the page's own
     if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
         return page_point(st, g, result);
     }
+
+    // in a line without a scenario nothing happens
     int index = scenario_menu_in_line(menu, g->hit.index + g->event.y - g->hit.area.y);
     if (index >= 0 && index == menu->selected) {
         menu->filtering = false;

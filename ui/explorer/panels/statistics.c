@@ -13,6 +13,8 @@ static int find_signals(const explorer_state *st, int signals[PANES * PANE_SIGNA
 {
     int count = 0;
     const int focused = panes_focused(&st->panes);
+
+    // from the pane in focus on and around, a signal of several panes once
     for (int i = 0; i < PANES && focused >= 0; i++) {
         const pane *p = &st->panes.pane[(focused + i) % PANES];
         for (int k = 0; p->shown && k < p->count; k++) {

@@ -15,9 +15,13 @@ static bool range_of_metric(const lab_sweep *sweep, value_range *range)
             value_range_widen(range, (value_range){value, value});
         }
     }
+
+    // no run has a number
     if (!(range->high >= range->low)) {
         return false;
     }
+
+    // a constant still needs some height
     if (range->high - range->low < 1e-12) {
         *range = (value_range){range->low - 0.5, range->high + 0.5};
     }
@@ -77,15 +81,21 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
     const lab_sweep *sweep = &st->sweep;
     const int first = draw_first_line(sweep->selected, sweep->count, a.height);
     layout_add_hit(lay, (hit_area){PANEL_SWEEP, PART_LINES, first, a});
+
+    // a line for each run
     for (int i = first; i < sweep->count && i - first < a.height; i++) {
         const swept_run *r = &sweep->runs[i];
         const int y = a.y + i - first;
         char value[SWEEP_VALUE_TEXT], metric[32];
+
+        // a real value is written like the metric, any other as its axis has it
         sweep_axis_format(&sweep->axis, r->value, value, sizeof value);
         if (sweep_axis_parameter(&sweep->axis)->type == PARAMETER_REAL) {
             draw_number(value, sizeof value, r->value);
         }
         draw_number(metric, sizeof metric, summary_value(&r->run.summary, sweep->metric));
+
+        // a run that stopped says so in the unit's place
         screen_print(s, a.x, y, VALUE, INK_TITLE, "%.12s", value);
         screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s", metric,
                      r->run.summary.status == STATUS_OK ? summary_table[sweep->metric].unit

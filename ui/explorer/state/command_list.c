@@ -17,10 +17,13 @@ int explorer_command_find(const char *name)
 {
     assert(name != NULL);
     int found = -1, matches = 0;
+
+    // the whole name, else the only one that begins with it
     for (int i = 0; i < explorer_command_count; i++) {
         if (strcmp(explorer_command_table[i].name, name) == 0) {
             return i;
         }
+
         // a beginning never means the one that asks no questions
         const char *own = explorer_command_table[i].name;
         if (strncmp(own, name, strlen(name)) == 0 && own[strlen(own) - 1] != '!') {

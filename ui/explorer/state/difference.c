@@ -45,10 +45,14 @@ static sample sample_at(const trace *t, double time, bool before)
 static status add_row(run_difference *d, const trace *run, const trace *other, size_t row)
 {
     const double none[1] = {0};
+
+    // of two rows at one instant the first belongs to what was before
     const sample *now = &run->rows[row];
     const bool before =
         row + 1 < run->row_count && same_instant(run->rows[row + 1].time, now->time);
     const sample beside = sample_at(other, now->time, before);
+
+    // signal by signal: a sample is a row of numbers
     sample difference = *now;
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
         const size_t at = (size_t)i * sizeof(double);
@@ -58,6 +62,8 @@ static status add_row(run_difference *d, const trace *run, const trace *other, s
         a -= b;
         memcpy((char *)&difference + at, &a, sizeof a);
     }
+
+    // the time is no difference
     difference.time = now->time;
     return trace_add_row(&d->trace, &difference, none, none);
 }

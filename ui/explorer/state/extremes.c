@@ -19,6 +19,8 @@ static void fill_blocks(double *pairs, size_t first, size_t blocks, const trace 
     for (size_t b = first; b < blocks; b++) {
         double low = (double)INFINITY, high = (double)-INFINITY;
         size_t end = (b + 1) * EXTREMES_BLOCK;
+
+        // what has no value is left out
         for (size_t r = b * EXTREMES_BLOCK; r < t->row_count && r < end; r++) {
             double value = signal_value(&t->rows[r], signal);
             if (isfinite(value)) {
@@ -26,6 +28,8 @@ static void fill_blocks(double *pairs, size_t first, size_t blocks, const trace 
                 high = fmax(high, value);
             }
         }
+
+        // without any value low stays above high
         pairs[2 * b] = low;
         pairs[2 * b + 1] = high;
     }

@@ -64,6 +64,8 @@ static bool is_of_every_law(int parameter)
                              offsetof(parameters, control.force_rate),
                              offsetof(parameters, control.force_amplitude),
                              offsetof(parameters, control.force_frequency)};
+
+    // a parameter is known by where it lies
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         if (parameter_table[parameter].offset == fields[i]) {
             return true;

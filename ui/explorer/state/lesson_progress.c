@@ -24,6 +24,8 @@ bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, cons
                          const run_list *pinned)
 {
     assert(step != NULL && p != NULL && s != NULL && pinned != NULL);
+
+    // to be read or answered
     switch (step->check) {
     case LESSON_READ:
         return true;
@@ -33,6 +35,8 @@ bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, cons
     }
     case LESSON_CHOICE:
         return p->answered && p->answer == step->right + 1;
+
+    // to be done: with the cursor, a parameter or the runs
     case LESSON_CURSOR: {
         const double instant = quantity_of(s, step->quantity) + step->offset;
         return fabs(s->now - instant) <= step->within;

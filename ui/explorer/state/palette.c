@@ -40,6 +40,8 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
     assert(menu != NULL && keys != NULL);
     palette_text text = {0};
     const char *name, *about;
+
+    // what each kind is called and about; only commands have keys
     switch (entry.kind) {
     case PALETTE_COMMAND:
         name = explorer_command_table[entry.index].name;
@@ -58,6 +60,8 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
         name = menu->names[entry.index];
         about = scenario_menu_title(menu, entry.index);
     }
+
+    // as much as an entry holds
     snprintf(text.name, sizeof text.name, "%s", name);
     snprintf(text.about, sizeof text.about, "%s", about);
     return text;
@@ -126,6 +130,8 @@ void palette_line(const scenario_menu *menu, palette_entry entry, char *line, si
 {
     assert(menu != NULL && line != NULL && goes_on != NULL);
     *goes_on = false;
+
+    // what is chosen becomes the command that deals with it
     if (entry.kind == PALETTE_COMMAND) {
         // what is in brackets need not be there
         const explorer_command *c = &explorer_command_table[entry.index];

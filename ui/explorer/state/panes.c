@@ -46,6 +46,8 @@ void value_range_widen(value_range *r, value_range other)
 static void show_signal(pane_set *set, int signal)
 {
     pane *own = &set->pane[PANES - 1];
+
+    // the first pane that has it
     for (int i = 0; i < PANES; i++) {
         for (int k = 0; k < set->pane[i].count; k++) {
             if (set->pane[i].signals[k] == signal) {
@@ -54,6 +56,8 @@ static void show_signal(pane_set *set, int signal)
             }
         }
     }
+
+    // no pane has it
     if (own->count < PANE_SIGNALS) {
         own->signals[own->count++] = signal;
         own->grown = value_range_empty;

@@ -58,6 +58,8 @@ static bool is_long_group(int parameter)
 void parameter_list_arrange(parameter_list *list, const parameters *p, int selected)
 {
     assert(list != NULL && p != NULL && selected >= 0 && selected < parameter_count);
+
+    // groups that are not used fold, and long ones of which nothing was given
     for (int first = 0, next; first < parameter_count; first = next) {
         bool used = false, given = false;
         for (next = first; next == first || (next < parameter_count && !begins_group(next));
@@ -67,6 +69,8 @@ void parameter_list_arrange(parameter_list *list, const parameters *p, int selec
         }
         list->folded[parameter_group(first)] = !used || (is_long_group(first) && !given);
     }
+
+    // the selected one is to be seen all the same
     list->parameter = selected;
     list->on_heading = false;
     list->folded[parameter_group(selected)] = false;

@@ -82,9 +82,13 @@ void run_list_differences(const pinned_run *p, const session *s, char *text, siz
 static void propose_name(const run_list *list, const session *s, char name[RUN_NAME])
 {
     char text[SESSION_INPUT_TEXT + 80] = "as opened";
+
+    // the last change tells best what is new
     if (s->input_count > 0) {
         run_list_input_text(&s->inputs[s->input_count - 1], text, sizeof text);
     }
+
+    // a number follows where that name is taken
     snprintf(name, RUN_NAME, "%.40s", text);
     for (int n = 2; n < 100; n++) {
         bool taken = false;

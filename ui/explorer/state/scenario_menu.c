@@ -26,6 +26,8 @@ static void ignore_fault(void *context, const char *sentence)
 void scenario_menu_read_titles(scenario_menu *menu)
 {
     assert(menu != NULL);
+
+    // read once, as it opens every file
     if (menu->titles != NULL || menu->count == 0) {
         return;
     }
@@ -33,6 +35,8 @@ void scenario_menu_read_titles(scenario_menu *menu)
     menu->descriptions = calloc((size_t)menu->count, sizeof *menu->descriptions);
     menu->lessons = calloc((size_t)menu->count, sizeof *menu->lessons);
     const bool room = menu->titles != NULL && menu->descriptions != NULL && menu->lessons != NULL;
+
+    // what cannot be read keeps its name alone
     for (int i = 0; room && i < menu->count; i++) {
         scenario s;
         if (scenario_open(&s, menu->names[i], ignore_fault, NULL) == STATUS_OK) {

@@ -110,6 +110,8 @@ void state_finish(explorer_state *st)
     if (st == NULL) {
         return;
     }
+
+    // what was found out about the runs goes before them
     for (int i = 0; i < SHOWN_RUNS; i++) {
         extremes_forget(&st->extremes[i]);
     }
@@ -119,6 +121,8 @@ void state_finish(explorer_state *st)
     lab_sweep_end(&st->sweep);
     run_list_clear(&st->pinned);
     session_finish(&st->session);
+
+    // nothing points to what is gone
     memset(st, 0, sizeof *st);
 }
 
@@ -286,6 +290,8 @@ static value_range range_of_rows(const trace *t, int signal, const double *pairs
                                  size_t last)
 {
     value_range found = value_range_empty;
+
+    // a whole block where it lies in the range, else one row
     for (size_t r = first; r <= last && r < t->row_count;) {
         if (pairs != NULL && r % EXTREMES_BLOCK == 0 && r + EXTREMES_BLOCK <= last + 1) {
             const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
@@ -376,11 +382,15 @@ static void grow_axes(explorer_state *st)
 void state_update(explorer_state *st)
 {
     assert(st != NULL);
+
+    // the panes depend on the law and on the room there is
     const bool taller = st->size.height != st->panes_height;
     if (state_has_law(st) != st->panes.controlled || taller) {
         define_panes(st);
         st->panes_height = st->size.height;
     }
+
+    // what follows the run and its instant
     difference_update(&st->difference, state_run_id(st), &st->session);
     update_extremes(st);
     grow_axes(st);
