@@ -42,12 +42,16 @@ static status paint_artwork(cairo_t *cr, const void *what, fault *f)
 picture artwork_picture(const artwork *a, const figure_options *options)
 {
     assert(a != NULL && options != NULL);
+
+    // the same string for every picture, made by whichever thread comes first
     static gsize software;
     if (g_once_init_enter(&software)) {
         char *named = g_strdup_printf("impactlab %s", lab_version());
         g_once_init_leave(&software, (gsize)g_intern_string(named));
         g_free(named);
     }
+
+    // without an alternative text the title stands in for it
     return (picture){.width = a->width,
                      .height = a->height,
                      .dpi = options->look.dpi,
@@ -170,8 +174,12 @@ static char *describe_figure(const figure *fig)
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner))
 {
     assert(fig != NULL && release != NULL);
+
+    // what paints and releases it later; the figure stays its owner's
     plotted *p = g_new0(plotted, 1);
     *p = (plotted){fig, owner, release};
+
+    // all but its size and the words for those who cannot see it
     artwork a = {.title = fig->title,
                  .caption = fig->caption,
                  .parameters = fig->parameters,

@@ -96,6 +96,8 @@ static void add_signal(impact_figure *fig, int panel, const char *name, const ch
     const char *base = (const char *)t->rows;
     fig->panels[panel].y.name = signal->name;
     fig->panels[panel].y.unit = signal->unit;
+
+    // its values are read in place, in the rows of the run
     add_series(fig, panel,
                (figure_series){.name = signal->name,
                                .label = label,
@@ -251,11 +253,15 @@ static void add_assumption(impact_figure *fig, int panel, const assumption *a, c
 {
     double *x = own(fig, g_new(double, ASSUMED_POINTS));
     double *y = own(fig, g_new(double, ASSUMED_POINTS));
+
+    // the assumed course, from the contact on
     for (int i = 0; i < ASSUMED_POINTS; i++) {
         double since = a->period * i / (ASSUMED_POINTS - 1);
         x[i] = fig->contact + since;
         y[i] = assumed_at(a, since);
     }
+
+    // dashed, as it is no result of the run
     add_series(fig, panel,
                (figure_series){.name = "assumed",
                                .label = label,

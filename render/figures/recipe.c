@@ -388,6 +388,8 @@ bool recipe_is(const char *path)
     if (!g_file_get_contents(path, &text, &length, NULL)) {
         return false;
     }
+
+    // its faults are left to whoever opens it
     fault unused = {0};
     tree_node *root = tree_parse(text, length, &unused);
     bool is = root != NULL && root->kind == TREE_MAP && recipe_child(root, "panels") != NULL;

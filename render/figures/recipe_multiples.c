@@ -48,6 +48,8 @@ TAKE(take_values, multiples)
                     node_kind_name(node));
         return;
     }
+
+    // as texts, so that a heading can show them the way they were written
     for (const tree_node *item = node->first; item != NULL; item = item->next) {
         if (m->count == MULTIPLES_MOST) {
             report_node(&c->reader, item, "there are more than %d values", MULTIPLES_MOST);
@@ -68,6 +70,8 @@ static const char *heading_of(recipe_context *c, const multiples *m, int index)
     char unit[64];
     text_unit(rest[0] == '\0' ? info->unit : "", unit, sizeof unit);
     char *escaped = text_escape(value);
+
+    // the name of the parameter says what a number without any unit is
     const char *dot = strrchr(info->path, '.');
     bool bare = rest[0] == '\0' && unit[0] == '\0';
     char *heading = bare
@@ -99,6 +103,8 @@ static bool repeat_runs(recipe_context *c, const multiples *m, int at[][RECIPE_S
     recipe *r = c->recipe;
     const recipe read = *r;
     r->source_count = 0;
+
+    // other sources than runs are taken once, for all values
     for (int k = 0; k < m->count; k++) {
         for (int i = 0; i < read.source_count; i++) {
             bool again = read.sources[i].kind == SOURCE_RUN;

@@ -162,6 +162,8 @@ static void take_table(recipe_context *c, const tree_node *node)
                                       {"y", take_y_column, NULL},
                                       {"z", take_z_column, NULL},
                                       {NULL, NULL, NULL}};
+
+    // checked as a whole: what is missing shows only at its end
     recipe_source *s = new_source(c, node, SOURCE_TABLE);
     if (s != NULL) {
         recipe_map(c, node, "a table", keys, s);

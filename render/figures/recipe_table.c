@@ -24,6 +24,8 @@ figure_axis recipe_column_axis(recipe_figure *fig, const char *key)
     const char *words = parameter >= 0  ? parameter_table[parameter].description
                         : quantity >= 0 ? summary_table[quantity].label
                                         : NULL;
+
+    // what neither table describes goes by its own name, without a unit
     char *label = words != NULL ? text_label(words) : g_strdup(key);
     figure_axis axis = {.name = key,
                         .label = recipe_own(fig, text_escape(label)),
@@ -40,9 +42,13 @@ static void add_curve(recipe_figure *fig, int panel, int source)
                                           MARKER_DIAMOND};
     figure_panel *p = &fig->panels[panel];
     const opened_source *s = &fig->sources[source];
+
+    // more curves than a panel has room for are left out
     if (p->series_count == PANEL_SERIES) {
         return;
     }
+
+    // points are marked while they are few enough to be told apart
     fig->series[panel][p->series_count] =
         (figure_series){.name = fig->recipe.sources[source].name,
                         .label = recipe_label(fig, &fig->recipe.sources[source]),
@@ -88,6 +94,8 @@ static void describe_cells(recipe_figure *fig, int panel, const opened_source *s
     figure_map *map = &fig->maps[panel];
     size_t cells = map->columns * map->rows;
     double *z = recipe_own(fig, g_new(double, cells));
+
+    // the map goes column by column; cells that no run fills keep no number
     for (size_t i = 0; i < cells; i++) {
         z[i] = (double)NAN;
     }

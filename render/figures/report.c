@@ -123,6 +123,8 @@ static status write_both(const report *r, const char *folder, fault *f)
 {
     char *html = g_strconcat(folder, "/report.html", NULL);
     char *pdf = g_strconcat(folder, "/report.pdf", NULL);
+
+    // after a fault nothing more is written
     status code = make_folder(folder, f);
     if (code == STATUS_OK) {
         code = report_write_html(r, html, f);

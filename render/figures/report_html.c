@@ -88,6 +88,8 @@ static status add_svg(GString *html, const picture *p, guint index, GHashTable *
     if (svg == NULL) {
         return f->code;
     }
+
+    // then smaller: fewer bytes, and letters shared with the other figures
     char *prefix = g_strdup_printf("i%u-", index);
     char *root = strstr(svg, "<svg"), *own = svg_prefix_ids(root ? root : svg, prefix);
     char *small = svg_compact(own), *shared = svg_share_symbols(small, letters);
@@ -105,6 +107,8 @@ static void add_json_text(GString *out, const char *markup)
 {
     char *plain = text_plain(markup != NULL ? markup : "");
     g_string_append(out, "&quot;");
+
+    // escaped twice: for JSON, and for the attribute around it
     for (const char *c = plain; *c != '\0'; c++) {
         switch (*c) {
         case '"':
@@ -139,11 +143,15 @@ static void add_json_series(GString *out, const figure_panel *panel)
 {
     g_string_append(out, "&quot;series&quot;:[");
     const char *before = "";
+
+    // points alone are no curve
     for (int i = 0; i < panel->series_count; i++) {
         const figure_series *s = &panel->series[i];
         if (s->no_line) {
             continue;
         }
+
+        // in bytes, for the script that compares it with the strokes of the drawing
         const colour c = palette_series(THEME_COLOUR, s->colour, i);
         bool dashed = s->secondary || s->style != LINE_SOLID;
         g_string_append_printf(out,
@@ -166,6 +174,8 @@ static void add_panels(GString *out, const figure *fig, const figure_report *see
     for (int i = 0; i < seen->panel_count; i++) {
         const figure_rect *box = &seen->panels[i];
         const figure_range *range = &seen->ranges[i];
+
+        // where the panel stands and what its edges mean, to turn a place into values
         decimal_print(text, sizeof text, "%s{&quot;box&quot;:[%.2f,%.2f,%.2f,%.2f],",
                       i > 0 ? "," : "", box->x, box->y, box->width, box->height);
         g_string_append(out, text);
@@ -174,6 +184,8 @@ static void add_panels(GString *out, const figure *fig, const figure_report *see
         g_string_append_printf(out, "&quot;xlog&quot;:%s,&quot;ylog&quot;:%s,&quot;xname&quot;:",
                                range->x_logarithmic ? "true" : "false",
                                range->y_logarithmic ? "true" : "false");
+
+        // what stands beside the values
         add_json_text(out, fig->x.name);
         g_string_append(out, ",&quot;unit&quot;:");
         add_json_text(out, fig->panels[i].y.unit);

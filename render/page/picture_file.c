@@ -25,6 +25,8 @@ picture_format picture_format_of(const char *path)
         picture_format format;
     } known[] = {{"png", FORMAT_PNG}, {"pdf", FORMAT_PDF}, {"svg", FORMAT_SVG}};
     assert(path != NULL);
+
+    // only in the last part of the path: a dot in a folder's name begins no ending
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     const char *dot = strrchr(name, '.');
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {

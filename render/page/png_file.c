@@ -63,6 +63,8 @@ static void convert_row(const unsigned char *from, unsigned char *to, int width,
         uint32_t pixel;
         memcpy(&pixel, from + 4 * i, sizeof pixel);
         uint32_t a = alpha ? pixel >> 24 : 255;
+
+        // rounded; where nothing shows there is nothing to divide by
         for (int k = 0; k < 3; k++) {
             uint32_t part = pixel >> (16 - 8 * k) & 255;
             *to++ = (unsigned char)(a == 0 || a == 255 ? part : (part * 255 + a / 2) / a);

@@ -32,6 +32,8 @@ static const char *add_colour(GString *out, const char *at)
     if (strncmp(at, "rgb(", 4) != 0) {
         return NULL;
     }
+
+    // three percentages with commas between
     double share[3];
     const char *rest = at + 4;
     for (int i = 0; i < 3; i++) {
@@ -43,6 +45,8 @@ static const char *add_colour(GString *out, const char *at)
     if (*rest != ')') {
         return NULL;
     }
+
+    // a byte each, which is all that a screen shows
     g_string_append_printf(out, "#%02x%02x%02x", (unsigned)(2.55 * share[0] + 0.5),
                            (unsigned)(2.55 * share[1] + 0.5), (unsigned)(2.55 * share[2] + 0.5));
     return rest + 1;
@@ -82,6 +86,8 @@ static const char *add_lines(GString *out, const char *at)
 {
     long x = 0, y = 0;
     char command = ' ', written = ' ';
+
+    // up to whatever is no part of such a path
     while (*at != '"' && *at != '\0') {
         double to[2];
         const char *rest;
@@ -97,6 +103,8 @@ static const char *add_lines(GString *out, const char *at)
             // rounded where it is, so that no error adds up
             long next_x = lround(10 * to[0]), next_y = lround(10 * to[1]);
             char wanted = command == 'M' ? 'M' : 'l';
+
+            // a letter only where it changes; numbers after a move would be taken for lines
             if (written != wanted || wanted == 'M') {
                 g_string_append_c(out, wanted);
             }

@@ -47,6 +47,8 @@ char *svg_prefix_ids(const char *svg, const char *prefix)
 {
     assert(svg != NULL && prefix != NULL);
     GString *out = g_string_sized_new(strlen(svg) + 1);
+
+    // the prefix stands between the opening and the identifier
     while (*svg != '\0') {
         size_t length = opening_length(svg);
         if (length == 0) {

@@ -97,6 +97,8 @@ static double widest_word(PangoContext *context, const sketch_frame *frame, cons
 {
     double widest = 0, width, height;
     char *plain = text_plain(markup), **words = g_strsplit_set(plain, " \n", -1);
+
+    // measured as the cell would set it, bold or not
     for (int i = 0; words[i] != NULL; i++) {
         char *word = text_escape(words[i]);
         text_block t = cell_block(frame, word, bold);

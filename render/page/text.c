@@ -48,6 +48,8 @@ status text_check_font(fault *f)
         bool there = fonts != NULL && fonts->nfont > 0 && family_matches(TEXT_FAMILY);
         g_once_init_leave(&known, there ? THERE : MISSING);
     }
+
+    // only the answer is kept, each caller gets the words
     if (known == MISSING) {
         return fault_set(f, STATUS_CANNOT_READ,
                          "the font " TEXT_FAMILY " is not installed, figures need it: install "
@@ -85,6 +87,8 @@ static bool is_unit(const char *text)
     static const char *const units[] = {"N",  "N·s", "N·m", "V", "A",   "s",  "ms",    "µs",
                                         "Hz", "kHz", "mm",  "m", "kg",  "J",  "mJ",    "rad",
                                         "dB", "%",   "Ω",   "W", "N s", "kΩ", "rad/s", "m/s"};
+
+    // neither the start of a longer word nor the numerator of a longer unit
     for (size_t i = 0; i < G_N_ELEMENTS(units); i++) {
         size_t length = strlen(units[i]);
         bool ends = strncmp(text, units[i], length) == 0 && !g_ascii_isalnum(text[length]) &&

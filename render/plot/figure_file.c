@@ -102,6 +102,8 @@ static void write_levels_and_impulses(long_form *t, const figure_panel *panel)
         write_name(t, "impulse", NULL, panel->impulse_unit);
         write_point(t, panel->impulses[i].x, panel->impulses[i].size);
     }
+
+    // levels go by their label alone
     for (int i = 0; i < panel->level_count; i++) {
         const char *label = panel->levels[i].label;
         write_panel_name(t, panel);

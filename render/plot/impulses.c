@@ -92,10 +92,14 @@ static int next_impulse(const drawing *d, const figure_panel *panel, const int *
     int next = -1;
     for (int i = 0; i < panel->impulse_count; i++) {
         const figure_impulse *p = &panel->impulses[i];
+
+        // one that does not show counts as done
         bool is_done = !impulse_shows(d, p);
         for (int k = 0; k < count && !is_done; k++) {
             is_done = done[k] == i;
         }
+
+        // of two alike the first
         if (!is_done && (next < 0 || fabs(p->size) > fabs(panel->impulses[next].size))) {
             next = i;
         }

@@ -40,9 +40,13 @@ void place_inset(const drawing *d, panel_layout *l, placement *grid)
     const figure_panel *panel = l->panel;
     const figure_rect *box = &l->plane.box;
     l->inset = (figure_rect){0};
+
+    // nothing to enlarge
     if (!(panel->zoom_from < panel->zoom_to)) {
         return;
     }
+
+    // one too small to read is rather left out
     for (int i = 0; i < 3; i++) {
         figure_rect found;
         double width = 0.4 * scales[i] * box->width, height = 0.66 * scales[i] * box->height;

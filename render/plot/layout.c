@@ -375,6 +375,8 @@ static void place_all(drawing *d, int *mark_rows)
 static status check_room(const drawing *d, fault *f)
 {
     int panels = d->fig->panel_count;
+
+    // one panel without room spoils the figure; its size is told as it was given
     for (int i = 0; i < panels; i++) {
         const figure_rect *box = &d->panels[i].plane.box;
         if (!(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT)) {

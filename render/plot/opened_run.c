@@ -32,11 +32,15 @@ status run_begin_changed(opened_run *r, const char *name, const char *const *cha
     if (code != STATUS_OK) {
         return fault_set(f, code, "%s", first.text);
     }
+
+    // changes lie above what the file says
     if (count > 0) {
         code =
             scenario_override_all(&r->scenario, (char *const *)changes, count, keep_first, &first);
         fault_set(f, code, "%s", first.text);
     }
+
+    // a run that fails takes its rows with it
     if (code == STATUS_OK) {
         code = run_scenario(&r->scenario, true, &r->result);
         if (code == STATUS_OK) {
@@ -45,6 +49,8 @@ status run_begin_changed(opened_run *r, const char *name, const char *const *cha
         fault_set(f, code, "%s: %s", name, r->result.summary.message);
         run_finish(&r->result);
     }
+
+    // after any fault the caller has nothing to finish
     scenario_finish(&r->scenario);
     return code;
 }

@@ -90,10 +90,14 @@ double placement_find(const placement *g, double width, double height, double ma
     assert(g != NULL && found != NULL);
     placement sums = *g;
     sum_up(&sums);
+
+    // its size in whole cells, with the margin on both sides
     double cell_width = g->box.width / PLACEMENT_COLUMNS;
     double cell_height = g->box.height / PLACEMENT_ROWS;
     int columns = (int)ceil((width + 2 * margin) / cell_width);
     int rows = (int)ceil((height + 2 * margin) / cell_height);
+
+    // every place where it fits, with the ink within from the sums up to its corners
     double best = (double)INFINITY, best_ink = (double)INFINITY;
     for (int r = 0; r + rows <= PLACEMENT_ROWS; r++) {
         for (int c = 0; c + columns <= PLACEMENT_COLUMNS; c++) {
@@ -101,6 +105,7 @@ double placement_find(const placement *g, double width, double height, double ma
                          sums.ink[r + rows][c] + sums.ink[r][c];
             double slack_x = columns * cell_width - width - 2 * margin;
             double slack_y = rows * cell_height - height - 2 * margin;
+
             // against the nearer edge what rounding to cells left over is not wasted
             bool right = 2 * c > PLACEMENT_COLUMNS - columns, low = 2 * r > PLACEMENT_ROWS - rows;
             figure_rect place = {g->box.x + c * cell_width + margin + (right ? slack_x : 0),

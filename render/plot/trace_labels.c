@@ -163,6 +163,8 @@ static void add_shading(GString *out, const trace_run *runs, int run_count, cons
         g_string_append_printf(out, "Shaded: %s.", shaded);
         return;
     }
+
+    // several could be meant, so it is named
     char *name = text_escape(runs[0].name);
     g_string_append_printf(out, "Shaded: %s of the first run (%s), whose marks are shown.", shaded,
                            name);

@@ -508,6 +508,8 @@ status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 {
     assert(film != NULL && frame != NULL);
     status code = STATUS_OK;
+
+    // a folder gets pictures, the encoder bytes
     if (film->kind == FILM_FRAMES) {
         code = add_to_folder(film, frame, f);
     } else {
@@ -527,10 +529,14 @@ status film_file_commit(film_file *film, fault *f)
 {
     assert(film != NULL);
     status code = STATUS_OK;
+
+    // only an encoder can fail this late, frames are there already
     if (film->kind != FILM_FRAMES) {
         // its words, then its work
         char said[512];
         bool content = end_encoder(film, said, sizeof said);
+
+        // a stop also makes the encoder fail, so it is asked for first
         if (is_asked_to_stop(film)) {
             code = stopped(film, f);
         } else if (!content) {
@@ -542,6 +548,8 @@ status film_file_commit(film_file *film, fault *f)
         }
         code = whole_file_close(&film->file, code, f);
     }
+
+    // of no more use, whatever came of it
     film_file_free(film);
     return code;
 }

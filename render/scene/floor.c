@@ -142,6 +142,8 @@ static void blur_turned(const unsigned char *from, unsigned char *to)
         for (int i = 0; i < BLUR; i++) {
             sum += line_from[i];
         }
+
+        // the sum runs along: a cell enters ahead, another leaves behind
         for (int i = 0; i < MAP; i++) {
             sum += i + BLUR < MAP ? line_from[i + BLUR] : 0;
             to[(ptrdiff_t)i * MAP + row] = (unsigned char)(sum / (2 * BLUR + 1));

@@ -137,13 +137,19 @@ static float to_screen(double light)
 static void light_vertex(const mesh_vertex *v, const camera *c, vector light, float rgba[4])
 {
     vector view = vector_unit(vector_sum(c->eye, -1, v->place));
+
+    // lamp, weaker lamp and sky, each by the angle at which it falls in
     double lamp = fmax(0, vector_dot(v->normal, light));
     vector across = vector_unit((vector){-light.x, -light.y, 0.4});
     double fill = fmax(0, vector_dot(v->normal, across));
     double sky = 0.5 + 0.5 * v->normal.z;
     double sum = AMBIENT_GROUND + (AMBIENT_SKY - AMBIENT_GROUND) * sky + LAMP * lamp + FILL * fill;
+
+    // brightest where the normal halves the angle between lamp and eye
     double glance = fmax(0, vector_dot(v->normal, vector_unit(vector_add(light, view))));
     double shine = HIGHLIGHT * v->material.shine * pow(glance, HIGHLIGHT_EDGE);
+
+    // lights add up in linear colours only
     rgba[0] = to_screen(to_linear(v->material.colour.red) * sum + shine);
     rgba[1] = to_screen(to_linear(v->material.colour.green) * sum + shine);
     rgba[2] = to_screen(to_linear(v->material.colour.blue) * sum + shine);

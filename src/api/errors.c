@@ -99,6 +99,8 @@ int api_signal(const char *name, impactlab_error *error)
     if (index >= 0) {
         return index;
     }
+
+    // most names that are not known are misspelt
     nearest_word near = nearest_begin(name);
     for (int i = 0; i < signal_count; i++) {
         nearest_try(&near, signal_table[i].name);

@@ -129,11 +129,15 @@ int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading
 {
     API_NEEDS(error, loop);
     API_NEEDS(error, reading);
+
+    // the bare arm has no rig around it
     sensor_reading read;
     if (!loop_sense(loop->loop, &read)) {
         return api_fail(error, STATUS_BAD_ARGUMENT,
                         "the bare arm has no sensors, expected a control.law or COMMAND");
     }
+
+    // field by field, as the layout within may change and this one not
     *reading = (impactlab_reading){.time = loop_time(loop->loop),
                                    .encoder = read.encoder,
                                    .tachometer = read.tachometer,
@@ -174,6 +178,8 @@ int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_erro
     API_NEEDS(error, run);
     *run = NULL;
     API_NEEDS(error, loop);
+
+    // a copy, so that the loop can go on or end
     impactlab_run *made = calloc(1, sizeof *made);
     if (made == NULL || scenario_copy(&made->scenario, loop_scenario(loop->loop)) != STATUS_OK) {
         free(made);
@@ -183,6 +189,8 @@ int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_erro
         impactlab_run_destroy(made);
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the rows of a run");
     }
+
+    // handed over only when whole
     made->result.summary = loop_summary(loop->loop);
     *run = made;
     return came_to(STATUS_OK, NULL, error);

@@ -17,6 +17,8 @@ static int check_law(const controller *law, impactlab_error *error)
                         "the controller was made for version %d of the interface, expected %d",
                         law->interface, CONTROLLER_INTERFACE);
     }
+
+    // what the rig calls or relies on without asking again
     if (law->name == NULL || law->modes == NULL || law->sample == NULL ||
         law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
         (law->parameter_count > 0 && law->parameters == NULL)) {
@@ -121,6 +123,8 @@ int impactlab_run_signal(const impactlab_run *run, const char *name, impactlab_s
     if (index < 0) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
+
+    // values stay where they are, a row apart
     const trace *t = &run->result.trace;
     *series = (impactlab_series){.count = t->row_count, .stride = sizeof(sample)};
     if (t->row_count > 0) {
@@ -170,6 +174,8 @@ int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *e
 {
     API_NEEDS(error, run);
     API_NEEDS(error, json);
+
+    // there is no text until it is whole
     size_t size;
     *json = NULL;
     json_t *object = export_run(&run->scenario, &run->result);
@@ -178,6 +184,8 @@ int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *e
         json_decref(object);
         return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
     }
+
+    // the text is the caller's, the object is not
     json_write(stream, object);
     json_decref(object);
     return api_close_text(stream, json, error);

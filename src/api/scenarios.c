@@ -97,6 +97,8 @@ int impactlab_scenario_copy(impactlab_scenario **handle, const impactlab_scenari
     API_NEEDS_CALLED(error, handle, "scenario");
     *handle = NULL;
     API_NEEDS(error, from);
+
+    // after a fault the caller has nothing to destroy
     if (new_handle(handle, error) == NULL) {
         return IMPACTLAB_NO_MEMORY;
     }
@@ -247,6 +249,8 @@ int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const c
     API_NEEDS_CALLED(error, handle, "scenario");
     API_NEEDS(error, path);
     API_NEEDS(error, text);
+
+    // on a copy, so that a refused value changes nothing
     parameters p = handle->scenario.parameters;
     fault f = {.text = "", .path = ""};
     int index = api_parameter(path, error);
@@ -265,6 +269,8 @@ int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, 
 {
     API_NEEDS_CALLED(error, handle, "scenario");
     API_NEEDS(error, path);
+
+    // on a copy, as a text is
     parameters p = handle->scenario.parameters;
     fault f = {.text = "", .path = ""};
     int index = api_parameter(path, error);
@@ -341,12 +347,16 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
     if (check_instant(s, time, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
+
+    // what the arm can be given
     if (!isfinite(impulse)) {
         return api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s");
     }
     if (s->parameters.arm.model == ARM_PRINTED) {
         return api_fail(error, STATUS_BAD_SCENARIO, "the printed model takes no pushes");
     }
+
+    // with room there is nothing left to fail
     if (!make_room(s)) {
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
     }

@@ -19,6 +19,8 @@ static impactlab_parameter parameter_row(const parameter_info *info)
                                         [PARAMETER_BOOLEAN] = "boolean",
                                         [PARAMETER_CHOICE] = "choice",
                                         [PARAMETER_TEXT] = "text"};
+
+    // a text has neither a number to begin with nor bounds
     const bool text = info->type == PARAMETER_TEXT;
     return (impactlab_parameter){.path = info->path,
                                  .type = types[info->type],
@@ -37,6 +39,8 @@ static void fill(void)
     for (int i = 0; i < parameter_count; i++) {
         parameter_rows[i] = parameter_row(&parameter_table[i]);
     }
+
+    // columns of a run, then what sums it up
     for (int i = 0; i < signal_count; i++) {
         const signal_info *info = &signal_table[i];
         signal_rows[i] = (impactlab_signal){info->name, info->ascii, info->unit, info->description};

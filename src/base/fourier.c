@@ -15,11 +15,14 @@ static bool is_power_of_two(size_t n)
 static void reverse_bits(double *real, double *imaginary, size_t n)
 {
     for (size_t i = 1, j = 0; i < n; i++) {
+        // counts j up in reverse: the carry goes down
         size_t bit = n >> 1;
         for (; (j & bit) != 0; bit >>= 1) {
             j ^= bit;
         }
         j ^= bit;
+
+        // each pair once
         if (i < j) {
             const double re = real[i], im = imaginary[i];
             real[i] = real[j];

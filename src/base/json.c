@@ -131,6 +131,8 @@ static void write_array(FILE *stream, const json_t *array, int depth)
 static void write_indented(FILE *stream, const json_t *value, int depth)
 {
     char text[NUMBER_TEXT];
+
+    // what holds others goes one level deeper
     switch (json_typeof(value)) {
     case JSON_OBJECT:
         write_object(stream, value, depth);
@@ -141,6 +143,8 @@ static void write_indented(FILE *stream, const json_t *value, int depth)
     case JSON_STRING:
         write_string(stream, json_string_value(value));
         break;
+
+    // whole numbers are written like all others
     case JSON_REAL:
     case JSON_INTEGER:
         number_format(text, json_number_value(value));

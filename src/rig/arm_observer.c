@@ -65,6 +65,8 @@ static void sample_model(const arm_observer *o, const mode_set *set, int torque,
 {
     const int n = set->count;
     double rate[N][N] = {{0}}, input[N] = {0};
+
+    // modes act on one another only through the damping of the hub
     for (int i = 0; i < n; i++) {
         rate[i][n + i] = 1;
         rate[n + i][i] = -set->square[i];
@@ -72,6 +74,8 @@ static void sample_model(const arm_observer *o, const mode_set *set, int torque,
         for (int j = 0; j < n; j++) {
             rate[n + i][n + j] -= o->hub_damping * set->hub[i] * set->hub[j];
         }
+
+        // an unknown torque drives them as the known one does
         rate[n + i][torque] = input[n + i] = set->hub[i];
     }
     sampled_model_init(model, torque + 1, rate, input, h);
@@ -274,12 +278,16 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
 {
     const int n = state_count(o);
     double expected = offset, variance = deviation * deviation;
+
+    // what the estimate expects, and how far off that may be
     for (int i = 0; i < n; i++) {
         expected += row[i] * o->e.z[i];
         for (int j = 0; j < n; j++) {
             variance += row[i] * o->e.p[i][j] * row[j];
         }
     }
+
+    // beyond the limit, the farther off the less it is believed
     double off = fabs(reading - expected) / sqrt(variance);
     double doubt = off > OUTLIER ? off / OUTLIER : 1;
     estimator_correct(&o->e, n, row, offset, reading, deviation * deviation * doubt * doubt);

@@ -41,6 +41,8 @@ static void kill_children(void)
     int list = open("/proc/thread-self/children", O_RDONLY | O_CLOEXEC);
     ssize_t length = list >= 0 ? read(list, text, sizeof text) : 0;
     pid_t child = 0;
+
+    // each number ends with a space, the last one too
     for (ssize_t i = 0; i < length; i++) {
         if (text[i] >= '0' && text[i] <= '9') {
             child = 10 * child + (text[i] - '0');
@@ -134,6 +136,8 @@ static _Noreturn void become_keeper(const int ends[4], const char *command)
     for (int i = 0; i < 4; i++) {
         moved[i] = fcntl(ends[i], F_DUPFD, LIFELINE + 1);
     }
+
+    // no stream is in another's way any more
     for (int i = 0; i < 4; i++) {
         if (moved[i] < 0 || dup2(moved[i], i) < 0) {
             _exit(127);

@@ -76,14 +76,20 @@ const char *process_failure(const process *p)
 static void keep_errors(process *p, const char *text, size_t count)
 {
     size_t kept = strlen(p->errors);
+
+    // of more than fits only the end matters
     if (count >= LAST_ERRORS) {
         text += count - LAST_ERRORS;
         count = LAST_ERRORS;
     }
+
+    // the oldest make room
     size_t dropped = kept + count > LAST_ERRORS ? kept + count - LAST_ERRORS : 0;
     memmove(p->errors, p->errors + dropped, kept - dropped);
     memcpy(p->errors + kept - dropped, text, count);
     p->errors[kept - dropped + count] = '\0';
+
+    // they may be shown on a terminal
     for (char *c = p->errors; *c != '\0'; c++) {
         *c = is_control(*c) ? ' ' : *c;
     }
@@ -137,12 +143,16 @@ static void set_number(json_t *object, const char *name, double value)
 static json_t *setup_object(const controller_setup *s)
 {
     json_t *object = json_object();
+
+    // the sampling and the drive
     set_number(object, "period", s->period);
     set_number(object, "delay", s->delay);
     set_number(object, "voltage_limit", s->voltage_limit);
     set_number(object, "torque_per_volt", s->torque_per_volt);
     set_number(object, "hub_damping", s->hub_damping);
     set_number(object, "stiction", s->stiction);
+
+    // the arm and the wall
     set_number(object, "hub_inertia", s->hub_inertia);
     set_number(object, "link_mass", s->link_mass);
     set_number(object, "link_length", s->link_length);
@@ -161,6 +171,8 @@ static json_t *control_object(const process *p)
     static const char group[] = "control.";
     parameters all = {.control = p->control};
     json_t *object = json_object();
+
+    // from the table, so that a new parameter needs no line here
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         const bool number = info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER;
@@ -168,6 +180,7 @@ static json_t *control_object(const process *p)
             set_number(object, info->path + sizeof group - 1, parameter_get(&all, i));
         }
     }
+
     // as ramp and wave have it now, where the controller gets it from its setup
     set_number(object, "force", p->setup.parameters != NULL ? p->setup.parameters[0] : 0);
     return object;
@@ -205,6 +218,8 @@ static char *question(const process *p, const controller_input *in)
         json_object_set_new(object, "control", control_object(p));
         json_object_set_new(object, "settings", settings_object(p));
     }
+
+    // what a controller within the program would see
     set_number(object, "time", in->time);
     set_number(object, "encoder", in->encoder);
     set_number(object, "tachometer", in->tachometer);
@@ -213,6 +228,8 @@ static char *question(const process *p, const controller_input *in)
     set_number(object, "piezo_force", in->piezo_force);
     set_number(object, "film", in->film);
     set_number(object, "accelerometer", in->accelerometer);
+
+    // enough digits for every bit
     char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(object);
     return text;
@@ -239,9 +256,13 @@ static bool take_in(process *p)
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) {
         return true;
     }
+
+    // at its end it can say no more
     if (count <= 0) {
         return fail(p, "ended without an answer");
     }
+
+    // a full buffer without a whole line will never hold one
     p->length += (size_t)count;
     p->line[p->length] = '\0';
     if (p->length == MOST_LINE && memchr(p->line, '\n', p->length) == NULL) {
@@ -256,12 +277,16 @@ static bool exchange(process *p, const char *text, size_t length)
     const double deadline = now() + p->answer_time;
     size_t sent = 0;
     bool errors_open = true;
+
+    // all ends at once, as the program may wait at any of them
     while (memchr(p->line, '\n', p->length) == NULL || sent < length) {
         struct pollfd ends[] = {
             {.fd = p->program.output, .events = POLLIN},
             {.fd = errors_open ? p->program.errors : -1, .events = POLLIN},
             {.fd = sent < length ? p->program.input : -1, .events = POLLOUT},
         };
+
+        // an end may be ready, and yet too late
         int ready = poll(ends, 3, left_until(deadline));
         if (now() >= deadline) {
             return fail(p, "gave no answer within control.answer_time = %g s", p->answer_time);
@@ -269,6 +294,8 @@ static bool exchange(process *p, const char *text, size_t length)
         if (ready <= 0) {
             continue;
         }
+
+        // errors are taken before the answer, so that a failure can tell them
         if (ends[2].revents != 0) {
             ssize_t count =
                 send(p->program.input, text + sent, length - sent, MSG_NOSIGNAL | MSG_DONTWAIT);

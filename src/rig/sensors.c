@@ -26,6 +26,8 @@ static double random_normal(noise_source *n)
 {
     double spare = n->spare;
     n->spare = (double)NAN;
+
+    // a point within the unit circle makes two, the other is kept for the next call
     while (isnan(spare)) {
         double x = 2 * random_uniform(&n->random) - 1, y = 2 * random_uniform(&n->random) - 1;
         double r = x * x + y * y;

@@ -104,6 +104,8 @@ json_t *bench_export(const bench_result *results, int count)
 {
     assert(results != NULL || count == 0);
     json_t *object = json_object(), *array = json_array();
+
+    // with its extremes, as one number says little about a machine
     for (int i = 0; i < count; i++) {
         json_t *entry = json_object();
         json_object_set_new(entry, "name", json_string(results[i].name));

@@ -141,10 +141,14 @@ status calibrate(const scenario *s, const double *commands, int count, calibrati
     assert(s != NULL && c != NULL && commands != NULL);
     assert(count > 0 && count <= K2_TABLE_MOST);
     *c = (calibration){0};
+
+    // a force at rest needs a wall
     if (s->parameters.wall.kind == WALL_NONE) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "there is nothing to press against, wall.kind is none");
     }
+
+    // up to the first fault; what was measured before is kept
     status code = STATUS_OK;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         code = press(s, commands[i], i, &c->points[i], f);

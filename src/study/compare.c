@@ -308,6 +308,8 @@ void compare_markdown(FILE *stream, const compare_table *t)
 static json_t *varied_object(const compare_table *t, int row)
 {
     json_t *object = json_object();
+
+    // in JSON's own types where there is one
     for (int v = 0; v < t->varied_count; v++) {
         const parameter_info *info = &parameter_table[t->varied[v]];
         char text[PARAMETER_TEXT_SIZE];

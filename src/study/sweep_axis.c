@@ -38,6 +38,8 @@ void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t 
 static size_t split(char *text, char separator, char **pieces, size_t most)
 {
     size_t count = 0;
+
+    // one piece too many is enough to know
     for (char *next = text; next != NULL && count <= most; count++) {
         char *end = strchr(next, separator);
         if (count < most) {

@@ -197,6 +197,8 @@ static void add_difference(char *text, size_t size, int *count, const char *key,
 {
     enum { SHOWN = 4 };
     size_t length = strlen(text);
+
+    // named as the user gives it: an axis is an option
     if ((*count)++ < SHOWN) {
         snprintf(text + length, size - length, "%s%s%s was %.80s, now it is %.80s",
                  *count > 1 ? "; " : "", strncmp(key, "vary", 4) == 0 ? "--" : "", key,

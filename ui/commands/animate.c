@@ -78,6 +78,8 @@ static int simulate_and_film(const arguments *a, scenario *s)
     film_options o = options_of(a);
     int exit_status = EXIT_FAILED;
     status code = run_scenario(s, true, &result);
+
+    // the run's own words say more than its status
     if (code != STATUS_OK) {
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
@@ -95,6 +97,8 @@ static int animate(const arguments *a)
         return complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, FILE.gif, "
                         "FILE.webp, or a folder for PNG frames");
     }
+
+    // what is wrong with the request is told before anything is simulated
     int code = check_view(a);
     if (code != EXIT_DONE) {
         return code;

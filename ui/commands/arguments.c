@@ -113,6 +113,8 @@ static int read_whole(const option_row *o, const char *text, uint64_t *value)
 {
     // 2^64 and what lies beyond stand for the largest number there is
     uint64_t low = (uint64_t)o->low, high = o->high < 0x1p64 ? (uint64_t)o->high : UINT64_MAX;
+
+    // signs and spaces, which strtoull would take, are refused by the first character
     char *end;
     errno = 0;
     unsigned long long number = strtoull(text, &end, 10);
@@ -195,6 +197,8 @@ static int store_value(arguments *a, const option_row *o, char *text)
         return read_whole(o, text, place);
     case OPTION_SIZE:
         return read_size(o, text, place);
+
+    // what may be given several times
     case OPTION_NUMBERS: {
         number_list *list = place;
         return read_number(o, text, &list->items[list->count++]);
@@ -204,6 +208,8 @@ static int store_value(arguments *a, const option_row *o, char *text)
         list->items[list->count++] = text;
         return EXIT_DONE;
     }
+
+    // texts are kept as they are, and checked where only some are known
     case OPTION_TEXT:
     case OPTION_WORD:
     case OPTION_CHOICE:

@@ -26,6 +26,8 @@ int complain_fault(const fault *f)
 {
     assert(f != NULL);
     complain("%s", f->text[0] ? f->text : status_text(f->code));
+
+    // what the user can mend, and what went wrong on the way
     switch (f->code) {
     case STATUS_OK:
         return EXIT_DONE;

@@ -31,12 +31,16 @@ static offer offer_of(const option_row *o)
     case OPTION_PICTURE:
     case OPTION_PLACE:
         return OFFER_FILES;
+
+    // what the program knows by name
     case OPTION_PARAMETERS:
         return OFFER_PARAMETERS;
     case OPTION_SCENARIO:
         return OFFER_SCENARIOS;
     case OPTION_QUANTITY:
         return OFFER_QUANTITIES;
+
+    // numbers and free text cannot be guessed
     case OPTION_FLAG:
     case OPTION_TEXT:
     case OPTION_NUMBER:

@@ -108,6 +108,8 @@ static status run_all(const scenario *s, const convergence_panel *panel, three_r
 static size_t difference(const trace *coarse, const trace *fine, double *x, double *y)
 {
     size_t count = 0, j = 0;
+
+    // both ascend, so each is gone through once
     for (size_t i = 0; i < coarse->row_count; i++) {
         double time = coarse->rows[i].time;
         while (j < fine->row_count && fine->rows[j].time < time) {
@@ -196,6 +198,8 @@ static int plot(const arguments *a, const scenario *s, const convergence_panel *
         fault_no_memory(&f);
         return complain_fault(&f);
     }
+
+    // runs that came about are released whether all did or not
     int code = run_all(s, panel, r, &f) == STATUS_OK ? draw_runs(a, r) : complain_fault(&f);
     for (int i = 0; i < PANEL_STEPS; i++) {
         run_finish(&r->result[i]);

@@ -94,6 +94,8 @@ static status draw_list(figure_list *list, int threads, fault *f)
                             .result_size = sizeof(figure_result),
                             .compute = draw_one,
                             .collect = take_one};
+
+    // slow ones first, so that no thread is left with one at the end
     size_t first = 0, last = list->count;
     for (size_t i = list->count; i-- > 0;) {
         last -= !list->figures[i]->slow;

@@ -197,12 +197,16 @@ static void write_command(FILE *stream, const command *c)
 void write_man_page(FILE *stream, const command *c)
 {
     assert(stream != NULL);
+
+    // a page of its own for each command, named as man looks it up
     fprintf(stream, ".TH IMPACTLAB");
     if (c != NULL) {
         fprintf(stream, "\\-");
         put_upper(stream, c->name);
     }
     fprintf(stream, " 1 \"\" \"impactlab %s\"\n", lab_version());
+
+    // the sections below the heading
     if (c == NULL) {
         write_overview(stream);
     } else {

@@ -97,12 +97,16 @@ static void deflections(const arm *a, const double *shape, double *x, double *y)
     // the hub's own angle moves nothing
     const double *links = shape + (a->dof - a->links);
     double length = a->link_length, largest = 0;
+
+    // from joint to joint, each link at its own angle
     x[0] = y[0] = 0;
     for (int i = 0; i < a->links; i++) {
         x[i + 1] = length * (i + 1);
         y[i + 1] = y[i] + length * links[i];
         largest = fmax(largest, fabs(y[i + 1]));
     }
+
+    // a mode has no size of its own
     for (int i = 0; i <= a->links && largest > 0; i++) {
         y[i] /= largest;
     }
@@ -164,12 +168,16 @@ static int plot_modes(const arguments *args, const scenario *s, const arm *a, co
 static int report(const arguments *args, const scenario *s, const arm *a, const mode_set *sets)
 {
     int result = EXIT_DONE;
+
+    // a fault in one result does not keep back the others
     if (args->json != NULL) {
         result = write_json(args->json, modes_object(s, a, sets));
     }
     if (args->plot != NULL) {
         result = worse(result, plot_modes(args, s, a, sets));
     }
+
+    // what is meant to be read at once
     if (summary_wanted(args)) {
         say("%s: %s\nsmall vibrations of the straight arm, %d link%s, without damping\n", s->name,
             s->title, a->links, a->links == 1 ? "" : "s");

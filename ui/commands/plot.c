@@ -23,6 +23,8 @@ static int plot(const arguments *a)
     figure_options o;
     fault f = {0};
     artwork drawn;
+
+    // what can be refused before the recipe is read
     int code = read_picture_options(a, &o);
     if (code == EXIT_DONE && (o.overlay != NULL || o.signals != NULL)) {
         code = complain("a recipe says itself which signals and data it shows, --%s is for runs",
@@ -32,6 +34,8 @@ static int plot(const arguments *a)
     if (code == EXIT_DONE && picture_check_path(path, &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
+
+    // faults in the recipe are told as they are found and leave f empty
     if (code == EXIT_DONE) {
         status opened = recipe_open(a->operands[0], &o, report_to_stderr, NULL, &drawn, &f);
         if (opened != STATUS_OK) {
@@ -42,6 +46,8 @@ static int plot(const arguments *a)
             artwork_finish(&drawn);
         }
     }
+
+    // a default name is not known to the user yet
     if (code == EXIT_DONE && !a->quiet) {
         say("%s: %s\n", a->operands[0], path);
     }

@@ -61,10 +61,14 @@ static json_t *predict_object(const scenario *s, const sample *row,
     json_t *object = json_object(), *array = json_array(), *simulation = json_object();
     json_object_set_new(object, "scenario", json_text(s->name));
     json_object_set_new(object, "t_s", json_number(row->time));
+
+    // one entry each, even where a predictor has no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         json_array_append_new(array, prediction_object(&answers[i]));
     }
     json_object_set_new(object, "predictions", array);
+
+    // the same pulse as the run has it
     json_object_set_new(simulation, "peak_N", json_number(m->first_pulse_peak_N));
     json_object_set_new(simulation, "time_to_peak_s", json_number(m->first_pulse_time_to_peak_s));
     json_object_set_new(simulation, "impulse_Ns", json_number(m->contact_impulse_Ns));
@@ -135,12 +139,16 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
     double peak[PREDICTOR_COUNT], place[PREDICTOR_COUNT], line_y[2], line_x[2];
     figure_tick ticks[PREDICTOR_COUNT];
     char title[256];
+
+    // a tick for each, but no point where a predictor does not hold
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         bool holds = answers[i].outcome == PREDICTION_HOLDS;
         peak[i] = holds ? answers[i].prediction.force : (double)NAN;
         place[i] = PREDICTOR_COUNT - i; // the first one uppermost
         ticks[PREDICTOR_COUNT - 1 - i] = (figure_tick){place[i], answers[i].label};
     }
+
+    // the simulation as an upright line past all of them
     line_x[0] = line_x[1] = m->first_pulse_peak_N;
     line_y[0] = 0.4;
     line_y[1] = PREDICTOR_COUNT + 0.6;
@@ -160,6 +168,8 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
                                      .count = 2,
                                      .colour = 5,
                                      .style = LINE_DASHED}};
+
+    // names instead of numbers beside the rows
     const figure_panel panel = {.y = {.name = "predictor",
                                       .ticks = ticks,
                                       .tick_count = PREDICTOR_COUNT,
@@ -168,6 +178,8 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
                                 .series = series,
                                 .series_count = 2,
                                 .weight = 1.6};
+
+    // zero is on the axis, so that peaks compare by their distance from it
     snprintf(title, sizeof title, "%s: peak of the first pulse, predicted and simulated", s->name);
     const figure fig = {
         .title = title,

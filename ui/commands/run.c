@@ -51,6 +51,8 @@ static void print_quantities(const summary *m)
 static void print_event(const scenario *s, const event *e)
 {
     printf("  %10.6f s  %s", e->time, event_name(e->kind));
+
+    // what it changed, as far as its name does not say
     if (e->kind == EVENT_IMPACT) {
         printf("   %.4g N s at %.4g m/s, %.4g J lost", e->impulse, e->speed, e->loss);
     } else if (e->kind == EVENT_PUSH) {

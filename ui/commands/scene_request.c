@@ -47,10 +47,14 @@ int check_scene(const arguments *a)
     if (check_view(a) != EXIT_DONE) {
         return EXIT_BAD_ARGUMENTS;
     }
+
+    // there is a picture for each instant, and a limit to them
     if (a->instants.count > SCENE_INSTANTS) {
         return complain("--at was given %d times, expected at most %d", a->instants.count,
                         SCENE_INSTANTS);
     }
+
+    // before the run, which may take long
     if (a->scene != NULL && scene_check_path(a->scene, &f) != STATUS_OK) {
         return complain_fault(&f);
     }

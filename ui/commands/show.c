@@ -62,11 +62,15 @@ static void print_expectations(const scenario *s)
 static json_t *show_object(const scenario *s)
 {
     json_t *object = json_object(), *given = json_array();
+
+    // defaults are not named
     for (int i = 0; i < parameter_count; i++) {
         if (s->parameters.set[i]) {
             json_array_append_new(given, json_string(parameter_table[i].path));
         }
     }
+
+    // what describes it, and all values whether given or not
     json_object_set_new(object, "scenario", json_text(s->name));
     json_object_set_new(object, "title", json_text(s->title));
     json_object_set_new(object, "description", json_text(s->description));

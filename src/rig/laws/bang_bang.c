@@ -9,10 +9,14 @@ static void sample(void *memory, const controller_input *in, controller_output *
 {
     hybrid_memory *m = memory;
     double limit = m->rig.voltage_limit, approach = limit;
+
+    // the way is measured from where the run begins
     if (!m->started) {
         m->started = true;
         m->start_angle = in->encoder;
     }
+
+    // on its last part against the motion until the arm stands, then gently on
     double gone = in->encoder - m->start_angle, way = m->rig.wall_angle - m->start_angle;
     if (gone >= m->own * way) {
         m->reversed = m->reversed || in->tachometer <= 0;

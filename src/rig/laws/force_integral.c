@@ -9,6 +9,8 @@ static void sample(void *memory, const controller_input *in, controller_output *
 {
     force_memory *m = memory;
     force_feedback_choose_mode(m, in);
+
+    // the integral is the command itself, so that modes join without a jump
     if (m->mode == APPROACH) {
         // a release goes on from the command there is
         m->integral = m->p[APPROACH_VOLTAGE];
