@@ -13,14 +13,15 @@ cc=("${@:3}")
 [ ${#cc[@]} -gt 0 ] || cc=(cc)
 
 # how everything is compiled and linked, one argument an element: folders may have blanks
-flags=(-std=c17 -D_GNU_SOURCE -ffp-contract=off -I. "-I$2/..")
+flags=(-std=c17 -D_GNU_SOURCE -ffp-contract=off -Wno-psabi -I. "-I$2/..")
 # shellcheck disable=SC2207
 flags+=($(pkg-config --cflags yaml-0.1 jansson lapack))
 # shellcheck disable=SC2207
 libraries=($(pkg-config --libs yaml-0.1 jansson lapack sqlite3) -ldl -lm -lpthread)
 
-# what a run needs: the library below the studies, which make many runs or time them
-mapfile -t sources < <(find src tests/optimisation_runs.c -name '*.c' | grep -v '^src/study/' | sort)
+# what a run needs: the library below the studies, which make many runs or time them, and its own
+# interface above
+mapfile -t sources < <(find src tests/optimisation_runs.c -name '*.c' | grep -Ev '^src/(api|study)/' | sort)
 newest_header=$(find src -name '*.h' -printf '%T@\n' | sort -n | tail -n 1)
 
 # level and source of every object to be made, two words an object
