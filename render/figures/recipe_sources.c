@@ -7,45 +7,21 @@
 
 #define SOURCE ((recipe_source *)into)
 
-TAKE(take_name, source)
-{
-    SOURCE->name = recipe_text(c, node, "name");
-}
+// takes a text of a source: KEY's value goes to FIELD
+#define TAKE_TEXT(function, field, key)                                                            \
+    TAKE(function, source)                                                                         \
+    {                                                                                              \
+        SOURCE->field = recipe_text(c, node, key);                                                 \
+    }
 
-TAKE(take_label, source)
-{
-    SOURCE->label = recipe_text(c, node, "label");
-}
-
-TAKE(take_scenario, source)
-{
-    SOURCE->scenario = recipe_text(c, node, "scenario");
-}
-
-TAKE(take_file, source)
-{
-    SOURCE->file = recipe_text(c, node, "file");
-}
-
-TAKE(take_column, source)
-{
-    SOURCE->column = recipe_text(c, node, "column");
-}
-
-TAKE(take_x_column, source)
-{
-    SOURCE->x = recipe_text(c, node, "x");
-}
-
-TAKE(take_y_column, source)
-{
-    SOURCE->y = recipe_text(c, node, "y");
-}
-
-TAKE(take_z_column, source)
-{
-    SOURCE->z = recipe_text(c, node, "z");
-}
+TAKE_TEXT(take_name, name, "name")
+TAKE_TEXT(take_label, label, "label")
+TAKE_TEXT(take_scenario, scenario, "scenario")
+TAKE_TEXT(take_file, file, "file")
+TAKE_TEXT(take_column, column, "column")
+TAKE_TEXT(take_x_column, x, "x")
+TAKE_TEXT(take_y_column, y, "y")
+TAKE_TEXT(take_z_column, z, "z")
 
 TAKE(take_shift, source)
 {
