@@ -24,11 +24,12 @@ SAME_CODE(EXPECTATION_FAILED);
 SAME_CODE(STOPPED);
 SAME_CODE(FOLDED);
 SAME_CODE(CONTROLLER_FAILED);
+SAME_CODE(NOT_ALLOWED);
 
 const char *impactlab_status_text(int code)
 {
-    return code >= STATUS_OK && code <= STATUS_CONTROLLER_FAILED ? status_text((status)code)
-                                                                 : "not a status of impactlab";
+    return code >= STATUS_OK && code <= STATUS_NOT_ALLOWED ? status_text((status)code)
+                                                           : "not a status of impactlab";
 }
 
 // Copies a text, cut to fit.

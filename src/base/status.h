@@ -17,7 +17,8 @@
     X(STATUS_EXPECTATION_FAILED, "an expected value was not met")                                  \
     X(STATUS_STOPPED, "stopped before its end")                                                    \
     X(STATUS_FOLDED, "the arm is folded across the hub's axis on a flat wall")                     \
-    X(STATUS_CONTROLLER_FAILED, "the controller failed")
+    X(STATUS_CONTROLLER_FAILED, "the controller failed")                                           \
+    X(STATUS_NOT_ALLOWED, "a program or plug-in was not allowed")
 
 typedef enum status {
 #define STATUS_ENUM(code, text) code,

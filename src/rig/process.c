@@ -28,23 +28,37 @@ enum {
 
 struct process {
     kept_program program;
-    control_parameters control;
-    double answer_time; // [s]
-    controller_setup setup;
-    bool tells_setup; // the next line carries it
+    process_tape *tape;       // of the questions, NULL for none; somebody else's
+    int at;                   // the place on it that the running program has come to
+    long asked;               // questions it has been asked
+    int started;              // how many times it was started
+    control_parameters begun; // with, as the run does
+    double answer_time;       // [s]
     char line[MOST_LINE + 1];
     size_t length; // of what has been read of the answer
     char errors[LAST_ERRORS + 1];
     char failure[1024]; // a sentence, "" as long as there is none
 };
 
-process *process_create(const control_parameters *control)
+// The controller's memory: what a run remembers of its process. Another run, or this one taken back
+// to an earlier state, may have asked the program something else since.
+typedef struct process_memory {
+    process *process; // as the rig left it there
+    int at;           // this run's place on the tape
+    long asked;       // questions so far
+    int started;      // the start of the program that was asked last
+    bool tells_setup; // the next line carries it
+    controller_setup setup;
+    control_parameters control;
+} process_memory;
+
+process *process_create(const control_parameters *control, process_tape *tape)
 {
     assert(control != NULL);
     process *p = calloc(1, sizeof *p);
     if (p != NULL) {
-        p->control = *control;
-        p->answer_time = control->answer_time;
+        p->tape = tape;
+        p->begun = *control;
     }
     return p;
 }
@@ -57,11 +71,10 @@ void process_destroy(process *p)
     }
 }
 
-void process_tell(process *p, const control_parameters *control)
+void process_tell(void *memory, const control_parameters *control)
 {
-    assert(p != NULL && control != NULL);
-    p->control = *control;
-    p->answer_time = control->answer_time;
+    assert(memory != NULL && control != NULL);
+    ((process_memory *)memory)->control = *control;
 }
 
 const char *process_failure(const process *p)
@@ -126,8 +139,8 @@ static bool fail(process *p, const char *format, ...)
         snprintf(ended, sizeof ended, " (exit status %d)", exit_status);
     }
     const char *errors = p->errors + strspn(p->errors, " ");
-    snprintf(p->failure, sizeof p->failure, "the process '%.200s' %s%s%s%s", p->control.command,
-             why, ended, errors[0] != '\0' ? "; it said last: " : "", errors);
+    snprintf(p->failure, sizeof p->failure, "the process '%.200s' %s%s%s%s", p->begun.command, why,
+             ended, errors[0] != '\0' ? "; it said last: " : "", errors);
     make_printable(p->failure);
     return false;
 }
@@ -166,10 +179,10 @@ static json_t *setup_object(const controller_setup *s)
 }
 
 // All numbers of control.*, by their names.
-static json_t *control_object(const process *p)
+static json_t *control_object(const process_memory *m)
 {
     static const char group[] = "control.";
-    parameters all = {.control = p->control};
+    parameters all = {.control = m->control};
     json_t *object = json_object();
 
     // from the table, so that a new parameter needs no line here
@@ -182,15 +195,15 @@ static json_t *control_object(const process *p)
     }
 
     // as ramp and wave have it now, where the controller gets it from its setup
-    set_number(object, "force", p->setup.parameters != NULL ? p->setup.parameters[0] : 0);
+    set_number(object, "force", m->setup.parameters != NULL ? m->setup.parameters[0] : 0);
     return object;
 }
 
 // control.settings, NAME=VALUE: numbers where they are, else texts.
-static json_t *settings_object(const process *p)
+static json_t *settings_object(const process_memory *m)
 {
     json_t *object = json_object();
-    const char *word = p->control.settings;
+    const char *word = m->control.settings;
     while (*(word += strspn(word, " ")) != '\0') {
         char name[PARAMETER_TEXT_SIZE] = "", text[PARAMETER_TEXT_SIZE] = "";
         size_t length = strcspn(word, " "), name_length = strcspn(word, " =");
@@ -208,15 +221,15 @@ static json_t *settings_object(const process *p)
     return object;
 }
 
-// The line that asks for a command, to be freed; NULL without memory.
-static char *question(const process *p, const controller_input *in)
+// The line that asks for a command, with its end, to be freed; NULL without memory.
+static char *question_of(const process_memory *m, const controller_input *in)
 {
     json_t *object = json_object();
-    if (p->tells_setup) {
+    if (m->tells_setup) {
         json_object_set_new(object, "protocol", json_integer(PROTOCOL));
-        json_object_set_new(object, "setup", setup_object(&p->setup));
-        json_object_set_new(object, "control", control_object(p));
-        json_object_set_new(object, "settings", settings_object(p));
+        json_object_set_new(object, "setup", setup_object(&m->setup));
+        json_object_set_new(object, "control", control_object(m));
+        json_object_set_new(object, "settings", settings_object(m));
     }
 
     // what a controller within the program would see
@@ -232,7 +245,14 @@ static char *question(const process *p, const controller_input *in)
     // enough digits for every bit
     char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(object);
-    return text;
+    const size_t length = text != NULL ? strlen(text) : 0;
+    char *line = text != NULL ? realloc(text, length + 2) : NULL;
+    if (line == NULL) {
+        free(text);
+        return NULL;
+    }
+    memcpy(line + length, "\n", 2);
+    return line;
 }
 
 // --- an answer --------------------------------------------------------------------------------
@@ -272,9 +292,10 @@ static bool take_in(process *p)
 }
 
 // Writes the question and waits for a whole line. False, with a failure, if none came in time.
-static bool exchange(process *p, const char *text, size_t length)
+static bool exchange(process *p, const char *text)
 {
     const double deadline = now() + p->answer_time;
+    const size_t length = strlen(text);
     size_t sent = 0;
     bool errors_open = true;
 
@@ -346,50 +367,132 @@ static bool understand(process *p, controller_output *out)
     return more ? fail(p, "answered more than one line to one sample") : true;
 }
 
-// --- the controller ---------------------------------------------------------------------------
+// Asks the running program one thing. False, with a failure, if that gives no answer.
+static bool ask(process *p, const char *question, controller_output *answer)
+{
+    p->asked++;
+    return exchange(p, question) && understand(p, answer);
+}
 
-// Its memory: the process, as the rig left it there.
-typedef struct process_memory {
-    process *process;
-} process_memory;
+// --- going on from the past -------------------------------------------------------------------
+
+// Starts the program. False, with a failure, if it cannot be.
+static bool start_program(process *p)
+{
+    kept_program_end(&p->program);
+    p->at = p->tape != NULL ? TAPE_BEGIN : TAPE_NONE;
+    p->asked = 0;
+    p->started++;
+    p->length = 0;
+    p->errors[0] = '\0';
+    int reason = kept_program_start(&p->program, p->begun.command);
+    if (reason != 0) {
+        snprintf(p->failure, sizeof p->failure, "'%.200s' cannot be started: %s", p->begun.command,
+                 strerror(reason));
+    }
+    return reason == 0;
+}
+
+// Whether two answers are the same to the last bit; NaN is what was not answered.
+static bool same_answer(const controller_output *a, const controller_output *b)
+{
+    const double x[] = {a->command, a->desired_angle, a->desired_velocity, a->calculated_force};
+    const double y[] = {b->command, b->desired_angle, b->desired_velocity, b->calculated_force};
+    return memcmp(x, y, sizeof x) == 0;
+}
+
+// Lets the program come to the run's place on the tape: it is started if it does not run or is
+// somewhere else, and asked once more all that leads there. False, with a failure, if it answers
+// otherwise than then, or the way there is not known.
+static bool catch_up(process *p, const process_memory *m, double time)
+{
+    const bool runs = p->program.keeper != 0;
+    const bool off_tape = m->at == TAPE_NONE && m->asked > 0;
+    if (runs && p->at == m->at && p->asked == m->asked && !(off_tape && p->started != m->started)) {
+        return true;
+    }
+    if (off_tape) {
+        return fail(p, "would have to go on from the past, which is not recorded any more");
+    }
+
+    // the way back to the beginning, or to where the program is
+    int *way = calloc((size_t)m->asked + 1, sizeof *way);
+    int length = 0;
+    int place = m->at;
+    for (; way != NULL && place > TAPE_BEGIN && !(runs && place == p->at); length++) {
+        way[length] = place;
+        place = process_tape_before(p->tape, place);
+    }
+    if (way == NULL) {
+        return fail(p, "%s", status_text(STATUS_NO_MEMORY));
+    }
+
+    // and forth again
+    const bool anew = !runs || place != p->at;
+    bool same = !anew || start_program(p);
+    for (int i = length - 1; same && i >= 0; i--) {
+        controller_output answer = {.mode = 0};
+        const controller_output then = process_tape_answer(p->tape, way[i]);
+        same = ask(p, process_tape_question(p->tape, way[i]), &answer);
+        if (same && !same_answer(&answer, &then)) {
+            same = fail(p,
+                        "would have to go on from the past: asked once more, it answered "
+                        "sample %d of %d with %.9g V, not %.9g V as before",
+                        length - i, length, answer.command, then.command);
+        }
+        p->at = way[i];
+    }
+    if (same && anew && length > 0) {
+        process_tape_note(p->tape, length, time);
+    }
+    free(way);
+    return same;
+}
+
+// --- the controller ---------------------------------------------------------------------------
 
 static const char *take_setup(void *memory, const controller_setup *setup)
 {
-    process *p = ((process_memory *)memory)->process;
-    p->setup = *setup;
-    p->tells_setup = true;
+    process_memory *m = memory;
+    m->setup = *setup;
+    m->tells_setup = true;
     return NULL;
 }
 
 static const char *start(void *memory, const controller_setup *setup)
 {
-    process *p = ((process_memory *)memory)->process;
-    int reason = kept_program_start(&p->program, p->control.command);
-    if (reason != 0) {
-        snprintf(p->failure, sizeof p->failure, "'%.200s' cannot be started: %s",
-                 p->control.command, strerror(reason));
-        return p->failure;
-    }
+    // the program is started by the first question that the tape does not know
+    process_memory *m = memory;
+    m->at = m->process->tape != NULL ? TAPE_BEGIN : TAPE_NONE;
+    m->control = m->process->begun;
     return take_setup(memory, setup);
 }
 
 static void sample(void *memory, const controller_input *in, controller_output *out)
 {
-    process *p = ((process_memory *)memory)->process;
+    process_memory *m = memory;
+    process *p = m->process;
     out->command = (double)NAN;
-    char *text = p->failure[0] == '\0' ? question(p, in) : NULL;
-    if (text == NULL) {
+    p->failure[0] = '\0'; // a run that failed does not come here, one taken back to before may
+    char *question = question_of(m, in);
+    if (question == NULL) {
         return;
     }
+    m->tells_setup = false;
+    p->answer_time = m->control.answer_time;
 
-    // its end becomes the line's
-    size_t length = strlen(text);
-    text[length] = '\n';
-    p->tells_setup = false;
-    if (exchange(p, text, length + 1)) {
-        understand(p, out);
+    // what was asked before has its answer
+    const int known = process_tape_find(p->tape, m->at, question);
+    if (known != TAPE_NONE) {
+        *out = process_tape_answer(p->tape, known);
+        m->at = known;
+        m->asked++;
+    } else if (catch_up(p, m, in->time) && ask(p, question, out)) {
+        m->at = p->at = process_tape_add(p->tape, m->at, question, out);
+        m->started = p->started;
+        m->asked++;
     }
-    free(text);
+    free(question);
 }
 
 static const controller_parameter told[] = {{.name = "force"}};

@@ -3,24 +3,28 @@
 // The program is started by a shell and answers each line on its standard input by one line on its
 // standard output, both JSON objects, in lock step with simulated time (docs/library.md). Nothing
 // waits longer for it than control.answer_time, and nothing of it outlives the rig.
+//
+// With a tape the program is started only when it is asked what the tape does not know, and is then
+// asked all that leads there once more: it must answer as before, or the run fails with a sentence.
 #pragma once
 
 #include "src/quantities/parameters.h"
 #include "src/rig/controller.h"
+#include "src/rig/process_tape.h"
 
 typedef struct process process;
 
 // The controller that asks the program; it is given with a process as its context.
 extern const controller process_law;
 
-// A process that is yet to be started; NULL without memory.
-process *process_create(const control_parameters *control);
+// A process that is yet to be started, with a tape of somebody else's or NULL. NULL without memory.
+process *process_create(const control_parameters *control, process_tape *tape);
 
 // Ends the program and everything it started, however it goes about it; p may be NULL.
 void process_destroy(process *p);
 
-// What the program is told of control.* from the next sample on.
-void process_tell(process *p, const control_parameters *control);
+// What the program is told of control.* from the next sample on; `memory` is the controller's.
+void process_tell(void *memory, const control_parameters *control);
 
 // Why the program can no longer be asked, a sentence; NULL as long as it can.
 const char *process_failure(const process *p);

@@ -71,7 +71,8 @@ static status start_controller(rig *r, const parameters *p, const given_law *giv
         return fault_set(f, STATUS_NO_MEMORY, "no memory for the controller '%s'", r->law->name);
     }
 
-    status s = controller_values(r->law, p, r->values, f);
+    // one that is withheld has no use for settings
+    status s = r->withheld ? STATUS_OK : controller_values(r->law, p, r->values, f);
     if (s != STATUS_OK) {
         return s;
     }
@@ -107,8 +108,44 @@ static controller_output no_answer(void)
                                .calculated_force = (double)NAN};
 }
 
+// --- what the user has not allowed ------------------------------------------------------------
+
+static void give_no_command(void *memory, const controller_input *in, controller_output *out)
+{
+    (void)memory;
+    (void)in;
+    out->command = (double)NAN;
+}
+
+static const char *take_anything(void *memory, const controller_setup *setup)
+{
+    (void)memory;
+    (void)setup;
+    return NULL;
+}
+
+// Stands where a controller from outside would.
+static const controller withheld_law = {.interface = CONTROLLER_INTERFACE,
+                                        .name = "withheld",
+                                        .modes = (const char *const[]){"withheld", NULL},
+                                        .sample = give_no_command,
+                                        .tune = take_anything};
+
+static status explain_withheld(const rig *r, fault *f)
+{
+    const control_parameters *c = &r->told.control;
+    const bool program = c->law == LAW_PROCESS;
+    return fault_set_at(f, STATUS_NOT_ALLOWED, program ? "control.command" : "control.plugin",
+                        "the scenario wants to %s '%.200s', which can do whatever you can: if "
+                        "you trust it, allow that with --allow-code",
+                        program ? "start the program" : "load the plug-in",
+                        program ? c->command : c->plugin);
+}
+
+// --- beginning and end ------------------------------------------------------------------------
+
 // Finds the controller that control.law names; one from outside only if the user allows it.
-static status open_law(rig *r, const parameters *p, fault *f)
+static status open_law(rig *r, const parameters *p, process_tape *tape, fault *f)
 {
     const control_parameters *c = &p->control;
     r->law = controller_of(c->law);
@@ -116,12 +153,9 @@ static status open_law(rig *r, const parameters *p, fault *f)
         return STATUS_OK;
     }
     if (!p->code_allowed) {
-        const bool program = c->law == LAW_PROCESS;
-        return fault_set_at(f, STATUS_BAD_SCENARIO, program ? "control.command" : "control.plugin",
-                            "the scenario wants to %s '%.200s', which can do whatever you can: if "
-                            "you trust it, allow that with --allow-code",
-                            program ? "start the program" : "load the plug-in",
-                            program ? c->command : c->plugin);
+        r->withheld = true;
+        r->law = &withheld_law;
+        return STATUS_OK;
     }
 
     if (c->law == LAW_PLUGIN) {
@@ -129,17 +163,18 @@ static status open_law(rig *r, const parameters *p, fault *f)
         r->law = r->plugin.law;
         return s;
     }
-    r->process = process_create(c);
+    r->process = process_create(c, tape);
     r->law = &process_law;
     return r->process != NULL ? STATUS_OK : fault_no_memory(f);
 }
 
 status rig_create(rig **created, const parameters *p, fault *f)
 {
-    return rig_create_with(created, p, NULL, f);
+    return rig_create_with(created, p, NULL, NULL, f);
 }
 
-status rig_create_with(rig **created, const parameters *p, const given_law *given, fault *f)
+status rig_create_with(rig **created, const parameters *p, const given_law *given,
+                       process_tape *tape, fault *f)
 {
     assert(created != NULL && p != NULL && p->control.rate > 0);
     assert(given != NULL || p->control.law != LAW_NONE);
@@ -168,11 +203,12 @@ status rig_create_with(rig **created, const parameters *p, const given_law *give
     if (given != NULL) {
         r->law = given->law;
     } else {
-        s = open_law(r, p, f);
+        s = open_law(r, p, tape, f);
         asked = (given_law){r->law, r->process};
         given = r->process != NULL ? &asked : NULL;
     }
-    s = s == STATUS_OK ? rig_lock(r, p->control.lock, f) : s;
+    r->lock = -1;
+    s = s == STATUS_OK && !r->withheld ? rig_lock(r, p->control.lock, f) : s;
     s = s == STATUS_OK ? start_controller(r, p, given, f) : s;
     if (s == STATUS_OK && p->control.force_amplitude > 0 && r->law->tune == NULL) {
         s = fault_set(f, STATUS_BAD_SCENARIO,
@@ -245,6 +281,9 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     controller_input input = input_of(r, time);
     controller_output *out = &r->output;
     *out = no_answer();
+    if (r->withheld) {
+        return explain_withheld(r, f);
+    }
     r->law->sample(r->memory, &input, out);
     if (r->process != NULL && process_failure(r->process) != NULL) {
         return fault_set_at(f, STATUS_CONTROLLER_FAILED, "control.command", "at t = %.9g s %s",

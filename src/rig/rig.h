@@ -20,6 +20,7 @@ typedef struct given_law {
 
 typedef struct rig {
     const controller *law;
+    bool withheld;    // the law may not be loaded or started: the first sample fails
     plugin plugin;    // the law comes from, else empty
     process *process; // that the law asks, else NULL
     void *memory;     // the controller's
@@ -48,10 +49,13 @@ typedef struct rig {
 
 // Sets up the rig of resolved parameters with control.law other than none. On failure (a plug-in
 // that cannot be loaded, a setting that is not known, a controller that refuses) f says why and
-// nothing is to be freed.
+// nothing is to be freed. A plug-in or program that the user has not allowed (code_allowed) is
+// withheld: the rig is there, and its first sample fails with STATUS_NOT_ALLOWED.
 status rig_create(rig **created, const parameters *p, fault *f);
-// The same with a law that a program gives; NULL: that of control.law.
-status rig_create_with(rig **created, const parameters *p, const given_law *given, fault *f);
+// The same with a law that a program gives (NULL: that of control.law) and a tape for a process
+// (NULL: none), which must outlive the rig.
+status rig_create_with(rig **created, const parameters *p, const given_law *given,
+                       process_tape *tape, fault *f);
 void rig_destroy(rig *r); // r may be NULL
 
 // The index of the mode that a value of control.lock names, -1 for "none". STATUS_BAD_SCENARIO,

@@ -41,7 +41,7 @@ static status tell_controller(rig *r, const parameters *p, fault *f)
         return s;
     }
     if (r->process != NULL) {
-        process_tell(r->process, &p->control);
+        process_tell(r->memory, &p->control);
     }
     const controller_setup setup = rig_believed_setup(r, p);
 
@@ -123,6 +123,6 @@ bool rig_can_change(const parameters *p, int parameter)
     if (!parameter_table[parameter].timed) {
         return false;
     }
-    return p->control.law == LAW_NONE || !told || parameter == PARAMETER_INDEX(control.lock) ||
-           (law != NULL && law->tune != NULL);
+    return p->control.law == LAW_NONE || p->control.law == LAW_PROCESS || !told ||
+           parameter == PARAMETER_INDEX(control.lock) || (law != NULL && law->tune != NULL);
 }

@@ -53,10 +53,10 @@ static bool start_thread(background_run *c)
     return started;
 }
 
-background_run *background_run_start(const scenario *s, size_t rows_expected, bool resume,
-                                     run_result *begun, const run_result *other, bool at_once)
+background_run *background_run_start(const scenario *s, const background_options *how,
+                                     run_result *begun)
 {
-    assert(s != NULL && rows_expected > 0 && (begun != NULL || !resume));
+    assert(s != NULL && how != NULL && how->rows_expected > 0);
     background_run *c = calloc(1, sizeof *c);
     if (c == NULL) {
         return NULL;
@@ -66,12 +66,13 @@ background_run *background_run_start(const scenario *s, size_t rows_expected, bo
     c->scenario = *s;
     c->options = (run_options){.keep_trace = true,
                                .monitor = &c->monitor,
-                               .rows_expected = rows_expected,
-                               .resume = resume};
-    if (resume) {
+                               .rows_expected = how->rows_expected,
+                               .tape = how->tape,
+                               .resume = begun != NULL};
+    if (begun != NULL) {
         c->result = *begun;
     }
-    if (other != NULL && run_share(other, rows_expected, &c->other) != STATUS_OK) {
+    if (how->other != NULL && run_share(how->other, how->rows_expected, &c->other) != STATUS_OK) {
         c->other = (run_result){0}; // then rows are kept twice
     }
 
@@ -84,7 +85,7 @@ background_run *background_run_start(const scenario *s, size_t rows_expected, bo
     pthread_condattr_destroy(&clock);
 
     // without a thread it is computed here
-    c->threaded = !at_once && start_thread(c);
+    c->threaded = !how->at_once && start_thread(c);
     if (!c->threaded) {
         compute(c);
     }

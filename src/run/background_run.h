@@ -5,13 +5,20 @@
 
 typedef struct background_run background_run;
 
+typedef struct background_options {
+    size_t rows_expected;
+    const run_result *other;   // rows at the beginning that are its own are kept once in the end;
+                               // NULL: of no other run
+    struct process_tape *tape; // of a process that is the controller, NULL: none
+    bool at_once;              // the run is over when background_run_start returns
+} background_options;
+
 // Starts the run of a scenario, whose actions and texts must outlive it, with rows that stay where
-// they are. *begun: what run_resume prepared if `resume`, taken over; else not looked at. Rows at
-// the beginning that are those of `other` (NULL: of no other run) are kept once in the end. With
-// `at_once`, or where there is no thread to be had, the run is over when this returns. NULL without
-// memory; then *begun is the caller's.
-background_run *background_run_start(const scenario *s, size_t rows_expected, bool resume,
-                                     run_result *begun, const run_result *other, bool at_once);
+// they are. *begun: what run_resume prepared, taken over; NULL: from the start. It is over when
+// this returns where there is no thread to be had. NULL without memory; then *begun is the
+// caller's.
+background_run *background_run_start(const scenario *s, const background_options *how,
+                                     run_result *begun);
 
 // Waits until the run is over, but not longer than `seconds`; true if it is over.
 bool background_run_wait(background_run *c, double seconds);

@@ -135,13 +135,14 @@ static status begin(corrected_run *c, fault *f)
     return STATUS_OK;
 }
 
-// The rig's first sample, and the row of the start.
+// The rig's first sample, and the row of the start, which is there even where that sample fails.
 static status record_start(corrected_run *c, fault *f)
 {
     recording *r = c->recording;
     status failed = corrected_run_rig(c, f);
     r->state.grid_row = 1;
-    return failed == STATUS_OK ? corrected_record_row(c, c->motion->state, 0) : failed;
+    status recorded = corrected_record_row(c, c->motion->state, 0);
+    return failed == STATUS_OK ? recorded : failed;
 }
 
 status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)

@@ -22,6 +22,7 @@ struct run_loop {
     scenario scenario; // a copy of one's own
     run_options options;
     given_law law;
+    process_tape *tape; // NULL unless control.law is a process
     run_result result;
     recording recording;
     corrected_run run;
@@ -103,8 +104,11 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
     // whose command the rig puts out
     l->volts = s->parameters.control.law == LAW_NONE ? s->parameters.motor.voltage : 0;
     l->law = options->commanded ? (given_law){&commanded_law, &l->volts} : options->law;
+    const bool asks = l->law.law == NULL && s->parameters.control.law == LAW_PROCESS;
+    l->tape = asks ? process_tape_create() : NULL;
     l->options = (run_options){.keep_trace = options->keep_trace,
-                               .law = l->law.law != NULL ? &l->law : NULL};
+                               .law = l->law.law != NULL ? &l->law : NULL,
+                               .tape = l->tape};
 
     // the run at its start
     fault why;
@@ -131,6 +135,7 @@ void loop_destroy(run_loop *l)
             corrected_close(&l->run, STATUS_STOPPED);
         }
         recording_end(&l->recording, STATUS_STOPPED, &l->fault, (time_used){0});
+        process_tape_destroy(l->tape);
         run_finish(&l->result);
         scenario_finish(&l->scenario);
         free(l);
@@ -454,11 +459,6 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
 {
     assert(l != NULL && bytes != NULL);
     saved_head head;
-    if (l->recording.rig != NULL && l->recording.rig->process != NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "control.law is a process, which would have to go on from its own past: "
-                         "begin another loop instead");
-    }
     if (size != loop_saved_size(l)) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "a state of this loop has %zu bytes, but %zu were given",

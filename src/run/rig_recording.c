@@ -20,8 +20,9 @@ status recording_start_rig(recording *r, fault *f)
 
     r->command = (recorded_command){.hub_angle = p->initial.angle};
     r->result->summary.electrical_energy_J = 0;
-    status s = rig_create_with(&r->rig, p, r->options->law, f);
-    return s == STATUS_OK ? scenario_check_locks(r->scenario, r->rig->law, f) : s;
+    status s = rig_create_with(&r->rig, p, r->options->law, r->options->tape, f);
+    return s == STATUS_OK && !r->rig->withheld ? scenario_check_locks(r->scenario, r->rig->law, f)
+                                               : s;
 }
 
 void recording_add_rig_signals(const recording *r, sample *row)

@@ -38,6 +38,7 @@ typedef struct run_options {
     size_t rows_expected; // if not 0, rows and events stay where they are and can be shared, and
                           // the result has a history; needs keep_trace
     const struct given_law *law; // that a program gives in the place of control.law; NULL: none
+    struct process_tape *tape;   // of a process that is the controller; NULL: none is kept
     bool resume;                 // *result was prepared by run_resume: go on from there
 } run_options;
 

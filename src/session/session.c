@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/rig/process_tape.h"
+
 status session_open(session *s, scenario *base, double patience, fault *f)
 {
     assert(s != NULL && base != NULL && patience >= 0);
@@ -30,6 +32,7 @@ void session_finish(session *s)
     session_forget_other(s);
     session_forget_ghost(s);
     run_finish(&s->run);
+    process_tape_destroy(s->tape);
     free(s->effective.actions);
     free(s->inputs);
     scenario_finish(&s->base);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/rig/process_tape.h"
 #include "src/run/background_run.h"
 #include "src/run/resume.h"
 #include "src/session/cursor.h"
@@ -115,8 +116,14 @@ static status start_run(session *s, const scenario *effective, fault *f)
     run_result run;
     size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
     bool resume = run_resume(&s->run, &s->effective, effective, rows, &run);
-    background_run *c = background_run_start(effective, rows, resume, &run,
-                                             s->has_other ? &s->other : NULL, isinf(s->patience));
+    if (s->tape == NULL && effective->parameters.control.law == LAW_PROCESS) {
+        s->tape = process_tape_create(); // without memory the program is always asked
+    }
+    const background_options how = {.rows_expected = rows,
+                                    .other = s->has_other ? &s->other : NULL,
+                                    .tape = s->tape,
+                                    .at_once = isinf(s->patience)};
+    background_run *c = background_run_start(effective, &how, resume ? &run : NULL);
     if (c == NULL) {
         run_finish(&run);
         return fault_no_memory(f);
@@ -281,6 +288,25 @@ status session_keep_beside(session *s, const run_result *run, fault *f)
     s->has_other = true;
     s->version++;
     return STATUS_OK;
+}
+
+status session_allow_code(session *s, fault *f)
+{
+    assert(s != NULL);
+    const bool before = s->base.parameters.code_allowed;
+    s->base.parameters.code_allowed = true;
+    status code = session_compute(s, f);
+    if (code != STATUS_OK) {
+        s->base.parameters.code_allowed = before;
+    }
+    return code;
+}
+
+process_replay session_take_replay(session *s)
+{
+    assert(s != NULL);
+    return s->computing != NULL ? (process_replay){.restarted = false}
+                                : process_tape_take_replay(s->tape);
 }
 
 void session_forget_other(session *s)

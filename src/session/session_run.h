@@ -25,5 +25,13 @@ status session_branch(session *s, fault *f);
 status session_keep_beside(session *s, const run_result *run, fault *f);
 // Forgets the run kept for comparison.
 void session_forget_other(session *s);
+// Lets the scenario load its plug-in or start its program, and computes the run with it. On failure
+// nothing changes and f says why.
+status session_allow_code(session *s, fault *f);
+
+// What a process that is the controller went through again since this was asked last: all zero if
+// nothing, and while a run is being computed.
+struct process_replay session_take_replay(session *s);
+
 // Forgets the run before the value that was adjusted last.
 void session_forget_ghost(session *s);

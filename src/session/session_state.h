@@ -4,6 +4,7 @@
 #include "src/run/run.h"
 
 struct background_run;
+struct process_tape;
 
 enum { SESSION_INPUT_TEXT = 160 };
 
@@ -40,5 +41,6 @@ typedef struct session {
     unsigned version; // counts the computed runs
     struct background_run *computing; // the run, if it is not complete
     double patience;                  // for how long a change waits for its run [s]
+    struct process_tape *tape;        // what a process was asked in all runs, NULL if there is none
     size_t surveyed;                  // rows whose force is in the summary of an incomplete run
 } session;

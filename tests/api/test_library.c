@@ -313,6 +313,52 @@ static void states_come_back(void **state)
     }
 }
 
+// Of a program the loop knows what it answered; it is asked again only what is new.
+static void a_process_goes_on_from_a_state(void **state)
+{
+    (void)state;
+    impactlab_error error;
+    impactlab_scenario *scenario = opened(first_impact);
+    impactlab_loop *loop;
+    double gap, again, pushed;
+    check_done(impactlab_scenario_set(scenario, "control.command",
+                                      "n=0; while read -r line; do n=$((n + 1)); "
+                                      "echo \"{\\\"command\\\": 1.$n}\"; done",
+                                      &error),
+               &error);
+    check_done(impactlab_scenario_set(scenario, "control.law", "process", &error), &error);
+    check_done(impactlab_loop_create(&loop, scenario, 0, &error), &error);
+    assert_int_equal(impactlab_loop_step(loop, &error), IMPACTLAB_NOT_ALLOWED);
+    impactlab_loop_destroy(loop);
+    impactlab_scenario_allow_code(scenario, 1);
+    check_done(impactlab_loop_create(&loop, scenario, 0, &error), &error);
+
+    // on, back and on: the same; another way and back: the same again
+    step_to(loop, 0.05);
+    const size_t size = impactlab_loop_state_size(loop);
+    void *bytes = malloc(size);
+    check_done(impactlab_loop_save_state(loop, bytes, size, &error), &error);
+    step_to(loop, 0.2);
+    check_done(impactlab_loop_signal(loop, "gap", &gap, &error), &error);
+    check_done(impactlab_loop_restore_state(loop, bytes, size, &error), &error);
+    step_to(loop, 0.2);
+    check_done(impactlab_loop_signal(loop, "gap", &again, &error), &error);
+    check_same(gap, again);
+    check_done(impactlab_loop_restore_state(loop, bytes, size, &error), &error);
+    check_done(impactlab_loop_push(loop, 0.02, &error), &error);
+    step_to(loop, 0.2);
+    check_done(impactlab_loop_signal(loop, "gap", &pushed, &error), &error);
+    assert_true(pushed != gap);
+    check_done(impactlab_loop_restore_state(loop, bytes, size, &error), &error);
+    step_to(loop, 0.2);
+    check_done(impactlab_loop_signal(loop, "gap", &again, &error), &error);
+    check_same(gap, again);
+
+    free(bytes);
+    impactlab_loop_destroy(loop);
+    impactlab_scenario_destroy(scenario);
+}
+
 static void inputs_act_at_once(void **state)
 {
     (void)state;
@@ -439,6 +485,7 @@ int main(void)
         cmocka_unit_test(a_stepped_run_is_the_run),
         cmocka_unit_test(commands_come_from_outside),
         cmocka_unit_test(states_come_back),
+        cmocka_unit_test(a_process_goes_on_from_a_state),
         cmocka_unit_test(inputs_act_at_once),
         cmocka_unit_test(batches_are_runs),
         cmocka_unit_test(scenarios_are_written_and_read),

@@ -64,5 +64,6 @@ bool explorer_carry_out(explorer *ex, const char *line)
     action_result result = explorer_execute(&ex->state, line);
     act_follow_lesson(&ex->state);
     result_show(&result, &ex->state.message);
+    explorer_tell_replay(ex);
     return result_ok(&result);
 }

@@ -4,11 +4,15 @@
 #include <string.h>
 
 #include "ui/explorer/panels/compose.h"
+#include "ui/explorer/state/consent.h"
 
 status explorer_init(explorer *ex, scenario *s, double patience, fault *f)
 {
     assert(ex != NULL && s != NULL);
     memset(ex, 0, sizeof *ex);
+    if (consent_needed(s)) {
+        s->parameters.code_allowed = consent_remembered(s);
+    }
     status code = state_init(&ex->state, s, patience, f);
     if (code == STATUS_OK) {
         action_result news = act_tell_failed_run(&ex->state);
@@ -43,8 +47,22 @@ bool explorer_follow(explorer *ex)
     if (s->computing == NULL) {
         action_result news = act_tell_failed_run(&ex->state);
         result_show(&news, &ex->state.message);
+        explorer_tell_replay(ex);
     }
     return true;
+}
+
+void explorer_tell_replay(explorer *ex)
+{
+    assert(ex != NULL);
+    message_line *m = &ex->state.message;
+    const action_result again = act_tell_replay(&ex->state);
+    if (again.speaks && m->text[0] != '\0') {
+        const message_line before = *m;
+        message_say(m, m->warning, "%.600s; %s", before.text, again.text);
+    } else {
+        result_show(&again, m);
+    }
 }
 
 void explorer_advance(explorer *ex, double seconds)

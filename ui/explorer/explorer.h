@@ -33,6 +33,9 @@ void explorer_finish(explorer *ex);
 // Takes note of what has been computed since the last call. True if there is something to draw.
 bool explorer_follow(explorer *ex);
 
+// Adds to the message line that a program had to go through its past once more, if one had.
+void explorer_tell_replay(explorer *ex);
+
 // Lets wall-clock time pass [s]: moves the cursor if the explorer plays.
 void explorer_advance(explorer *ex, double seconds);
 

@@ -186,6 +186,9 @@ static void key_by_table(explorer *ex, int key)
     key = key == '\n' ? KEY_CODE_ENTER : key == 127 || key == 8 ? KEY_CODE_BACKSPACE : key;
     const char *bound = key_line(&st->keys, key);
     const bool asked = st->asked_to_quit;
+    if (key == 'y' && st->session.run.summary.status == STATUS_NOT_ALLOWED) {
+        bound = "allow"; // the answer to what is asked then
+    }
     if (bound != NULL) {
         // a copy: the command may be one that binds keys
         char line[LINE_TEXT];

@@ -50,7 +50,8 @@ typedef enum impactlab_status {
     IMPACTLAB_EXPECTATION_FAILED = 11, //
     IMPACTLAB_STOPPED = 12,            // before its end
     IMPACTLAB_FOLDED = 13,             // the arm is folded across the hub's axis on a flat wall
-    IMPACTLAB_CONTROLLER_FAILED = 14   // a process that is the controller died, hung or babbled
+    IMPACTLAB_CONTROLLER_FAILED = 14,  // a process that is the controller died, hung or babbled
+    IMPACTLAB_NOT_ALLOWED = 15         // a program or plug-in was not allowed to run
 } impactlab_status;
 
 typedef struct impactlab_error {

@@ -32,8 +32,12 @@ action_result act_change(explorer_state *st, int parameter, const char *text);
 // once the value is what it was.
 action_result act_adjust(explorer_state *st, int parameter, double value);
 
-// A warning if the present run stopped on the way, nothing to say if not.
+// A warning if the present run stopped on the way, or the question whether its program may run;
+// nothing to say if not.
 action_result act_tell_failed_run(const explorer_state *st);
+
+// News if a program had to go through its past once more for the present run, once.
+action_result act_tell_replay(explorer_state *st);
 
 // Refused while the run is being computed: what needs all of it cannot be done.
 action_result act_need_whole_run(const explorer_state *st);

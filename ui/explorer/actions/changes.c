@@ -217,9 +217,12 @@ action_result act_push(explorer_state *st, const char *argument)
         return read;
     }
     status code = session_push(&st->session, impulse, &f);
-    return code != STATUS_OK
-               ? result_of(code, &f)
-               : result_news("pushed with %g N s at %.4f s", impulse, st->session.now);
+    if (code != STATUS_OK) {
+        return result_of(code, &f);
+    }
+    const action_result stopped = act_tell_failed_run(st);
+    return stopped.speaks ? stopped
+                          : result_news("pushed with %g N s at %.4f s", impulse, st->session.now);
 }
 
 action_result act_undo(explorer_state *st, const char *argument)

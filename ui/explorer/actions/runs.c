@@ -4,6 +4,9 @@
 #include <assert.h>
 #include <string.h>
 
+#include "src/rig/process_tape.h"
+#include "ui/explorer/state/consent.h"
+
 // Keeps the first fault of a scenario that does not open.
 static void keep_first_fault(void *context, const char *sentence)
 {
@@ -21,6 +24,7 @@ action_result act_open_scenario(explorer_state *st, const char *name)
     fault f = {0};
     status code = scenario_open(&s, name, keep_first_fault, &f);
     if (code == STATUS_OK) {
+        s.parameters.code_allowed = consent_needed(&s) && consent_remembered(&s);
         code = session_open(&fresh, &s, st->session.patience, &f);
     }
     if (code != STATUS_OK) {
@@ -78,6 +82,13 @@ action_result act_tell_failed_run(const explorer_state *st)
 {
     assert(st != NULL);
     const summary *m = &st->session.run.summary;
+    const control_parameters *c = &st->session.effective.parameters.control;
+    if (m->status == STATUS_NOT_ALLOWED) {
+        const bool program = c->law == LAW_PROCESS;
+        return result_warning("y lets it %s '%.200s', which can do whatever you can; all else "
+                              "works without (:allow later)",
+                              program ? "start" : "load", program ? c->command : c->plugin);
+    }
     return m->status != STATUS_OK ? result_warning("the run stops: %s", m->message)
            : m->inaccurate        ? result_warning("the run is inaccurate: %s", m->message)
                                   : result_done();
@@ -106,4 +117,42 @@ action_result act_stop(explorer_state *st, const char *argument)
     }
     return result_news("stopped at %.4g s: Space at its end goes on, u takes the last change back",
                        session_end(s));
+}
+
+action_result act_allow(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    session *s = &st->session;
+    fault f = {0};
+    bool kept;
+    if (s->run.summary.status != STATUS_NOT_ALLOWED) {
+        return result_refused("the run asks for no permission");
+    }
+
+    // a visit's changes are the user's own: what is remembered is the scenario as it was opened
+    status code = session_allow_code(s, &f);
+    if (code != STATUS_OK) {
+        return result_of(code, &f);
+    }
+    code = consent_remember(&s->base, &kept, &f);
+    st->playback.playing = true;
+    const action_result told = act_tell_failed_run(st);
+    if (told.speaks) {
+        return told;
+    }
+    return code != STATUS_OK ? result_of(code, &f)
+           : kept ? result_news("allowed, and remembered for just this scenario and program")
+                  : result_news("allowed for this visit");
+}
+
+action_result act_tell_replay(explorer_state *st)
+{
+    assert(st != NULL);
+    const process_replay again = session_take_replay(&st->session);
+    if (!again.restarted) {
+        return result_done();
+    }
+    return result_news("the program was started anew and went through its %d samples up to %.4g s "
+                       "once more",
+                       again.samples, again.time);
 }

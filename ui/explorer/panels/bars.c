@@ -59,10 +59,14 @@ static int write_status(const explorer_state *st, status_item items[STATUS_ITEMS
     const session *e = &st->session;
     const sample *row = session_sample(e);
     const parameters *p = &e->effective.parameters;
-    bool failed = e->run.summary.status != STATUS_OK, old = e->now < e->seen;
-    bool stopped = e->run.summary.status == STATUS_STOPPED;
+    const status ended = e->run.summary.status;
+    bool failed = ended != STATUS_OK, old = e->now < e->seen;
+    const char *how = ended == STATUS_STOPPED             ? "stopped"
+                      : ended == STATUS_NOT_ALLOWED       ? "not allowed"
+                      : ended == STATUS_CONTROLLER_FAILED ? "controller failed"
+                                                          : "diverged";
     const char *state = st->playback.playing                 ? (old ? "replaying" : "playing")
-                        : failed && e->now >= session_end(e) ? (stopped ? "stopped" : "diverged")
+                        : failed && e->now >= session_end(e) ? how
                                                              : "paused";
     char model[64], law[64] = "", speed[32] = "";
     int n = 0;

@@ -64,6 +64,7 @@
       act_set_lanes)                                                                               \
     X("Scenarios", "open", "[NAME|+1|-1]", "another scenario, from a list", act_open_scenario_by)  \
     X("", "find", "[TEXT]", "the list, filtered by what is typed", act_find_scenario)              \
+    X("", "allow", "", "let the scenario run its program or plug-in", act_allow)                   \
     X("Lessons", "lesson", "[NAME|off]", "experiments step by step; alone: a list of them",        \
       act_open_lesson)                                                                             \
     X("", "answer", "[ANSWER]", "a step's question: a number, or that of a choice", act_answer)    \
