@@ -77,8 +77,10 @@ static void numbers_keep_their_units(void **state)
 {
     (void)state;
     const char *caption = "At 1 V and 10 ms, <i>β</i> = 0.4, <i>h</i> = 10\u2009ms, a peak of "
-                          "5.40\u2009N after 12.5 ms. impactlab 0.1.0.";
-    static const char *const torn[] = {"V", "ms", "= ", "=\u00a0", "0.4", "N", "0.1.0", "10 ms,"};
+                          "5.40\u2009N after 12.5 ms, <i>k</i><sub>1</sub> = 0.4 at "
+                          "4.92\u2009N·m/rad, 3\u2009V·s/rad. impactlab 0.1.0.";
+    static const char *const torn[] = {"V",   "ms", "= ",    "=\u00a0", "rad",
+                                       "0.4", "N",  "0.1.0", "10 ms,"};
     PangoContext *context = text_context_create();
     for (double width = 60; width < 300; width += 7) {
         PangoLayout *layout = text_layout_create(
@@ -87,7 +89,7 @@ static void numbers_keep_their_units(void **state)
         for (int i = 1; i < pango_layout_get_line_count(layout); i++) {
             const char *line =
                 text + pango_layout_line_get_start_index(pango_layout_get_line_readonly(layout, i));
-            for (size_t k = 0; k + 1 < G_N_ELEMENTS(torn); k++) {
+            for (size_t k = 0; k < G_N_ELEMENTS(torn); k++) {
                 if (strncmp(line, torn[k], strlen(torn[k])) == 0) {
                     fail_msg("at %g points a line begins with '%.12s'", width, line);
                 }

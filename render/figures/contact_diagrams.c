@@ -106,12 +106,12 @@ static void draw_contact(sketch *s, const diagram *d)
     arm_places one = places_of(&v, d, of->one, 0), other = places_of(&v, d, of->other, 0);
 
     // the reference line and the coordinates of the contact point
-    sketch_dashed(s, one.hub.x, one.hub.y, foot.x + 40, foot.y, SKETCH_FAINT);
-    sketch_dashed(s, contact.x, contact.y, contact.x + 40, contact.y, SKETCH_FAINT);
+    sketch_dashed(s, one.hub.x, one.hub.y, foot.x + 46, foot.y, SKETCH_FAINT);
+    sketch_dashed(s, contact.x, contact.y, contact.x + 46, contact.y, SKETCH_FAINT);
     sketch_measure(s, one.hub.x, foot.y + 16, foot.x, foot.y + 16);
     sketch_text(s, (one.hub.x + foot.x) / 2, foot.y + 18, 0.5, 0, "<i>a</i>", SKETCH_LABEL);
-    sketch_measure(s, contact.x + 32, foot.y, contact.x + 32, contact.y);
-    sketch_text(s, contact.x + 36, (foot.y + contact.y) / 2, 0, 0.5, "<i>b</i>", SKETCH_LABEL);
+    sketch_measure(s, contact.x + 38, foot.y, contact.x + 38, contact.y);
+    sketch_text(s, contact.x + 42, (foot.y + contact.y) / 2, 0, 0.5, "<i>b</i>", SKETCH_LABEL);
     sketch_text(s, contact.x + 8, contact.y + 3, 0, 0, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
 
     // both configurations, and the angles of the first

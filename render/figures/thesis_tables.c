@@ -51,6 +51,9 @@ static artwork artwork_of_table(table_page *t)
 
 // ---- 2.1: the motor
 
+// Below this width a parameter's description stands above its row [mm].
+#define DESCRIPTIONS_BESIDE 120.0
+
 // A parameter of the lab with what the thesis prints for it.
 static void add_motor_row(table_page *t, const parameters *p, const char *symbol,
                           const char *printed, const char *path)
@@ -62,6 +65,9 @@ static void add_motor_row(table_page *t, const parameters *p, const char *symbol
     char *used =
         text_printf("%.6g\u2009%s", parameter_get(p, index), strcmp(unit, "ohm") == 0 ? "Ω" : unit);
     char *name = g_strdup_printf("%s: %s", path, info->description);
+    if (t->column_count == 3) {
+        table_add_group(t, name);
+    }
     table_add_row(t, (const char *[]){symbol, printed, used, name});
     g_free(used);
     g_free(name);
@@ -80,7 +86,9 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
     table_add_column(t, "Symbol", 0.75, TEXT_LEFT);
     table_add_column(t, "Thesis", 1.75, TEXT_LEFT);
     table_add_column(t, "As used", 1.75, TEXT_LEFT);
-    table_add_column(t, "Parameter", 3.2, TEXT_LEFT);
+    if (!(o->look.width > 0 && o->look.width < DESCRIPTIONS_BESIDE)) {
+        table_add_column(t, "Parameter", 3.2, TEXT_LEFT);
+    }
 
     add_motor_row(t, &p, "<i>k</i><sub>B</sub>", "2.443\u2009V·s/rad", "motor.back_emf");
     add_motor_row(t, &p, "<i>k</i><sub>T</sub>", "0.249092\u2009kg·m/A", "motor.torque_constant");

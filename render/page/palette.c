@@ -22,8 +22,8 @@ static const colour on_white[SLOTS] = {
     RGB(110, 110, 110), // grey
 };
 static const colour on_black[SLOTS] = {
-    RGB(60, 160, 225),  RGB(230, 159, 0),  RGB(0, 178, 130),   RGB(86, 200, 250),
-    RGB(220, 140, 185), RGB(235, 115, 20), RGB(225, 225, 225), RGB(240, 228, 66),
+    RGB(60, 160, 225),  RGB(240, 170, 10), RGB(0, 178, 130),   RGB(110, 210, 250),
+    RGB(220, 140, 185), RGB(225, 95, 20),  RGB(225, 225, 225), RGB(145, 145, 145),
 };
 static const colour greys[] = {RGB(0, 0, 0), RGB(90, 90, 90), RGB(140, 140, 140)};
 

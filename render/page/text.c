@@ -113,6 +113,23 @@ static bool space_joins(const char *start, const char *space)
     return equals || after_equals || number || version;
 }
 
+// Whether the slash at `slash` stands before the last part of a unit: "N·m/rad", "m/s²".
+static bool slash_joins(const char *start, const char *slash)
+{
+    static const char *const lower[] = {"rad", "s", "m", "V", "A", "N"};
+
+    // a path has longer words
+    bool after_letter = slash > start && g_ascii_isalpha(slash[-1]);
+    for (size_t i = 0; i < G_N_ELEMENTS(lower); i++) {
+        size_t length = strlen(lower[i]);
+        if (after_letter && strncmp(slash + 1, lower[i], length) == 0 &&
+            !g_ascii_isalpha(slash[1 + length])) {
+            return true;
+        }
+    }
+    return false;
+}
+
 char *text_translate(const char *markup, double size)
 {
     assert(markup != NULL && size > 0);
@@ -127,9 +144,11 @@ char *text_translate(const char *markup, double size)
             double small = index_letters(size);
             g_string_append_printf(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
                                    (int)((raised ? 0.35 : -0.2) * size * 1024));
+            in_tag = false;
             c += 5;
         } else if (strncmp(c, "</sub>", 6) == 0 || strncmp(c, "</sup>", 6) == 0) {
             g_string_append(out, "</span>");
+            in_tag = false;
             c += 6;
         } else if (strncmp(c, "\u2009", 3) == 0) {
             // a thin space stands between a number and its unit: its twin that does not break
@@ -137,6 +156,10 @@ char *text_translate(const char *markup, double size)
             c += 3;
         } else if (*c == ' ' && !in_tag && space_joins(markup, c)) {
             g_string_append(out, "\u00a0");
+            c++;
+        } else if (*c == '/' && !in_tag && slash_joins(markup, c)) {
+            // a word joiner: no line ends after the slash
+            g_string_append(out, "/\u2060");
             c++;
         } else {
             g_string_append_c(out, *c++);

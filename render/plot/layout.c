@@ -115,7 +115,8 @@ bool has_y_labels(const drawing *d, const panel_layout *l)
 static double left_space(const drawing *d, const panel_layout *l)
 {
     if (!has_y_labels(d, l)) {
-        return SHARED_SPACE;
+        // as far from the column before as the ends of both axes' labels need
+        return fmax(SHARED_SPACE, widest_tick(d, &d->x, d->style.tick) / 2);
     }
 
     // title, tick labels and ticks

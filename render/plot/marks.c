@@ -242,6 +242,45 @@ static void set_mark_line(const drawing *d)
     cairo_set_dash(d->cr, pattern, 2, 0);
 }
 
+// Keeps hairlines out of the legends that stand inside panels.
+static void clip_out_legends(const drawing *d)
+{
+    cairo_new_path(d->cr);
+    cairo_rectangle(d->cr, d->page.x, d->page.y, d->page.width, d->page.height);
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        const panel_layout *l = &d->panels[i];
+        if (l->legend_inside && l->legend.width > 0) {
+            cairo_rectangle(d->cr, l->legend.x, l->legend.y, l->legend.width, l->legend.height);
+        }
+    }
+    cairo_set_fill_rule(d->cr, CAIRO_FILL_RULE_EVEN_ODD);
+    cairo_clip(d->cr);
+}
+
+// Whether the line of a mark would cross a legend inside a panel.
+static bool crosses_legend(const drawing *d, double x)
+{
+    bool found = false;
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        const panel_layout *l = &d->panels[i];
+        found = found ||
+                (l->legend_inside && x > l->legend.x - 1 && x < l->legend.x + l->legend.width + 1);
+    }
+    return found;
+}
+
+// The hairline of a mark from `top` down to `bottom`, interrupted by legends.
+static void draw_hairline(const drawing *d, double x, double top, double bottom)
+{
+    cairo_save(d->cr);
+    if (crosses_legend(d, x)) {
+        clip_out_legends(d);
+    }
+    set_mark_line(d);
+    draw_line(d->cr, x, top, x, bottom);
+    cairo_restore(d->cr);
+}
+
 // The marks of a column of panels, `shift` to the right of the first column.
 static void draw_column_marks(drawing *d, const plane *first, const plane *last, double shift)
 {
@@ -261,14 +300,12 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
                           d->style.colours->text);
 
                 // its line
-                set_mark_line(d);
-                draw_line(d->cr, x, first->box.y, x, last->box.y + last->box.height);
+                draw_hairline(d, x, first->box.y, last->box.y + last->box.height);
                 continue;
             }
             draw_text(d, t, d->mark_text_x[i] + shift, top, (anchor){0, 0}, d->style.colours->text);
         }
-        set_mark_line(d);
-        draw_line(d->cr, x, top + 1, x, last->box.y + last->box.height);
+        draw_hairline(d, x, top + 1, last->box.y + last->box.height);
     }
 }
 

@@ -1,0 +1,610 @@
+// Every figure and table at the widths of one column and of a page, judged by its pixels: texts
+// against what is drawn round them, curves against their frames, colours against each other as
+// people see them who see no green, and lines without colours.
+//
+// The program's own functions that draw a text or a legend's line are intercepted, so that texts
+// can be left out, drawn alone, and asked for their looks.
+#include "tests/check.h"
+
+#include <cairo.h>
+#include <glib.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/figures/figures.h"
+#include "render/page/text.h"
+#include "render/plot/drawing.h"
+
+// fontconfig keeps its cache until the process ends
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig\n";
+}
+
+static const double widths[] = {85, 180}; // [mm]
+
+#define SCALE 3.0 // pixels of a point
+
+// ---- what is intercepted
+
+// A text's pixels: which part of each is covered by letters.
+typedef struct letter_mask {
+    char *text;
+    colour ink;
+    int x, y, width, height; // [pixels]
+    unsigned char *cover;
+} letter_mask;
+
+// A line or marker that a legend shows.
+typedef struct swatch {
+    const figure_panel *panel;
+    int index;
+    colour ink;
+    double width, dashes[8];
+    int dash_count;
+    marker_kind marker;
+} swatch;
+
+enum { MOST_SWATCHES = 128 };
+
+static GArray *masks;  // letter_mask; NULL: texts are drawn as ever
+static cairo_t *alone; // where texts are drawn alone
+static cairo_surface_t *of_alone;
+static swatch swatches[MOST_SWATCHES];
+static int swatch_count;
+
+double __real_text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
+double __wrap_text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
+void __real_draw_swatch(drawing *d, panel_layout *l, int index, double x, double y);
+void __wrap_draw_swatch(drawing *d, panel_layout *l, int index, double x, double y);
+
+// Leaves the text out and keeps its letters.
+double __wrap_text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
+{
+    if (masks == NULL) {
+        return __real_text_draw(cr, context, t);
+    }
+
+    // alone, where it would have been
+    double x, y, width, height;
+    cairo_matrix_t place;
+    letter_mask mask = {.text = text_plain(t->markup)};
+    cairo_get_current_point(cr, &x, &y);
+    cairo_get_matrix(cr, &place);
+    cairo_pattern_get_rgba(cairo_get_source(cr), &mask.ink.red, &mask.ink.green, &mask.ink.blue,
+                           NULL);
+    cairo_save(alone);
+    cairo_set_matrix(alone, &place);
+    cairo_move_to(alone, x, y);
+    __real_text_draw(alone, context, t);
+    text_measure(context, t, &width, &height);
+    double left = x, top = y, right = x + width, bottom = y + height;
+    cairo_path_extents(alone, &left, &top, &right, &bottom);
+    cairo_restore(alone);
+    cairo_surface_flush(of_alone);
+
+    // its pixels, cut out and wiped away
+    double corners[4][2] = {{x, y}, {x + width, y}, {x, y + height}, {x + width, y + height}};
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int i = 0; i < 4; i++) {
+        cairo_matrix_transform_point(&place, &corners[i][0], &corners[i][1]);
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], corners[i][k]);
+            high[k] = fmax(high[k], corners[i][k]);
+        }
+    }
+    int across = cairo_image_surface_get_width(of_alone);
+    int down = cairo_image_surface_get_height(of_alone);
+    mask.x = (int)fmax(0, SCALE * low[0] - 2);
+    mask.y = (int)fmax(0, SCALE * low[1] - 2);
+    mask.width = (int)fmin(across, SCALE * high[0] + 2) - mask.x;
+    mask.height = (int)fmin(down, SCALE * high[1] + 2) - mask.y;
+    assert_true(mask.width > 0 && mask.height > 0);
+    mask.cover = g_malloc((size_t)mask.width * (size_t)mask.height);
+    unsigned char *bytes = cairo_image_surface_get_data(of_alone);
+    int stride = cairo_image_surface_get_stride(of_alone);
+    for (int j = 0; j < mask.height; j++) {
+        unsigned char *row = bytes + (ptrdiff_t)(mask.y + j) * stride + mask.x;
+        memcpy(mask.cover + (ptrdiff_t)j * mask.width, row, (size_t)mask.width);
+        memset(row, 0, (size_t)mask.width);
+    }
+    cairo_surface_mark_dirty(of_alone);
+    g_array_append_val(masks, mask);
+    return width;
+}
+
+void __wrap_draw_swatch(drawing *d, panel_layout *l, int index, double x, double y)
+{
+    assert_true(swatch_count < MOST_SWATCHES);
+    const figure_series *s = &l->panel->series[index];
+    swatch *into = &swatches[swatch_count++];
+    *into = (swatch){.panel = l->panel, .index = index, .marker = s->marker};
+    into->width = set_series(d, l, index) * !s->no_line;
+    cairo_pattern_get_rgba(cairo_get_source(d->cr), &into->ink.red, &into->ink.green,
+                           &into->ink.blue, NULL);
+    into->dash_count = s->no_line ? 0 : cairo_get_dash_count(d->cr);
+    if (into->dash_count > 0) {
+        cairo_get_dash(d->cr, into->dashes, NULL);
+    }
+    __real_draw_swatch(d, l, index, x, y);
+}
+
+// ---- pictures
+
+static artwork open_figure(int i, figure_options o)
+{
+    fault f = {0};
+    artwork drawn;
+    if (figure_open(&thesis_figures[i], &o, &drawn, &f) != STATUS_OK) {
+        fail_msg("%s: %s", thesis_figures[i].id, f.text);
+    }
+    return drawn;
+}
+
+static cairo_surface_t *pixels_of(const artwork *a, figure_report *report)
+{
+    fault f = {0};
+    cairo_surface_t *surface = cairo_image_surface_create(
+        CAIRO_FORMAT_RGB24, (int)ceil(a->width * SCALE), (int)ceil(a->height * SCALE));
+    cairo_surface_set_device_scale(surface, SCALE, SCALE);
+    cairo_t *cr = cairo_create(surface);
+    assert_int_equal(a->paint(cr, a->what, report, &f), STATUS_OK);
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    return surface;
+}
+
+// The picture without its texts; they go into masks.
+static cairo_surface_t *without_texts(const artwork *a)
+{
+    of_alone = cairo_image_surface_create(CAIRO_FORMAT_A8, (int)ceil(a->width * SCALE),
+                                          (int)ceil(a->height * SCALE));
+    cairo_surface_set_device_scale(of_alone, SCALE, SCALE);
+    alone = cairo_create(of_alone);
+    masks = g_array_new(FALSE, FALSE, sizeof(letter_mask));
+    cairo_surface_t *surface = pixels_of(a, NULL);
+    cairo_destroy(alone);
+    cairo_surface_destroy(of_alone);
+    return surface;
+}
+
+static void free_masks(void)
+{
+    for (guint i = 0; i < masks->len; i++) {
+        letter_mask *m = &g_array_index(masks, letter_mask, i);
+        g_free(m->text);
+        g_free(m->cover);
+    }
+    g_array_free(masks, TRUE);
+    masks = NULL;
+}
+
+static const unsigned char *pixel(cairo_surface_t *surface, int x, int y)
+{
+    return cairo_image_surface_get_data(surface) +
+           (ptrdiff_t)y * cairo_image_surface_get_stride(surface) + 4 * (ptrdiff_t)x;
+}
+
+// ---- colours as people see them
+
+static double linear(double part)
+{
+    return part <= 0.04045 ? part / 12.92 : pow((part + 0.055) / 1.055, 2.4);
+}
+
+// Relative luminance of an sRGB colour (IEC 61966-2-1).
+static double luminance(colour c)
+{
+    return 0.2126 * linear(c.red) + 0.7152 * linear(c.green) + 0.0722 * linear(c.blue);
+}
+
+// Contrast of two colours, 1 to 21 (WCAG 2).
+static double contrast(colour a, colour b)
+{
+    double x = luminance(a), y = luminance(b);
+    return (fmax(x, y) + 0.05) / (fmin(x, y) + 0.05);
+}
+
+// Kinds of sight: severity 1 of Machado, Oliveira and Fernandes (2009), in linear sRGB.
+static const double sights[][3][3] = {
+    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+    {{0.367322, 0.860646, -0.227968},
+     {0.280085, 0.672501, 0.047413},
+     {-0.011820, 0.042940, 0.968881}},
+    {{0.152286, 1.052583, -0.204868},
+     {0.114503, 0.786281, 0.099216},
+     {-0.003882, -0.048116, 1.051998}},
+};
+static const char *const sight_names[] = {"full sight", "deuteranopia", "protanopia"};
+
+// CIE L*, a*, b* under D65 of a colour as it is seen.
+static void lab_of(colour c, int sight, double out[3])
+{
+    static const double to_xyz[3][3] = {{0.4124564, 0.3575761, 0.1804375},
+                                        {0.2126729, 0.7151522, 0.0721750},
+                                        {0.0193339, 0.1191920, 0.9503041}};
+    static const double white[3] = {0.95047, 1, 1.08883};
+    const double in[3] = {linear(c.red), linear(c.green), linear(c.blue)};
+    double seen[3], f[3];
+    for (int i = 0; i < 3; i++) {
+        seen[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            seen[i] += sights[sight][i][k] * in[k];
+        }
+        seen[i] = fmin(fmax(seen[i], 0), 1);
+    }
+    for (int i = 0; i < 3; i++) {
+        double t = 0;
+        for (int k = 0; k < 3; k++) {
+            t += to_xyz[i][k] * seen[k];
+        }
+        t /= white[i];
+        f[i] = t > 216.0 / 24389 ? cbrt(t) : (24389.0 / 27 * t + 16) / 116;
+    }
+    out[0] = 116 * f[1] - 16;
+    out[1] = 500 * (f[0] - f[1]);
+    out[2] = 200 * (f[1] - f[2]);
+}
+
+// Distance in CIE L*a*b* of 1976: 2.3 is just noticed side by side.
+static double distance_seen(colour a, colour b, int sight)
+{
+    double p[3], q[3];
+    lab_of(a, sight, p);
+    lab_of(b, sight, q);
+    return sqrt(pow(p[0] - q[0], 2) + pow(p[1] - q[1], 2) + pow(p[2] - q[2], 2));
+}
+
+// ---- texts
+
+// The colour that most of a text's surroundings have.
+static colour ground_of(cairo_surface_t *surface, const letter_mask *m)
+{
+    enum { BINS = 4096 };
+    static int count[BINS];
+    static unsigned char example[BINS][3];
+    int best = 0;
+    memset(count, 0, sizeof count);
+    for (int j = 0; j < m->height; j++) {
+        for (int i = 0; i < m->width; i++) {
+            const unsigned char *p = pixel(surface, m->x + i, m->y + j);
+            int bin = (p[2] >> 4) << 8 | (p[1] >> 4) << 4 | p[0] >> 4;
+            memcpy(example[bin], p, 3);
+            count[bin]++;
+            best = count[bin] > count[best] ? bin : best;
+        }
+    }
+    return (colour){example[best][2] / 255.0, example[best][1] / 255.0, example[best][0] / 255.0};
+}
+
+// Share of a text's letters that lie on something that stands out from its ground.
+static double crossed(cairo_surface_t *surface, const letter_mask *m, colour ground)
+{
+    const double most = 60 / 255.0; // grid lines and shades differ less from the page
+    int letters = 0, on_ink = 0;
+    for (int j = 0; j < m->height; j++) {
+        for (int i = 0; i < m->width; i++) {
+            const unsigned char *p = pixel(surface, m->x + i, m->y + j);
+            if (m->cover[(ptrdiff_t)j * m->width + i] < 100) {
+                continue;
+            }
+            letters++;
+            on_ink += fabs(p[2] / 255.0 - ground.red) > most ||
+                      fabs(p[1] / 255.0 - ground.green) > most ||
+                      fabs(p[0] / 255.0 - ground.blue) > most;
+        }
+    }
+    return letters > 0 ? (double)on_ink / letters : 0;
+}
+
+static int complaints;
+
+__attribute__((format(printf, 1, 2))) static void complain_of(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    char *said = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    print_error("%s\n", said);
+    g_free(said);
+    complaints++;
+}
+
+// No curve, line or mark crosses a letter, and every letter stands out from its ground.
+static void check_texts(const artwork *a, const char *id, double width)
+{
+    cairo_surface_t *surface = without_texts(a);
+    for (guint i = 0; i < masks->len; i++) {
+        const letter_mask *m = &g_array_index(masks, letter_mask, i);
+        colour ground = ground_of(surface, m);
+        double share = crossed(surface, m, ground);
+        if (share > 0.01) {
+            complain_of("%s at %g mm: %.0f %% of '%.30s' is crossed by what is drawn", id, width,
+                        100 * share, m->text);
+        }
+        if (contrast(m->ink, ground) < 4.5) {
+            complain_of("%s at %g mm: '%.30s' has a contrast of %.1f", id, width, m->text,
+                        contrast(m->ink, ground));
+        }
+    }
+    free_masks();
+    cairo_surface_destroy(surface);
+}
+
+static bool is_within(const figure_rect *r, const figure_rect *outer, double slack)
+{
+    return r->x >= outer->x - slack && r->y >= outer->y - slack &&
+           r->x + r->width <= outer->x + outer->width + slack &&
+           r->y + r->height <= outer->y + outer->height + slack;
+}
+
+static bool overlap(const figure_rect *a, const figure_rect *b)
+{
+    // line boxes are taller than letters
+    double down = fmin(a->y + a->height, b->y + b->height) - fmax(a->y, b->y);
+    double across = fmin(a->x + a->width, b->x + b->width) - fmax(a->x, b->x);
+    return across > 0.5 && down > 0.3 * fmin(a->height, b->height);
+}
+
+// Nothing leaves the page, no text covers another, none is smaller than can be read.
+static void check_page(const artwork *a, const figure_report *r, const char *id, double width)
+{
+    fault f = {0};
+    figure_rect ink, page = {0, 0, a->width, a->height};
+    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
+    cairo_t *cr = cairo_create(surface);
+    assert_int_equal(a->paint(cr, a->what, NULL, &f), STATUS_OK);
+    cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
+    cairo_destroy(cr);
+    cairo_surface_destroy(surface);
+    check_close(a->width, width / 25.4 * 72, 1e-6);
+    if (!is_within(&ink, &page, 1)) {
+        complain_of("%s at %g mm: its ink leaves the page", id, width);
+    }
+
+    for (int i = 0; i < r->text_count; i++) {
+        const figure_text *t = &r->texts[i];
+        if (!is_within(&t->place, &page, 0.5)) {
+            complain_of("%s at %g mm: '%s' leaves the page", id, width, t->text);
+        }
+        if (t->size < LETTERS_LEAST - 1e-9 || t->size > 12) {
+            complain_of("%s at %g mm: '%s' has letters of %.2f pt", id, width, t->text, t->size);
+        }
+        for (int k = 0; k < i; k++) {
+            // side by side, two words need room between them, too
+            figure_rect wider = t->place;
+            wider.x -= 1.5;
+            wider.width += 3;
+            if (overlap(&wider, &r->texts[k].place)) {
+                complain_of("%s at %g mm: '%s' covers '%s'", id, width, t->text, r->texts[k].text);
+            }
+        }
+    }
+}
+
+// ---- curves
+
+// A figure with other colours of its curves, all else as it is.
+typedef struct recoloured {
+    figure figure;
+    figure_panel panels[FIGURE_PANELS];
+    figure_series series[FIGURE_PANELS][PANEL_SERIES];
+} recoloured;
+
+static void recolour(recoloured *out, const figure *fig, int shift)
+{
+    out->figure = *fig;
+    out->figure.panels = out->panels;
+    for (int p = 0; p < fig->panel_count; p++) {
+        out->panels[p] = fig->panels[p];
+        out->panels[p].series = out->series[p];
+        for (int i = 0; i < fig->panels[p].series_count; i++) {
+            out->series[p][i] = fig->panels[p].series[i];
+            out->series[p][i].colour = (out->series[p][i].colour + shift) % 8;
+        }
+    }
+}
+
+static cairo_surface_t *pixels_of_plot(const figure *fig, figure_report *report)
+{
+    fault f = {0};
+    double width, height;
+    figure_size(fig, &width, &height);
+    cairo_surface_t *surface = cairo_image_surface_create(
+        CAIRO_FORMAT_RGB24, (int)ceil(width * SCALE), (int)ceil(height * SCALE));
+    cairo_surface_set_device_scale(surface, SCALE, SCALE);
+    cairo_t *cr = cairo_create(surface);
+    assert_int_equal(figure_paint(cr, fig, report, &f), STATUS_OK);
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    return surface;
+}
+
+// Whether ink of curves may be at a point of the page [pt].
+static bool may_have_ink(const figure *fig, const figure_report *r, double x, double y)
+{
+    for (int i = 0; i < r->panel_count; i++) {
+        // the width of a line above and below, of a marker all round
+        double room = 1;
+        for (int k = 0; k < fig->panels[i].series_count; k++) {
+            const figure_series *s = &fig->panels[i].series[k];
+            room = fmax(room, s->marker == MARKER_NONE ? 0 : 1.3 * fmax(s->radius, 1.6) + 0.5);
+        }
+        figure_rect point = {x, y, 0, 0};
+        bool ends = fig->panels[i].legend == LEGEND_ENDS &&
+                    x > r->panels[i].x + r->panels[i].width && y > r->panels[i].y - 8 &&
+                    y < r->panels[i].y + r->panels[i].height + 8;
+        if (ends || is_within(&point, &r->panels[i], room) ||
+            is_within(&point, &r->legends[i], 1)) {
+            return true;
+        }
+    }
+    return fig->common_legend && y < r->panels[0].y;
+}
+
+// Curves end at their panel's frame: a pixel that changes with their colours is within one.
+static void check_frames(const figure *fig, const char *id, double width)
+{
+    static figure_report r;
+    static recoloured other;
+    recolour(&other, fig, 1);
+    cairo_surface_t *one = pixels_of_plot(fig, &r), *two = pixels_of_plot(&other.figure, NULL);
+    int outside = 0, inside = 0;
+    for (int j = 0; j < cairo_image_surface_get_height(one); j++) {
+        for (int i = 0; i < cairo_image_surface_get_width(one); i++) {
+            if (memcmp(pixel(one, i, j), pixel(two, i, j), 3) != 0) {
+                bool allowed = may_have_ink(fig, &r, (i + 0.5) / SCALE, (j + 0.5) / SCALE);
+                inside += allowed;
+                outside += !allowed;
+            }
+        }
+    }
+    if (outside > 0 || inside < 50) {
+        complain_of("%s at %g mm: %d pixels of curves inside, %d outside their frames", id, width,
+                    inside, outside);
+    }
+    cairo_surface_destroy(one);
+    cairo_surface_destroy(two);
+}
+
+// The mark of the peak stands at a point of the force's curve that none near it exceeds, that of
+// the contact where the force begins.
+static void check_marks(const figure *fig, const char *id)
+{
+    for (int m = 0; m < fig->mark_count; m++) {
+        const figure_mark *mark = &fig->marks[m];
+        bool peak = mark->label != NULL && g_str_has_prefix(mark->label, "peak");
+        for (int p = 0; p < fig->panel_count && peak; p++) {
+            const figure_series *s = &fig->panels[p].series[0];
+            if (s->name == NULL || strcmp(s->name, "force") != 0) {
+                continue;
+            }
+            double at = (double)NAN, highest = -HUGE_VAL;
+            for (size_t i = 0; i < s->count; i++) {
+                double x = series_x(s, i), y = series_y(s, i);
+                at = x == mark->x ? y : at;
+                highest = fabs(x - mark->x) < 0.01 ? fmax(highest, y) : highest;
+            }
+            if (!(at >= highest)) {
+                complain_of("%s: the mark '%s' is at %g of a curve that reaches %g", id,
+                            mark->label, at, highest);
+            }
+        }
+    }
+}
+
+// ---- lines told apart
+
+static bool same_dashes(const swatch *a, const swatch *b)
+{
+    bool same = a->dash_count == b->dash_count;
+    for (int i = 0; i < a->dash_count && same; i++) {
+        same = fabs(a->dashes[i] / a->dashes[0] - b->dashes[i] / b->dashes[0]) < 0.2;
+    }
+    return same;
+}
+
+// Whether two entries of a legend differ in what needs no colour.
+static bool differ_in_form(const swatch *a, const swatch *b)
+{
+    double wider = fmax(a->width, b->width), narrower = fmin(a->width, b->width);
+    return a->marker != b->marker || (narrower == 0) != (wider == 0) || !same_dashes(a, b) ||
+           (narrower > 0 && wider / narrower > 1.6);
+}
+
+// Colours of one legend are far from each other for everybody; without colours, greys or forms are.
+static void check_legends(const figure *fig, figure_theme theme, const char *id, double width)
+{
+    const double least_colours = 15, least_greys = 25;
+    figure copy = *fig;
+    copy.theme = theme;
+    swatch_count = 0;
+    cairo_surface_destroy(pixels_of_plot(&copy, NULL));
+    for (int i = 0; i < swatch_count; i++) {
+        for (int k = 0; k < i; k++) {
+            const swatch *a = &swatches[i], *b = &swatches[k];
+            if (a->panel != b->panel) {
+                continue;
+            }
+            bool form = differ_in_form(a, b);
+            for (int sight = 0; sight < (int)G_N_ELEMENTS(sights); sight++) {
+                double seen = distance_seen(a->ink, b->ink, sight);
+                bool told = theme == THEME_MONO ? form || seen > least_greys
+                                                : seen > least_colours || (form && seen < 1e-9);
+                if (!told) {
+                    complain_of("%s at %g mm, theme %d: '%s' and '%s' are %.1f apart in %s%s", id,
+                                width, (int)theme, a->panel->series[a->index].label,
+                                b->panel->series[b->index].label, seen, sight_names[sight],
+                                form ? "" : ", alike in form");
+                }
+            }
+        }
+    }
+}
+
+// ---- tests
+
+static void every_figure_can_be_read(void **state)
+{
+    (void)state;
+    static figure_report r;
+    complaints = 0;
+    for (int i = 0; i < thesis_figure_count; i++) {
+        for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
+            const char *id = thesis_figures[i].id;
+            artwork drawn = open_figure(i, (figure_options){.look.width = widths[k]});
+            cairo_surface_destroy(pixels_of(&drawn, &r));
+            check_page(&drawn, &r, id, widths[k]);
+            check_texts(&drawn, id, widths[k]);
+            if (drawn.plotted != NULL) {
+                check_frames(drawn.plotted, id, widths[k]);
+                check_marks(drawn.plotted, id);
+                for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
+                    check_legends(drawn.plotted, theme, id, widths[k]);
+                }
+            }
+            artwork_finish(&drawn);
+        }
+    }
+    assert_int_equal(complaints, 0);
+}
+
+// Every slot of the palette is told from every other by everybody, and stands out from the page.
+static void colours_are_far_from_each_other(void **state)
+{
+    (void)state;
+    static const figure_theme coloured[] = {THEME_COLOUR, THEME_DARK};
+    complaints = 0;
+    for (int t = 0; t < 2; t++) {
+        for (int i = 0; i < 8; i++) {
+            colour a = palette_series(coloured[t], i, 0);
+            if (contrast(a, palette_of(coloured[t])->page) < 2) {
+                complain_of("theme %d: slot %d has a contrast of %.2f", t, i,
+                            contrast(a, palette_of(coloured[t])->page));
+            }
+            for (int k = 0; k < i; k++) {
+                for (int sight = 0; sight < (int)G_N_ELEMENTS(sights); sight++) {
+                    double seen = distance_seen(a, palette_series(coloured[t], k, 0), sight);
+                    if (seen < 10) {
+                        complain_of("theme %d: slots %d and %d are %.1f apart in %s", t, k, i, seen,
+                                    sight_names[sight]);
+                    }
+                }
+            }
+        }
+    }
+    assert_int_equal(complaints, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(colours_are_far_from_each_other),
+        cmocka_unit_test(every_figure_can_be_read),
+    };
+    int failed = cmocka_run_group_tests_name("figure_legibility", tests, NULL, NULL);
+    text_release();
+    return failed != 0;
+}
