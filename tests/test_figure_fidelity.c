@@ -176,6 +176,67 @@ static void the_algorithm_has_the_thesis_numbers(void **state)
     g_free(csv);
 }
 
+// The number in the fourth column of the line that begins with the others.
+static double point_in(const char *csv, const char *start)
+{
+    const char *line = strstr(csv, start);
+    if (line == NULL) {
+        fail_msg("no line begins with '%s'", start);
+    }
+    return atof(line + strlen(start));
+}
+
+// What the thesis prints stands where it prints it, what is computed beside it, and the residual is
+// their difference.
+static void printed_values_have_residuals(void **state)
+{
+    (void)state;
+    char *csv = csv_of("forces");
+    double printed = point_in(csv, "force k2 x 100[N],max_force_energy printed,1,");
+    double computed = point_in(csv, "force k2 x 100[N],max_force_energy,1,");
+    check_close(printed, 23.93, 0);
+    check_close(computed, 23.93, 0.5);
+    check_relative(point_in(csv, "residual k2 x 100[%],max_force_energy printed,1,"),
+                   100 * (computed / printed - 1), 1e-9);
+    check_close(point_in(csv, "force k2 x 1[N],max_force_simulation printed,10,"), 7.43, 0);
+    g_free(csv);
+    csv = csv_of("delays");
+    check_close(point_in(csv, "delay k2 x 1[ms],delay_dynamics printed,10,"), 109, 1e-9);
+    g_free(csv);
+}
+
+// Section 3.1.3: with one run of the algorithm no pair gives a usable force, with two the thesis's
+// does.
+static void the_printed_arm_needs_its_second_run(void **state)
+{
+    (void)state;
+    static const char *const starts[] = {"\"two runs, h = 1\u2009ms\",map,",
+                                         "\"one run, 1\u2009ms\",map,",
+                                         "\"one run, 0.2\u2009ms\",map,"};
+    char *csv = csv_of("beta-gamma-printed");
+    double least[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, thesis = HUGE_VAL;
+    int cells = 0;
+    for (int panel = 0; panel < 3; panel++) {
+        for (const char *line = strstr(csv, starts[panel]); line != NULL;
+             line = strstr(line + 1, starts[panel])) {
+            char *end;
+            double beta = strtod(line + strlen(starts[panel]), &end);
+            double gamma = strtod(end + 1, &end);
+            double force = end[1] == '\n' ? HUGE_VAL : strtod(end + 1, NULL);
+            least[panel] = fmin(least[panel], force);
+            cells++;
+            if (panel == 0 && fabs(beta - 0.4) < 0.02 && fabs(gamma - 0.5) < 0.03) {
+                thesis = force;
+            }
+        }
+    }
+    assert_int_equal(cells, 900);
+    check_close(thesis, 1, 0.1);
+    check_below(5, least[1]);
+    check_below(2 * least[1], least[2]);
+    g_free(csv);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -186,6 +247,8 @@ int main(void)
         cmocka_unit_test(the_cut_body_is_in_balance),
         cmocka_unit_test(the_last_link_goes_through_the_contact_point),
         cmocka_unit_test(the_algorithm_has_the_thesis_numbers),
+        cmocka_unit_test(printed_values_have_residuals),
+        cmocka_unit_test(the_printed_arm_needs_its_second_run),
     };
     int failed = cmocka_run_group_tests_name("figure_fidelity", tests, NULL, NULL);
     text_release();

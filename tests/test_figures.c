@@ -292,7 +292,7 @@ static double map_error(const char *csv, const char *step, double beta, double g
 {
     double nearest = HUGE_VAL, error = (double)NAN;
     char start[64];
-    snprintf(start, sizeof start, "newmark,%s,", step);
+    snprintf(start, sizeof start, "h = %s\u2009ms,map,", step);
     for (const char *line = strstr(csv, start); line != NULL; line = strstr(line + 1, start)) {
         double b = number_in_csv(line, start, 2), g = number_in_csv(line, start, 3);
         double distance = hypot(b - beta, g - gamma);
@@ -310,13 +310,13 @@ static void the_map_tells_good_pairs_from_bad(void **state)
     (void)state;
     char *csv = csv_of("beta-gamma");
     // the thesis's pair at its step, and the same at a fifth of the step
-    double at_1_ms = map_error(csv, "0.001", 0.4, 0.5);
+    double at_1_ms = map_error(csv, "1", 0.4, 0.5);
     check_below(at_1_ms, 0.1);
-    check_below(map_error(csv, "0.0002", 0.4, 0.5), at_1_ms);
+    check_below(map_error(csv, "0.2", 0.4, 0.5), at_1_ms);
     // first order beside gamma = 1/2
-    check_below(2 * at_1_ms, map_error(csv, "0.001", 0.4, 0.9));
+    check_below(2 * at_1_ms, map_error(csv, "1", 0.4, 0.9));
     // below a quarter contact is unstable whatever gamma: stopped, or nothing like the force
-    double low = map_error(csv, "0.0002", 0.1, 0.5), high = map_error(csv, "0.0002", 0.1, 0.9);
+    double low = map_error(csv, "0.2", 0.1, 0.5), high = map_error(csv, "0.2", 0.1, 0.9);
     assert_true(isnan(low) || low > 10);
     assert_true(isnan(high) || high > 10);
     free(csv);

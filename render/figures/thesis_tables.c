@@ -1,4 +1,5 @@
 // The thesis's tables as pages.
+#include "render/figures/computed_tables.h"
 #include "render/figures/figures.h"
 
 #include <glib.h>
@@ -234,19 +235,6 @@ static const struct {
     {"delay_simulation", "Delay of the peak by simulation (ms)"},
 };
 
-static const table_row *find_row(const thesis_tables *t, const char *table, const char *model,
-                                 const char *quantity)
-{
-    for (int i = 0; i < t->row_count; i++) {
-        const table_row *row = &t->rows[i];
-        if (strcmp(row->table, table) == 0 && strcmp(row->model, model) == 0 &&
-            strcmp(row->quantity, quantity) == 0) {
-            return row;
-        }
-    }
-    return NULL;
-}
-
 static char *cell_text(const char *format, double value)
 {
     if (!isfinite(value)) {
@@ -284,20 +272,6 @@ static void add_model(table_page *t, const table_row *row, double scale, const c
     g_free(name);
 }
 
-G_LOCK_DEFINE_STATIC(tables);
-
-// Computing the tables takes a while, and four pages want them, perhaps on several threads.
-static const thesis_tables *computed_tables(fault *f)
-{
-    static thesis_tables tables;
-    static bool done;
-    G_LOCK(tables);
-    done = done || tables_compute(&tables, f) == STATUS_OK;
-    const thesis_tables *computed = done ? &tables : NULL;
-    G_UNLOCK(tables);
-    return computed;
-}
-
 static status open_predictions(const char *table, const char *title, const figure_options *o,
                                artwork *out, fault *f)
 {
@@ -317,8 +291,8 @@ static status open_predictions(const char *table, const char *title, const figur
 
     // a group for each quantity
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
-        const table_row *printed = find_row(all, table, "printed", quantities[q].quantity);
-        const table_row *corrected = find_row(all, table, "corrected", quantities[q].quantity);
+        const table_row *printed = computed_row(all, table, "printed", quantities[q].quantity);
+        const table_row *corrected = computed_row(all, table, "corrected", quantities[q].quantity);
         bool delay = strncmp(quantities[q].quantity, "delay", 5) == 0;
         double scale = delay ? 1e3 : 1;
         const char *format = delay ? "%.1f" : "%.2f";
@@ -334,7 +308,7 @@ static status open_predictions(const char *table, const char *title, const figur
         "the thesis prints. The printed model has the constants inferred from these tables "
         "(docs/physics.md, section 1); the corrected one has the mechanics derived anew and is not "
         "meant to agree. –: the arm swings away as it touches, there is no pulse.",
-        4.92 * find_row(all, table, "printed", "max_force_energy")->k2_factor);
+        4.92 * computed_row(all, table, "printed", "max_force_energy")->k2_factor);
 
     t->parameters = g_strdup_printf("table=%s", table);
     *out = artwork_of_table(t);

@@ -27,10 +27,11 @@ status figure_write(const figure *fig, const char *path, fault *f)
     return picture_write(&p, path, f);
 }
 
-// A table in long form; `shaded`: with a last column for the colour scale.
+// A table in long form.
 typedef struct long_form {
     csv_writer csv;
-    bool shaded;
+    bool shaded; // with a last column for the colour scale
+    bool alike;  // all panels show one quantity: their headings tell them apart
 } long_form;
 
 // A name, or the label without markup where there is none, with its unit.
@@ -43,7 +44,11 @@ static void write_name(long_form *t, const char *name, const char *label, const 
 
 static void write_panel_name(long_form *t, const figure_panel *panel)
 {
-    write_name(t, panel->y.name, panel->y.label, panel->y.unit);
+    if (t->alike && panel->heading != NULL) {
+        write_name(t, NULL, panel->heading, NULL);
+    } else {
+        write_name(t, panel->y.name, panel->y.label, panel->y.unit);
+    }
 }
 
 // The end of a row.
@@ -167,7 +172,8 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
     csv_heading(&t.csv, "panel", NULL);
     csv_heading(&t.csv, "series", NULL);
     write_axis_heading(&t, &fig->x, "x");
-    if (panels_are_alike(fig)) {
+    t.alike = panels_are_alike(fig);
+    if (t.alike) {
         write_axis_heading(&t, &fig->panels[0].y, "y");
     } else {
         csv_heading(&t.csv, "value", NULL);

@@ -230,7 +230,8 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
     }
 
     d->legend_y = y;
-    y += common_legend_height(d);
+    double legend = common_legend_height(d);
+    y += legend > 0 ? legend + 2 : 0;
     d->marks_bottom = y += MARK_ROW * mark_rows + 2;
 
     // from the bottom: caption, title of the axis, labels of its ticks

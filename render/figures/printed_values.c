@@ -1,0 +1,204 @@
+// What the thesis prints in Tables 4.1 to 4.3 as points, the printed model as lines, and below them
+// how far each point is from its line.
+#include "render/figures/figures.h"
+
+#include <glib.h>
+#include <string.h>
+
+#include "render/figures/computed_tables.h"
+#include "render/page/text.h"
+#include "render/plot/drawing.h"
+#include "src/base/version.h"
+
+enum { TABLES = 3, QUANTITIES = 3, PANELS = 2 * TABLES, SERIES = 2 * QUANTITIES };
+
+#define VALUES_WEIGHT    1.5 // of a panel of values
+#define RESIDUALS_WEIGHT 0.8
+#define POINT_RADIUS     1.9 // [pt]
+
+// A quantity that all three tables have.
+typedef struct printed_quantity {
+    const char *key, *printed; // names of what is computed and of what the thesis has, for the CSV
+    const char *label;
+    marker_kind marker;
+    int colour;
+} printed_quantity;
+
+// What a figure shows of them.
+typedef struct printed_kind {
+    printed_quantity quantities[QUANTITIES];
+    int count;
+    const char *name, *axis, *unit; // of the values
+    double scale;                   // from N or s to that unit
+} printed_kind;
+
+static const printed_kind forces = {
+    .quantities = {{"max_force_energy", "max_force_energy printed", "energy principle",
+                    MARKER_CIRCLE, 0},
+                   {"max_force_dynamics", "max_force_dynamics printed", "impact dynamics",
+                    MARKER_SQUARE, 5},
+                   {"max_force_simulation", "max_force_simulation printed", "simulation",
+                    MARKER_TRIANGLE, 2}},
+    .count = 3,
+    .name = "force",
+    .axis = "Peak force",
+    .unit = "N",
+    .scale = 1};
+static const printed_kind delays = {.quantities = {{"delay_dynamics", "delay_dynamics printed",
+                                                    "impact dynamics", MARKER_SQUARE, 5},
+                                                   {"delay_simulation", "delay_simulation printed",
+                                                    "simulation", MARKER_TRIANGLE, 2}},
+                                    .count = 2,
+                                    .name = "delay",
+                                    .axis = "Delay",
+                                    .unit = "ms",
+                                    .scale = 1e3};
+
+// The figure with all that it borrows.
+typedef struct printed_values {
+    figure figure;
+    figure_panel panels[PANELS];
+    figure_series series[PANELS][SERIES];
+    figure_level zero;
+    double voltage[TABLE_VOLTAGES];
+    double values[TABLES][SERIES][TABLE_VOLTAGES];        // thesis, computed of each quantity
+    double residuals[TABLES][QUANTITIES][TABLE_VOLTAGES]; // [% of the thesis's]
+    char *title, *caption, *headings[TABLES], *software;
+    char *names[PANELS]; // of the vertical axes, for the CSV
+} printed_values;
+
+static void release_values(void *owner)
+{
+    printed_values *v = owner;
+    for (int i = 0; i < TABLES; i++) {
+        g_free(v->headings[i]);
+    }
+    for (int i = 0; i < PANELS; i++) {
+        g_free(v->names[i]);
+    }
+    g_free(v->title);
+    g_free(v->caption);
+    g_free(v->software);
+    g_free(v);
+}
+
+// The points and lines of a table, and the panel of their distances.
+static void add_table(printed_values *v, const printed_kind *kind, int t,
+                      const table_row *const *rows, figure_panel *shown, figure_panel *distances)
+{
+    int panel = (int)(shown - v->panels), below = (int)(distances - v->panels);
+    for (int q = 0; q < kind->count; q++) {
+        const printed_quantity *of = &kind->quantities[q];
+        double *printed = v->values[t][2 * q], *computed = v->values[t][2 * q + 1];
+        for (int i = 0; i < TABLE_VOLTAGES; i++) {
+            printed[i] = kind->scale * rows[q]->printed[i];
+            computed[i] = kind->scale * rows[q]->computed[i];
+            v->residuals[t][q][i] = 100 * (computed[i] / printed[i] - 1);
+        }
+
+        // lines first, so that points lie on them
+        v->series[panel][q] = (figure_series){.name = of->key,
+                                              .x = v->voltage,
+                                              .y = computed,
+                                              .count = TABLE_VOLTAGES,
+                                              .colour = of->colour,
+                                              .style = LINE_SOLID,
+                                              .secondary = true};
+        v->series[panel][kind->count + q] = (figure_series){.name = of->printed,
+                                                            .label = of->label,
+                                                            .x = v->voltage,
+                                                            .y = printed,
+                                                            .count = TABLE_VOLTAGES,
+                                                            .colour = of->colour,
+                                                            .no_line = true,
+                                                            .marker = of->marker,
+                                                            .radius = POINT_RADIUS};
+        v->series[below][q] = v->series[panel][kind->count + q];
+        v->series[below][q].y = v->residuals[t][q];
+    }
+
+    v->names[panel] = text_printf("%s k2 x %g", kind->name, rows[0]->k2_factor);
+    v->names[below] = text_printf("residual k2 x %g", rows[0]->k2_factor);
+
+    // 1, 2, 5, 10 V are nearly even on a logarithmic axis
+    *shown = (figure_panel){
+        .heading = v->headings[t],
+        .weight = VALUES_WEIGHT,
+        .legend = LEGEND_NONE,
+        .y = {.name = v->names[panel], .label = kind->axis, .unit = kind->unit, .with_zero = true},
+        .series = v->series[panel],
+        .series_count = 2 * kind->count};
+    *distances = (figure_panel){.weight = RESIDUALS_WEIGHT,
+                                .legend = LEGEND_NONE,
+                                .levels = &v->zero,
+                                .level_count = 1,
+                                .y = {.name = v->names[below],
+                                      .label = "Residual",
+                                      .unit = "%",
+                                      .with_zero = true,
+                                      .room = 0.12},
+                                .series = v->series[below],
+                                .series_count = kind->count};
+}
+
+static status open_values(const printed_kind *kind, const char *title, const figure_options *o,
+                          artwork *out, fault *f)
+{
+    static const char *const tables[TABLES] = {"4.1", "4.2", "4.3"};
+    static const figure_tick voltages[] = {{1, "1"}, {2, "2"}, {5, "5"}, {10, "10"}};
+    const thesis_tables *all = computed_tables(f);
+    if (all == NULL) {
+        return f != NULL ? f->code : STATUS_NO_MEMORY;
+    }
+
+    printed_values *v = g_new0(printed_values, 1);
+    v->title = g_strdup(title);
+    v->software = g_strconcat("impactlab ", lab_version(), NULL);
+    v->caption = text_printf(
+        "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
+        "inferred from these tables (docs/physics.md, section 1). Residual: what the model gives "
+        "beyond what is printed, in per cent of that. %s.",
+        v->software);
+    v->figure = (figure){.title = v->title,
+                         .caption = v->caption,
+                         .software = v->software,
+                         .panels = v->panels,
+                         .panel_count = PANELS,
+                         .columns = TABLES,
+                         .common_legend = true,
+                         .x = {.name = "voltage",
+                               .label = "Voltage",
+                               .unit = "V",
+                               .scale = SCALE_LOGARITHMIC,
+                               .room = 0.06,
+                               .ticks = voltages,
+                               .tick_count = (int)G_N_ELEMENTS(voltages)}};
+    figure_take_look(&v->figure, &o->look);
+    memcpy(v->voltage, all->voltage, sizeof v->voltage);
+
+    // side by side the residuals stand in a row of their own, one below the other beside theirs
+    bool rows_of_tables = figure_columns(&v->figure) == TABLES;
+    for (int t = 0; t < TABLES; t++) {
+        const table_row *rows[QUANTITIES];
+        for (int q = 0; q < kind->count; q++) {
+            rows[q] = computed_row(all, tables[t], "printed", kind->quantities[q].key);
+        }
+        v->headings[t] =
+            text_printf("Table %s: <i>k</i><sub>2</sub> × %g", tables[t], rows[0]->k2_factor);
+        figure_panel *shown = &v->panels[rows_of_tables ? t : 2 * t];
+        add_table(v, kind, t, rows, shown, rows_of_tables ? shown + TABLES : shown + 1);
+    }
+
+    *out = artwork_of_figure(&v->figure, v, release_values);
+    return STATUS_OK;
+}
+
+status printed_forces(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    return open_values(&forces, title, o, out, f);
+}
+
+status printed_delays(const char *title, const figure_options *o, artwork *out, fault *f)
+{
+    return open_values(&delays, title, o, out, f);
+}
