@@ -299,7 +299,7 @@ static double begin(const arm *a, motion *m, double remaining, double step)
     (void)step;
     if (!s->ready) {
         prepare(a, m, remaining);
-        taylor_series_1(s->block, s->form);
+        taylor_compute_one(s->block, s->form);
     }
     s->ready = false;
     prepare_watched(a, m, s);

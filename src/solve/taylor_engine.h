@@ -21,6 +21,9 @@ bool taylor_prepare(const arm *a, motion *m, double remaining, taylor_request *r
 // Computes up to taylor_width() requests of one form; the motions take the series from there.
 void taylor_compute(const taylor_request *requests, int count);
 
+// Computes the series of one arm, in the widest vectors that help it; the same bits in all of them.
+void taylor_compute_one(double *block, taylor_form form);
+
 // How many arms the widest vectors of this processor hold, 1 to TAYLOR_WIDEST.
 int taylor_width(void);
 

@@ -34,6 +34,10 @@
 #define GLUE(a, b)  GLUE_(a, b)
 #define KERNEL      static inline __attribute__((always_inline))
 
+#ifndef SERIES
+#define SERIES GLUE(taylor_series_, LANES)
+#endif
+
 #if LANES == 1
 typedef double real;
 typedef int64_t mask;
@@ -42,6 +46,37 @@ typedef int64_t mask;
 typedef double real __attribute__((vector_size(8 * LANES)));
 typedef int64_t mask __attribute__((vector_size(8 * LANES)));
 #define MASK(condition) ((mask)(condition))
+#endif
+
+// Sums of products go four, or two, side by side. Those of a single arm fill a vector so; with
+// several arms each is a vector of its own. In the factors on the left two numbers stand for four:
+// `halves` are low, low, high, high, and `turns` are odd, even, odd, even.
+#if LANES == 1
+typedef double two __attribute__((vector_size(16)));
+typedef double four __attribute__((vector_size(32)));
+typedef two both;
+typedef four halves, turns;
+#define TWO(a, b)         ((two){a, b})
+#define FOUR(a, b, c, d)  ((four){a, b, c, d})
+#define BOTH(x)           ((both){x, x})
+#define HALVES(low, high) ((halves){low, low, high, high})
+#define TURNS(odd, even)  ((turns){odd, even, odd, even})
+#define PART(x, i)        ((x)[i])
+#else
+typedef struct two {
+    real part[2];
+} two;
+typedef struct four {
+    real part[4];
+} four;
+typedef real both;
+typedef two halves, turns;
+#define TWO(a, b)         ((two){{a, b}})
+#define FOUR(a, b, c, d)  ((four){{a, b, c, d}})
+#define BOTH(x)           (x)
+#define HALVES(low, high) ((halves){{low, high}})
+#define TURNS(odd, even)  ((turns){{odd, even}})
+#define PART(x, i)        ((x).part[i])
 #endif
 
 // The last terms of the velocities stay below this share of 1 rad/s or the largest velocity; the
@@ -143,22 +178,78 @@ KERNEL void sine_cosine(real x, real *sine, real *cosine)
     }
 }
 
-// --- series -----------------------------------------------------------------------------------
+// --- sums of products -------------------------------------------------------------------------
+//
+// All run from the last term of the left factor to its first: what the coefficient before has
+// given comes last, so that all else is summed up while that is still being computed.
 
-// (x y)_n, and without its first product: of x whose zeroth coefficient stands elsewhere.
-KERNEL real product(const real *x, const real *y, int n)
+#if LANES == 1
+#define ADD_HALVES(sum, x, y) ((sum) += (x) * (y))
+#define ADD_TURNS(sum, x, y)  ((sum) += (x) * (y))
+#define ADD_BOTH(sum, x, y)   ((sum) += (x) * (y))
+#define ADD_TWO(sum, x, y)    ((sum) += (x) * (y))
+#else
+#define ADD_HALVES(sum, x, y)                                                                      \
+    ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[0] * (y).part[1],       \
+     (sum).part[2] += (x).part[1] * (y).part[2], (sum).part[3] += (x).part[1] * (y).part[3])
+#define ADD_TURNS(sum, x, y)                                                                       \
+    ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[1] * (y).part[1],       \
+     (sum).part[2] += (x).part[0] * (y).part[2], (sum).part[3] += (x).part[1] * (y).part[3])
+#define ADD_BOTH(sum, x, y) ((sum).part[0] += (x) * (y).part[0], (sum).part[1] += (x) * (y).part[1])
+#define ADD_TWO(sum, x, y)                                                                         \
+    ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[1] * (y).part[1])
+#endif
+
+// (x y)_n without the first product, whose coefficient of y is not known yet.
+KERNEL void halves_beyond(const halves *x, const four *y, int n, four *result)
 {
-    real sum = x[0] * y[n];
-    for (int j = 1; j <= n; j++) {
-        sum += x[j] * y[n - j];
+    four sum = FOUR((real){0}, (real){0}, (real){0}, (real){0});
+    for (int j = n; j >= 1; j--) {
+        ADD_HALVES(sum, x[j], y[n - j]);
+    }
+    *result = sum;
+}
+
+KERNEL void turns_beyond(const turns *x, const four *y, int n, four *result)
+{
+    four sum = FOUR((real){0}, (real){0}, (real){0}, (real){0});
+    for (int j = n; j >= 1; j--) {
+        ADD_TURNS(sum, x[j], y[n - j]);
+    }
+    *result = sum;
+}
+
+// (x y)_n, all of it.
+KERNEL void halves_product(const halves *x, const four *y, int n, four *result)
+{
+    four sum;
+    halves_beyond(x, y, n, &sum);
+    ADD_HALVES(sum, x[0], y[n]);
+    *result = sum;
+}
+
+KERNEL two both_product(const both *x, const two *y, int n)
+{
+    two sum = TWO((real){0}, (real){0});
+    for (int j = n; j >= 0; j--) {
+        ADD_BOTH(sum, x[j], y[n - j]);
     }
     return sum;
 }
 
-KERNEL real product_beyond(const real *x, const real *y, int n)
+KERNEL two two_product(const two *x, const two *y, int n)
+{
+    two sum = TWO((real){0}, (real){0});
+    for (int j = n; j >= 0; j--) {
+        ADD_TWO(sum, x[j], y[n - j]);
+    }
+    return sum;
+}
+
+KERNEL real product(const real *x, const real *y, int n)
 {
     real sum = (real){0};
-    for (int j = 1; j <= n; j++) {
+    for (int j = n; j >= 0; j--) {
         sum += x[j] * y[n - j];
     }
     return sum;
@@ -168,23 +259,28 @@ KERNEL real product_beyond(const real *x, const real *y, int n)
 KERNEL real square(const real *x, int n)
 {
     real sum = (real){0};
-    for (int j = 0; j < (n + 1) / 2; j++) {
+    for (int j = (n + 1) / 2 - 1; j >= 0; j--) {
         sum += x[j] * x[n - j];
     }
     sum += sum;
     return n % 2 == 0 ? sum + x[n / 2] * x[n / 2] : sum;
 }
 
-// The n-th coefficients of sine and cosine of an angle with the velocity v.
-KERNEL void turn(real *s, real *c, const real *v, int n)
+// --- series -----------------------------------------------------------------------------------
+
+// The n-th coefficients of cosine and sine of two angles, and of one.
+KERNEL void turn(const halves *rates, four *directions, int n)
 {
-    real sine = v[0] * c[n - 1], cosine = v[0] * s[n - 1];
-    for (int j = 1; j < n; j++) {
-        sine += v[j] * c[n - 1 - j];
-        cosine += v[j] * s[n - 1 - j];
-    }
-    s[n] = sine * inverse[n];
-    c[n] = -(cosine * inverse[n]);
+    four sum;
+    halves_product(rates, directions, n - 1, &sum);
+    directions[n] = FOUR(-(PART(sum, 1) * inverse[n]), PART(sum, 0) * inverse[n],
+                         -(PART(sum, 3) * inverse[n]), PART(sum, 2) * inverse[n]);
+}
+
+KERNEL void turn_one(const both *rate, two *direction, int n)
+{
+    const two sum = both_product(rate, direction, n - 1);
+    direction[n] = TWO(-(PART(sum, 1) * inverse[n]), PART(sum, 0) * inverse[n]);
 }
 
 // The longest stride, up to `wanted`, whose last terms in velocity are small; terms: magnitudes of
@@ -226,12 +322,20 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     real *w0 = block + AT_RATE_0, *w1 = block + AT_RATE_1, *w2 = block + AT_RATE_2;
     real *f = block + AT_FORCE, *hold = block + AT_HOLD, *gap = block + AT_GAP;
     real *hub_square = block + AT_HUB_SQUARE, *dissipation = block + AT_DISSIPATION;
-    real v[TAYLOR_MOST + 2], s[TAYLOR_MOST + 2], c[TAYLOR_MOST + 2]; // of the bend
-    real S1[TAYLOR_MOST + 2], C1[TAYLOR_MOST + 2];                   // plane: first link
-    real S2[TAYLOR_MOST + 2], C2[TAYLOR_MOST + 2];                   // second link
-    real j1[TAYLOR_MOST + 1], j2[TAYLOR_MOST + 1];                   // J
-    real a1[TAYLOR_MOST + 1], a2[TAYLOR_MOST + 1], hub_rate[TAYLOR_MOST + 1];
-    real square1[TAYLOR_MOST + 1], square2[TAYLOR_MOST + 1], mixed[TAYLOR_MOST + 1];
+    real v[TAYLOR_MOST + 2];                                  // of the bend
+    halves rates[TAYLOR_MOST + 2];                            // v, w2
+    four directions[TAYLOR_MOST + 2];                         // c, s of the bend; C2, S2
+    both rate1[TAYLOR_MOST + 2];                              // plane: w1
+    two direction1[TAYLOR_MOST + 2];                          // plane: C1, S1
+    halves bend[TAYLOR_MOST + 1];                             // s, c
+    four pulls[TAYLOR_MOST + 1];                              // w2^2, w1^2; a2, a1
+    turns levers[TAYLOR_MOST + 1];                            // J
+    four answers[TAYLOR_MOST + 1];                            // f, f; a1, a2
+    turns left[TAYLOR_MOST + 1];                              // w1, w2
+    four right[TAYLOR_MOST + 1];                              // w1, w2; w2, w1
+    real sines[TAYLOR_MOST + 1], mixed[TAYLOR_MOST + 1];      // point: s, w1^2 - 2 w1 w2
+    two sines12[TAYLOR_MOST + 1], squares12[TAYLOR_MOST + 1]; // plane: S1, S2; w1^2, w2^2
+    real hub_rate[TAYLOR_MOST + 1];
 
     // the state at the start, and the angles' sines and cosines there
     q1[0] = block[AT_START_ANGLE + 1];
@@ -242,18 +346,18 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
         q0[0] = block[AT_START_ANGLE];
         w0[0] = block[AT_START_VELOCITY];
     }
-    real sine, cosine;
-    sine_cosine(q2[0] - q1[0], &s[0], &c[0]);
+    real sine, cosine, s0, c0;
+    sine_cosine(q2[0] - q1[0], &s0, &c0);
     sine_cosine(q2[0], &sine, &cosine);
-    S2[0] = reach_x * sine - reach_y * cosine;
-    C2[0] = reach_x * cosine + reach_y * sine;
+    const real S20 = reach_x * sine - reach_y * cosine;
+    const real C20 = reach_x * cosine + reach_y * sine;
+    directions[0] = FOUR(c0, s0, C20, S20);
     if (!point) {
-        S1[0] = S2[0] * c[0] - C2[0] * s[0];
-        C1[0] = C2[0] * c[0] + S2[0] * s[0];
+        direction1[0] = TWO(C20 * c0 + S20 * s0, S20 * c0 - C20 * s0);
     }
 
     // the matrix of the start, inverted; a stuck rigid hub takes the first row away
-    const real coupling = m12 * c[0];
+    const real coupling = m12 * c0;
     const real inverse_det = 1 / (m11 * m22 - coupling * coupling);
     real i11 = m22 * inverse_det, i12 = -(coupling * inverse_det), i22 = m11 * inverse_det;
     if (!hub_spring) {
@@ -262,37 +366,58 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
         i22 = choose(stuck, 1 / m22, i22);
     }
     real y1 = zero, y2 = zero, per_force = zero; // M^-1 J, 1/(J M^-1 J)
+    const real j1 = point ? l * c0 : PART(direction1[0], 0);
+    const real j2 = point ? C20 - l * c0 : C20;
     if (contact) {
-        j1[0] = point ? l * c[0] : C1[0];
-        j2[0] = point ? C2[0] - l * c[0] : C2[0];
-        y1 = i11 * j1[0] + i12 * j2[0];
-        y2 = i12 * j1[0] + i22 * j2[0];
-        per_force = 1 / (j1[0] * y1 + j2[0] * y2);
+        y1 = i11 * j1 + i12 * j2;
+        y2 = i12 * j1 + i22 * j2;
+        per_force = 1 / (j1 * y1 + j2 * y2);
     }
     const real inverse_hub = hub_spring ? choose(stuck, zero, 1 / block[AT_HUB_INERTIA]) : zero;
 
     for (int n = 0; n < order; n++) {
         // directions
         v[n] = w2[n] - w1[n];
+        rates[n] = HALVES(v[n], w2[n]);
+        left[n] = TURNS(w1[n], w2[n]);
+        right[n] = FOUR(w1[n], w2[n], w2[n], w1[n]);
+        if (!point) {
+            rate1[n] = BOTH(w1[n]);
+        }
         if (n > 0) {
-            turn(s, c, v, n);
-            turn(S2, C2, w2, n);
+            turn(rates, directions, n);
             if (!point) {
-                turn(S1, C1, w1, n);
+                turn_one(rate1, direction1, n);
             }
-            if (contact) {
-                j1[n] = point ? l * c[n] : C1[n];
-                j2[n] = point ? C2[n] - l * c[n] : C2[n];
-            }
+        }
+        const real c = PART(directions[n], 0), s = PART(directions[n], 1);
+        const real C2 = PART(directions[n], 2), S2 = PART(directions[n], 3);
+        bend[n] = HALVES(s, c);
+        if (contact) {
+            levers[n] = point ? TURNS(l * c, C2 - l * c) : TURNS(PART(direction1[n], 0), C2);
+        }
+
+        // squares of the velocities, and in contact with a point their product
+        four squares = FOUR(zero, zero, zero, zero);
+        for (int j = (n + 1) / 2 - 1; j >= 0; j--) {
+            ADD_TURNS(squares, left[j], right[n - j]);
+        }
+        real square1 = PART(squares, 0) + PART(squares, 0);
+        real square2 = PART(squares, 1) + PART(squares, 1);
+        real both_rates = PART(squares, 2) + PART(squares, 3);
+        if (n % 2 == 0) {
+            square1 += w1[n / 2] * w1[n / 2];
+            square2 += w2[n / 2] * w2[n / 2];
+            both_rates += w1[n / 2] * w2[n / 2];
         }
 
         // right sides, without what a1_n, a2_n and f_n give
-        square1[n] = square(w1, n);
-        square2[n] = square(w2, n);
+        four pulled;
+        halves_beyond(bend, pulls, n, &pulled);
         const real spring = k * (q2[n] - q1[n]) + kd * v[n];
         const real drive = n == 0 ? block[AT_DRIVE] : zero;
-        real b1 = spring + m12 * product(s, square2, n) - m12 * product_beyond(c, a2, n);
-        real b2 = -spring - m12 * product(s, square1, n) - m12 * product_beyond(c, a1, n);
+        real b1 = spring - m12 * PART(pulled, 2) + m12 * (PART(pulled, 0) + s0 * square2);
+        real b2 = -spring - m12 * PART(pulled, 3) - m12 * (PART(pulled, 1) + s0 * square1);
         if (hub_spring) {
             hub_rate[n] = w1[n] - w0[n];
             const real pull = kh * (q1[n] - q0[n]) + khd * hub_rate[n];
@@ -304,33 +429,41 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
             hub_square[n] = square(w0, n);
         } else {
             b1 += drive - viscous * w1[n];
-            hub_square[n] = square1[n];
+            hub_square[n] = square1;
         }
 
         // accelerations, and in contact the force that keeps the gap's second derivative zero
+        real a1, a2;
         if (contact) {
             real convection;
+            four answered;
+            turns_beyond(levers, answers, n, &answered);
             if (point) {
-                const real twice = product(w1, w2, n);
-                mixed[n] = square1[n] - (twice + twice);
-                convection = l * product(s, mixed, n);
+                sines[n] = s;
+                mixed[n] = square1 - (both_rates + both_rates);
+                convection = l * product(sines, mixed, n);
             } else {
-                convection = -(product(S1, square1, n) + product(S2, square2, n));
+                sines12[n] = TWO(PART(direction1[n], 1), S2);
+                squares12[n] = TWO(square1, square2);
+                const two turning = two_product(sines12, squares12, n);
+                convection = -(PART(turning, 0) + PART(turning, 1));
             }
-            b1 -= product_beyond(j1, f, n);
-            b2 -= product_beyond(j2, f, n);
-            const real beyond = product_beyond(j1, a1, n) + product_beyond(j2, a2, n);
-            f[n] = (y1 * b1 + y2 * b2 + convection + beyond) * per_force;
-            a1[n] = i11 * b1 + i12 * b2 - y1 * f[n];
-            a2[n] = i12 * b1 + i22 * b2 - y2 * f[n];
+            b1 -= PART(answered, 0);
+            b2 -= PART(answered, 1);
+            const real beyond = PART(answered, 2) + PART(answered, 3);
+            f[n] = (y1 * b1 + y2 * b2 + (convection + beyond)) * per_force;
+            a1 = i11 * b1 + i12 * b2 - y1 * f[n];
+            a2 = i12 * b1 + i22 * b2 - y2 * f[n];
+            answers[n] = FOUR(f[n], f[n], a1, a2);
         } else {
-            a1[n] = i11 * b1 + i12 * b2;
-            a2[n] = i12 * b1 + i22 * b2;
+            a1 = i11 * b1 + i12 * b2;
+            a2 = i12 * b1 + i22 * b2;
         }
+        pulls[n] = FOUR(square2, square1, a2, a1);
         if (!hub_spring) {
-            hold[n] = coupling * a2[n] - b1;
+            hold[n] = coupling * a2 - b1;
             if (contact) {
-                hold[n] += j1[0] * f[n];
+                hold[n] += j1 * f[n];
             }
         }
         if (damped) {
@@ -340,8 +473,8 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
             }
         }
 
-        w1[n + 1] = a1[n] * inverse[n + 1];
-        w2[n + 1] = a2[n] * inverse[n + 1];
+        w1[n + 1] = a1 * inverse[n + 1];
+        w2[n + 1] = a2 * inverse[n + 1];
         q1[n + 1] = w1[n] * inverse[n + 1];
         q2[n + 1] = w2[n] * inverse[n + 1];
     }
@@ -357,16 +490,17 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
 
     // the gap, as far as the angles are known
     if (!contact) {
-        v[order] = w2[order] - w1[order];
+        rates[order] = HALVES(w2[order] - w1[order], w2[order]);
+        rate1[order] = BOTH(w1[order]);
         for (int n = order; n <= order + 1; n++) {
-            turn(s, c, v, n);
-            turn(S2, C2, w2, n);
+            turn(rates, directions, n);
             if (!point) {
-                turn(S1, C1, w1, n);
+                turn_one(rate1, direction1, n);
             }
         }
         for (int n = 0; n <= order + 1; n++) {
-            gap[n] = point ? l * s[n] - S2[n] : -(S1[n] + S2[n]);
+            const real S2 = PART(directions[n], 3);
+            gap[n] = point ? l * PART(directions[n], 1) - S2 : -(PART(direction1[n], 1) + S2);
         }
     }
 
@@ -391,7 +525,7 @@ FORM(spring_held_plane, 1, 0, 1)
 FORM(spring_held_point, 1, 1, 1)
 #undef FORM
 
-void GLUE(taylor_series_, LANES)(double *block, taylor_form form)
+void SERIES(double *block, taylor_form form)
 {
     static void (*const forms[2][2][2])(real *, taylor_form) = {
         {{free_plane, free_point}, {held_plane, held_point}},

@@ -33,6 +33,17 @@ int taylor_limit_width(int width)
     return taylor_width();
 }
 
+void taylor_compute_one(double *block, taylor_form form)
+{
+#if defined __x86_64__
+    if (taylor_width() >= 4) {
+        taylor_series_1_avx2(block, form);
+        return;
+    }
+#endif
+    taylor_series_1(block, form);
+}
+
 static void compute_block(double *block, int width, taylor_form form)
 {
     switch (width) {
@@ -63,7 +74,7 @@ void taylor_compute(const taylor_request *requests, int count)
     assert(count >= 1 && count <= taylor_width());
 
     if (width == 1) {
-        taylor_series_1(requests[0].block, form);
+        taylor_compute_one(requests[0].block, form);
         return;
     }
 

@@ -58,8 +58,10 @@ typedef struct taylor_form {
 } taylor_form;
 
 // Computes the series of as many arms as the name says; block: TAYLOR_PLACES times so many, aligned
-// to their vectors. The widest two are for processors with AVX2 and AVX-512.
+// to their vectors. The widest two are for processors with AVX2 and AVX-512; that with a name of
+// its own for one arm has AVX2's vectors, too.
 void taylor_series_1(double *block, taylor_form form);
+void taylor_series_1_avx2(double *block, taylor_form form);
 void taylor_series_2(double *block, taylor_form form);
 void taylor_series_4(double *block, taylor_form form);
 void taylor_series_8(double *block, taylor_form form);
