@@ -228,9 +228,10 @@ static bool run_one(uint64_t i, bool wide, bool always_said, tally *t)
 }
 
 // Wide runs that were found wrong.
-static const uint64_t once_wrong[] = {46,    57,    63,    321,   446,   523,   862,   1524,  1726,
-                                      2011,  2404,  2949,  10962, 12852, 17099, 17671, 33177, 48363,
-                                      52431, 56521, 57075, 76751, 94705, 97571, 114341};
+static const uint64_t once_wrong[] = {46,    57,    63,    321,    446,    523,    862,
+                                      1524,  1726,  2011,  2404,   2949,   10962,  12852,
+                                      17099, 17671, 33177, 48363,  52431,  56521,  57075,
+                                      76751, 94705, 97571, 114341, 179733, 225449, 270765};
 
 int main(int argc, char **argv)
 {

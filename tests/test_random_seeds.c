@@ -59,6 +59,16 @@ static const char *const *const came_back =
              "arm.k2=28.063939184279072", "initial.angle=-2.3500528114513877",
              "initial.velocity=-1.0167315338419591");
 
+// A point behind the hub that the arm sweeps over: a touch whose acceleration is nearly rounding.
+static const char *const *const swept_over = SETTINGS(
+    "wall.kind=point", "arm.hub_joint=spring", "motor.voltage=-2.4528515077463986",
+    "motor.torque_constant=12.425609375789591", "motor.resistance=8.200308490053235",
+    "motor.viscous_friction=0.015180949269274758", "motor.stiction=0.027108299999621114",
+    "wall.angle=-1.2786786909264061", "wall.restitution=0", "arm.length=0.35435342553686888",
+    "arm.mass=0.084212806907397866", "arm.hub_inertia=0.00031672022306158433",
+    "arm.k1=66279.214005312242", "arm.k2=38.251713922716498", "initial.angle=-1.6337701878814963",
+    "initial.velocity=3.1122561770814841");
+
 static void run_with(const char *const *settings, bool keep_trace, run_result *result)
 {
     char name[] = "random", none[] = "";
@@ -70,7 +80,8 @@ static void run_with(const char *const *settings, bool keep_trace, run_result *r
 static void test_runs_that_failed_come_to_their_end(void **state)
 {
     (void)state;
-    const char *const *const runs[] = {bounced, broke_away, let_go, let_go_fast, came_back};
+    const char *const *const runs[] = {bounced,     broke_away, let_go,
+                                       let_go_fast, came_back,  swept_over};
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         run_result r;
         run_with(runs[i], false, &r);

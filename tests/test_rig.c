@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "src/rig/rig.h"
+#include "src/run/loop.h"
 #include "tests/rig_fixture.h"
 
 static void command_holds_between_samples(void **state)
@@ -154,6 +155,33 @@ static void instants_apart_by_rounding_are_one(void **state)
     check_below(0, s.impacts);
 }
 
+// A hub that friction holds and a command that never stays: forty seconds of torque that jumps
+// under a hub at rest, each jump a question of what sticks and what is touched.
+static void a_command_that_alternates_passes_time(void **state)
+{
+    (void)state;
+    const char *const *const arms[] = {
+        SETTINGS("run.duration=40"), SETTINGS("run.duration=4", "motor.stiction=0.3"),
+        SETTINGS("run.duration=4", "wall.kind=plane", "control.delay_periods=0.5"),
+        SETTINGS("run.duration=4", "arm.hub_joint=spring")};
+    const loop_options options = {.commanded = true};
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+        const scenario s = {.parameters = fixture_parameters(arms[i])};
+        run_loop *l;
+        fault f = {.text = ""};
+        assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+        for (long k = 0; !loop_ended(l); k++) {
+            loop_command(l, k % 2 ? 1.1 : 1);
+            if (loop_step(l, &f) != STATUS_OK) {
+                fail_msg("arm %zu: %s", i, f.text);
+            }
+        }
+        assert_true(loop_summary(l).peak_force_N > 0.5);
+        check_below(loop_summary(l).energy_residual_J, 1e-12);
+        loop_destroy(l);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -166,6 +194,7 @@ int main(void)
         cmocka_unit_test(same_seed_same_bytes),
         cmocka_unit_test(many_links_want_their_own_stiffness),
         cmocka_unit_test(instants_apart_by_rounding_are_one),
+        cmocka_unit_test(a_command_that_alternates_passes_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

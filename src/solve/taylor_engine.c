@@ -146,6 +146,11 @@ static void leave_edge(polynomial *p, const double limits[3])
         return;
     }
 
+    // nor is an acceleration taken for rounding that speaks against what comes after it
+    if (edge == 3 && p->terms[3] < 0 && p->terms[2] > 0) {
+        edge = 2;
+    }
+
     if (edge > 0) {
         memmove(p->terms, p->terms + edge, (size_t)(p->count - edge) * sizeof(double));
         memset(p->terms + p->count - edge, 0, (size_t)edge * sizeof(double));
