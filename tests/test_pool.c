@@ -73,22 +73,6 @@ static void every_piece_is_computed_and_collected_once(void **state)
     }
 }
 
-static void pieces_that_are_done_are_left_out(void **state)
-{
-    (void)state;
-    unsigned char done[PIECES] = {0};
-    tally t = {.fail_at = 0};
-    pool_work w = work_on(&t);
-    for (int i = 0; i < PIECES; i += 3) {
-        done[i] = 1;
-    }
-    w.done = done;
-    assert_int_equal(pool_run(&w, 3, NULL), STATUS_OK);
-    for (int i = 0; i < PIECES; i++) {
-        assert_int_equal(t.collected[i], i % 3 != 0);
-    }
-}
-
 static void a_failure_ends_the_work_and_is_returned(void **state)
 {
     (void)state;
@@ -125,7 +109,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_piece_is_computed_and_collected_once),
-        cmocka_unit_test(pieces_that_are_done_are_left_out),
         cmocka_unit_test(a_failure_ends_the_work_and_is_returned),
         cmocka_unit_test(a_stop_ends_it_early_without_a_fault),
         cmocka_unit_test(no_pieces_are_no_work),

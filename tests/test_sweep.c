@@ -10,6 +10,7 @@
 #include "render/plot/sweep_plot.h"
 #include "render/page/text.h"
 #include "src/run/run.h"
+#include "src/solve/taylor_engine.h"
 #include "src/study/sweep_rows.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
@@ -308,6 +309,38 @@ static void the_number_of_jobs_does_not_change_a_byte(void **state)
     free(one);
     free(two);
     free(many);
+    sweep_finish(&s);
+}
+
+// Runs of two links go side by side in the processor's vectors: with one lane, with all of them, on
+// one thread and on several, and where some of the runs are there already.
+static void the_number_of_lanes_does_not_change_a_byte(void **state)
+{
+    (void)state;
+    sweep s;
+    must_sweep(&s, SWEEP_LATIN, 201, "motor.voltage=0.5:5", "wall.restitution=0:1");
+    taylor_limit_width(1);
+    char *alone = uninterrupted(&s, 1);
+    taylor_limit_width(0);
+    for (int jobs = 1; jobs <= 3; jobs++) {
+        char *together = uninterrupted(&s, jobs);
+        assert_string_equal(together, alone);
+        free(together);
+    }
+
+    // every third run first, the rest around them
+    sweep_store *store = must_open(NULL, &s);
+    sweep_progress progress;
+    fault f = {0};
+    const sweep_options third = {.jobs = 2, .share = {.part = 2, .parts = 3}};
+    assert_int_equal(sweep_run(&s, store, &third, &progress, &f), STATUS_OK);
+    assert_int_equal(progress.done_now, 67);
+    must_run(&s, store, 2);
+    char *csv = csv_of(store);
+    assert_string_equal(csv, alone);
+    sweep_store_close(store);
+    free(csv);
+    free(alone);
     sweep_finish(&s);
 }
 
@@ -639,6 +672,7 @@ int main(void)
         cmocka_unit_test(the_seed_decides_what_is_drawn),
         cmocka_unit_test(every_run_is_what_the_scenario_gives_alone),
         cmocka_unit_test(the_number_of_jobs_does_not_change_a_byte),
+        cmocka_unit_test(the_number_of_lanes_does_not_change_a_byte),
         cmocka_unit_test(a_killed_sweep_goes_on_and_loses_and_doubles_nothing),
         cmocka_unit_test(a_stopped_sweep_keeps_what_it_has_and_goes_on),
         cmocka_unit_test(another_sweep_is_refused_with_the_difference),

@@ -40,9 +40,6 @@ typedef struct pool_thread {
 static bool next_piece(pool *p, size_t *piece)
 {
     const pool_work *w = p->work;
-    while (p->next < w->count && w->done != NULL && w->done[p->next]) {
-        p->next++;
-    }
     if (p->stop || p->next >= w->count) {
         return false;
     }

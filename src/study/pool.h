@@ -14,10 +14,9 @@ enum { POOL_MOST_THREADS = 256 };
 
 typedef struct pool_work {
     void *context;
-    size_t count;              // pieces 0 ... count - 1
-    const unsigned char *done; // done[i] != 0: piece i is not wanted; NULL: all are
-    size_t scratch_size;       // storage that each thread keeps for itself, at first zeros [bytes]
-    size_t result_size;        // of a piece's result [bytes]
+    size_t count;        // pieces 0 ... count - 1
+    size_t scratch_size; // storage that each thread keeps for itself, at first zeros [bytes]
+    size_t result_size;  // of a piece's result [bytes]
 
     // Computes piece i; called from several threads at once.
     void (*compute)(void *context, size_t i, void *scratch, void *result);

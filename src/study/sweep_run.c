@@ -12,14 +12,22 @@
 
 #define COMMIT_INTERVAL 0.5 // [s]
 
-// A sweep being computed; all but the first is the calling thread's.
+// A sweep being computed; all but what is to be computed, and how, is the calling thread's.
 typedef struct sweep_execution {
     const sweep *sweep;
     sweep_store *store;
     const sweep_options *options;
     sweep_progress *progress;
+    size_t *wanted;          // the runs that are missing, in order
+    size_t count, together;  // of them; so many make a piece of work
     double start, committed; // instants by the clock [s]
 } sweep_execution;
+
+// What a thread needs for a piece.
+typedef struct piece_scratch {
+    scenario derived[RUN_TOGETHER];
+    run_result results[RUN_TOGETHER];
+} piece_scratch;
 
 // The summary of a run that could not begin.
 static void summarise_refusal(summary *s, const fault *why)
@@ -30,33 +38,53 @@ static void summarise_refusal(summary *s, const fault *why)
     snprintf(s->message, sizeof s->message, "%s", why->text);
 }
 
-static void compute_run(void *context, size_t run, void *scratch, void *result)
+// How many runs a piece of work has: the last one what is left.
+static size_t piece_length(const sweep_execution *e, size_t piece)
 {
-    const sweep_execution *e = context;
-    summary *s = result;
-    scenario derived;
-    fault f = {.path = ""};
-    (void)scratch;
-
-    // the times of this thread, deriving the scenario included
-    const double start = clock_seconds(CLOCK_MONOTONIC),
-                 start_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-    if (sweep_scenario(e->sweep, run, &derived, &f) == STATUS_OK) {
-        run_result computed;
-        run_scenario(&derived, false, &computed);
-        *s = computed.summary;
-        run_finish(&computed);
-    } else {
-        summarise_refusal(s, &f);
-    }
-    s->cpu_time_s = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
-    s->wall_time_s = clock_seconds(CLOCK_MONOTONIC) - start;
+    const size_t left = e->count - piece * e->together;
+    return left < e->together ? left : e->together;
 }
 
-static status store_run(void *context, size_t run, const void *result, fault *f)
+// Computes the runs of a piece side by side.
+static void compute_piece(void *context, size_t piece, void *scratch, void *result)
 {
-    sweep_execution *e = context;
-    const summary *s = result;
+    const sweep_execution *e = context;
+    const size_t length = piece_length(e, piece), *runs = e->wanted + piece * e->together;
+    piece_scratch *own = scratch;
+    summary *summaries = result;
+    size_t place[RUN_TOGETHER]; // of each scenario that goes together
+    int begun = 0;
+
+    // the times of this thread, deriving the scenarios included
+    const double start = clock_seconds(CLOCK_MONOTONIC),
+                 start_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+    for (size_t i = 0; i < length; i++) {
+        fault f = {.path = ""};
+        place[begun] = i;
+        if (sweep_scenario(e->sweep, runs[i], &own->derived[begun], &f) == STATUS_OK) {
+            begun++;
+        } else {
+            summarise_refusal(&summaries[i], &f);
+        }
+    }
+
+    run_together(own->derived, begun, own->results);
+    for (int i = 0; i < begun; i++) {
+        summaries[place[i]] = own->results[i].summary;
+        run_finish(&own->results[i]);
+    }
+
+    // nobody can say whose time it was
+    const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
+    const double wall = clock_seconds(CLOCK_MONOTONIC) - start;
+    for (size_t i = 0; i < length; i++) {
+        summaries[i].cpu_time_s = cpu / (double)length;
+        summaries[i].wall_time_s = wall / (double)length;
+    }
+}
+
+static status store_run(sweep_execution *e, size_t run, const summary *s, fault *f)
+{
     if (s->status == STATUS_NO_MEMORY) {
         // says nothing about the scenario: the run has to be done again
         return fault_set(f, STATUS_NO_MEMORY, "run %zu: %s", run + 1, s->message);
@@ -68,6 +96,17 @@ static status store_run(void *context, size_t run, const void *result, fault *f)
         e->progress->done++;
         e->progress->done_now++;
         e->progress->failed += s->status != STATUS_OK;
+    }
+    return code;
+}
+
+static status store_piece(void *context, size_t piece, const void *result, fault *f)
+{
+    sweep_execution *e = context;
+    const summary *summaries = result;
+    status code = STATUS_OK;
+    for (size_t i = 0; i < piece_length(e, piece) && code == STATUS_OK; i++) {
+        code = store_run(e, e->wanted[piece * e->together + i], &summaries[i], f);
     }
     return code;
 }
@@ -109,22 +148,66 @@ static void keep_to_share(const sweep_execution *e, unsigned char *present)
     }
 }
 
+// Whether every run of the sweep is one of those that gain by company, and as short as most of its
+// kind: two links, by the event method, under no law from outside the program.
+static bool runs_are_light(const sweep *s)
+{
+    static const char *const decisive[] = {"arm.model",    "arm.links",      "method.name",
+                                           "run.duration", "control.law",    "control.plugin",
+                                           "control.rate", "control.command"};
+    const parameters *p = &s->base->parameters;
+    for (int i = 0; i < s->axis_count; i++) {
+        for (size_t k = 0; k < sizeof decisive / sizeof decisive[0]; k++) {
+            if (s->axes[i].parameter == parameter_index(decisive[k])) {
+                return false;
+            }
+        }
+    }
+    return p->arm.model != ARM_PRINTED && p->arm.links == 2 && p->method.name == METHOD_EVENT &&
+           p->control.law != LAW_PLUGIN && p->control.law != LAW_PROCESS;
+}
+
+// How many runs make a piece of work. Heavy ones go one by one: none of them is to wait for another
+// to be stored, or to hold up the end of a sweep that is stopped.
+static size_t choose_together(const sweep_execution *e, int jobs)
+{
+    const double duration = e->sweep->base->parameters.run.duration;
+    if (!runs_are_light(e->sweep)) {
+        return 1;
+    }
+    const size_t share = (e->count + (size_t)jobs - 1) / (size_t)jobs;
+    const size_t most = duration > 1 ? (size_t)fmax(1, RUN_TOGETHER / duration) : RUN_TOGETHER;
+    return share < 1 ? 1 : share < most ? share : most;
+}
+
 // Computes what is not present.
 static status run_missing(sweep_execution *e, const unsigned char *present, fault *f)
 {
+    e->wanted = malloc((e->sweep->run_count + 1) * sizeof *e->wanted);
+    if (e->wanted == NULL) {
+        return fault_no_memory(f);
+    }
+    for (size_t run = 0; run < e->sweep->run_count; run++) {
+        if (!present[run]) {
+            e->wanted[e->count++] = run;
+        }
+    }
+
+    // no more threads than pieces
+    e->together = choose_together(e, e->options->jobs);
+    const size_t pieces = (e->count + e->together - 1) / e->together;
     const pool_work work = {.context = e,
-                            .count = e->sweep->run_count,
-                            .done = present,
-                            .result_size = sizeof(summary),
-                            .compute = compute_run,
-                            .collect = store_run,
+                            .count = pieces,
+                            .scratch_size = sizeof(piece_scratch),
+                            .result_size = e->together * sizeof(summary),
+                            .compute = compute_piece,
+                            .collect = store_piece,
                             .tick = commit_and_report,
                             .stop = e->options->stop};
-
-    // no more threads than runs
-    size_t missing = e->progress->total - e->progress->done;
-    int jobs = missing < (size_t)e->options->jobs ? (int)missing : e->options->jobs;
-    return pool_run(&work, jobs > 0 ? jobs : 1, f);
+    const int jobs = pieces < (size_t)e->options->jobs ? (int)pieces : e->options->jobs;
+    const status code = pool_run(&work, jobs > 0 ? jobs : 1, f);
+    free(e->wanted);
+    return code;
 }
 
 status sweep_run(const sweep *s, sweep_store *store, const sweep_options *options,
@@ -135,7 +218,12 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
     assert(options->share.part >= (options->share.parts > 0) &&
            options->share.part <= options->share.parts);
     double now = clock_seconds(CLOCK_MONOTONIC);
-    sweep_execution e = {s, store, options, progress, .start = now, .committed = now};
+    sweep_execution e = {.sweep = s,
+                         .store = store,
+                         .options = options,
+                         .progress = progress,
+                         .start = now,
+                         .committed = now};
     *progress = (sweep_progress){.total = s->run_count};
 
     // what an earlier call has computed is not computed again
