@@ -20,6 +20,8 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define TORQUE_DRIFT 0.1    // of the unknown torque, in a second [N m]
 #define WALL_DRIFT   1e-3   // of the wall, in a second [rad]
 #define STIFFNESS    0.25   // share by which the stiffness may be wrong
+#define MOVES        0.05   // a slower hub tells nothing of what arm it is [rad/s]
+#define TAILS        4.0    // degrees of freedom of the distribution that misses of readings have
 #define STIFF_MEMORY                                                                               \
     0.5 // over which readings count for the stiffness, and as what the belief does [s]
 #define LEAST_STIFF 0.2  // share of it that the arm has at least
@@ -122,6 +124,7 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     o->touches = false;
     o->since = in->time;
     o->wall_variance = HUGE_VAL;
+    o->missed = 0;
     o->stiffness = 1;
     o->stiff_force = o->stiff_bend = 0;
     o->last_voltage = in->voltage;
@@ -290,6 +293,12 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
     // beyond the limit, the farther off the less it is believed
     double off = fabs(reading - expected) / sqrt(variance);
     double doubt = off > OUTLIER ? off / OUTLIER : 1;
+
+    // the estimate's own variance is left out: a model that claims less of it is no better
+    if (o->moves) {
+        double miss = (reading - expected) / deviation;
+        o->missed += (TAILS + 1) * log(1 + miss * miss / TAILS);
+    }
     estimator_correct(&o->e, n, row, offset, reading, deviation * deviation * doubt * doubt);
     return 1 / doubt;
 }
@@ -327,6 +336,11 @@ static void take_motion(arm_observer *o, const controller_input *in)
     }
 }
 
+double arm_observer_force_noise(double force)
+{
+    return FORCE_NOISE + FORCE_SHARE * fabs(force);
+}
+
 static double take_force(arm_observer *o, const controller_input *in)
 {
     double row[N], linear = 0, drive = o->torque_per_volt * in->voltage;
@@ -335,7 +349,7 @@ static double take_force(arm_observer *o, const controller_input *in)
         linear += row[i] * o->e.z[i];
     }
     double offset = arm_observer_force(o, &o->e, drive) - linear;
-    return take_reading(o, row, offset, in->force, FORCE_NOISE + FORCE_SHARE * fabs(in->force));
+    return take_reading(o, row, offset, in->force, arm_observer_force_noise(in->force));
 }
 
 // How stiff the arm is in contact: the force over the way of the hub since the touch, both less
@@ -377,6 +391,7 @@ void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes
     o->last_voltage = in->voltage;
 
     // what the sensors say
+    o->moves = fabs(in->tachometer) > MOVES;
     take_motion(o, in);
     if (o->touches && takes_force) {
         learn_stiffness(o, in, take_force(o, in));

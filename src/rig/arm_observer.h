@@ -26,6 +26,11 @@ typedef struct arm_observer {
     // stiffness of the first mode in contact over what it is believed to be, the sums that it is
     // the quotient of, and what the belief adds to both [N2 s]
     double stiffness, stiff_force, stiff_bend, stiff_belief;
+    // by how much it has foretold wrongly what was read while the hub moved: -2 log likelihood of
+    // the readings, each with its own noise and Student's tails; less another model's is the
+    // evidence for this one
+    double missed;
+    bool moves; // the hub, at the present sample
 } arm_observer;
 
 // Models the arm that the setup describes, at rest at an angle still to be read, which is to press
@@ -69,6 +74,9 @@ double arm_observer_friction(const arm_observer *o, const estimator *e, double d
 
 // Contact force of an estimate in contact under a motor torque on the hub [N].
 double arm_observer_force(const arm_observer *o, const estimator *e, double drive);
+
+// Standard deviation that a reading of the force sensor is taken to have at a force [N].
+double arm_observer_force_noise(double force);
 
 // Change of that force with the torque, at once [1/m].
 double arm_observer_force_per_torque(const arm_observer *o);

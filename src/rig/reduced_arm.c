@@ -137,3 +137,13 @@ const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup)
     free(block);
     return refusal;
 }
+
+double reduced_arm_compliance(const reduced_arm *r)
+{
+    assert(r != NULL);
+    double sum = 0;
+    for (int i = 0; i < r->contact.count; i++) {
+        sum += r->contact.hub[i] * r->contact.hub[i] / r->contact.square[i];
+    }
+    return sum;
+}

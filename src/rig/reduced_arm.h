@@ -42,3 +42,6 @@ typedef struct reduced_arm {
 // Reduces the arm of a setup to the modes below half the Nyquist frequency of its samples, at least
 // one that bends and at most REDUCED_MODES. NULL, or a sentence that says why that cannot be.
 const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup);
+
+// By how much the hub turns at rest under a torque with the tip at the wall [rad/(N m)].
+double reduced_arm_compliance(const reduced_arm *r);

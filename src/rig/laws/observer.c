@@ -8,10 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/rig/arm_observer.h"
 #include "src/rig/laws/laws.h"
-#include "src/rig/riccati.h"
-#include "src/base/plain_math.h"
+#include "src/rig/laws/observer_arms.h"
 
 enum { TRAVEL, PRESS, HOLD, RECOVER };
 static const char *const mode_names[] = {"travel", "press", "hold", "recover", NULL};
@@ -22,13 +20,8 @@ static const controller_parameter table[PARAMETERS] = {{.name = "force"},
                                                        {.name = "contact_threshold"},
                                                        {.name = "force_limit"}};
 
-#define PI 3.14159265358979323846
-
-// The numbers of the design, derived in docs/control.md.
-#define TRAVEL_TIME     0.05  // in which the arm takes up a wanted speed [s]
-#define TOUCH_SHARE     0.5   // of the speed that the commanded force stops, to touch with
+// The numbers of the law, derived in docs/control.md.
 #define WALL_DOUBT      0.03  // by which the wall may be nearer than believed [rad]
-#define RISE_PERIODS    0.5   // that the force rises for, periods of the vibration in contact
 #define BIAS_TIME       0.1   // over which the error of the estimated force is averaged [s]
 #define MOST_CORRECTION 0.3   // that it may add to the force aimed at, a share
 #define LEAST_FORCE     0.1   // share of the force below which no command lets it fall at once
@@ -44,150 +37,37 @@ static const controller_parameter table[PARAMETERS] = {{.name = "force"},
 typedef struct observer_memory {
     controller_setup rig;
     double p[PARAMETERS];
-    arm_observer observer;
-    double travel_gain[ESTIMATOR_STATES], press_gain[ESTIMATOR_STATES]; // [V per unit of state]
-    double touch_speed, top_speed;                                      // [rad/s]
-    double ramp_time;              // of a change of speed that leaves no vibration [s],
-    double ramp_edge;              // of which its acceleration rises, and falls [s]
-    sampled_model plan_model;      // of the free arm that the plan moves
+    observer_arms arms;
+    // the plan of the approach
     double plan[ESTIMATOR_STATES]; // its state: as the observer's in flight, the torque left out
-    double cruise_speed;           // of the plan between its two changes of speed [rad/s]
+    double start_angle;            // [rad]
+    double cruise_speed;           // between its two changes of speed [rad/s]
+    double speed_before;           // the present change of speed [rad/s]
     double planned_change;         // of speed, the present one [rad/s]
     double changing;               // how long it has been under way [s]
-    bool slows;                    // the plan has begun to slow down for the touch
+    bool slows;                    // it has begun to slow down for the touch
     double rise_from, rise_rate;   // of the first mode in contact where its rise began
-    double rise_start, rise_time;  // when it began, and how long it takes [s]
+    double rise_start;             // when it began [s]
     int mode;
     bool started;
     int readings_without_force;
-    double
-        correction; // of the force aimed at, by what the estimated force is above the reading [N]
+    double correction;   // of the force aimed at: what the estimated force is above the reading [N]
     double held_force;   // mean of the reading while it holds [N]
     double mean_force;   // of the reading, over SWING_MEAN [N]
     double swing;        // its mean square about that [N2]
     double hold_command; // [V]
 } observer_memory;
 
-// --- synthesis --------------------------------------------------------------------------------
+// --- the arms ---------------------------------------------------------------------------------
 
-// Modal coordinates and rates of one state under the command, over a period; the angle of the
-// rotation, which nothing brings back, is left out where `first` is 1.
-static void command_model(const observer_memory *m, const mode_set *set, int first,
-                          sampled_model *model)
+static const observer_design *design_of(const observer_memory *m)
 {
-    const int n = set->count, k = n - first;
-
-    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}}, input[ESTIMATOR_STATES] = {0};
-
-    // a_i'' = -w_i^2 a_i - c_i a_i' + h_i (Kt u - damping hub rate)
-    for (int i = 0; i < n; i++) {
-        if (i >= first) {
-            rate[i - first][k + i] = 1;
-            rate[k + i][i - first] = -set->square[i];
-        }
-        rate[k + i][k + i] = -set->damping[i];
-        for (int j = 0; j < n; j++) {
-            rate[k + i][k + j] -= m->rig.hub_damping * set->hub[i] * set->hub[j];
-        }
-        input[k + i] = set->hub[i] * m->rig.torque_per_volt;
-    }
-    sampled_model_init(model, k + n, rate, input, m->rig.period);
+    return observer_arms_design(&m->arms);
 }
 
-// The free arm without damping, under a torque, for the plan.
-static void command_plan(observer_memory *m)
+static const arm_observer *observer_of(const observer_memory *m)
 {
-    const mode_set *set = &m->observer.arm.free;
-    const int n = set->count;
-    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}}, input[ESTIMATOR_STATES] = {0};
-    for (int i = 0; i < n; i++) {
-        rate[i][n + i] = 1;
-        rate[n + i][i] = -set->square[i];
-        input[n + i] = set->hub[i];
-    }
-    sampled_model_init(&m->plan_model, 2 * n, rate, input, m->rig.period);
-}
-
-// In flight: the energy of the motion relative to the wanted rotation, and the effort with which
-// the rotation alone has the time constant TRAVEL_TIME.
-static bool find_travel_gain(observer_memory *m)
-{
-    const mode_set *set = &m->observer.arm.free;
-    const int n = set->count;
-    sampled_model model;
-    quadratic_cost cost = {.growth = 1};
-    command_model(m, set, 1, &model);
-
-    // twice the energy: of motion, and of bending
-    for (int i = 0; i < n; i++) {
-        double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
-        motion[n - 1 + i] = 1;
-        quadratic_cost_add(&cost, model.n, motion, 0, 1);
-        if (i > 0) {
-            strain[i - 1] = 1;
-            quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
-        }
-    }
-
-    // what the motor may do about it; the angle itself is not fed back
-    double time_constant = set->hub[0] * m->rig.torque_per_volt * TRAVEL_TIME;
-    cost.effort = time_constant * time_constant;
-    double gain[ESTIMATOR_STATES] = {0};
-    if (!quadratic_gain(&model, &cost, gain)) {
-        return false;
-    }
-    memcpy(m->travel_gain + 1, gain, (size_t)model.n * sizeof gain[0]);
-    return true;
-}
-
-// In contact: the energy of the motion relative to the rest, and the effort with which the first
-// mode alone is critically damped: a'' = -w^2 a + h K u with u = -a'/sqrt(effort) has 2 w for h K /
-// sqrt(effort).
-static bool find_press_gain(observer_memory *m)
-{
-    const mode_set *set = &m->observer.arm.contact;
-    const int n = set->count;
-    sampled_model model;
-    quadratic_cost cost = {.growth = 1};
-    command_model(m, set, 0, &model);
-
-    for (int i = 0; i < n; i++) {
-        double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
-        strain[i] = motion[n + i] = 1;
-        quadratic_cost_add(&cost, model.n, motion, 0, 1);
-        quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
-    }
-    double drive = set->hub[0] * m->rig.torque_per_volt;
-    cost.effort = drive * drive / (4 * set->square[0]);
-    return quadratic_gain(&model, &cost, m->press_gain);
-}
-
-// The speeds. After a touch in uniform rotation v the first mode has a' = p v. With the force as
-// input it obeys a'' = s^2 (a - h L f/w^2), s^2 = w^2/(p h - 1): the force w^2 (a + a'/s)/(h L)
-// stops it, after a time of noticing in which it grows as exp(s t). A constant acceleration for one
-// period of the free arm's first vibration leaves none behind.
-static void find_speeds(observer_memory *m, double force)
-{
-    const reduced_arm *arm = &m->observer.arm;
-    const mode_set *set = &arm->contact;
-    double square = set->square[0], h = set->hub[0], p = set->momentum[0];
-
-    // the fastest is what the approach voltage holds against friction
-    double held = m->rig.torque_per_volt * fabs(m->p[APPROACH_VOLTAGE]) - m->rig.stiction;
-    m->top_speed = fmax(0, held) / fmax(m->rig.hub_damping, 1e-9);
-    m->touch_speed = m->top_speed;
-
-    // the touch is slow enough to be stopped
-    if (p * h > 1) {
-        double s = sqrt(square / (p * h - 1));
-        double stopped = force * h * arm->length * s / (square * p) *
-                         plain_exp(-s * (m->rig.period + m->rig.delay));
-        m->touch_speed = fmin(m->touch_speed, TOUCH_SHARE * stopped);
-    }
-
-    m->ramp_edge = arm->free.count > 2 ? 2 * PI / sqrt(arm->free.square[2]) : 0;
-    m->ramp_time = 2 * PI / sqrt(arm->free.square[1]) + m->ramp_edge;
-    m->rise_time = RISE_PERIODS * 2 * PI / sqrt(square);
+    return observer_arms_observer(&m->arms);
 }
 
 static const char *start(void *memory, const controller_setup *setup)
@@ -199,19 +79,12 @@ static const char *start(void *memory, const controller_setup *setup)
         return "it needs a motor that turns the hub";
     }
 
-    // model, gains, and the plan's speeds
-    const char *refusal = arm_observer_init(&m->observer, setup, m->p[FORCE_WANTED]);
-    if (refusal != NULL) {
-        return refusal;
-    }
-
-    if (!find_travel_gain(m) || !find_press_gain(m)) {
-        return "the Riccati equation of its gains has no stabilising solution";
-    }
-    command_plan(m);
-    double limit = m->p[FORCE_LIMIT];
-    find_speeds(m, limit > 0 ? fmin(limit, m->p[FORCE_WANTED]) : m->p[FORCE_WANTED]);
-    return NULL;
+    // what it is to do with whatever arm it is on
+    double force = m->p[FORCE_WANTED], limit = m->p[FORCE_LIMIT];
+    observer_task task = {.force = force,
+                          .stopping_force = limit > 0 ? fmin(limit, force) : force,
+                          .approach_voltage = m->p[APPROACH_VOLTAGE]};
+    return observer_arms_init(&m->arms, setup, &task);
 }
 
 // --- commands ---------------------------------------------------------------------------------
@@ -231,37 +104,46 @@ static double friction_ahead(const observer_memory *m, double rate, double wante
 // Rotation of the plan at a speed, without vibration.
 static void plan_rotation(observer_memory *m, double speed)
 {
-    const mode_set *set = &m->observer.arm.free;
+    const mode_set *set = &observer_of(m)->arm.free;
     memset(m->plan, 0, sizeof m->plan);
     for (int i = 0; i < set->count; i++) {
         m->plan[set->count + i] = set->momentum[i] * speed;
     }
-    m->changing = m->ramp_time;
 }
 
 // Speed of rotation of the plan [rad/s].
 static double planned_speed(const observer_memory *m)
 {
-    const mode_set *set = &m->observer.arm.free;
+    const mode_set *set = &observer_of(m)->arm.free;
     return m->plan[set->count] / set->momentum[0];
+}
+
+// From now on the plan takes up another speed [rad/s].
+static void change_speed(observer_memory *m, double speed)
+{
+    m->speed_before = planned_speed(m);
+    m->planned_change = speed - m->speed_before;
+    m->changing = 0;
 }
 
 // From rest to the cruising speed, which leaves room to slow down before the guarded distance.
 static void begin_plan(observer_memory *m, double angle)
 {
-    double way = m->rig.wall_angle - WALL_DOUBT - angle, ramp = m->ramp_time;
-    double room = (way - m->touch_speed * ramp / 2) / ramp;
-    m->cruise_speed = fmax(m->touch_speed, fmin(m->top_speed, room));
-    m->planned_change = m->cruise_speed;
-    m->changing = 0;
-    m->slows = !(m->cruise_speed > m->touch_speed);
+    const observer_design *d = design_of(m);
+    double way = m->rig.wall_angle - WALL_DOUBT - angle;
+    double room = (way - d->touch_speed * d->ramp_time / 2) / d->ramp_time;
+    m->start_angle = angle;
+    m->cruise_speed = fmax(d->touch_speed, fmin(d->top_speed, room));
+    m->slows = !(m->cruise_speed > d->touch_speed);
+    plan_rotation(m, 0);
+    change_speed(m, m->cruise_speed);
 }
 
 // Share of a change of speed that is made after a time: the integral of a trapezoid, which is one
 // vibration's period as a box convolved with the next one's.
 static double share_changed(const observer_memory *m, double t)
 {
-    const double T = m->ramp_time, edge = m->ramp_edge, top = 1 / (T - edge);
+    const double T = design_of(m)->ramp_time, edge = design_of(m)->ramp_edge, top = 1 / (T - edge);
     t = fmax(0, fmin(t, T));
     if (t < edge) {
         return top * t * t / (2 * edge);
@@ -271,57 +153,78 @@ static double share_changed(const observer_memory *m, double t)
 }
 
 // Moves the plan on by a period; returns the torque that its rotation takes [N m].
-static double follow_plan(observer_memory *m, double tip)
+static double follow_plan(observer_memory *m)
 {
-    double left = m->rig.wall_angle - WALL_DOUBT - tip;
-    double slowing = (m->cruise_speed + m->touch_speed) / 2 * m->ramp_time;
-    if (!m->slows && m->changing >= m->ramp_time && left <= slowing) {
-        m->slows = true;
-        m->planned_change = m->touch_speed - m->cruise_speed;
-        m->changing = 0;
-    }
-
     // the mean over the period
     double share = share_changed(m, m->changing + m->rig.period) - share_changed(m, m->changing);
-    double torque = share * m->planned_change / m->rig.period * m->observer.arm.inertia;
+    double torque = share * m->planned_change / m->rig.period * observer_of(m)->arm.inertia;
     double next[ESTIMATOR_STATES];
-    for (int i = 0; i < m->plan_model.n; i++) {
-        next[i] = m->plan_model.b[i] * torque;
-        for (int j = 0; j < m->plan_model.n; j++) {
-            next[i] += m->plan_model.a[i][j] * m->plan[j];
+    const sampled_model *model = &design_of(m)->plan_model;
+    for (int i = 0; i < model->n; i++) {
+        next[i] = model->b[i] * torque;
+        for (int j = 0; j < model->n; j++) {
+            next[i] += model->a[i][j] * m->plan[j];
         }
     }
-    memcpy(m->plan, next, (size_t)m->plan_model.n * sizeof next[0]);
+    memcpy(m->plan, next, (size_t)model->n * sizeof next[0]);
     m->changing += m->rig.period;
     return torque;
+}
+
+// Slows down for the touch where the tip [rad] comes near the guarded distance.
+static void slow_in_time(observer_memory *m, double tip)
+{
+    const observer_design *d = design_of(m);
+    double left = m->rig.wall_angle - WALL_DOUBT - tip;
+    double slowing = (m->cruise_speed + d->touch_speed) / 2 * d->ramp_time;
+    if (!m->slows && m->changing >= d->ramp_time && left <= slowing) {
+        m->slows = true;
+        change_speed(m, d->touch_speed);
+    }
+}
+
+// The plan as it would be, had the present change of speed been begun for the present arm.
+static void plan_again(observer_memory *m)
+{
+    double under_way = m->changing;
+    if (m->slows) {
+        plan_rotation(m, m->speed_before);
+        change_speed(m, design_of(m)->touch_speed);
+    } else {
+        begin_plan(m, m->start_angle);
+    }
+    while (m->changing < under_way) {
+        follow_plan(m);
+    }
 }
 
 // Keeps the arm to the plan: the torque it takes, and feedback of all deviations but the angle.
 static double travel(observer_memory *m, const estimator *e)
 {
-    const arm_observer *o = &m->observer;
+    const arm_observer *o = observer_of(m);
     const mode_set *set = &o->arm.free;
     const int n = set->count;
+    slow_in_time(m, arm_observer_tip(o, e));
     double speed = planned_speed(m), hub_speed = 0, feedback = 0;
 
     // all deviations but the angle's
     for (int i = 0; i < n; i++) {
         hub_speed += set->hub[i] * m->plan[n + i];
-        feedback += m->travel_gain[i] * (m->plan[i] - e->z[i]) +
-                    m->travel_gain[n + i] * (m->plan[n + i] - e->z[n + i]);
+        feedback += design_of(m)->travel_gain[i] * (m->plan[i] - e->z[i]) +
+                    design_of(m)->travel_gain[n + i] * (m->plan[n + i] - e->z[n + i]);
     }
 
     // and what the plan takes
     double torque = m->rig.hub_damping * hub_speed - e->z[arm_observer_torque_index(o)] +
                     friction_ahead(m, arm_observer_rate(o, e), fmax(speed, hub_speed)) +
-                    follow_plan(m, arm_observer_tip(o, e));
+                    follow_plan(m);
     return limited(m, torque / m->rig.torque_per_volt + feedback);
 }
 
 // Limits a command so that the force it makes at once stays within what is allowed.
 static double within_force(const observer_memory *m, const estimator *e, double command)
 {
-    const arm_observer *o = &m->observer;
+    const arm_observer *o = observer_of(m);
     double per_volt = arm_observer_force_per_torque(o) * m->rig.torque_per_volt;
     double most = m->p[FORCE_LIMIT] > 0 ? m->p[FORCE_LIMIT] : HUGE_VAL;
     double least = LEAST_FORCE * m->p[FORCE_WANTED];
@@ -335,8 +238,8 @@ static double within_force(const observer_memory *m, const estimator *e, double 
 // First mode at rest under a force [sqrt(kg m2)].
 static double mode_at_rest(const observer_memory *m, double force)
 {
-    return m->observer.arm.contact.hub[0] * force * m->observer.arm.length /
-           arm_observer_square(&m->observer, 0);
+    return observer_of(m)->arm.contact.hub[0] * force * observer_of(m)->arm.length /
+           arm_observer_square(observer_of(m), 0);
 }
 
 // The first mode's way goes on from where it is.
@@ -344,14 +247,14 @@ static void begin_rise(observer_memory *m, const estimator *e, double time)
 {
     m->rise_start = time;
     m->rise_from = e->z[0];
-    m->rise_rate = e->z[m->observer.arm.contact.count];
+    m->rise_rate = e->z[observer_of(m)->arm.contact.count];
 }
 
 // The quintic that leads it to rest under the wanted force: coordinate, rate and second derivative
 // at a time since it began.
 static void rise_at(const observer_memory *m, double t, double *rise)
 {
-    const double T = m->rise_time, a = m->rise_from, v = m->rise_rate;
+    const double T = design_of(m)->rise_time, a = m->rise_from, v = m->rise_rate;
     const double way = mode_at_rest(m, m->p[FORCE_WANTED]) - a;
     const double cubic = (20 * way - 12 * v * T) / (2 * T * T * T);
     const double quartic = (-30 * way + 16 * v * T) / (2 * T * T * T * T);
@@ -365,13 +268,13 @@ static void rise_at(const observer_memory *m, double t, double *rise)
 // bends them.
 static double press(const observer_memory *m, const estimator *e, double time)
 {
-    const arm_observer *o = &m->observer;
+    const arm_observer *o = observer_of(m);
     const mode_set *set = &o->arm.contact;
     const int n = set->count;
     const double t = time - m->rise_start, aim = m->p[FORCE_WANTED] + m->correction;
 
     // the first mode's way, and the torque on it
-    bool moves = t < m->rise_time;
+    bool moves = t < design_of(m)->rise_time;
     double rise[3] = {mode_at_rest(m, aim), 0, 0};
     if (moves) {
         rise_at(m, t, rise);
@@ -385,7 +288,7 @@ static double press(const observer_memory *m, const estimator *e, double time)
         double wanted = i == 0 ? a : set->hub[i] * torque / set->square[i];
         double off = wanted - e->z[i], off_rate = (i == 0 ? rate : 0) - e->z[n + i];
         way += set->hub[i] * off;
-        feedback += m->press_gain[i] * off + m->press_gain[n + i] * off_rate;
+        feedback += design_of(m)->press_gain[i] * off + design_of(m)->press_gain[n + i] * off_rate;
     }
 
     torque += m->rig.hub_damping * hub_rate - e->z[arm_observer_torque_index(o)] +
@@ -396,31 +299,43 @@ static double press(const observer_memory *m, const estimator *e, double time)
 // Force with which the beam presses where the hub is [N].
 static double resting_force(const observer_memory *m, const estimator *e)
 {
-    const arm_observer *o = &m->observer;
+    const arm_observer *o = observer_of(m);
     return (arm_observer_holding_torque(o, e) + e->z[arm_observer_torque_index(o)]) / o->arm.length;
 }
 
 // --- modes ------------------------------------------------------------------------------------
 
+// Where the readings speak for another arm, what is under way begins anew for that one.
+static void change_arm(observer_memory *m, double time)
+{
+    if (observer_of(m)->touches) {
+        m->correction = 0;
+        begin_rise(m, &observer_of(m)->e, time);
+    } else {
+        plan_again(m);
+    }
+}
+
 // Contact and its loss by the force reading.
 static void follow_contact(observer_memory *m, const controller_input *in)
 {
-    arm_observer *o = &m->observer;
+    const bool touches = observer_of(m)->touches;
     const bool felt = in->force > m->p[THRESHOLD];
 
     // it begins with the first reading that feels the wall
-    if (!o->touches && felt) {
-        arm_observer_touch(o, in->time);
+    if (!touches && felt) {
+        observer_arms_touch(&m->arms, in->time);
         m->mode = PRESS;
         m->correction = 0;
-        begin_rise(m, &o->e, in->time);
+        begin_rise(m, &observer_of(m)->e, in->time);
     }
 
     // it ends with several readings that do not
     m->readings_without_force = felt ? 0 : m->readings_without_force + 1;
-    if (o->touches && m->readings_without_force >= LOST_AFTER) {
-        arm_observer_leave(o, in->time);
-        plan_rotation(m, m->touch_speed);
+    if (touches && m->readings_without_force >= LOST_AFTER) {
+        observer_arms_leave(&m->arms, in->time);
+        plan_rotation(m, design_of(m)->touch_speed);
+        change_speed(m, design_of(m)->touch_speed);
         m->slows = true;
         m->mode = RECOVER;
     }
@@ -431,9 +346,9 @@ static void follow_contact(observer_memory *m, const controller_input *in)
 // the way to go.
 static void correct_aim(observer_memory *m, const controller_input *in)
 {
-    const arm_observer *o = &m->observer;
+    const arm_observer *o = observer_of(m);
     double most = MOST_CORRECTION * m->p[FORCE_WANTED];
-    if (in->time - m->rise_start >= m->rise_time) {
+    if (in->time - m->rise_start >= design_of(m)->rise_time) {
         double force = arm_observer_force(o, &o->e, m->rig.torque_per_volt * in->voltage);
         double share = fmin(1, m->rig.period / BIAS_TIME);
         m->correction += share * (force - in->force - m->correction);
@@ -441,32 +356,46 @@ static void correct_aim(observer_memory *m, const controller_input *in)
     }
 }
 
-// Holds where the hub rests with the wanted force and the beam has come to rest, until the
-// reading's mean says otherwise or the hub moves.
-static void choose_hold(observer_memory *m, const estimator *e, const controller_input *in)
+// The reading's mean, and how far it swings about it. Just after an impact the sensor is off scale:
+// beyond twice the wanted force a reading says no more than that it is too much.
+static void follow_reading(observer_memory *m, double reading)
 {
-    const arm_observer *o = &m->observer;
-    double force = m->p[FORCE_WANTED], rate = fabs(arm_observer_rate(o, e));
-
-    // the reading's mean, and how far it swings about it
-    double off = in->force - m->mean_force, share = fmin(1, m->rig.period / SWING_MEAN);
+    double off = fmin(reading, 2 * m->p[FORCE_WANTED]) - m->mean_force;
+    double share = fmin(1, m->rig.period / SWING_MEAN);
     m->mean_force += share * off;
     m->swing += share * (off * off - m->swing);
+}
 
-    // held: until the mean of the readings is off
+// Whether what is held is still right: a reading counts as at most five standard deviations off, as
+// the sensor shows a blow on the tip which the hub does not feel.
+static bool holds_right(observer_memory *m, double reading, double rate)
+{
+    double force = m->p[FORCE_WANTED], off = reading - m->held_force;
+    double most = 5 * arm_observer_force_noise(force);
+    m->held_force += fmin(1, m->rig.period / HOLD_MEAN) * fmax(-most, fmin(off, most));
+    return fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST && rate < 2 * REST;
+}
+
+// Whether the hub rests where the force is right, and the beam has come to rest.
+static bool rests_right(const observer_memory *m, const estimator *e, double rate)
+{
+    double force = m->p[FORCE_WANTED];
+    return rate < REST && fabs(m->mean_force - force) < HOLD_BEYOND * force &&
+           fabs(resting_force(m, e) - force) < HOLD_WITHIN * force + HOLD_LEAST &&
+           sqrt(m->swing) < HOLD_SWING * force + HOLD_LEAST;
+}
+
+// Holds where it rests right, until the reading's mean says otherwise or the hub moves.
+static void choose_hold(observer_memory *m, const estimator *e, const controller_input *in)
+{
+    const arm_observer *o = observer_of(m);
+    double rate = fabs(arm_observer_rate(o, e));
+    follow_reading(m, in->force);
     if (m->mode == HOLD) {
-        m->held_force += fmin(1, m->rig.period / HOLD_MEAN) * (in->force - m->held_force);
-        bool right = fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST;
-        m->mode = right && rate < 2 * REST ? HOLD : PRESS;
-        return;
-    }
-
-    // at rest where the force is right: held from now on
-    double rests_at = resting_force(m, e);
-    if (rate < REST && fabs(rests_at - force) < HOLD_WITHIN * force + HOLD_LEAST &&
-        sqrt(m->swing) < HOLD_SWING * force + HOLD_LEAST) {
+        m->mode = holds_right(m, in->force, rate) ? HOLD : PRESS;
+    } else if (rests_right(m, e, rate)) {
         m->mode = HOLD;
-        m->held_force = rests_at;
+        m->held_force = resting_force(m, e);
         m->hold_command = limited(m, arm_observer_holding_torque(o, e) / m->rig.torque_per_volt);
     }
 }
@@ -474,19 +403,22 @@ static void choose_hold(observer_memory *m, const estimator *e, const controller
 static void sample(void *memory, const controller_input *in, controller_output *out)
 {
     observer_memory *m = memory;
-    arm_observer *o = &m->observer;
 
     // what the sensors say
     if (!m->started) {
         m->started = true;
-        arm_observer_start(o, in);
+        observer_arms_start(&m->arms, in);
         begin_plan(m, in->encoder);
     } else {
-        arm_observer_sample(o, in, in->force > m->p[THRESHOLD]);
+        observer_arms_sample(&m->arms, in, in->force > m->p[THRESHOLD]);
+        if (observer_arms_choose(&m->arms)) {
+            change_arm(m, in->time);
+        }
         follow_contact(m, in);
     }
 
     // the command, for the state when it takes effect
+    const arm_observer *o = observer_of(m);
     estimator ahead = arm_observer_ahead(o, in->voltage);
     double force_now = 0;
     if (o->touches) {

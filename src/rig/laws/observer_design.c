@@ -1,0 +1,152 @@
+#include "src/rig/laws/observer_design.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/plain_math.h"
+#include "src/rig/riccati.h"
+
+#define PI 3.14159265358979323846
+
+// The numbers of the design, derived in docs/control.md.
+#define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s]
+#define TOUCH_SHARE  0.5  // of the speed that the stopping force stops, to touch with
+#define RISE_PERIODS 0.5  // that the force rises for, periods of the vibration in contact
+
+// Modal coordinates and rates of one state under the command, over a period; the angle of the
+// rotation, which nothing brings back, is left out where `first` is 1.
+static void command_model(const controller_setup *setup, const mode_set *set, int first,
+                          sampled_model *model)
+{
+    const int n = set->count, k = n - first;
+
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}}, input[ESTIMATOR_STATES] = {0};
+
+    // a_i'' = -w_i^2 a_i - c_i a_i' + h_i (Kt u - damping hub rate)
+    for (int i = 0; i < n; i++) {
+        if (i >= first) {
+            rate[i - first][k + i] = 1;
+            rate[k + i][i - first] = -set->square[i];
+        }
+        rate[k + i][k + i] = -set->damping[i];
+        for (int j = 0; j < n; j++) {
+            rate[k + i][k + j] -= setup->hub_damping * set->hub[i] * set->hub[j];
+        }
+        input[k + i] = set->hub[i] * setup->torque_per_volt;
+    }
+    sampled_model_init(model, k + n, rate, input, setup->period);
+}
+
+// The free arm without damping, under a torque, for the plan.
+static void command_plan(observer_design *d, const controller_setup *setup)
+{
+    const mode_set *set = &d->observer.arm.free;
+    const int n = set->count;
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}}, input[ESTIMATOR_STATES] = {0};
+    for (int i = 0; i < n; i++) {
+        rate[i][n + i] = 1;
+        rate[n + i][i] = -set->square[i];
+        input[n + i] = set->hub[i];
+    }
+    sampled_model_init(&d->plan_model, 2 * n, rate, input, setup->period);
+}
+
+// In flight: the energy of the motion relative to the wanted rotation, and the effort with which
+// the rotation alone has the time constant TRAVEL_TIME.
+static bool find_travel_gain(observer_design *d, const controller_setup *setup)
+{
+    const mode_set *set = &d->observer.arm.free;
+    const int n = set->count;
+    sampled_model model;
+    quadratic_cost cost = {.growth = 1};
+    command_model(setup, set, 1, &model);
+
+    // twice the energy: of motion, and of bending
+    for (int i = 0; i < n; i++) {
+        double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
+        motion[n - 1 + i] = 1;
+        quadratic_cost_add(&cost, model.n, motion, 0, 1);
+        if (i > 0) {
+            strain[i - 1] = 1;
+            quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
+        }
+    }
+
+    // what the motor may do about it; the angle itself is not fed back
+    double time_constant = set->hub[0] * setup->torque_per_volt * TRAVEL_TIME;
+    cost.effort = time_constant * time_constant;
+    double gain[ESTIMATOR_STATES] = {0};
+    if (!quadratic_gain(&model, &cost, gain)) {
+        return false;
+    }
+    memcpy(d->travel_gain + 1, gain, (size_t)model.n * sizeof gain[0]);
+    return true;
+}
+
+// In contact: the energy of the motion relative to the rest, and the effort with which the first
+// mode alone is critically damped: a'' = -w^2 a + h K u with u = -a'/sqrt(effort) has 2 w for h K /
+// sqrt(effort).
+static bool find_press_gain(observer_design *d, const controller_setup *setup)
+{
+    const mode_set *set = &d->observer.arm.contact;
+    const int n = set->count;
+    sampled_model model;
+    quadratic_cost cost = {.growth = 1};
+    command_model(setup, set, 0, &model);
+
+    for (int i = 0; i < n; i++) {
+        double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
+        strain[i] = motion[n + i] = 1;
+        quadratic_cost_add(&cost, model.n, motion, 0, 1);
+        quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
+    }
+    double drive = set->hub[0] * setup->torque_per_volt;
+    cost.effort = drive * drive / (4 * set->square[0]);
+    return quadratic_gain(&model, &cost, d->press_gain);
+}
+
+// The speeds. After a touch in uniform rotation v the first mode has a' = p v. With the force as
+// input it obeys a'' = s^2 (a - h L f/w^2), s^2 = w^2/(p h - 1): the force w^2 (a + a'/s)/(h L)
+// stops it, after a time of noticing in which it grows as exp(s t). A constant acceleration for one
+// period of the free arm's first vibration leaves none behind.
+static void find_speeds(observer_design *d, const controller_setup *setup,
+                        const observer_task *task)
+{
+    const reduced_arm *arm = &d->observer.arm;
+    const mode_set *set = &arm->contact;
+    double square = set->square[0], h = set->hub[0], p = set->momentum[0];
+
+    // the fastest is what the approach voltage holds against friction
+    double held = setup->torque_per_volt * fabs(task->approach_voltage) - setup->stiction;
+    d->top_speed = fmax(0, held) / fmax(setup->hub_damping, 1e-9);
+    d->touch_speed = d->top_speed;
+
+    // the touch is slow enough to be stopped
+    if (p * h > 1) {
+        double s = sqrt(square / (p * h - 1));
+        double stopped = task->stopping_force * h * arm->length * s / (square * p) *
+                         plain_exp(-s * (setup->period + setup->delay));
+        d->touch_speed = fmin(d->touch_speed, TOUCH_SHARE * stopped);
+    }
+
+    d->ramp_edge = arm->free.count > 2 ? 2 * PI / sqrt(arm->free.square[2]) : 0;
+    d->ramp_time = 2 * PI / sqrt(arm->free.square[1]) + d->ramp_edge;
+    d->rise_time = RISE_PERIODS * 2 * PI / sqrt(square);
+}
+
+const char *observer_design_init(observer_design *d, const controller_setup *setup,
+                                 const observer_task *task)
+{
+    assert(d != NULL && setup != NULL && task != NULL && setup->torque_per_volt > 0);
+    const char *refusal = arm_observer_init(&d->observer, setup, task->force);
+    if (refusal != NULL) {
+        return refusal;
+    }
+    if (!find_travel_gain(d, setup) || !find_press_gain(d, setup)) {
+        return "the Riccati equation of its gains has no stabilising solution";
+    }
+    command_plan(d, setup);
+    find_speeds(d, setup, task);
+    return NULL;
+}
