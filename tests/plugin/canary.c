@@ -1,0 +1,12 @@
+// A plug-in that tells that it was loaded: it writes the file that CANARY names.
+#include <stdio.h>
+#include <stdlib.h>
+
+__attribute__((constructor)) static void sing(void)
+{
+    const char *path = getenv("CANARY");
+    FILE *file = path != NULL ? fopen(path, "w") : NULL;
+    if (file != NULL) {
+        fclose(file);
+    }
+}
