@@ -403,6 +403,21 @@ says err "no column 'peak'"
 expect 2 compare press.yaml --vary control.settings=a,b
 says err "is a text"
 
+# every command that prints data gives it to programs, too
+expect 0 sweep hit.yaml --vary motor.voltage=1,2 --json sweep.json --csv sweep.csv
+[ "$(grep -c '"peak_force_N":' sweep.json)" = 2 ] || fail "sweep --json has not a row a run"
+expect 0 check hit.yaml --json -
+says out '"faults": []'
+expect 0 lesson --json -
+says out '"scenario": "lessons/hybrid-law"'
+expect 0 figures 2.4 --format svg -o drawn --json -
+says out '"file": "fig-2-4"'
+for command in list show run predict modes sweep merge compare converge study calibrate robust \
+    tables bench check lesson figures; do
+    expect 0 $command --help
+    says out '--json FILE|-'
+done
+
 expect 2 bench --only predict_su
 says err "did you mean 'predict_us'?"
 expect 2 bench --baseline hit.yaml

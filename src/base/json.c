@@ -168,3 +168,9 @@ void json_write(FILE *stream, const json_t *value)
     write_indented(stream, value, 0);
     fputc('\n', stream);
 }
+
+void json_write_member(FILE *stream, const json_t *value, int depth)
+{
+    assert(stream != NULL && value != NULL && depth >= 0);
+    write_indented(stream, value, depth);
+}

@@ -26,3 +26,7 @@ bool json_lost_something(void);
 // Writes a JSON value with two spaces of indentation, keys in the order in which they were set and
 // numbers as number_format gives them. Errors stay in the stream (ferror).
 void json_write(FILE *stream, const json_t *value);
+
+// The same within an array or object that the caller writes, `depth` levels deep, without the end
+// of the line: for what is too long to be held as one value.
+void json_write_member(FILE *stream, const json_t *value, int depth);

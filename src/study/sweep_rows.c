@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/base/csv.h"
+#include "src/base/json.h"
 #include "src/study/sweep_database.h"
 
 status sweep_store_present(sweep_store *store, unsigned char *present, size_t *count, fault *f)
@@ -184,4 +185,66 @@ status sweep_store_csv(sweep_store *store, FILE *stream, fault *f)
         csv_end_row(&csv);
     }
     return sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
+}
+
+static json_t *field_value(sqlite3_stmt *row, int column)
+{
+    return sqlite3_column_type(row, column) == SQLITE_TEXT
+               ? json_text((const char *)sqlite3_column_text(row, column))
+           : sqlite3_column_type(row, column) == SQLITE_NULL
+               ? json_null()
+               : json_number(sqlite3_column_double(row, column));
+}
+
+// The row that a statement stands on, without what depends on the machine.
+static json_t *row_object(const sweep *s, sqlite3_stmt *row)
+{
+    json_t *object = json_object();
+    int column = 0;
+    json_object_set_new(object, "run", field_value(row, column++));
+    for (int i = 0; i < s->axis_count; i++) {
+        const char *path = parameter_table[s->axes[i].parameter].path;
+        json_object_set_new(object, path, field_value(row, column++));
+    }
+
+    // how it ended, and with what numbers
+    json_object_set_new(object, "status", field_value(row, column++));
+    json_object_set_new(object, "message", field_value(row, column++));
+    for (int i = 0; i < summary_count; i++, column++) {
+        if (!summary_table[i].timing) {
+            json_object_set_new(object, summary_table[i].key, field_value(row, column));
+        }
+    }
+    return object;
+}
+
+status sweep_store_json(sweep_store *store, FILE *stream, fault *f)
+{
+    assert(store != NULL && stream != NULL);
+    const sweep *s = store->sweep;
+    sqlite3_stmt *rows;
+    status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // the head
+    json_t *name = json_text(s->base->name);
+    fputs("{\n  \"scenario\": ", stream);
+    json_write_member(stream, name, 1);
+    fprintf(stream, ",\n  \"sampling\": \"%s\",\n  \"runs\": [", sweep_sampling_name(s->sampling));
+    json_decref(name);
+
+    // row by row, as there may be millions
+    const char *separator = "\n    ";
+    while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
+        json_t *object = row_object(s, rows);
+        fputs(separator, stream);
+        json_write_member(stream, object, 2);
+        json_decref(object);
+        separator = ",\n    ";
+    }
+    fputs("\n  ]\n}\n", stream);
+    code = sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
+    return code == STATUS_OK && json_lost_something() ? fault_no_memory(f) : code;
 }

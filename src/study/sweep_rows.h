@@ -22,3 +22,7 @@ status sweep_store_quantity(sweep_store *store, const char *key, double *values,
 // quantities that do not depend on the machine; the header is name[unit]. Errors of the stream stay
 // in it (ferror).
 status sweep_store_csv(sweep_store *store, FILE *stream, fault *f);
+
+// The same as JSON: scenario, sampling, and in `runs` an object for each row under the keys of
+// `impactlab run --json`, the varied values under their paths. STATUS_NO_MEMORY.
+status sweep_store_json(sweep_store *store, FILE *stream, fault *f);

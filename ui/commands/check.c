@@ -2,43 +2,62 @@
 
 #include <unistd.h>
 
-// Counts the faults it passes on.
-static void report_and_count(void *context, const char *sentence)
+#include "src/base/json.h"
+
+// What came of the files so far.
+typedef struct checking {
+    json_t *files;  // an object each
+    json_t *faults; // the sentences of the file in hand
+    int count;      // of them
+} checking;
+
+// Tells and keeps a fault.
+static void take_fault(void *context, const char *sentence)
 {
-    (*(int *)context)++;
+    checking *c = context;
+    c->count++;
     report_to_stderr(NULL, sentence);
+    json_array_append_new(c->faults, json_text(sentence));
 }
 
 // Reads one file (or a scenario by its name). True if it has no fault.
-static bool check_one(const char *file)
+static bool check_one(const char *file, const arguments *a, checking *c)
 {
     scenario s;
-    int faults = 0;
+    c->count = 0;
+    c->faults = json_array();
 
     // a file under test, or the name of a scenario
-    status code = access(file, F_OK) == 0 ? scenario_read(&s, file, NULL, report_and_count, &faults)
-                                          : scenario_open(&s, file, report_and_count, &faults);
-
+    status code = access(file, F_OK) == 0 ? scenario_read(&s, file, NULL, take_fault, c)
+                                          : scenario_open(&s, file, take_fault, c);
     if (code == STATUS_OK) {
         scenario_finish(&s);
-        say("%s: no fault\n", file);
-        return true;
+        if (summary_wanted(a)) {
+            say("%s: no fault\n", file);
+        }
+    } else if (c->count == 0) {
+        complain("'%s': %s", file, status_text(code));
+        json_array_append_new(c->faults, json_text(status_text(code)));
     }
 
-    if (faults == 0) {
-        complain("'%s': %s", file, status_text(code));
-    }
-    return false;
+    json_t *object = json_object();
+    json_object_set_new(object, "file", json_text(file));
+    json_object_set_new(object, "faults", c->faults);
+    json_array_append_new(c->files, object);
+    return code == STATUS_OK;
 }
 
 static int check(const arguments *a)
 {
+    checking c = {.files = json_array()};
     int result = EXIT_DONE;
     for (int i = 0; i < a->operand_count; i++) {
-        if (!check_one(a->operands[i])) {
-            result = EXIT_BAD_ARGUMENTS;
-        }
+        result = check_one(a->operands[i], a, &c) ? result : EXIT_BAD_ARGUMENTS;
     }
+    if (a->json != NULL) {
+        return worse(result, write_json(a->json, c.files));
+    }
+    json_decref(c.files);
     return result;
 }
 
@@ -51,5 +70,6 @@ const command check_command = {
     .least = 1,
     .most = 1 << 20,
     .takes_scenarios = true,
+    .options = {&json_options},
     .run = check,
 };

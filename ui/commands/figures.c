@@ -4,6 +4,7 @@
 
 #include "render/figures/figures.h"
 #include "src/study/pool.h"
+#include "src/base/json.h"
 #include "src/base/words.h"
 #include "src/base/numbers.h"
 #include "ui/commands/many_runs.h"
@@ -123,12 +124,28 @@ static status write_environments(const figure_list *list, const char *path, faul
     return code;
 }
 
+// What was drawn, and where it lies.
+static json_t *figures_array(const figure_list *list)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < list->count; i++) {
+        json_t *object = json_object();
+        json_object_set_new(object, "id", json_text(list->figures[i]->id));
+        json_object_set_new(object, "folder", json_text(list->folder));
+        json_object_set_new(object, "file", json_text(list->figures[i]->file));
+        json_object_set_new(object, "formats", json_text(list->formats));
+        json_object_set_new(object, "caption", json_text(list->figures[i]->caption));
+        json_array_append_new(array, object);
+    }
+    return array;
+}
+
 static int figures(const arguments *a)
 {
     fault f = {0};
     size_t count = a->operand_count > 0 ? (size_t)a->operand_count : (size_t)thesis_figure_count;
     figure_list list = {.count = count,
-                        .quiet = a->quiet,
+                        .quiet = !summary_wanted(a),
                         .folder = a->output ? a->output : DEFAULT_FOLDER,
                         .formats = a->format ? a->format : DEFAULT_FORMATS};
 
@@ -151,6 +168,8 @@ static int figures(const arguments *a)
     if (draw_list(&list, many_runs_jobs(a), &f) != STATUS_OK ||
         (a->latex != NULL && write_environments(&list, a->latex, &f) != STATUS_OK)) {
         code = complain_fault(&f);
+    } else if (a->json != NULL) {
+        code = write_json(a->json, figures_array(&list));
     }
 
     for (size_t i = 0; i < count; i++) {
@@ -197,6 +216,6 @@ const command figures_command = {
             "parameters.\n",
     .most = 1 << 20,
     .operand_word = figure_word,
-    .options = {&options, &quiet_options, &page_options},
+    .options = {&json_options, &options, &quiet_options, &page_options},
     .run = figures,
 };

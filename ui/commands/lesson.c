@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/json.h"
+
 // A scenario with faults is no lesson here; opening it tells them.
 static void ignore_fault(void *context, const char *sentence)
 {
@@ -31,6 +33,20 @@ static const char *leaf_of(const char *name)
     return slash != NULL ? slash + 1 : name;
 }
 
+// Adds a lesson to those listed, as JSON or on the screen.
+static void list_lesson(json_t *all, const char *name, const char *title)
+{
+    if (all == NULL) {
+        say("%-20s %s\n", leaf_of(name), title);
+        return;
+    }
+    json_t *object = json_object();
+    json_object_set_new(object, "name", json_text(leaf_of(name)));
+    json_object_set_new(object, "scenario", json_text(name));
+    json_object_set_new(object, "title", json_text(title));
+    json_array_append_new(all, object);
+}
+
 // Opens the lab on a lesson, as the lab command does on a scenario.
 static int open_lesson(const arguments *a, char *name)
 {
@@ -47,12 +63,16 @@ static int run_lesson(const arguments *a)
     int count, code = EXIT_DONE;
     bool found = false;
     fault f = {0};
+    if (a->json != NULL && a->operand_count > 0) {
+        return complain("--json lists the lessons, expected no name beside it");
+    }
     if (scenario_list(&names, &count, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
 
     // without a name all of them, else the one that has it
     const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;
+    json_t *all = a->json != NULL ? json_array() : NULL;
     for (int i = 0; i < count && !found; i++) {
         const bool named = wanted != NULL && (strcmp(names[i], wanted) == 0 ||
                                               strcmp(leaf_of(names[i]), wanted) == 0);
@@ -61,7 +81,7 @@ static int run_lesson(const arguments *a)
             if (named) {
                 code = open_lesson(a, names[i]);
             } else {
-                printf("%-20s %s\n", leaf_of(names[i]), title);
+                list_lesson(all, names[i], title);
             }
         }
     }
@@ -73,7 +93,7 @@ static int run_lesson(const arguments *a)
         free(names[i]);
     }
     free(names);
-    return code;
+    return wanted == NULL && a->json != NULL ? write_json(a->json, all) : code;
 }
 
 const command lesson_command = {
@@ -85,6 +105,6 @@ const command lesson_command = {
             "name it lists them.\nIn the lab y goes on and A answers; :lesson lists the lessons "
             "there.\n",
     .most = 1,
-    .options = {&set_options, &lab_options, &quiet_options},
+    .options = {&set_options, &json_options, &lab_options, &quiet_options},
     .run = run_lesson,
 };

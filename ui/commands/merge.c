@@ -1,7 +1,17 @@
 // impactlab merge: the parts of a sweep, computed apart, in one database.
 #include "ui/commands/command.h"
 
+#include "src/base/json.h"
 #include "src/study/sweep_merge.h"
+
+static json_t *merged_object(const char *path, const sweep_merged *merged)
+{
+    json_t *object = json_object();
+    json_object_set_new(object, "file", json_text(path));
+    json_object_set_new(object, "runs", json_integer((json_int_t)merged->runs));
+    json_object_set_new(object, "runs_of_sweep", json_integer((json_int_t)merged->total));
+    return object;
+}
 
 static int merge(const arguments *a)
 {
@@ -15,11 +25,11 @@ static int merge(const arguments *a)
     }
 
     // a sweep with runs missing is whole as a file: the same sweep goes on in it
-    if (!a->quiet) {
+    if (summary_wanted(a)) {
         say("%s: %zu of %zu runs from %d part%s\n", a->output, merged.runs, merged.total,
             a->operand_count, a->operand_count == 1 ? "" : "s");
     }
-    return EXIT_DONE;
+    return a->json != NULL ? write_json(a->json, merged_object(a->output, &merged)) : EXIT_DONE;
 }
 
 static const option_row rows[] = {
@@ -43,6 +53,6 @@ const command merge_command = {
             "computes what may be missing and writes CSV and pictures.\n",
     .least = 1,
     .most = 1 << 20,
-    .options = {&options, &quiet_options},
+    .options = {&json_options, &options, &quiet_options},
     .run = merge,
 };

@@ -56,9 +56,9 @@ static int read_share(const arguments *a, sweep_share *share)
         return complain("--part %s keeps its runs in a database, expected --db FILE.sqlite",
                         a->part);
     }
-    if (a->csv != NULL || a->plot != NULL) {
-        return complain("--part %s is not the whole sweep: --csv and --plot come after impactlab "
-                        "merge",
+    if (a->csv != NULL || a->json != NULL || a->plot != NULL) {
+        return complain("--part %s is not the whole sweep: --csv, --json and --plot come after "
+                        "impactlab merge",
                         a->part);
     }
     return EXIT_DONE;
@@ -193,6 +193,7 @@ const command sweep_command = {
     .least = 1,
     .most = 1,
     .takes_scenarios = true,
-    .options = {&set_options, &vary_options, &options, &quiet_options, &page_options},
+    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
+                &page_options},
     .run = sweep_command_run,
 };

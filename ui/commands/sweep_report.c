@@ -11,14 +11,19 @@
 
 enum { ROWS_SHOWN = 40 };
 
-static int write_csv(const sweep_order *o, sweep_store *store)
+// Writes all rows to a file in the form that `write` gives them; path NULL: nothing is asked for.
+static int write_rows(sweep_store *store, const char *path,
+                      status (*write)(sweep_store *store, FILE *stream, fault *f))
 {
     whole_file file;
     fault f = {0};
-    if (whole_file_open(&file, o->arguments->csv, &f) != STATUS_OK) {
+    if (path == NULL) {
+        return EXIT_DONE;
+    }
+    if (whole_file_open(&file, path, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    const status code = whole_file_close(&file, sweep_store_csv(store, file.stream, &f), &f);
+    const status code = whole_file_close(&file, write(store, file.stream, &f), &f);
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
@@ -82,7 +87,7 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
     printf("\n%s%s%s%s\n", quantity->label, unit[0] ? " [" : "", unit, unit[0] ? "]" : "");
 
     // each value, where no file has them
-    if (a->csv == NULL && a->db == NULL && a->plot == NULL) {
+    if (a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL) {
         print_table(o, values);
     }
 
@@ -119,7 +124,8 @@ int report_sweep(const sweep_order *o, sweep_store *store, const sweep_progress 
     }
 
     // files first: what is printed may be cut off
-    code = a->csv != NULL ? write_csv(o, store) : EXIT_DONE;
+    code = worse(write_rows(store, a->csv, sweep_store_csv),
+                 write_rows(store, a->json, sweep_store_json));
     plotted = a->plot != NULL ? write_plot(o, values) : EXIT_DONE;
     code = plotted > code ? plotted : code;
     if (summary_wanted(a)) {

@@ -1,0 +1,43 @@
+#!/bin/bash
+# The manual is whole: every page of docs is a chapter, no link leads nowhere, nothing is fetched.
+#
+#   check.sh SOURCE_ROOT PROGRAM
+set -euo pipefail
+command -v pandoc >/dev/null || { echo "pandoc is missing, the manual is not built"; exit 77; }
+source=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+bash "$source/docs/manual/build.sh" "$source" "$2" "$work/manual.html" >"$work/said"
+page=$work/manual.html
+fails=0
+
+complain() {
+    echo "FAILED: $*"
+    fails=$((fails + 1))
+}
+
+for file in "$source"/docs/*.md; do
+    grep -q "<section id=\"$(basename "$file" .md)\">" "$page" || complain "$file is no chapter"
+done
+grep -o ' id="[^"]*"' "$page" | sed 's/.*="//; s/"//' | sort >"$work/ids"
+grep -o 'href="#[^"]*"' "$page" | sed 's/.*="#//; s/"//' | sort -u >"$work/links"
+[ "$(wc -l <"$work/links")" -gt 20 ] || complain "only $(wc -l <"$work/links") links"
+dead=$(comm -23 "$work/links" <(sort -u "$work/ids"))
+[ -z "$dead" ] || complain "links to nowhere: $dead"
+twice=$(uniq -d "$work/ids")
+[ -z "$twice" ] || complain "identifiers twice: $twice"
+! grep -oE '(src|href)="[^"#d][^"]*"' "$page" | grep -vE '"(https?|mailto):' | grep -q . ||
+    complain "places outside the page"
+! grep -qE '<(script|link|img)[^>]*(src|href)="http' "$page" || complain "something is fetched"
+
+# the search finds a section by words of its text, where there is something to run it with
+if command -v chromium >/dev/null; then
+    found=$(chromium --headless --no-sandbox --disable-gpu --dump-dom \
+        "file://$page?babbles+stdin+nonesuch" 2>/dev/null || :)
+    grep -q 'nothing has all these words' <<<"$found" || complain "the search finds nonesuch"
+    found=$(chromium --headless --no-sandbox --disable-gpu --dump-dom \
+        "file://$page?restitution+ledger" 2>/dev/null || :)
+    grep -q '<li><a href="#physics-' <<<"$found" || complain "the search does not find physics"
+fi
+
+[ "$fails" = 0 ] && echo "the manual is whole"
