@@ -13,7 +13,7 @@ static calibration calibrated(const char *const *settings)
     fault f;
     calibration c;
     scenario s = {.parameters = rig_parameters(settings)};
-    if (calibrate(&s, commands, COMMANDS, &c, &f) != STATUS_OK) {
+    if (calibrate(&s, commands, COMMANDS, NULL, &c, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
     assert_int_equal(c.count, COMMANDS);
@@ -191,7 +191,7 @@ static void what_does_not_press_is_said(void **state)
         fault f;
         calibration c;
         scenario s = {.parameters = rig_parameters(SETTINGS(cases[i].setting))};
-        assert_int_not_equal(calibrate(&s, commands, COMMANDS, &c, &f), STATUS_OK);
+        assert_int_not_equal(calibrate(&s, commands, COMMANDS, NULL, &c, &f), STATUS_OK);
         assert_non_null(strstr(f.text, cases[i].sentence));
     }
     fault f;

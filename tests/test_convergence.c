@@ -24,7 +24,7 @@ static convergence_panel panel_of(const char *const *settings)
     scenario s = {.name = name, .parameters = fixture_parameters(settings)};
     convergence_panel panel;
     fault f = {0};
-    if (convergence_compute(&s, &panel, &f) != STATUS_OK) {
+    if (convergence_compute(&s, NULL, &panel, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
     return panel;
@@ -78,7 +78,7 @@ static void a_run_that_fails_is_told_with_its_step(void **state)
                       "method.name=newmark", "method.gamma=0.3", "arm.links=8", "run.duration=3"))};
     convergence_panel panel;
     fault f;
-    assert_int_equal(convergence_compute(&s, &panel, &f), STATUS_UNSTABLE);
+    assert_int_equal(convergence_compute(&s, NULL, &panel, &f), STATUS_UNSTABLE);
     assert_non_null(strstr(f.text, "with a step of 0.001 s"));
 }
 

@@ -440,7 +440,7 @@ static void the_report_stands_alone(void **state)
     (void)state;
     fault f = {0};
     size_t length;
-    if (report_write(path_of("report"), NULL, 0, &f) != STATUS_OK) {
+    if (report_write(path_of("report"), NULL, 0, NULL, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
     char *html = read_file(path_of("report/report.html"), &length);
@@ -477,7 +477,7 @@ static void a_report_without_a_folder_is_complained_about(void **state)
 {
     (void)state;
     fault f = {0};
-    assert_int_equal(report_write("/proc/nowhere", NULL, 0, &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(report_write("/proc/nowhere", NULL, 0, NULL, &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "/proc/nowhere"));
 }
 

@@ -89,7 +89,7 @@ static void the_sensor_converges_where_the_force_does_not(void **state)
     sensor_view view[3];
     fault f;
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(sensor_view_compute(&s, links[i], &view[i], &f), STATUS_OK);
+        assert_int_equal(sensor_view_compute(&s, links[i], NULL, &view[i], &f), STATUS_OK);
     }
     for (int i = 0; i < 2; i++) {
         assert_true(view[i + 1].peak > 1.5 * view[i].peak);
@@ -109,7 +109,7 @@ static void two_links_read_as_one_impulse(void **state)
     scenario s = fast_touch();
     sensor_view view;
     fault f;
-    assert_int_equal(sensor_view_compute(&s, 2, &view, &f), STATUS_OK);
+    assert_int_equal(sensor_view_compute(&s, 2, NULL, &view, &f), STATUS_OK);
     for (int i = 0; i < SENSOR_CONSTANTS; i++) {
         check_relative(view.sensed[i], view.impulse / sensor_constants[i], 1e-12);
         check_close(view.delay[i], 0, 0);
@@ -147,10 +147,10 @@ static void what_cannot_be_viewed_is_said(void **state)
     fault f;
     s.parameters.run.duration = 0.01;
     s.parameters.set[PARAMETER_INDEX(run.duration)] = 1;
-    assert_int_equal(sensor_view_compute(&s, 2, &view, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(sensor_view_compute(&s, 2, NULL, &view, &f), STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "no contact"));
     s.parameters.arm.model = ARM_PRINTED;
-    assert_int_equal(sensor_view_compute(&s, 2, &view, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(sensor_view_compute(&s, 2, NULL, &view, &f), STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "printed"));
 }
 

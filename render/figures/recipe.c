@@ -62,8 +62,8 @@ static status open_run(recipe_figure *fig, const recipe_source *s, opened_source
     char *beside = path_of(fig, s->scenario);
     bool file = g_file_test(beside, G_FILE_TEST_IS_REGULAR);
 
-    status code =
-        run_begin_changed(&out->run, file ? beside : s->scenario, s->change, s->change_count, f);
+    status code = run_begin_changed(&out->run, file ? beside : s->scenario, s->change,
+                                    s->change_count, NULL, f);
     out->ran = code == STATUS_OK;
     g_free(beside);
     return code;

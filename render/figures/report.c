@@ -19,6 +19,19 @@ report_item *report_item_at(const report *r, guint index)
     return &g_array_index(r->items, report_item, index);
 }
 
+status report_item_done(const report *r, fault *f)
+{
+    run_monitor_count(r->monitor);
+    return run_monitor_stops(r->monitor)
+               ? fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED))
+               : STATUS_OK;
+}
+
+int report_length(int count)
+{
+    return count > 0 ? count : thesis_figure_count;
+}
+
 // ---- what it shows
 
 static status add_figures(report *r, fault *f)
@@ -35,6 +48,10 @@ static status add_figures(report *r, fault *f)
 
         item.command = g_strdup_printf("impactlab figures %s", which->id);
         g_array_append_val(r->items, item);
+        code = report_item_done(r, f);
+        if (code != STATUS_OK) {
+            return code;
+        }
     }
     return STATUS_OK;
 }
@@ -153,11 +170,11 @@ static void release_run(void *owner)
     g_free(own);
 }
 
-static status open_scenario(report_item *item, const char *name, fault *f)
+static status open_scenario(report_item *item, const char *name, run_monitor *monitor, fault *f)
 {
     const figure_options options = {0};
     own_run *own = g_new0(own_run, 1);
-    status code = run_begin(&own->run, name, NULL, f);
+    status code = run_begin_changed(&own->run, name, NULL, 0, monitor, f);
     if (code != STATUS_OK) {
         g_free(own);
         return code;
@@ -208,19 +225,22 @@ static status add_own(report *r, char *const *names, int count, fault *f)
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         report_item item = {0};
         code = recipe_is(names[i]) ? open_recipe(&item, names[i], f)
-                                   : open_scenario(&item, names[i], f);
+                                   : open_scenario(&item, names[i], r->monitor, f);
         if (code == STATUS_OK) {
             g_array_append_val(r->items, item);
+            code = report_item_done(r, f);
         }
     }
     return code;
 }
 
-status report_write(const char *folder, char *const *names, int count, fault *f)
+status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
+                    fault *f)
 {
     assert(folder != NULL && (names != NULL || count == 0));
     fault why = {0};
-    report r = {.items = g_array_new(FALSE, TRUE, sizeof(report_item)),
+    report r = {.monitor = monitor,
+                .items = g_array_new(FALSE, TRUE, sizeof(report_item)),
                 .heading = g_strconcat("impactlab ", lab_version(), ": report", NULL)};
     r.preface = count > 0
                     ? "Runs and recipes, drawn by the lab. Under each stand the scenario, the "

@@ -269,6 +269,9 @@ status report_write_html(const report *r, const char *path, fault *f)
     add_contents(r, html);
     for (guint i = 0; i < r->items->len && code == STATUS_OK; i++) {
         code = add_section(r, i, html, letters, f);
+        if (code == STATUS_OK && report_item_at(r, i)->command != NULL) {
+            code = report_item_done(r, f);
+        }
     }
     g_string_append_printf(html, "<script>\n%s%s</script>\n</body>\n</html>\n",
                            report_script_curves, report_script_pointer);

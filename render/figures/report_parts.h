@@ -4,6 +4,7 @@
 #include <glib.h>
 
 #include "render/figures/artwork.h"
+#include "src/run/run_result.h"
 
 // One thing the report shows.
 typedef struct report_item {
@@ -17,9 +18,13 @@ typedef struct report {
     GArray *items;       // of report_item
     const char *preface; // what it is, a sentence or two
     char *heading;
+    run_monitor *monitor; // NULL: nobody looks on
 } report;
 
 report_item *report_item_at(const report *r, guint index);
+
+// An item is done: counts it, and says STATUS_STOPPED if the report is to end here.
+status report_item_done(const report *r, fault *f);
 
 // FOLDER/report.html: report_html.c. FOLDER/report.pdf: report_pdf.c. Both return what painting and
 // writing return.

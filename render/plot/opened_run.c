@@ -20,13 +20,14 @@ void run_end(opened_run *r)
 
 status run_begin(opened_run *r, const char *name, const char *change, fault *f)
 {
-    return run_begin_changed(r, name, &change, change != NULL ? 1 : 0, f);
+    return run_begin_changed(r, name, &change, change != NULL ? 1 : 0, NULL, f);
 }
 
 status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
-                         fault *f)
+                         run_monitor *monitor, fault *f)
 {
     assert(r != NULL && name != NULL);
+    const run_options options = {.keep_trace = true, .monitor = monitor};
     fault first = {STATUS_OK, ""};
     status code = scenario_open(&r->scenario, name, keep_first, &first);
     if (code != STATUS_OK) {
@@ -42,7 +43,7 @@ status run_begin_changed(opened_run *r, const char *name, const char *const *cha
 
     // a run that fails takes its rows with it
     if (code == STATUS_OK) {
-        code = run_scenario(&r->scenario, true, &r->result);
+        code = run_scenario_with(&r->scenario, &options, &r->result);
         if (code == STATUS_OK) {
             return code;
         }

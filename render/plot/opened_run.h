@@ -17,6 +17,7 @@ void run_end(opened_run *r);
 // The scenario's name and every parameter in one line, for a file's metadata. Free with g_free.
 char *parameters_line(const scenario *s);
 
-// The same with several changes, each "PATH=VALUE".
+// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (NULL: nobody looks
+// on) asked for it.
 status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
-                         fault *f);
+                         run_monitor *monitor, fault *f);

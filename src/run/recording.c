@@ -23,8 +23,7 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
 
 bool recording_asked_to_stop(const recording *r)
 {
-    const run_monitor *m = r->options->monitor;
-    return m != NULL && atomic_load_explicit(&m->stop, memory_order_relaxed);
+    return run_monitor_stops(r->options->monitor);
 }
 
 void recording_publish(const recording *r, double time)

@@ -12,3 +12,15 @@ void run_finish(run_result *result)
     free(result->before_impact);
     result->before_impact = NULL;
 }
+
+bool run_monitor_stops(const run_monitor *monitor)
+{
+    return monitor != NULL && atomic_load_explicit(&monitor->stop, memory_order_relaxed);
+}
+
+void run_monitor_count(run_monitor *monitor)
+{
+    if (monitor != NULL) {
+        atomic_fetch_add_explicit(&monitor->pieces, 1, memory_order_relaxed);
+    }
+}

@@ -30,7 +30,14 @@ typedef struct run_monitor {
     atomic_size_t rows;   // of the trace that can be read
     atomic_size_t events; // the same
     _Atomic double time;  // how far the run has come [s]
+    atomic_int pieces;    // of work that consists of several runs, those that are over
 } run_monitor;
+
+// Whether somebody asked for the end; monitor may be NULL: nobody looks on.
+bool run_monitor_stops(const run_monitor *monitor);
+
+// A piece of the work is over; monitor may be NULL.
+void run_monitor_count(run_monitor *monitor);
 
 typedef struct run_options {
     bool keep_trace;      // false keeps no rows (events and summary only)

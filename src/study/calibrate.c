@@ -105,9 +105,10 @@ static void measure(const parameters *p, const trace *t, double command, calibra
 }
 
 // One press: a run, its averages, and whether the arm pressed at all.
-static status press(const scenario *s, double command, int number, calibration_point *point,
-                    fault *f)
+static status press(const scenario *s, double command, int number, run_monitor *monitor,
+                    calibration_point *point, fault *f)
 {
+    const run_options options = {.keep_trace = true, .monitor = monitor};
     run_result result;
     scenario under;
     status code = pressing(s, command, number, &under, f);
@@ -116,7 +117,7 @@ static status press(const scenario *s, double command, int number, calibration_p
     }
 
     // a run that presses with it, and what the sensors read at its end
-    code = run_scenario(&under, true, &result);
+    code = run_scenario_with(&under, &options, &result);
     if (code != STATUS_OK) {
         fault_set_at(f, code, result.summary.path, "pressing with %g V failed: %.700s", command,
                      result.summary.message);
@@ -136,7 +137,8 @@ static status press(const scenario *s, double command, int number, calibration_p
     return code;
 }
 
-status calibrate(const scenario *s, const double *commands, int count, calibration *c, fault *f)
+status calibrate(const scenario *s, const double *commands, int count, run_monitor *monitor,
+                 calibration *c, fault *f)
 {
     assert(s != NULL && c != NULL && commands != NULL);
     assert(count > 0 && count <= K2_TABLE_MOST);
@@ -151,8 +153,9 @@ status calibrate(const scenario *s, const double *commands, int count, calibrati
     // up to the first fault; what was measured before is kept
     status code = STATUS_OK;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
-        code = press(s, commands[i], i, &c->points[i], f);
+        code = press(s, commands[i], i, monitor, &c->points[i], f);
         c->count += code == STATUS_OK;
+        run_monitor_count(monitor);
     }
     return code;
 }

@@ -8,6 +8,7 @@
 #include <jansson.h>
 
 #include "src/quantities/k2_table.h"
+#include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 
 // One command and what the sensors read under it: means over the end of the run.
@@ -32,8 +33,10 @@ typedef struct calibration {
 // count. Press i has the seed
 // control.seed + i. Fails with a sentence where a run fails (its status) and, with
 // STATUS_BAD_ARGUMENT, where the arm does not press: the force reads zero or the hub stands at or
-// before the wall's angle.
-status calibrate(const scenario *s, const double *commands, int count, calibration *c, fault *f);
+// before the wall's angle. STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it; *c
+// holds the presses before the failure or the stop in any case.
+status calibrate(const scenario *s, const double *commands, int count, run_monitor *monitor,
+                 calibration *c, fault *f);
 
 // The table by growing force. STATUS_BAD_ARGUMENT if two commands press alike.
 status calibration_table(const calibration *c, k2_table *t, fault *f);

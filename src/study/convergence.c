@@ -29,12 +29,14 @@ static const char *const panel_keys[] = {
 enum { PANEL_KEYS = sizeof panel_keys / sizeof panel_keys[0] };
 
 // Runs the parameters; the summary's numbers stay in *result.
-static status run_with(const scenario *s, const parameters *p, summary *result, fault *f)
+static status run_with(const scenario *s, const parameters *p, run_monitor *monitor,
+                       summary *result, fault *f)
 {
+    const run_options options = {.monitor = monitor};
     scenario changed = *s; // borrows everything but the parameters
     changed.parameters = *p;
     run_result run;
-    status code = run_scenario(&changed, false, &run);
+    status code = run_scenario_with(&changed, &options, &run);
     *result = run.summary;
     run_finish(&run);
     return code == STATUS_OK ? code
@@ -42,32 +44,35 @@ static status run_with(const scenario *s, const parameters *p, summary *result, 
                                             p->method.step, result->message);
 }
 
-status convergence_compute(const scenario *s, convergence_panel *panel, fault *f)
+status convergence_compute(const scenario *s, run_monitor *monitor, convergence_panel *panel,
+                           fault *f)
 {
     assert(s != NULL && panel != NULL);
     summary results[PANEL_STEPS];
+    status code = STATUS_OK;
+    panel->done = 0;
 
     // three runs, each with half the step of the one before
     for (int i = 0; i < PANEL_STEPS; i++) {
         parameters p = s->parameters;
         p.method.step = panel->step[i] = ldexp(s->parameters.method.step, -i);
-        status code = run_with(s, &p, &results[i], f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        code = code == STATUS_OK ? run_with(s, &p, monitor, &results[i], f) : code;
+        panel->done += code == STATUS_OK;
+        run_monitor_count(monitor);
     }
 
-    // and what their results tell
+    // and what the results of those that there are tell
     panel->row_count = PANEL_KEYS;
     for (int k = 0; k < PANEL_KEYS; k++) {
         convergence_row *row = &panel->rows[k];
         row->key = panel_keys[k];
         for (int i = 0; i < PANEL_STEPS; i++) {
-            row->value[i] = summary_value(&results[i], summary_index(row->key));
+            row->value[i] =
+                i < panel->done ? summary_value(&results[i], summary_index(row->key)) : (double)NAN;
         }
         row->order = observed_order(row->value[0], row->value[1], row->value[2]);
     }
-    return STATUS_OK;
+    return code;
 }
 
 // --- error against cost ---------------------------------------------------------------------
@@ -81,6 +86,7 @@ static const method_kind method_kinds[STUDY_METHODS] = {METHOD_NEWMARK, METHOD_G
 typedef struct timed_run {
     const scenario *scenario;
     parameters parameters;
+    run_monitor *monitor;
     summary summary;
     fault fault;
 } timed_run;
@@ -88,7 +94,7 @@ typedef struct timed_run {
 static status run_again(void *context)
 {
     timed_run *r = context;
-    return run_with(r->scenario, &r->parameters, &r->summary, &r->fault);
+    return run_with(r->scenario, &r->parameters, r->monitor, &r->summary, &r->fault);
 }
 
 static void values_of(const summary *s, double values[STUDY_QUANTITIES])
@@ -99,10 +105,10 @@ static void values_of(const summary *s, double values[STUDY_QUANTITIES])
 }
 
 // One run, with its cost. A method that fails at a step has no point there.
-static void study_one(const scenario *s, method_kind method, const double *reference,
-                      study_point *point)
+static status study_one(const scenario *s, method_kind method, const double *reference,
+                        run_monitor *monitor, study_point *point)
 {
-    timed_run r = {.scenario = s, .parameters = s->parameters};
+    timed_run r = {.scenario = s, .parameters = s->parameters, .monitor = monitor};
     double values[STUDY_QUANTITIES];
     status code;
 
@@ -114,29 +120,51 @@ static void study_one(const scenario *s, method_kind method, const double *refer
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         point->error[k] = code == STATUS_OK ? fabs(values[k] - reference[k]) : (double)NAN;
     }
+    return code;
 }
 
-status method_study_compute(const scenario *s, method_study *study, fault *f)
+// The steps 10 ms, 5 ms, 2 ms and so on, nothing measured yet.
+static void prepare_points(method_study *study)
+{
+    static const double mantissas[] = {10, 5, 2};
+    const double none = (double)NAN;
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        for (int i = 0; i < STUDY_STEPS; i++) {
+            study->points[m][i] = (study_point){.step = mantissas[i % 3] / pow(10, 3 + i / 3),
+                                                .cost = none,
+                                                .error = {none, none, none}};
+        }
+    }
+}
+
+status method_study_compute(const scenario *s, run_monitor *monitor, method_study *study, fault *f)
 {
     assert(s != NULL && study != NULL);
-    static const double mantissas[] = {10, 5, 2};
+    _Static_assert(STUDY_QUANTITIES == 3, "an error each");
     parameters p = s->parameters;
     summary reference;
+    prepare_points(study);
 
     // what the errors are measured against
     p.method.name = METHOD_EVENT;
     p.method.step = study->reference_step = REFERENCE_STEP;
-    status code = run_with(s, &p, &reference, f);
+    status code = run_with(s, &p, monitor, &reference, f);
+    values_of(&reference, study->reference);
     if (code != STATUS_OK) {
         return code;
     }
-    values_of(&reference, study->reference);
+    run_monitor_count(monitor);
 
-    // steps of 1, 0.5, 0.2 ms and so on
+    // every method at every step
     for (int m = 0; m < STUDY_METHODS; m++) {
         for (int i = 0; i < STUDY_STEPS; i++) {
-            study->points[m][i].step = mantissas[i % 3] / pow(10, 3 + i / 3);
-            study_one(s, method_kinds[m], study->reference, &study->points[m][i]);
+            study_point *point = &study->points[m][i];
+            code = study_one(s, method_kinds[m], study->reference, monitor, point);
+            if (code == STATUS_STOPPED) {
+                point->cost = (double)NAN;
+                return fault_set(f, code, "%s", status_text(code));
+            }
+            run_monitor_count(monitor);
         }
     }
     return STATUS_OK;

@@ -2,6 +2,7 @@
 // of the methods of time integration.
 #pragma once
 
+#include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 
 enum { PANEL_STEPS = 3, PANEL_ROWS = 16 };
@@ -17,14 +18,18 @@ typedef struct convergence_panel {
     double step[PANEL_STEPS]; // [s]
     convergence_row rows[PANEL_ROWS];
     int row_count;
+    int done; // steps that were run to their end, the first ones
 } convergence_panel;
 
 // log2 of the ratio of two differences: p if the error is C h^p and the steps are halved. NaN if
 // the differences are not above rounding (1e-13 of the value), not of one sign, or do not shrink.
 double observed_order(double coarse, double middle, double fine);
 
-// Runs the scenario at its own method.step, at a half and at a quarter of it.
-status convergence_compute(const scenario *s, convergence_panel *panel, fault *f);
+// Runs the scenario at its own method.step, at a half and at a quarter of it. Fails as the runs do;
+// STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it. The panel then has the values
+// of the steps before, NaN for the others and for the orders.
+status convergence_compute(const scenario *s, run_monitor *monitor, convergence_panel *panel,
+                           fault *f);
 
 enum { STUDY_METHODS = 3, STUDY_STEPS = 13, STUDY_QUANTITIES = 3 };
 
@@ -47,8 +52,12 @@ extern const char *const study_keys[STUDY_QUANTITIES];
 
 // Runs the scenario with every method at steps from 1e-2 s down to 1e-6 s, and with the event
 // method at 2e-5 s for reference: its error comes from rounding there, not from the step. Takes
-// some seconds for two links and 1 s.
-status method_study_compute(const scenario *s, method_study *study, fault *f);
+// some seconds for two links and 1 s. STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for
+// it: cost and errors of the points that were not reached are NaN.
+status method_study_compute(const scenario *s, run_monitor *monitor, method_study *study, fault *f);
+
+// Runs that method_study_compute counts in its monitor: the reference and each point.
+enum { STUDY_RUNS = 1 + STUDY_METHODS * STUDY_STEPS };
 
 // The least cost of a method's points whose error in quantity `k` is at most `error`, all shorter
 // steps included [s]; NaN if there is none. *step is the point's step.

@@ -92,6 +92,7 @@ void sensor_lag_force(sensor_lag *s, double length, double first, double last, d
 // What a run in progress remembers.
 typedef struct watching {
     sensor_view *view;
+    const run_monitor *monitor;
     sensor_lag lags[SENSOR_CONSTANTS];
     double touched; // first contact [s], NaN before it
 } watching;
@@ -159,6 +160,9 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
     double end = duration;
     while (m->state[SLOT_TIME] < end) {
         motion_report report;
+        if (run_monitor_stops(w->monitor)) {
+            return fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
+        }
 
         // a stride
         double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
@@ -206,7 +210,8 @@ static status check_scenario(const scenario *s, fault *f)
     return STATUS_OK;
 }
 
-status sensor_view_compute(const scenario *s, int links, sensor_view *view, fault *f)
+status sensor_view_compute(const scenario *s, int links, run_monitor *monitor, sensor_view *view,
+                           fault *f)
 {
     assert(s != NULL && view != NULL && links > 0);
     parameters p = s->parameters;
@@ -235,7 +240,7 @@ status sensor_view_compute(const scenario *s, int links, sensor_view *view, faul
     }
 
     // its motion until the window is over
-    watching w = {.view = view, .touched = (double)NAN};
+    watching w = {.view = view, .monitor = monitor, .touched = (double)NAN};
     motion_start(&a, m, p.initial.angle, p.initial.velocity);
     code = watch_motion(&a, m, p.method.step, p.run.duration, &w, f);
     if (code == STATUS_OK && isnan(w.touched)) {
@@ -276,16 +281,19 @@ double sensor_beam_peak(const parameters *p, double speed, double time_constant)
 
 // --- the study ------------------------------------------------------------------------------
 
-status sensor_study_compute(const scenario *s, sensor_study *study, fault *f)
+status sensor_study_compute(const scenario *s, run_monitor *monitor, sensor_study *study, fault *f)
 {
     static const int links[SENSOR_LENGTHS] = {2, 3, 5, 8, 12, 16, 24, 32};
     assert(s != NULL && study != NULL);
+    *study = (sensor_study){0};
     for (int i = 0; i < SENSOR_LENGTHS; i++) {
         sensor_view *view = &study->views[i];
-        status code = sensor_view_compute(s, links[i], view, f);
+        status code = sensor_view_compute(s, links[i], monitor, view, f);
         if (code != STATUS_OK) {
             return code;
         }
+        study->count++;
+        run_monitor_count(monitor);
 
         // the chain
         study->links[i] = links[i];

@@ -8,6 +8,7 @@
 // which is the same equation for f plus p times Dirac's delta.
 #pragma once
 
+#include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 
 // The lag, and the largest value it had.
@@ -46,8 +47,10 @@ typedef struct sensor_view {
 
 // Runs the scenario with `links` links until SENSOR_WINDOW after first contact, by the event method
 // with steps that resolve the chain. STATUS_BAD_SCENARIO for the printed model, a script, or if
-// there is no contact within run.duration.
-status sensor_view_compute(const scenario *s, int links, sensor_view *view, fault *f);
+// there is no contact within run.duration. STATUS_STOPPED if `monitor` (NULL: nobody looks on)
+// asked for it.
+status sensor_view_compute(const scenario *s, int links, run_monitor *monitor, sensor_view *view,
+                           fault *f);
 
 // The limit of many links. The tip of an Euler-Bernoulli beam that is stopped from the speed v at
 // t = 0 presses, as long as nothing has come back from its other end, with K / sqrt(t),
@@ -64,6 +67,7 @@ enum { SENSOR_LENGTHS = 8 }; // numbers of links of the study: 2 to 32
 // What is computed for each number of links, and what theory says of a beam that touches with the
 // same speed.
 typedef struct sensor_study {
+    int count; // numbers of links that were computed, the first ones
     sensor_view views[SENSOR_LENGTHS];
     // columns of `views`, as curves need them
     double links[SENSOR_LENGTHS], impulse[SENSOR_LENGTHS], peak[SENSOR_LENGTHS];
@@ -73,5 +77,6 @@ typedef struct sensor_study {
     double beam_peak[SENSOR_CONSTANTS][SENSOR_LENGTHS]; // [N]
 } sensor_study;
 
-// sensor_view_compute for every number of links. Fails as that does.
-status sensor_study_compute(const scenario *s, sensor_study *study, fault *f);
+// sensor_view_compute for every number of links. Fails as that does; the study then has those
+// before.
+status sensor_study_compute(const scenario *s, run_monitor *monitor, sensor_study *study, fault *f);

@@ -6,6 +6,7 @@
 #include "src/base/numbers.h"
 #include "src/study/calibrate.h"
 #include "src/study/sweep.h"
+#include "ui/commands/run_progress.h"
 
 #define VOLTAGE_PATH "control.approach_voltage"
 enum { DEFAULT_PRESSES = 8 };
@@ -102,7 +103,7 @@ static int write_scenario(const char *path, const scenario *s, const char *table
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
-static int report(const arguments *a, const scenario *s, const calibration *c)
+static int report(const arguments *a, const scenario *s, const calibration *c, bool whole)
 {
     char table[PARAMETER_TEXT_SIZE];
     fault f = {0};
@@ -117,14 +118,14 @@ static int report(const arguments *a, const scenario *s, const calibration *c)
                         c->count, PARAMETER_TEXT_SIZE - 1);
     }
 
-    // every result is tried, one that fails stops no other
+    // every result is tried, one that fails stops no other; the scenario wants the whole table
     if (a->json != NULL && write_json(a->json, calibration_json(c, s, table)) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
     if (a->csv != NULL && write_table(a->csv, c, s) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
-    if (a->output != NULL && write_scenario(a->output, s, table) != EXIT_DONE) {
+    if (a->output != NULL && whole && write_scenario(a->output, s, table) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
 
@@ -143,8 +144,16 @@ static int press_and_report(const arguments *a, scenario *s)
     if (result != EXIT_DONE) {
         return result;
     }
-    return calibrate(s, commands, count, &c, &f) == STATUS_OK ? report(a, s, &c)
-                                                              : complain_fault(&f);
+
+    status code = calibrate(s, commands, count, work_begin(a, "presses", count), &c, &f);
+    work_end();
+    if (code == STATUS_STOPPED) {
+        if (c.count > 0) {
+            report(a, s, &c, false);
+        }
+        work_leave(c.count, count, "presses", "their table is that of these commands only");
+    }
+    return code == STATUS_OK ? report(a, s, &c, true) : complain_fault(&f);
 }
 
 static int calibrate_command_run(const arguments *a)
@@ -176,7 +185,9 @@ const command calibrate_command = {
         "Presses the arm against the wall with constant commands, eight of them or those of\n"
         "--vary " VOLTAGE_PATH "=a:b:n, and computes K2 = f l / (2 (theta - theta_imp)) from "
         "what force\nsensor and encoder read at rest. -o FILE.yaml writes the scenario with the "
-        "table in\ncontrol.k2_table, which every law then goes by.\n",
+        "table in\ncontrol.k2_table, which every law then goes by. ^C ends it with what was "
+        "measured "
+        "until then (exit\nstatus 130); -o writes only the whole table.\n",
     .least = 1,
     .most = 1,
     .takes_scenarios = true,

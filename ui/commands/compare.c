@@ -7,7 +7,9 @@
 
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
+#include "ui/commands/run_progress.h"
 
+#define PIECES "runs"
 enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
 _Static_assert((int)SWEEP_MOST_AXES <= (int)COMPARE_MOST_VARIED, "a row has room for every axis");
 
@@ -20,6 +22,7 @@ typedef struct comparison {
     int combinations;
     compare_row *rows;    // operands of each combination
     compare_row *against; // one of each combination
+    int done;             // rows that are computed, the first ones
     int varied[COMPARE_MOST_VARIED];
     bool failed;
 } comparison;
@@ -97,42 +100,53 @@ static int open_all(comparison *c, const arguments *a)
 }
 
 // The row of scenario i under one combination. A run that fails keeps its row and is complained
-// about.
-static compare_row run_one(comparison *c, int i, int combination)
+// about; one that is stopped has none, and then false is returned.
+static bool run_one(comparison *c, int i, int combination, run_monitor *monitor, compare_row *row)
 {
+    const run_options options = {.monitor = monitor};
     run_result result;
-
     fault f = {0};
     scenario s = c->scenarios[i];
-    compare_row row = {0};
     if (c->swept > 0 && sweep_scenario(&c->sweeps[i], (size_t)combination, &s, &f) != STATUS_OK) {
         complain_fault(&f); // values that do not go together were refused before
         c->failed = true;
     }
 
-    if (run_scenario(&s, false, &result) != STATUS_OK) {
+    status code = run_scenario_with(&s, &options, &result);
+    if (code == STATUS_STOPPED) {
+        run_finish(&result);
+        return false;
+    }
+    if (code != STATUS_OK) {
         complain("%s failed: %s", s.name, result.summary.message);
         c->failed = true;
     }
 
-    row = compare_row_of(&s, &result);
+    *row = compare_row_of(&s, &result);
     for (int k = 0; c->swept > 0 && k < c->sweeps[i].axis_count; k++) {
-        row.varied[k] = sweep_value(&c->sweeps[i], (size_t)combination, k);
+        row->varied[k] = sweep_value(&c->sweeps[i], (size_t)combination, k);
     }
     run_finish(&result);
-    return row;
+    run_monitor_count(monitor);
+    return true;
 }
 
-static void run_all(comparison *c)
+// Combination by combination, what the rows are held against first. False if it was stopped: then
+// c->done rows are there.
+static bool run_all(comparison *c, run_monitor *monitor)
 {
-    for (int combination = 0; combination < c->combinations; combination++) {
-        for (int i = 0; i < c->operands; i++) {
-            c->rows[combination * c->operands + i] = run_one(c, i, combination);
+    for (int k = 0; k < c->combinations; k++) {
+        if (c->opened > c->operands && !run_one(c, c->operands, k, monitor, &c->against[k])) {
+            return false;
         }
-        if (c->opened > c->operands) {
-            c->against[combination] = run_one(c, c->operands, combination);
+        for (int i = 0; i < c->operands; i++) {
+            if (!run_one(c, i, k, monitor, &c->rows[c->done])) {
+                return false;
+            }
+            c->done++;
         }
     }
+    return true;
 }
 
 static int write_table(const char *path, const compare_table *t,
@@ -152,9 +166,9 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
 {
     int result = c->failed ? EXIT_FAILED : EXIT_DONE;
 
-    // the whole comparison as one table
+    // what there is as one table
     t->rows = c->rows;
-    t->count = c->combinations * c->operands;
+    t->count = c->done;
     t->group = c->operands;
     t->varied = c->varied;
     t->varied_count = a->varies.count;
@@ -172,7 +186,7 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     }
 
     // and for people
-    if (summary_wanted(a)) {
+    if (summary_wanted(a) && t->count > 0) {
         compare_text(stdout, t);
         if (t->against != NULL) {
             say("\n* differs from %s by more than %g %%\n", t->against->scenario,
@@ -198,18 +212,31 @@ static int plot_runs(const arguments *a, const comparison *c)
     }
 
     // each runs once more, this time recorded
+    run_monitor *monitor = work_begin(a, PIECES, c->opened);
+    const run_options options = {.keep_trace = true, .monitor = monitor};
     for (; count < c->opened; count++) {
         // one that fails shows what it has
-        run_scenario(&c->scenarios[count], true, &results[count]);
+        run_scenario_with(&c->scenarios[count], &options, &results[count]);
+        run_monitor_count(monitor);
         shown[count] = (trace_run){.scenario = &c->scenarios[count],
                                    .result = &results[count],
                                    .name = c->scenarios[count].name,
                                    .rank = count + 1};
     }
 
-    code = publish_runs(a, "Runs compared", shown, count);
+    work_end();
+    const bool stopped = run_monitor_stops(monitor);
+    if (stopped) {
+        complain("stopped: the table is whole, the picture is not drawn");
+    } else {
+        code = publish_runs(a, "Runs compared", shown, count);
+    }
+
     for (int i = 0; i < count; i++) {
         run_finish(&results[i]);
+    }
+    if (stopped) {
+        leave_interrupted();
     }
     return code;
 }
@@ -227,8 +254,16 @@ static int compare(const arguments *a)
 
     int result = open_all(&c, a);
     if (result == EXIT_DONE) {
-        run_all(&c);
+        const int runs = c.combinations * c.opened;
+        run_monitor *monitor = work_begin(a, PIECES, runs);
+        const bool whole = run_all(&c, monitor);
+        work_end();
+
+        // what there is, and then the end if that is not all
         result = write_results(a, &c, &table);
+        if (!whole) {
+            work_leave(monitor->pieces, runs, PIECES, "the table is that of these");
+        }
         result = a->plot != NULL ? worse(result, plot_runs(a, &c)) : result;
     }
     finish(&c);
@@ -279,7 +314,8 @@ const command compare_command = {
         "and best time are\nwhat a controller could have made of the first impact if it knew "
         "the whole state, pressing no\nharder than the run did; from start is when it has settled, "
         "and least time what no controller\ntakes less than for that. --set holds for all of them; "
-        "--vary, as sweep takes it, runs each of\nthem for every combination of values.\n",
+        "--vary, as sweep takes it, runs each of\nthem for every combination of values. ^C ends it "
+        "with the rows that are done (exit status 130).\n",
     .least = 1,
     .most = MOST_SCENARIOS,
     .takes_scenarios = true,

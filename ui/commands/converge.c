@@ -8,6 +8,9 @@
 #include "src/base/version.h"
 #include "src/study/convergence.h"
 #include "ui/commands/pictures.h"
+#include "ui/commands/run_progress.h"
+
+#define PIECES "runs"
 
 static json_t *panel_object(const scenario *s, const convergence_panel *panel)
 {
@@ -89,15 +92,18 @@ typedef struct three_runs {
     run_result result[PANEL_STEPS];
 } three_runs;
 
-static status run_all(const scenario *s, const convergence_panel *panel, three_runs *r, fault *f)
+static status run_all(const scenario *s, const convergence_panel *panel, run_monitor *monitor,
+                      three_runs *r, fault *f)
 {
+    const run_options options = {.keep_trace = true, .monitor = monitor};
     for (int i = 0; i < PANEL_STEPS; i++) {
         r->scenario[i] = *s;
         r->scenario[i].parameters.method.step = panel->step[i];
-        status code = run_scenario(&r->scenario[i], true, &r->result[i]);
+        status code = run_scenario_with(&r->scenario[i], &options, &r->result[i]);
         if (code != STATUS_OK) {
             return summary_fault(&r->result[i].summary, f);
         }
+        run_monitor_count(monitor);
     }
     return STATUS_OK;
 }
@@ -199,12 +205,19 @@ static int plot(const arguments *a, const scenario *s, const convergence_panel *
         return complain_fault(&f);
     }
 
+    run_monitor *monitor = work_begin(a, PIECES, PANEL_STEPS);
+    status ran = run_all(s, panel, monitor, r, &f);
+    work_end();
+
     // runs that came about are released whether all did or not
-    int code = run_all(s, panel, r, &f) == STATUS_OK ? draw_runs(a, r) : complain_fault(&f);
+    int code = ran == STATUS_OK ? draw_runs(a, r) : complain_fault(&f);
     for (int i = 0; i < PANEL_STEPS; i++) {
         run_finish(&r->result[i]);
     }
     free(r);
+    if (ran == STATUS_STOPPED) {
+        leave_interrupted();
+    }
     return code;
 }
 
@@ -214,7 +227,10 @@ static int compute_and_report(const arguments *a, scenario *s)
     fault f = {0};
     int result = EXIT_DONE;
 
-    if (convergence_compute(s, &panel, &f) != STATUS_OK) {
+    run_monitor *monitor = work_begin(a, PIECES, PANEL_STEPS);
+    status code = convergence_compute(s, monitor, &panel, &f);
+    work_end();
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
         return complain_fault(&f);
     }
 
@@ -222,10 +238,13 @@ static int compute_and_report(const arguments *a, scenario *s)
         result = write_json(a->json, panel_object(s, &panel));
     }
 
-    if (summary_wanted(a)) {
+    if (summary_wanted(a) && panel.done > 0) {
         print_panel(s, &panel);
     }
 
+    if (code == STATUS_STOPPED) {
+        work_leave(panel.done, PANEL_STEPS, PIECES, "the table is that of these steps");
+    }
     if (result == EXIT_DONE && a->plot != NULL) {
         result = plot(a, s, &panel);
     }
@@ -251,7 +270,9 @@ const command converge_command = {
     .group = GROUP_MANY_RUNS,
     .operands = "SCENARIO",
     .summary = "Run at the steps h, h/2, h/4 and tell the observed orders",
-    .help = "h is the scenario's method.step. --plot draws the contact force at the three steps.\n",
+    .help =
+        "h is the scenario's method.step. --plot draws the contact force at the three steps. ^C "
+        "ends it with the\nsteps that are done (exit status 130).\n",
     .least = 1,
     .most = 1,
     .takes_scenarios = true,

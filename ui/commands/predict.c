@@ -6,6 +6,7 @@
 #include "src/base/numbers.h"
 #include "src/run/first_contact.h"
 #include "ui/commands/pictures.h"
+#include "ui/commands/run_progress.h"
 
 // Commands of --then.
 enum { MOST_COMMANDS = 64 };
@@ -224,12 +225,17 @@ static int predict_and_report(const arguments *a, scenario *s)
 {
     run_result result;
     int code = EXIT_FAILED;
-    if (run_scenario(s, true, &result) == STATUS_OK) {
+    status ran = run_with_progress(a, s, true, &result);
+    if (ran == STATUS_OK) {
         code = report(a, s, &result);
     } else {
         complain("%s failed: %s", s->name, result.summary.message);
     }
+
     run_finish(&result);
+    if (ran == STATUS_STOPPED) {
+        leave_interrupted();
+    }
     return code;
 }
 
@@ -253,7 +259,9 @@ const command predict_command = {
     .group = GROUP_ONE_RUN,
     .operands = "SCENARIO",
     .summary = "Predict the peak force from the instant before contact, beside what then happens",
-    .help = "",
+    .help =
+        "On a terminal a run of more than a second tells how far it is; ^C ends it (exit status "
+        "130), and nothing\nis predicted.\n",
     .least = 1,
     .most = 1,
     .takes_scenarios = true,

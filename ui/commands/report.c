@@ -1,6 +1,9 @@
 #include "ui/commands/command.h"
 
 #include "render/figures/report.h"
+#include "ui/commands/run_progress.h"
+
+#define PIECES         "steps"
 
 #define DEFAULT_FOLDER "report"
 
@@ -8,7 +11,15 @@ static int report(const arguments *a)
 {
     fault f = {0};
     const char *folder = a->output ? a->output : DEFAULT_FOLDER;
-    if (report_write(folder, a->operands, a->operand_count, &f) != STATUS_OK) {
+    const int steps = 2 * report_length(a->operand_count); // computed, then drawn
+    run_monitor *monitor = work_begin(a, PIECES, steps);
+    status code = report_write(folder, a->operands, a->operand_count, monitor, &f);
+    work_end();
+
+    if (code == STATUS_STOPPED) {
+        work_leave(monitor->pieces, steps, PIECES, "the report is as it was before");
+    }
+    if (code != STATUS_OK) {
         return complain_fault(&f);
     }
     if (!a->quiet) {
@@ -35,7 +46,7 @@ const command report_command = {
     .help = "Of the scenarios and recipes named, or without any of the whole thesis. Into the "
             "folder 'report' unless -o says otherwise. The page needs no other file and "
             "no network. Under\neach item stand its scenario, its model and the command that "
-            "makes it again.\n",
+            "makes it again.\n^C ends it and leaves the report of before (exit status 130).\n",
     .most = 64,
     .takes_scenarios = true,
     .options = {&options, &quiet_options},

@@ -160,7 +160,7 @@ static int run_and_report(const arguments *a, scenario *s)
 {
     run_result result;
     bool keep_trace = a->csv != NULL || a->plot != NULL || a->scene != NULL;
-    status code = run_with_progress(s, keep_trace, &result);
+    status code = run_with_progress(a, s, keep_trace, &result);
 
     // results are written of a run that failed, too
     int exit_status = write_results(a, s, &result);
@@ -190,7 +190,7 @@ static int run_and_report(const arguments *a, scenario *s)
 
     run_finish(&result);
     if (code == STATUS_STOPPED) {
-        run_progress_leave();
+        leave_interrupted();
     }
     return exit_status;
 }
@@ -244,8 +244,8 @@ const command run_command = {
     .summary = "Simulate a scenario and sum it up",
     .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
             "checked unless\n--set changed something. A run that fails still writes what it has "
-            "until then, and so does one that is ended by an interrupt while standard error is a "
-            "terminal, where a run\nof more than a second tells how far it is.\nThe scene shows "
+            "until then, and so does one that ^C ends (exit status 130). On a terminal a run of "
+            "more than a second\ntells how far it is.\nThe scene shows "
             "the arm at every --at, or from the start to the peak "
             "force of the first pulse.\n",
     .least = 1,

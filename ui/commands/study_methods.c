@@ -5,6 +5,7 @@
 
 #include "src/base/json.h"
 #include "src/study/convergence.h"
+#include "ui/commands/run_progress.h"
 
 static json_t *methods_object(const scenario *s, const method_study *study)
 {
@@ -144,7 +145,16 @@ int study_of_methods(const arguments *a, scenario *s)
 {
     method_study study;
     fault f = {0};
-    if (method_study_compute(s, &study, &f) != STATUS_OK) {
+    run_monitor *monitor = work_begin(a, "runs", STUDY_RUNS);
+    status code = method_study_compute(s, monitor, &study, &f);
+    work_end();
+
+    // without the reference there is nothing to show
+    const int done = monitor->pieces;
+    if (code == STATUS_STOPPED && done == 0) {
+        work_leave(0, STUDY_RUNS, "runs", "there is nothing to show");
+    }
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
         return complain_fault(&f);
     }
 
@@ -153,6 +163,9 @@ int study_of_methods(const arguments *a, scenario *s)
     }
 
     int result = a->json != NULL ? write_json(a->json, methods_object(s, &study)) : EXIT_DONE;
+    if (code == STATUS_STOPPED) {
+        work_leave(done, STUDY_RUNS, "runs", "the tables hold these");
+    }
     if (result == EXIT_DONE && a->plot != NULL) {
         result = plot_methods(a, s, &study);
     }

@@ -3,13 +3,16 @@
 
 #include "src/base/json.h"
 #include "src/study/sensor_view.h"
+#include "ui/commands/run_progress.h"
+
+#define PIECES "numbers of links"
 
 static json_t *sensor_object(const scenario *s, const sensor_study *study)
 {
     json_t *object = json_object(), *rows = json_array();
     json_object_set_new(object, "scenario", json_text(s->name));
 
-    for (int i = 0; i < SENSOR_LENGTHS; i++) {
+    for (int i = 0; i < study->count; i++) {
         const sensor_view *view = &study->views[i];
         json_t *line = json_object(), *sensors = json_array();
 
@@ -57,7 +60,7 @@ static void print_sensor(const scenario *s, const sensor_study *study)
     }
     printf("\n");
 
-    for (int i = 0; i < SENSOR_LENGTHS; i++) {
+    for (int i = 0; i < study->count; i++) {
         const sensor_view *view = &study->views[i];
         printf("%-6d  %-9.5f  %-8.4g  %-7g  %-9.5f ", view->links, view->impulse, view->peak,
                view->impacts, view->momentum);
@@ -68,7 +71,10 @@ static void print_sensor(const scenario *s, const sensor_study *study)
         printf("\n");
     }
 
-    // the beam's limit below the links
+    // the beam's limit below the links, from the speed of the longest
+    if (study->count < SENSOR_LENGTHS) {
+        return;
+    }
     printf("%-6s  %-9s  %-8s  %-7s  %-9.5f ", "beam", "0", "infinite", "",
            study->beam_momentum[SENSOR_LENGTHS - 1]);
     for (int k = 0; k < SENSOR_CONSTANTS; k++) {
@@ -152,15 +158,21 @@ int study_of_sensor(const arguments *a, scenario *s)
 {
     sensor_study study;
     fault f = {0};
-    if (sensor_study_compute(s, &study, &f) != STATUS_OK) {
+    run_monitor *monitor = work_begin(a, PIECES, SENSOR_LENGTHS);
+    status code = sensor_study_compute(s, monitor, &study, &f);
+    work_end();
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
         return complain_fault(&f);
     }
 
-    if (summary_wanted(a)) {
+    if (summary_wanted(a) && study.count > 0) {
         print_sensor(s, &study);
     }
 
     int result = a->json != NULL ? write_json(a->json, sensor_object(s, &study)) : EXIT_DONE;
+    if (code == STATUS_STOPPED) {
+        work_leave(study.count, SENSOR_LENGTHS, PIECES, "the table is that of these");
+    }
     if (result == EXIT_DONE && a->plot != NULL) {
         result = plot_sensor(a, s, &study);
     }

@@ -1,0 +1,99 @@
+#!/bin/bash
+# ^C while a command computes: it ends by the interrupt (status 130 in a shell), says how far it was,
+# keeps what was computed, and never leaves half a file. On a terminal it tells how far it is.
+# $1: the program
+set -u
+program=$(readlink -f "$1")
+export LC_ALL=C.UTF-8
+folder=$(mktemp -d /tmp/impactlab-interrupts-XXXXXX)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failures=0
+
+fail() {
+    echo "FAILED: $*: $(head -c 400 err)"
+    failures=$((failures + 1))
+}
+
+# runs that would take hours: nothing but the interrupt ends them
+cat >endless.yaml <<'END'
+title: Free and nearly for ever
+motor: {voltage: 0.001 V}
+wall: {angle: 3 rad}
+arm: {links: 24, damping_ratio: 0}
+run: {duration: 90000 s}
+END
+cat >brief.yaml <<'END'
+title: Brief
+motor: {voltage: 1 V}
+run: {duration: 0.4 s}
+END
+
+# interrupted ARGUMENT...: begins the command in a job of its own, whose signals nobody ignores, and
+# interrupts it once it computes, which is when it has used some time of the processor
+interrupted() {
+    local job status ticks=0 i
+    (set -m; exec "$program" "$@" >out 2>err </dev/null) &
+    job=$!
+    for ((i = 0; i < 6000 && ticks < 15; i++)); do
+        sleep 0.02
+        ticks=$(awk '{ print $14 + $15 }' "/proc/$job/stat" 2>/dev/null) || break
+    done
+    kill -INT $job 2>/dev/null || fail "impactlab $*: ended by itself"
+    wait $job
+    status=$?
+    [ $status = 130 ] || fail "impactlab $*: status $status after an interrupt"
+    [ -s err ] || fail "impactlab $*: no sentence after an interrupt"
+    [ -z "$(find . -name '*.part')" ] || fail "impactlab $*: a temporary stays"
+}
+
+says() {
+    grep -qF -- "$2" "$1" || fail "no '$2' in $1"
+}
+
+# the rows before it are kept
+interrupted compare brief.yaml endless.yaml --csv rows.csv --json rows.json
+says err "1 of 2 runs"
+says out "brief.yaml"
+[ "$(wc -l <rows.csv)" = 2 ] && grep -q '^brief.yaml,none,ok,' rows.csv || fail "the row that was done is not kept"
+grep -q '"scenario": "brief.yaml"' rows.json || fail "the object that was done is not kept"
+
+interrupted converge endless.yaml
+says err "0 of 3 runs"
+interrupted study sensor endless.yaml
+says err "0 of 8 numbers of links"
+interrupted study methods endless.yaml
+says err "0 of 40 runs"
+interrupted predict endless.yaml
+says err "stopped before its end"
+interrupted run endless.yaml --csv trace.csv
+says err "stopped before its end"
+[ "$(wc -l <trace.csv)" -gt 100 ] || fail "rows of a run that was stopped are not kept"
+
+# a calibration's table is that of the commands it had; a scenario wants the whole table
+interrupted calibrate compare/hybrid --set run.duration=90000 --csv presses.csv -o calibrated.yaml
+says err "of 8 presses"
+[ ! -e calibrated.yaml ] || fail "a part of a calibration passes for the whole"
+
+# a report of before stands
+mkdir report
+echo old >report/report.html
+interrupted report endless.yaml -o report
+says err "0 of 2 steps"
+[ "$(cat report/report.html)" = old ] && [ ! -e report/report.pdf ] || fail "a stopped report replaces the one before"
+
+# what ignores the interrupt is not ended by it: the command is done
+bash -c 'trap "" INT; kill -INT $$; "$@" & kill -INT $!; wait $!' ignoring \
+    "$program" compare brief.yaml >out 2>err </dev/null || fail "an ignored interrupt ended the program"
+says out "brief.yaml"
+
+# --- on a terminal: notes how far it is, which are gone at the end
+if command -v script >/dev/null; then
+    timeout -s INT 60 script -qec "timeout -s INT 2.5 $program compare brief.yaml endless.yaml" seen >out 2>err </dev/null
+    tr '\r' '\n' <seen | grep -q '^impactlab: 1 of 2 runs (^C stops)' || fail "no note on a terminal"
+    timeout -s INT 60 script -qec "timeout -s INT 2.5 $program compare brief.yaml endless.yaml --quiet" seen >out 2>err </dev/null
+    grep -q '(^C stops)' seen && fail "a note in spite of --quiet"
+fi
+
+[ $failures = 0 ] && echo "all well"
+[ $failures = 0 ]
