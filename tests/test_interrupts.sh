@@ -82,6 +82,17 @@ interrupted report endless.yaml -o report
 says err "0 of 2 steps"
 [ "$(cat report/report.html)" = old ] && [ ! -e report/report.pdf ] || fail "a stopped report replaces the one before"
 
+# a database that is deleted while a sweep adds to it: said, and nothing passes for its rows
+rm -f gone.sqlite
+"$program" sweep brief.yaml --vary motor.voltage=1:2:50000 --jobs 1 --db gone.sqlite --quiet --csv gone.csv 2>err &
+job=$!
+until [ -s gone.sqlite ]; do sleep 0.05; done
+rm gone.sqlite
+wait $job
+[ $? = 1 ] || fail "a sweep whose database was deleted does not fail"
+says err "was deleted, moved or replaced"
+[ ! -e gone.csv ] && [ ! -e gone.sqlite ] || fail "a sweep whose database was deleted leaves results"
+
 # what ignores the interrupt is not ended by it: the command is done
 bash -c 'trap "" INT; kill -INT $$; "$@" & kill -INT $!; wait $!' ignoring \
     "$program" compare brief.yaml >out 2>err </dev/null || fail "an ignored interrupt ended the program"

@@ -22,6 +22,12 @@ status database_fault(const sweep_store *store, fault *f)
     if (code == SQLITE_NOTADB) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path);
     }
+    if (sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED) {
+        return fault_set(f, STATUS_CANNOT_WRITE,
+                         "'%s' was deleted, moved or replaced while runs were added to it; those "
+                         "since then are lost",
+                         path);
+    }
     return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path, why);
 }
 
