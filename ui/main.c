@@ -125,13 +125,22 @@ static void end_without_memory(const char *reason)
     _exit(EXIT_FAILED);
 }
 
-// A crash, as of a font library that finds no memory: the same, and a sentence.
+// A crash: no half-written file, and a sentence. In the font libraries it is for want of memory,
+// which is no fault of ours and ends the program as everywhere else.
 static void end_crashed(int number)
 {
-    static const char sentence[] = "impactlab: crashed, for want of memory in a library or by a "
-                                   "fault of its own; no half-written file is left\n";
-    ssize_t ignored = write(STDERR_FILENO, sentence, sizeof sentence - 1);
+    static const char fonts[] =
+        "impactlab: the font library crashed, as it does where it finds no memory\n";
+    static const char own[] = "impactlab: crashed, for want of memory in a library or by a "
+                              "fault of its own; no half-written file is left\n";
+    const bool in_fonts = text_in_fonts();
+    ssize_t ignored = in_fonts ? write(STDERR_FILENO, fonts, sizeof fonts - 1)
+                               : write(STDERR_FILENO, own, sizeof own - 1);
     (void)ignored;
+    if (in_fonts) {
+        whole_file_remove_unfinished();
+        _exit(EXIT_FAILED);
+    }
     end_cleanly(number);
 }
 

@@ -3,14 +3,27 @@
 #include <assert.h>
 #include <fontconfig/fontconfig.h>
 #include <math.h>
+#include <signal.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "render/page/page.h"
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 
 #define INDEX_SIZE 0.72 // of its line's letters, but never too small to read
+
+// For text_in_fonts: how deep this thread is in fontconfig or Pango, and whether Pango has begun to
+// look for fonts, which it does on threads of its own.
+static _Thread_local volatile sig_atomic_t in_fonts;
+static atomic_bool has_context;
+
+bool text_in_fonts(void)
+{
+    return in_fonts > 0 || (atomic_load(&has_context) && gettid() != getpid());
+}
 
 static bool family_matches(const char *wanted_family)
 {
@@ -44,8 +57,10 @@ status text_check_font(fault *f)
     enum { THERE = 1, MISSING };
     static gsize known;
     if (g_once_init_enter(&known)) {
+        in_fonts++;
         FcFontSet *fonts = FcInit() ? FcConfigGetFonts(NULL, FcSetSystem) : NULL;
         bool there = fonts != NULL && fonts->nfont > 0 && family_matches(TEXT_FAMILY);
+        in_fonts--;
         g_once_init_leave(&known, there ? THERE : MISSING);
     }
 
@@ -61,7 +76,10 @@ status text_check_font(fault *f)
 status text_check_family(const char *family, fault *f)
 {
     assert(family != NULL);
-    if (!FcInit() || !family_matches(family)) {
+    in_fonts++;
+    const bool there = FcInit() && family_matches(family);
+    in_fonts--;
+    if (!there) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family);
     }
     return STATUS_OK;
@@ -69,6 +87,8 @@ status text_check_family(const char *family, fault *f)
 
 PangoContext *text_context_create(void)
 {
+    in_fonts++;
+    atomic_store(&has_context, true);
     PangoContext *context = pango_font_map_create_context(pango_cairo_font_map_get_default());
     cairo_font_options_t *options = cairo_font_options_create();
     cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
@@ -78,6 +98,7 @@ PangoContext *text_context_create(void)
     cairo_font_options_destroy(options);
     pango_context_set_round_glyph_positions(context, FALSE);
     pango_cairo_context_set_resolution(context, 72);
+    in_fonts--;
     return context;
 }
 
@@ -182,6 +203,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     static const PangoAlignment alignments[] = {PANGO_ALIGN_LEFT, PANGO_ALIGN_CENTER,
                                                 PANGO_ALIGN_RIGHT};
 
+    in_fonts++;
     PangoLayout *layout = pango_layout_new(context);
     PangoFontDescription *font = pango_font_description_new();
     pango_font_description_set_family(font, t->family != NULL ? t->family : TEXT_FAMILY);
@@ -205,6 +227,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
         pango_layout_set_width(layout, (int)(t->width * PANGO_SCALE));
         pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);
     }
+    in_fonts--;
     return layout;
 }
 
@@ -212,8 +235,10 @@ void text_measure(PangoContext *context, const text_block *t, double *width, dou
 {
     assert(context != NULL && t != NULL && t->markup != NULL);
     PangoRectangle logical;
+    in_fonts++;
     PangoLayout *layout = text_layout_create(context, t);
     pango_layout_get_extents(layout, NULL, &logical);
+    in_fonts--;
     *width = (double)logical.width / PANGO_SCALE;
     *height = (double)logical.height / PANGO_SCALE;
     g_object_unref(layout);
@@ -223,6 +248,7 @@ double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
 {
     assert(cr != NULL && context != NULL && t != NULL && t->markup != NULL);
     PangoRectangle logical;
+    in_fonts++;
     // the context has to know whether cr is rotated
     pango_cairo_update_context(cr, context);
     PangoLayout *layout = text_layout_create(context, t);
@@ -231,6 +257,7 @@ double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
     cairo_rel_move_to(cr, -(double)logical.x / PANGO_SCALE, 0);
     pango_cairo_show_layout(cr, layout);
     g_object_unref(layout);
+    in_fonts--;
     return (double)logical.width / PANGO_SCALE;
 }
 

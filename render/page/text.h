@@ -80,6 +80,10 @@ void text_append(GString *text, const char *format, ...) __attribute__((format(p
 // its reason and must not return. Otherwise GLib ends the program by a signal.
 void text_when_giving_up(void (*end)(const char *reason));
 
+// Whether this thread is at work in fontconfig or Pango, which crash where they find no memory, or
+// is not the program's first while these are in use. For a handler of signals.
+bool text_in_fonts(void);
+
 // Gives back what Pango and cairo keep for later figures (for leak checkers). No figure may be in
 // work.
 void text_release(void);
