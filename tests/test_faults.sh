@@ -8,6 +8,7 @@ set -u
 program=$(readlink -f "$1")
 preload=$(readlink -f "$2")
 most=${3:-60}
+note_count=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/note_count
 export LC_ALL=C.UTF-8
 folder=$(mktemp -d /tmp/impactlab-faults-XXXXXX)
 trap 'rm -rf "$folder"' EXIT
@@ -97,17 +98,25 @@ try() {
     done
 }
 
+# runs the program and kills it at a random instant of the time it takes (in thousandths of a second)
+kill_within() {
+    local most=$1 instant
+    shift
+    instant=$((RANDOM % most))
+    "$program" "$@" >/dev/null 2>&1 </dev/null &
+    sleep "$((instant / 1000)).$(printf %03d $((instant % 1000)))"
+    kill -9 $! 2>/dev/null
+    wait $! 2>/dev/null
+    injected=$((injected + 1))
+}
+
 # killed at random instants: the sweep goes on to the same rows, files are the old or the new ones
 kill_at_random() {
     local result=$1 i
     shift
     for ((i = 0; i < 12; i++)); do
         [ "${result##*.}" = sqlite ] || echo old >"$result"
-        "$program" "$@" >/dev/null 2>&1 </dev/null &
-        sleep "0.0$((RANDOM % 100))"
-        kill -9 $! 2>/dev/null
-        wait $! 2>/dev/null
-        injected=$((injected + 1))
+        kill_within 100 "$@"
         if [ "${result##*.}" != sqlite ] && [ "$(cat "$result")" != old ]; then
             essence "$result" | cmp -s - "expected-$result" || fail "killed: half a result of: $*"
         fi
@@ -117,6 +126,38 @@ kill_at_random() {
     [ -z "$(find . -name '*.part')" ] || fail "killed: the next run leaves a temporary of: $*"
 }
 
+# kill_folder FOLDER ARGUMENT...: the same for a command that fills a folder: each file is that of
+# before or the whole new one, and the next run leaves nothing but whole ones
+kill_folder() {
+    local into=$1 i begun took file
+    shift
+    rm -rf "${into:?}"/* whole
+    begun=$(date +%s%N)
+    "$program" "$@" >out 2>err </dev/null || fail "$*: $(cat err)"
+    took=$((($(date +%s%N) - begun) / 1000000 + 1))
+    cp -r "$into" whole
+
+    for ((i = 0; i < kills; i++)); do
+        find "$into" -type f -name '[!.]*' | while read -r file; do echo old >"$file"; done
+        [ "$into" != frames ] || rm -f frames/*
+        kill_within "$took" "$@"
+        while read -r file; do
+            [ "$(head -c 4 "$file" | tr -d "\0")" = old ] || cmp -s "$file" "whole/${file#"$into"/}" ||
+                fail "killed: half a file $file of: $*"
+        done < <(find "$into" -type f -name '[!.]*')
+    done
+
+    # an encoder whose program was killed ends by itself, at the end of its input; frames of two films
+    # would mix, so that is refused
+    for ((i = 0; i < 20; i++)); do
+        [ "$into" != frames ] || rm -f frames/*
+        "$program" "$@" >out 2>err </dev/null || fail "killed: cannot be repeated: $*: $(cat err)"
+        ! diff -r "$into" whole >err || return
+        sleep 0.2
+    done
+    fail "killed: other files afterwards of: $*: $(cat err)"
+}
+
 try r.json run hit.yaml --quiet --json r.json
 try r.csv run hit.yaml --quiet --csv r.csv
 try s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
@@ -124,6 +165,18 @@ try p.svg run hit.yaml --quiet --plot p.svg
 try c.json compare hit.yaml --columns peak_force_N --quiet --json c.json
 kill_at_random r.csv run hit.yaml --quiet --csv r.csv
 kill_at_random s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
+kills=$(((most + 3) / 4))
+kill_folder figures figures 3.4 T3.1 --quiet -o figures
+kill_folder frames animate hit.yaml --size 320x240 --fps 10 --seconds 1 --gl cairo --quiet -o frames
+kill_folder report report hit.yaml --quiet -o report
+mkdir films
+! command -v ffmpeg >/dev/null ||
+    kill_folder films animate hit.yaml --size 320x240 --fps 10 --seconds 1 --gl cairo --quiet -o films/a.mp4
+export XDG_CONFIG_HOME=$folder/settings
+kill_folder settings lab hit.yaml --size 80x24 --keys ':theme dark<Enter>:remember<Enter>'
 
 echo "$injected faults injected, $failures broken promises"
+times >times
+"$note_count" faults "$injected" \
+    "$(awk 'NR == 2 { gsub(/[ms]/, " "); printf "%.0f", 60 * $1 + $2 + 60 * $3 + $4 }' times)" "$failures"
 [ $failures = 0 ]

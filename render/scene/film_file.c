@@ -113,6 +113,7 @@ static status check_folder(const char *path, fault *f)
                          ".webm, .gif or .webp",
                          path);
     }
+    whole_file_clean_folder(path);
     if (!is_empty_folder(path)) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "the folder %s is not empty: frames of two films would mix, empty it or "

@@ -155,6 +155,26 @@ static void remove_if_left(int folder, const char *name)
     close(file);
 }
 
+static void clean(DIR *folder)
+{
+    struct dirent *entry;
+    while ((entry = readdir(folder)) != NULL) {
+        if (is_temporary_name(entry->d_name)) {
+            remove_if_left(dirfd(folder), entry->d_name);
+        }
+    }
+}
+
+void whole_file_clean_folder(const char *path)
+{
+    assert(path != NULL);
+    DIR *folder = opendir(path);
+    if (folder != NULL) {
+        clean(folder);
+        closedir(folder);
+    }
+}
+
 // Removes what runs that were killed left in the folder of `path`, once for each folder after
 // another.
 static void remove_left_behind(const char *path)
@@ -179,11 +199,8 @@ static void remove_left_behind(const char *path)
     last_folder = known ? last_folder : about.st_ino;
     pthread_mutex_unlock(&looking);
 
-    struct dirent *entry;
-    while (!known && (entry = readdir(folder)) != NULL) {
-        if (is_temporary_name(entry->d_name)) {
-            remove_if_left(dirfd(folder), entry->d_name);
-        }
+    if (!known) {
+        clean(folder);
     }
     closedir(folder);
 }

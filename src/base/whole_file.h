@@ -41,6 +41,10 @@ void whole_file_abandon(whole_file *w);
 // returns `written`. Closes w in either case.
 status whole_file_close(whole_file *w, status written, fault *f);
 
+// Removes what runs that were killed left in a folder. Opening a file does so by itself; this is
+// for who asks beforehand what the folder holds. One that cannot be read is left alone.
+void whole_file_clean_folder(const char *path);
+
 // Removes the temporaries of all files that are open just now. Safe in a signal handler that is
 // about to end the program.
 void whole_file_remove_unfinished(void);
