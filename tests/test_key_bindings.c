@@ -80,7 +80,7 @@ static void test_wrong_keys_are_told(void **state)
 static void test_the_help_shows_the_keys_that_are(void **state)
 {
     (void)state;
-    static help_line lines[400];
+    static help_line lines[500];
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":key w step 5<Enter>:unkey x<Enter>?<End>");
@@ -91,8 +91,8 @@ static void test_the_help_shows_the_keys_that_are(void **state)
     assert_shows(&ex, "w Right l Left h PgDn PgUp");
     // no line is wider than the page, and every command is there, at any width
     for (int width = 26; width < 200; width += 7) {
-        int count = help_write(&ex.state.keys, width, lines, 400);
-        assert_true(count < 400);
+        int count = help_write(&ex.state.keys, width, lines, 500);
+        assert_true(count < 500);
         for (int i = 0; i < explorer_command_count; i++) {
             char call[32];
             bool found = false;

@@ -48,6 +48,17 @@ sample scene_joints(const trace *t, const parameters *p, double time, vector *jo
     return row;
 }
 
+void scene_exaggerate(vector *joints, int links, double factor)
+{
+    assert(joints != NULL && links > 0 && factor >= 0);
+    const vector along = vector_unit(vector_sum(joints[links], -1, joints[0]));
+    const vector across = {-along.y, along.x, 0};
+    for (int i = 0; i <= links && factor > 0; i++) {
+        const double off = vector_dot(vector_sum(joints[i], -1, joints[0]), across);
+        joints[i] = vector_sum(joints[i], (factor - 1) * off, across);
+    }
+}
+
 static int pieces_of_span(int links)
 {
     int spans = links > 1 ? links - 1 : 1, pieces = CURVE_PIECES / spans;

@@ -204,18 +204,11 @@ static bool force_arrow(const scene *sc, const sample *row, vector *start, vecto
     return row->contact > 0 && row->force > 0 && length > 0.01 * l;
 }
 
-// The joints at an instant with the bending exaggerated: what lies across the line from hub to tip
-// is drawn larger, so that hub and tip stay where they are.
+// The joints at an instant, with the bending as it is to be drawn.
 static sample shape_at(scene *sc, double time)
 {
     sample row = scene_joints(&sc->result->trace, &sc->scenario->parameters, time, sc->joints);
-    double factor = sc->options.exaggerate;
-    vector along = vector_unit(vector_sum(sc->joints[sc->links], -1, sc->joints[0]));
-    vector across = {-along.y, along.x, 0};
-    for (int i = 0; i <= sc->links && factor > 0; i++) {
-        double off = vector_dot(vector_sum(sc->joints[i], -1, sc->joints[0]), across);
-        sc->joints[i] = vector_sum(sc->joints[i], (factor - 1) * off, across);
-    }
+    scene_exaggerate(sc->joints, sc->links, sc->options.exaggerate);
     return row;
 }
 

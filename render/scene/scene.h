@@ -50,6 +50,10 @@ void scene_instants(const run_result *result, double *times, int count);
 // between rows. Returns the row interpolated likewise.
 sample scene_joints(const trace *t, const parameters *p, double time, vector *joints);
 
+// Draws the bending larger: what of the joints lies across the line from hub to tip grows by the
+// factor (0 or 1: nothing does), so that hub and tip stay where they are.
+void scene_exaggerate(vector *joints, int links, double factor);
+
 // The beam's curve through the joints (see above), room for scene_curve_length(links) places.
 // Returns how many were written.
 int scene_curve(const vector *joints, int links, vector *curve);

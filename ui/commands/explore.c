@@ -10,9 +10,11 @@
 #include "ui/explorer/keys.h"
 #include "ui/explorer/mouse.h"
 #include "ui/explorer/settings.h"
+#include "ui/terminal/pictures.h"
 #include "ui/terminal/terminal.h"
 
 #define FRAME         (1.0 / 60) // shortest time between two pictures [s]
+#define LONGEST_PAUSE 0.1        // between two pictures while something moves [s]
 #define PATIENCE      0.01       // a run that takes longer is computed meanwhile [s]
 #define LONGEST_FRAME 0.25       // a longer pause (suspended, dragged about) counts as this [s]
 
@@ -103,11 +105,23 @@ static void take_input(explorer *ex, terminal_input in)
     }
 }
 
+// Gives the screen pictures if the terminal draws them and they are wanted.
+static void fit_pictures(const explorer *ex, screen *s, picture_layer *layer)
+{
+    const looks *l = &ex->state.looks;
+    const terminal_pixels t = terminal_pixels_known();
+    s->pictures = l->pixels && t.there ? layer : NULL;
+    layer->cell_width = t.cell_width;
+    layer->cell_height = t.cell_height;
+    layer->ground = t.has_ground ? t.ground : theme_grounds(l->theme)[0];
+}
+
 // Fits the grid to the terminal and shows it.
-static void show(explorer *ex, screen *s)
+static void show(explorer *ex, screen *s, picture_layer *layer)
 {
     int width, height;
     terminal_size(&width, &height);
+    fit_pictures(ex, s, layer);
     if ((width != s->width || height != s->height) && !screen_resize(s, width, height)) {
         return;
     }
@@ -118,24 +132,34 @@ static void show(explorer *ex, screen *s)
     ex->state.looks.redraw = false;
 }
 
+// How long to wait from one picture to the next, after one that took some seconds of the processor:
+// half of it is left to others, but ten pictures a second are shown.
+static double pause_after(double spent)
+{
+    return fmin(fmax(FRAME, 2 * spent), LONGEST_PAUSE);
+}
+
 static void run_on_terminal(explorer *ex)
 {
     screen s = {0};
+    picture_layer layer = {0};
     bool dirty = true, leave = false;
-    double drawn = 0, last = clock_seconds(CLOCK_MONOTONIC);
+    double drawn = 0, pause = FRAME, last = clock_seconds(CLOCK_MONOTONIC);
 
     while (!ex->state.quit && !leave) {
         // draw, though not more often than frames
         double now = clock_seconds(CLOCK_MONOTONIC);
-        if (dirty && now - drawn >= FRAME) {
-            show(ex, &s);
+        if (dirty && now - drawn >= pause) {
+            const double spent = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+            show(ex, &s, &layer);
             drawn = now;
             dirty = false;
+            pause = pause_after(clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent);
         }
 
         bool waits = dirty || explorer_is_busy(ex);
         // a picture that took longer than a frame leaves nothing to wait for
-        double left = fmax(0, dirty ? FRAME - (clock_seconds(CLOCK_MONOTONIC) - drawn) : FRAME);
+        double left = fmax(0, dirty ? pause - (clock_seconds(CLOCK_MONOTONIC) - drawn) : pause);
         terminal_input in = terminal_wait(waits ? left : -1);
         now = clock_seconds(CLOCK_MONOTONIC);
 
@@ -153,6 +177,7 @@ static void run_on_terminal(explorer *ex)
     }
 
     screen_finish(&s);
+    pictures_finish(&layer);
 }
 
 // What is left on the terminal when the explorer is gone.

@@ -8,8 +8,9 @@
 #include "ui/explorer/commands.h"
 #include "ui/explorer/state/settings_folder.h"
 
-static const char *const remembered[] = {"theme", "glyphs", "colours", "mouse", "lanes",
-                                         "speed", "panes",  "axis",    "key",   "unkey"};
+static const char *const remembered[] = {"theme", "glyphs",  "colours", "pixels", "closeup",
+                                         "mouse", "bending", "lanes",   "speed",  "panes",
+                                         "axis",  "key",     "unkey"};
 
 static bool is_remembered(const char *line)
 {
@@ -119,9 +120,12 @@ static void write_settings(const explorer_state *st, FILE *stream)
 {
     const looks *l = &st->looks;
     fprintf(stream, "# settings of the terminal lab, written by :remember\n");
-    fprintf(stream, "theme %s\nglyphs %s\ncolours %s\nmouse %s\nlanes %s\nspeed %g\n",
-            colour_theme_words[l->theme], glyph_set_words[l->glyphs], colour_depth_words[l->depth],
-            mouse_words[l->mouse], lane_choice_words[l->lanes], st->playback.speed);
+    fprintf(stream, "theme %s\nglyphs %s\ncolours %s\n", colour_theme_words[l->theme],
+            glyph_set_words[l->glyphs], colour_depth_words[l->depth]);
+    fprintf(stream, "pixels %s\ncloseup %s\nbending %g\n", pixel_words[l->pixels],
+            close_up_words[l->close_up], l->bending);
+    fprintf(stream, "mouse %s\nlanes %s\nspeed %g\n", mouse_words[l->mouse],
+            lane_choice_words[l->lanes], st->playback.speed);
 
     // panes that nobody chose are the ones that suit the scenario
     fputs(st->panes.chosen ? "panes " : "", stream);

@@ -35,7 +35,35 @@ static sequence_result end(escape_sequence *e, int last, pointer_event *report)
     e->state = SEQUENCE_NONE;
     bool is_report = (last == 'M' || last == 'm') &&
                      sscanf(e->text, "<%d;%d;%d%c", &button, &column, &row, &rest) == 3;
-    return is_report ? mouse(button, column, row, last == 'M', report) : SEQUENCE_OVER;
+    if (is_report) {
+        return mouse(button, column, row, last == 'M', report);
+    }
+    e->introducer = '[';
+    e->final = (char)last;
+    return e->awaits ? SEQUENCE_ANSWER : SEQUENCE_OVER;
+}
+
+// A character of an answer's text, which a bell or ESC \ ends.
+static sequence_result take_string(escape_sequence *e, int character)
+{
+    const bool ends = e->state == SEQUENCE_STRING_END ? character == '\\' : character == '\a';
+    if (ends) {
+        e->state = SEQUENCE_NONE;
+        e->text[e->length] = '\0';
+        return SEQUENCE_ANSWER;
+    }
+
+    // anything else after the escape, or what no text holds: broken off
+    if (e->state == SEQUENCE_STRING_END || character == '\b' || character == '\r') {
+        e->state = SEQUENCE_NONE;
+        return SEQUENCE_OTHER_KEY;
+    }
+    if (character == 27) {
+        e->state = SEQUENCE_STRING_END;
+    } else if (e->length + 1 < (int)sizeof e->text) {
+        e->text[e->length++] = (char)character;
+    }
+    return SEQUENCE_GOES_ON;
 }
 
 static sequence_result take_parameter(escape_sequence *e, int character, pointer_event *report)
@@ -75,6 +103,9 @@ sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_
     if (e->state == SEQUENCE_BRACKET) {
         return take_parameter(e, character, report);
     }
+    if (e->state == SEQUENCE_STRING || e->state == SEQUENCE_STRING_END) {
+        return take_string(e, character);
+    }
 
     // three bytes, each a number from 32 on
     if (e->state == SEQUENCE_OLD_MOUSE) {
@@ -84,6 +115,14 @@ sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_
         }
         e->state = SEQUENCE_NONE;
         return mouse(e->text[0] & 0x7f, e->text[1], e->text[2], true, report);
+    }
+
+    // the text of an answer
+    if (e->awaits && (character == 'P' || character == ']' || character == '_')) {
+        e->state = SEQUENCE_STRING;
+        e->introducer = (char)character;
+        e->length = 0;
+        return SEQUENCE_GOES_ON;
     }
 
     // the escape was a key

@@ -16,19 +16,25 @@ typedef struct outlet {
     size_t used;
 } outlet;
 
-static void send(outlet *o)
+void terminal_send(const char *bytes, size_t count)
 {
-    for (size_t sent = 0; sent < o->used;) {
-        ssize_t count = write(STDOUT_FILENO, o->bytes + sent, o->used - sent);
-        if (count > 0) {
-            sent += (size_t)count;
-        } else if (count < 0 && errno == EAGAIN) {
+    assert(bytes != NULL);
+    for (size_t sent = 0; sent < count;) {
+        ssize_t taken = write(STDOUT_FILENO, bytes + sent, count - sent);
+        if (taken > 0) {
+            sent += (size_t)taken;
+        } else if (taken < 0 && errno == EAGAIN) {
             struct pollfd room = {STDOUT_FILENO, POLLOUT, 0};
             poll(&room, 1, 1000);
-        } else if (count == 0 || errno != EINTR) {
+        } else if (taken == 0 || errno != EINTR) {
             break; // the terminal is gone, which reading will find out
         }
     }
+}
+
+static void send(outlet *o)
+{
+    terminal_send(o->bytes, o->used);
     o->used = 0;
 }
 
@@ -76,13 +82,11 @@ void paint_cells(const screen *s, screen *shown, glyph_set glyphs, colour_theme 
     assert(s != NULL && shown != NULL && depth != DEPTH_AUTO);
     assert(s->width == shown->width && s->height == shown->height);
     int at_x = -1, at_y = -1, colour = -1;
-    // a terminal that knows synchronised output shows the frame at once, others ignore it
-    put(&o, "\033[?2026h");
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++) {
             long i = (long)y * s->width + x;
             cell c = s->cells[i], *old = &shown->cells[i];
-            bool blank = c.glyph == ' ' && c.ink != INK_SELECTED;
+            bool blank = (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
             bool same = whole ? blank : c.glyph == old->glyph && c.ink == old->ink;
             *old = c;
 
@@ -110,6 +114,6 @@ void paint_cells(const screen *s, screen *shown, glyph_set glyphs, colour_theme 
             at_y = y;
         }
     }
-    put(&o, "\033[0m\033[?2026l");
+    put(&o, "\033[0m");
     send(&o);
 }

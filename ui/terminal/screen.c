@@ -20,7 +20,7 @@ bool screen_resize(screen *s, int width, int height)
         return false;
     }
     free(s->cells);
-    *s = (screen){.width = width, .height = height, .cells = cells};
+    *s = (screen){width, height, cells, s->pictures};
     screen_clear(s);
     return true;
 }
@@ -265,6 +265,9 @@ static uint32_t ascii_glyph(uint32_t glyph)
 uint32_t glyph_in_set(uint32_t glyph, glyph_set set)
 {
     bool dots = glyph >= BRAILLE && glyph < BRAILLE + 256;
+    if (glyph >= GLYPH_PICTURE) {
+        return ' ';
+    }
     if (set == GLYPHS_ASCII && glyph >= 0x80) {
         return dots ? ascii_dots(glyph - BRAILLE) : ascii_glyph(glyph);
     }

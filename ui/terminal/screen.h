@@ -49,7 +49,12 @@ typedef struct cell {
 typedef struct screen {
     int width, height;
     cell *cells; // row after row
+    struct picture_layer
+        *pictures; // drawn in the place of cells (pictures.h), borrowed; NULL: none
 } screen;
+
+// A cell that shows a part of picture k of the screen: GLYPH_PICTURE + k, beyond all characters.
+#define GLYPH_PICTURE 0x110000u
 
 // A screen of width x height cells, at least 1 x 1; false without memory, then it is as before.
 bool screen_resize(screen *s, int width, int height);

@@ -4,6 +4,7 @@
 
 #include "src/base/fault.h"
 #include "ui/terminal/escape_sequence.h"
+#include "ui/terminal/ink_colours.h"
 #include "ui/terminal/key_codes.h"
 #include "ui/terminal/screen.h"
 
@@ -35,9 +36,20 @@ void terminal_size(int *width, int *height);
 // Waits for input: at most `seconds`, for ever if negative.
 terminal_input terminal_wait(double seconds);
 
-// Shows the cells; only what has changed is sent. `whole`: everything anew.
+// Shows the cells and the pictures; only what has changed is sent. `whole`: everything anew.
 void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
                    bool whole);
+
+// What the terminal said of pictures.
+typedef struct terminal_pixels {
+    bool there;                  // it draws some
+    int cell_width, cell_height; // [pixels]
+    bool has_ground;
+    rgb ground; // of the terminal
+} terminal_pixels;
+
+// As far as is known by now: nothing is guessed. A change comes as TERMINAL_RESIZE.
+terminal_pixels terminal_pixels_known(void);
 
 // How many colours the terminal has by what its description and the environment say: never
 // DEPTH_AUTO. DEPTH_MONO with NO_COLOR.

@@ -312,6 +312,47 @@ action_result act_set_mouse(explorer_state *st, const char *argument)
                        value ? "clicks move the cursor" : "the mouse is off: the terminal selects");
 }
 
+action_result act_set_pixels(explorer_state *st, const char *argument)
+{
+    int value = st->looks.pixels;
+    action_result read = read_choice(st, argument, pixel_words, 2, &value);
+    if (!result_ok(&read)) {
+        return read;
+    }
+    st->looks.pixels = value;
+    return result_news("%s", value ? "pictures where the terminal says that it draws them"
+                                   : "characters only");
+}
+
+action_result act_set_close_up(explorer_state *st, const char *argument)
+{
+    int value = (int)(st->looks.close_up + 1) % CLOSE_UP_CHOICES;
+    if (argument[0] != '\0') {
+        action_result read = read_choice(st, argument, close_up_words, CLOSE_UP_CHOICES, &value);
+        if (!result_ok(&read)) {
+            return read;
+        }
+    }
+    st->looks.close_up = (close_up_choice)value;
+    return result_news("the contact from near by: %s", close_up_words[value]);
+}
+
+action_result act_set_bending(explorer_state *st, const char *argument)
+{
+    enum { MOST = 100 };
+    double factor = 1;
+    action_result read = act_read_optional(argument, &factor);
+    if (!result_ok(&read)) {
+        return read;
+    }
+    if (!(factor >= 1 && factor <= MOST)) {
+        return result_refused("bending is drawn 1 to %d times as large", MOST);
+    }
+    st->looks.bending = factor;
+    return factor == 1 ? result_news("bending is drawn as it is")
+                       : result_news("bending is drawn %g times as large", factor);
+}
+
 action_result act_set_lanes(explorer_state *st, const char *argument)
 {
     int value = (int)(st->looks.lanes + 1) % LANE_CHOICES;

@@ -2,27 +2,29 @@
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
-typedef struct point {
-    double x, y; // [m]
-} point;
+#include "render/scene/plan.h"
+#include "ui/terminal/pictures.h"
 
-// From metres to the dots of a canvas, the height magnified.
-typedef struct view {
+enum { CLOSE_UP_FROM = 60 }; // width of the panel from which on there is a close-up [cells]
+
+// Where a plan of the arm is drawn: cells of the screen, as dots or as pixels.
+typedef struct stage {
     canvas canvas;
-    double left, bottom; // [m]
-    double scale;        // [dots/m] across
-    double magnified;    // times that, up
-} view;
+    cairo_t *picture; // NULL: dots
+    plan_view view;   // in either
+} stage;
 
-static double dot_x(const view *v, double x)
+static double dot_x(const stage *g, double x)
 {
-    return (x - v->left) * v->scale;
+    return plan_x(&g->view, x);
 }
 
-static double dot_y(const view *v, double y)
+static double dot_y(const stage *g, double y)
 {
-    return 4.0 * v->canvas.height - 1 - (y - v->bottom) * v->scale * v->magnified;
+    return plan_y(&g->view, y);
 }
 
 // The angle of a link in a recorded row.
@@ -68,17 +70,19 @@ static void find_extent(const explorer_state *st, arm_extent *known)
     *known = (arm_extent){st->opened, run, t->row_count, !grows, low, high, most};
 }
 
-static view make_view(const explorer_state *st, const arm_extent *extent, canvas c)
+// What shows all that the arm sweeps over on a stage of this size [dots or pixels].
+static plan_view whole_view(const explorer_state *st, const arm_extent *extent, double width,
+                            double height)
 {
     const parameters *p = &st->session.effective.parameters;
     double length = p->arm.length;
-    view v = {.canvas = c, .magnified = 1};
+    plan_view v = {.magnified = 1, .width = width, .height = height};
 
     // far out: the whole circle, undistorted
     if (extent->most_angle > 0.8) {
-        v.scale = fmin(2.0 * c.width, 4.0 * c.height) / (2.3 * length);
-        v.left = -c.width / v.scale;
-        v.bottom = -2.0 * c.height / v.scale;
+        v.scale = fmin(width, height) / (2.3 * length);
+        v.left = -0.5 * width / v.scale;
+        v.bottom = -0.5 * height / v.scale;
         return v;
     }
 
@@ -88,9 +92,9 @@ static view make_view(const explorer_state *st, const arm_extent *extent, canvas
         low = fmin(low, length * sin(p->wall.angle));
         high = fmax(high, length * sin(p->wall.angle));
     }
-    v.scale = 2.0 * c.width / (1.25 * length);
+    v.scale = width / (1.25 * length);
     v.left = -0.1 * length;
-    double room = 4.0 * c.height * 0.62 / fmax(v.scale * (high - low), 1e-9);
+    double room = height * 0.62 / fmax(v.scale * (high - low), 1e-9);
     static const double factors[] = {20, 10, 5, 4, 3, 2, 1.5};
     for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
         if (factors[i] <= room) {
@@ -99,36 +103,57 @@ static view make_view(const explorer_state *st, const arm_extent *extent, canvas
         }
     }
     // the force's arrow comes from above, so leave more room there
-    double spare = 4.0 * c.height / (v.scale * v.magnified) - (high - low);
+    double spare = height / (v.scale * v.magnified) - (high - low);
     v.bottom = low - 0.3 * spare;
     return v;
 }
 
-static point draw_links(const view *v, const trace *t, const arm_parameters *beam, size_t row,
-                        ink colour, bool dotted)
+// Where the tip is at the cursor, as it was recorded [m].
+static vector tip_of(const explorer_state *st)
 {
-    point at = {0, 0};
-    double part = beam->length / beam->links;
-
-    // one link after the other, dots or a line two dots thick
+    const session *e = &st->session;
+    const arm_parameters *beam = &e->effective.parameters.arm;
+    vector tip = {0};
     for (int i = 0; i < beam->links; i++) {
-        double angle = link_angle(t, beam->links, row, i);
-        point to = {at.x + part * cos(angle), at.y + part * sin(angle)};
-        for (int k = 0; dotted && k < 40; k++) {
-            double share = k / 40.0;
-            canvas_dot(&v->canvas, lround(dot_x(v, at.x + share * (to.x - at.x))),
-                       lround(dot_y(v, at.y + share * (to.y - at.y))), colour);
-        }
-        for (int thick = 0; !dotted && thick < 2; thick++) {
-            canvas_line(&v->canvas, dot_x(v, at.x), dot_y(v, at.y) + thick, dot_x(v, to.x),
-                        dot_y(v, to.y) + thick, colour);
-        }
-        at = to;
+        const double angle = link_angle(&e->run.trace, beam->links, e->row, i);
+        tip.x += beam->length / beam->links * cos(angle);
+        tip.y += beam->length / beam->links * sin(angle);
     }
-    return at;
+    return tip;
 }
 
-static void draw_hub(const view *v, double angle)
+// --- as dots ----------------------------------------------------------------------------------
+
+// The links of a recorded row as a line of dots, or a line two dots thick; false without memory.
+static bool draw_links(const explorer_state *st, const stage *g, const trace *t, double time,
+                       ink in, bool dotted)
+{
+    const parameters *p = &st->session.effective.parameters;
+    vector *joints = malloc(((size_t)p->arm.links + 1) * sizeof *joints);
+    if (joints == NULL) {
+        return false;
+    }
+    scene_joints(t, p, time, joints);
+    scene_exaggerate(joints, p->arm.links, st->looks.bending);
+
+    // one link after the other
+    for (int i = 0; i < p->arm.links; i++) {
+        const double x0 = dot_x(g, joints[i].x), y0 = dot_y(g, joints[i].y);
+        const double x1 = dot_x(g, joints[i + 1].x), y1 = dot_y(g, joints[i + 1].y);
+        for (int k = 0; dotted && k < 40; k++) {
+            const double share = k / 40.0;
+            canvas_dot(&g->canvas, lround(x0 + share * (x1 - x0)), lround(y0 + share * (y1 - y0)),
+                       in);
+        }
+        for (int thick = 0; !dotted && thick < 2; thick++) {
+            canvas_line(&g->canvas, x0, y0 + thick, x1, y1 + thick, in);
+        }
+    }
+    free(joints);
+    return true;
+}
+
+static void draw_hub(const stage *v, double angle)
 {
     const double radius = 5;
     double x = dot_x(v, 0), y = dot_y(v, 0);
@@ -140,7 +165,7 @@ static void draw_hub(const view *v, double angle)
     canvas_line(&v->canvas, x, y, x + radius * cos(angle), y - radius * sin(angle), INK_HUB);
 }
 
-static void draw_wall(const view *v, const parameters *p)
+static void draw_wall(const stage *v, const parameters *p)
 {
     double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
     int column = v->canvas.x + (int)(dot_x(v, x) / 2), row = v->canvas.y + (int)(dot_y(v, y) / 4);
@@ -163,7 +188,7 @@ static void draw_wall(const view *v, const parameters *p)
 }
 
 // An arrow that pushes on the arm at its tip, as long as the force is a share of the run's peak.
-static void draw_force(const view *v, point tip, double force, double peak)
+static void draw_force(const stage *v, vector tip, double force, double peak)
 {
     if (!(force > 0) || !(peak > 0)) {
         return;
@@ -176,42 +201,143 @@ static void draw_force(const view *v, point tip, double force, double peak)
     canvas_line(&v->canvas, 2.0 * across, y - 8 - length, 2.0 * across, 4.0 * head - 1, INK_FORCE);
     if (row > v->canvas.y) {
         screen_put(v->canvas.screen, column, row, 0x25bc, INK_FORCE);
-        screen_print(v->canvas.screen, column - 10, row - 1, 9, INK_FORCE, "%7.3f N", force);
     }
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+// From the back to the front: wall, kept run, arm, force.
+static void draw_dots(const explorer_state *st, const stage *g)
 {
     const session *e = &st->session;
-    const parameters *p = &e->effective.parameters;
     const sample *row = session_sample(e);
-    char title[LINE_TEXT];
-    find_extent(st, &lay->extent);
-    const canvas inside = {s, a.x + 1, a.y + 1, a.width - 2, a.height - 2};
-    view v = make_view(st, &lay->extent, inside);
-    if (v.magnified != 1) {
-        snprintf(title, sizeof title, "arm, drawn %g times as high", v.magnified);
-    } else {
-        snprintf(title, sizeof title, "arm");
-    }
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
-
-    // from the back to the front: wall, kept run, arm, force
-    draw_wall(&v, p);
+    draw_wall(g, &e->effective.parameters);
     if (e->has_other && e->other.trace.angle_count == e->run.trace.angle_count) {
-        draw_links(&v, &e->other.trace, &p->arm, trace_row_at(&e->other.trace, e->now), INK_OTHER,
-                   true);
+        draw_links(st, g, &e->other.trace, e->now, INK_OTHER, true);
     }
-    draw_hub(&v, row->hub_angle);
-    point tip = draw_links(&v, &e->run.trace, &p->arm, e->row, INK_ARM, false);
-    draw_force(&v, tip, row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
-    if (p->wall.kind != WALL_NONE && a.height >= 9 && a.width >= 40) {
+    draw_hub(g, row->hub_angle);
+    draw_links(st, g, &e->run.trace, e->now, INK_ARM, false);
+    draw_force(g, tip_of(st), row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
+}
+
+// --- as pixels --------------------------------------------------------------------------------
+
+static colour colour_of(const explorer_state *st, const screen *s, ink i)
+{
+    const rgb c = picture_ink(s, st->looks.theme, i);
+    return (colour){c.red / 255.0, c.green / 255.0, c.blue / 255.0};
+}
+
+static void draw_pixels(const explorer_state *st, const stage *g)
+{
+    const session *e = &st->session;
+    const screen *s = g->canvas.screen;
+    const rgb ground = s->pictures->ground;
+    const plan p = {
+        .rows = &e->run.trace,
+        .parameters = &e->effective.parameters,
+        .time = e->now,
+        .other = e->has_other && e->other.trace.angle_count == e->run.trace.angle_count
+                     ? &e->other.trace
+                     : NULL,
+        .exaggerate = st->looks.bending,
+        .peak = e->run.summary.peak_force_N,
+        .colours = {.ground = {ground.red / 255.0, ground.green / 255.0, ground.blue / 255.0},
+                    .arm = colour_of(st, s, INK_ARM),
+                    .hub = colour_of(st, s, INK_HUB),
+                    .wall = colour_of(st, s, INK_WALL),
+                    .force = colour_of(st, s, INK_FORCE),
+                    .other = colour_of(st, s, INK_OTHER),
+                    .frame = colour_of(st, s, INK_FRAME)}};
+    plan_paint(g->picture, &p, &g->view);
+}
+
+// --- the panel --------------------------------------------------------------------------------
+
+// A stage inside a frame that is to come: its size is known, nothing is drawn yet.
+static stage plan_stage(screen *s, area a)
+{
+    stage g = {.canvas = {s, a.x + 1, a.y + 1, a.width - 2, a.height - 2}};
+    const picture_layer *pixels = s->pictures;
+    g.view.width = g.canvas.width * (pixels != NULL ? pixels->cell_width : 2.0);
+    g.view.height = g.canvas.height * (pixels != NULL ? pixels->cell_height : 4.0);
+    return g;
+}
+
+// Draws on it, in pixels where the screen has any.
+static void draw_stage(const explorer_state *st, stage *g)
+{
+    const canvas *c = &g->canvas;
+    cairo_t *picture = picture_begin(c->screen, c->x, c->y, c->width, c->height);
+    if (picture != NULL) {
+        g->picture = picture;
+        draw_pixels(st, g);
+        cairo_destroy(picture);
+    } else if (c->screen->pictures == NULL) {
+        draw_dots(st, g);
+    }
+}
+
+// The contact from near by, in a frame of its own.
+static void draw_close_up(const explorer_state *st, screen *s, area a)
+{
+    char title[LINE_TEXT];
+    stage g = plan_stage(s, a);
+    g.view = plan_close_up(&st->session.effective.parameters, g.view.width, g.view.height);
+    snprintf(title, sizeof title, "tip, %.3g mm", 1e3 * g.view.width / g.view.scale);
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+    draw_stage(st, &g);
+}
+
+// What words there are about the arm: its force beside the tip, and what the hub does.
+static void draw_words(const explorer_state *st, const stage *g, area a)
+{
+    const sample *row = session_sample(&st->session);
+    const vector tip = tip_of(st);
+    screen *s = g->canvas.screen;
+    const double across = g->view.width / g->canvas.width, down = g->view.height / g->canvas.height;
+    const int x = g->canvas.x + (int)(dot_x(g, tip.x) / across);
+    const int y = g->canvas.y + (int)(dot_y(g, tip.y) / down) - 2;
+    if (row->contact != 0 && row->force > 0 && y > a.y) {
+        screen_print(s, x - 11, y, 9, INK_FORCE, "%7.3f N", row->force);
+    }
+    if (st->session.effective.parameters.wall.kind != WALL_NONE && s->pictures == NULL &&
+        a.height >= 9 && a.width >= 40) {
         screen_text(s, a.x + a.width - 18, a.y + a.height - 2, 17, INK_WALL,
                     "\u25c6 contact point");
     }
     if (row->sticking != 0) {
         screen_text(s, a.x + 2, a.y + a.height - 2, 12, INK_DIM, "hub sticks");
     }
+}
+
+static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    const parameters *p = &st->session.effective.parameters;
+    char title[LINE_TEXT] = "arm";
+    find_extent(st, &lay->extent);
+
+    // the contact from near by takes a third
+    const bool wanted = st->looks.close_up == CLOSE_UP_ON ||
+                        (st->looks.close_up == CLOSE_UP_AUTO && s->pictures != NULL);
+    if (wanted && a.width >= CLOSE_UP_FROM && p->wall.kind != WALL_NONE) {
+        const int width = a.width / 3;
+        a.width -= width;
+        draw_close_up(st, s, (area){a.x + a.width, a.y, width, a.height});
+    }
+
+    // the title says how it is drawn
+    stage g = plan_stage(s, a);
+    g.view = whole_view(st, &lay->extent, g.view.width, g.view.height);
+    size_t used = strlen(title);
+    if (g.view.magnified != 1) {
+        snprintf(title + used, sizeof title - used, ", drawn %g times as high", g.view.magnified);
+        used = strlen(title);
+    }
+    if (st->looks.bending != 1) {
+        snprintf(title + used, sizeof title - used, ", bent %g times", st->looks.bending);
+    }
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+    draw_stage(st, &g);
+    draw_words(st, &g, a);
 }
 
 const panel arm_panel = {.name = "arm", .draw = draw};

@@ -4,6 +4,7 @@
 
 #include "ui/explorer/panels/bars.h"
 #include "ui/explorer/panels/panel.h"
+#include "ui/terminal/pictures.h"
 
 // The width of the stack on the right; from 120 on there is room for sliders beside the values.
 static int side_width(int screen_width)
@@ -99,6 +100,7 @@ void compose_screen(const explorer_state *st, layout *lay, screen *s)
 {
     assert(st != NULL && lay != NULL && s != NULL);
     screen_clear(s);
+    pictures_clear(s);
     layout_begin(lay, st);
     if (!compose_fits((screen_size){s->width, s->height})) {
         draw_too_small(s);

@@ -4,11 +4,15 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/plot/pane_curve.h"
 #include "src/rig/controller.h"
 #include "ui/explorer/panels/lanes.h"
 #include "ui/explorer/panels/pane_views.h"
 #include "ui/explorer/panels/plot_axes.h"
 #include "ui/explorer/panels/run_lines.h"
+#include "ui/terminal/pictures.h"
+
+enum { LARGE_CELL = 24 }; // height of a cell from which on lines are thicker [pixels]
 
 // A pane's place, time window and range.
 typedef struct plot_frame {
@@ -17,6 +21,9 @@ typedef struct plot_frame {
     value_range axis;
     unsigned pattern; // of the curve that is drawn, as in run_lines.h
     ink colour;
+    cairo_t *picture; // drawn on in the place of dots; NULL: none
+    pane_frame pixels;
+    colour_theme theme;
 } plot_frame;
 
 static double plot_x(const plot_frame *f, double time)
@@ -99,10 +106,28 @@ static void draw_columns(const plot_frame *f, const trace *t, int signal, double
     draw_column(f, column, low, high);
 }
 
+static colour pixel_colour(const plot_frame *f, ink i)
+{
+    const rgb c = picture_ink(f->canvas.screen, f->theme, i);
+    return (colour){c.red / 255.0, c.green / 255.0, c.blue / 255.0};
+}
+
 // Draws one signal up to `until`: every row if they are few, else by columns.
 static void draw_signal(const plot_frame *f, const trace *t, int signal, double until,
                         const double *pairs)
 {
+    if (f->picture != NULL) {
+        const pane_curve c = {.rows = t,
+                              .signal = signal,
+                              .until = until,
+                              .pairs = pairs,
+                              .block = EXTREMES_BLOCK,
+                              .pattern = f->pattern,
+                              .piece = fmax(1, 1.5 * f->pixels.line),
+                              .colour = pixel_colour(f, f->colour)};
+        pane_curve_paint(f->picture, &f->pixels, &c);
+        return;
+    }
     double shown = (double)(trace_row_at(t, f->to) - trace_row_at(t, f->from));
     until = fmin(until, f->to);
     if (shown < 4.0 * f->canvas.width) {
@@ -115,6 +140,10 @@ static void draw_signal(const plot_frame *f, const trace *t, int signal, double 
 static void draw_cursor(const plot_frame *f, screen *s, double time)
 {
     int column = f->canvas.x + (int)(plot_x(f, time) / 2);
+    if (f->picture != NULL) {
+        pane_instant_paint(f->picture, &f->pixels, time, pixel_colour(f, INK_CURSOR));
+        return;
+    }
     for (int y = f->canvas.y;
          time >= f->from && time <= f->to && y < f->canvas.y + f->canvas.height; y++) {
         if (s->cells[(long)y * s->width + column].glyph == ' ') {
@@ -139,15 +168,15 @@ static pane_look look_of(const pane *p)
     // the table's colour and line unless an earlier signal of the pane has them
     for (int k = 0; k < p->count; k++) {
         const signal_info *info = &signal_table[p->signals[k]];
-        int colour = info->colour, style = (int)info->style;
-        for (int i = 0; i < COLOURS && colour_taken[colour]; i++) {
-            colour = (info->colour + 1 + i) % COLOURS;
+        int slot = info->colour, style = (int)info->style;
+        for (int i = 0; i < COLOURS && colour_taken[slot]; i++) {
+            slot = (info->colour + 1 + i) % COLOURS;
         }
         for (int i = 0; i < STYLES && style_taken[style]; i++) {
             style = (int)plain_first[i];
         }
-        colour_taken[colour] = style_taken[style] = true;
-        look.colour[k] = (ink)(INK_SERIES_0 + colour);
+        colour_taken[slot] = style_taken[style] = true;
+        look.colour[k] = (ink)(INK_SERIES_0 + slot);
         look.style[k] = (line_style)style;
     }
     return look;
@@ -318,8 +347,15 @@ static void draw_level(const plot_frame *f, screen *s, double value, const char 
         return;
     }
 
-    // only where nothing is drawn yet; the name stands at the end
+    // the name stands at the end
     const int length = (int)strlen(name), end = f->canvas.x + f->canvas.width;
+    if (f->picture != NULL) {
+        pane_level_paint(f->picture, &f->pixels, value, pixel_colour(f, INK_FRAME));
+        screen_text(s, end - length, y, length, INK_FRAME, name);
+        return;
+    }
+
+    // only where nothing is drawn yet
     for (int x = f->canvas.x; x < end; x++) {
         cell *at = &s->cells[(long)y * s->width + x];
         if (at->glyph == ' ') {
@@ -360,6 +396,25 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
     }
 }
 
+// Has the pane drawn in pixels where the screen has any.
+static void open_picture(const explorer_state *st, plot_frame *f)
+{
+    const canvas *c = &f->canvas;
+    const picture_layer *pixels = c->screen->pictures;
+    f->picture = picture_begin(c->screen, c->x, c->y, c->width, c->height);
+    if (f->picture == NULL) {
+        return;
+    }
+    f->theme = st->looks.theme;
+    f->pixels = (pane_frame){.from = f->from,
+                             .to = f->to,
+                             .low = f->axis.low,
+                             .high = f->axis.high,
+                             .width = c->width * pixels->cell_width,
+                             .height = c->height * pixels->cell_height,
+                             .line = pixels->cell_height >= LARGE_CELL ? 2 : 1.5};
+}
+
 // Whether panes show differences instead of runs.
 static bool showing_difference(const explorer_state *st)
 {
@@ -396,6 +451,8 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     draw_value_axis(s, labels, f.axis);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LABELS, index, labels});
 
+    open_picture(st, &f);
+
     // the present run over those kept beside it, limits and cursors where nothing is drawn
     for (int run = state_run_count(st); run-- > 0;) {
         draw_run(st, f, &st->panes.pane[index], run);
@@ -410,6 +467,9 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
         draw_cursor(&f, s, st->mark.time);
     }
     draw_cursor(&f, s, st->session.now);
+    if (f.picture != NULL) {
+        cairo_destroy(f.picture);
+    }
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)

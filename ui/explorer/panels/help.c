@@ -17,7 +17,7 @@ static int keep_matching(help_line *lines, int count, const char *filter)
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
     (void)body;
-    enum { MOST = 400 };
+    enum { MOST = 500 };
     static help_line lines[MOST];
     const char *filter = st->filters.text[PANEL_HELP];
 

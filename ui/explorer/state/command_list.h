@@ -77,6 +77,10 @@
     X("", "glyphs", "braille|blocks|ascii", "characters to draw with", act_set_glyphs)             \
     X("", "theme", "dark|light|mono", "colours for that ground", act_set_theme)                    \
     X("", "colours", "auto|true|256|16|mono", "how many the terminal has", act_set_colours)        \
+    X("", "pixels", "auto|off", "pictures where the terminal has them", act_set_pixels)            \
+    X("", "closeup", "auto|on|off", "the contact from near by; alone: next", act_set_close_up)     \
+    X("", "bending", "[FACTOR]", "drawn that many times as large; alone: as it is",                \
+      act_set_bending)                                                                             \
     X("", "mouse", "on|off", "off lets the terminal select text", act_set_mouse)                   \
     X("", "panes", "134", "these panes of curves and no others", act_show_panes)                   \
     X("", "key", "KEY COMMAND", "a key of your own, such as :key x step 5", act_bind_key)          \

@@ -15,4 +15,9 @@ const char *const colour_depth_words[COLOUR_DEPTHS] = {[DEPTH_AUTO] = "auto",
 const char *const lane_choice_words[LANE_CHOICES] = {
     [LANES_AUTO] = "auto", [LANES_ALL] = "all", [LANES_OFF] = "off"};
 
+const char *const close_up_words[CLOSE_UP_CHOICES] = {
+    [CLOSE_UP_AUTO] = "auto", [CLOSE_UP_ON] = "on", [CLOSE_UP_OFF] = "off"};
+
+const char *const pixel_words[2] = {"off", "auto"};
+
 const char *const mouse_words[2] = {"off", "on"};

@@ -11,13 +11,24 @@ typedef enum lane_choice {
     LANE_CHOICES
 } lane_choice;
 
+// Whether the contact is shown from near by, too.
+typedef enum close_up_choice {
+    CLOSE_UP_AUTO, // where there are pixels
+    CLOSE_UP_ON,
+    CLOSE_UP_OFF,
+    CLOSE_UP_CHOICES
+} close_up_choice;
+
 typedef struct looks {
     glyph_set glyphs;
     colour_theme theme;
     colour_depth depth;
     lane_choice lanes;
-    bool mouse;  // it reports to the explorer
-    bool redraw; // the whole screen is to be drawn anew
+    bool pixels; // pictures are drawn where the terminal has them
+    close_up_choice close_up;
+    double bending; // is drawn that many times as large
+    bool mouse;     // it reports to the explorer
+    bool redraw;    // the whole screen is to be drawn anew
 } looks;
 
 // The words for each value of the enumerations, in their order.
@@ -25,4 +36,6 @@ extern const char *const glyph_set_words[GLYPH_SETS];
 extern const char *const colour_theme_words[COLOUR_THEMES];
 extern const char *const colour_depth_words[COLOUR_DEPTHS];
 extern const char *const lane_choice_words[LANE_CHOICES];
+extern const char *const close_up_words[CLOSE_UP_CHOICES];
 extern const char *const mouse_words[2];
+extern const char *const pixel_words[2];

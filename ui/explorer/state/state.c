@@ -99,6 +99,8 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
     st->sweep.metric = SUMMARY_INDEX(peak_force_N);
     st->playback.speed = 0.2;
     st->looks.mouse = true;
+    st->looks.pixels = true;
+    st->looks.bending = 1;
     st->side.panel = panel_first_on_side();
     scenario_menu_read(&st->scenarios);
     look_afresh(st);

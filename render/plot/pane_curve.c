@@ -1,0 +1,176 @@
+#include "render/plot/pane_curve.h"
+
+#include <assert.h>
+#include <math.h>
+
+enum { PIECES = 16 };
+static const unsigned whole_line = 0xffff;
+
+static double pixel_x(const pane_frame *f, double time)
+{
+    return (time - f->from) / (f->to - f->from) * f->width;
+}
+
+// Kept near the pane: far outside cairo's numbers end.
+static double pixel_y(const pane_frame *f, double value)
+{
+    const double y = (f->high - value) / (f->high - f->low) * f->height;
+    return fmax(-f->height, fmin(2 * f->height, y));
+}
+
+// The pen of a curve: its pattern as lengths that are drawn and left out by turns.
+static void set_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
+{
+    double lengths[PIECES];
+    int count = 0;
+    for (int i = 0; i < PIECES; i++) {
+        const bool drawn = c->pattern >> i & 1;
+        if (i == 0 || drawn != (c->pattern >> (i - 1) & 1)) {
+            lengths[count++] = 0;
+        }
+        lengths[count - 1] += c->piece;
+    }
+    cairo_set_dash(cr, lengths, c->pattern == whole_line ? 0 : count, 0);
+    cairo_set_line_width(cr, f->line);
+    cairo_set_line_join(cr, CAIRO_LINE_JOIN_BEVEL);
+    cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
+    set_colour(cr, c->colour);
+}
+
+// What lies in one column of pixels.
+typedef struct column {
+    long at;
+    double first, low, high, last; // y [pixels], in the order of the rows but for low and high
+    bool any;
+} column;
+
+static void add_to_column(column *c, double y)
+{
+    c->first = c->any ? c->first : y;
+    c->low = c->any ? fmin(c->low, y) : y;
+    c->high = c->any ? fmax(c->high, y) : y;
+    c->last = y;
+    c->any = true;
+}
+
+// Joins a column to the line before it, through both its ends.
+static void end_column(cairo_t *cr, const column *c)
+{
+    const double x = (double)c->at + 0.5;
+    if (!c->any) {
+        return;
+    }
+    cairo_line_to(cr, x, c->first);
+    if (c->high - c->low > 0.5) {
+        cairo_line_to(cr, x, c->low);
+        cairo_line_to(cr, x, c->high);
+        cairo_line_to(cr, x, c->last);
+    }
+}
+
+// Many rows: column by column, whole blocks at once where they lie in one.
+static void trace_columns(cairo_t *cr, const pane_frame *f, const pane_curve *c, double until)
+{
+    const trace *t = c->rows;
+    column here = {.at = -1};
+    for (size_t r = trace_row_at(t, f->from); r < t->row_count && t->rows[r].time <= until;) {
+        const long at = lround(floor(pixel_x(f, t->rows[r].time)));
+        const size_t end = r + c->block;
+        if (at != here.at) {
+            end_column(cr, &here);
+            here = (column){.at = at};
+        }
+
+        // a block that ends in the column in which it begins
+        const bool whole = c->pairs != NULL && r % c->block == 0 && end < t->row_count &&
+                           t->rows[end].time <= until &&
+                           lround(floor(pixel_x(f, t->rows[end].time))) == at;
+        if (whole && c->pairs[2 * (r / c->block)] <= c->pairs[2 * (r / c->block) + 1]) {
+            add_to_column(&here, pixel_y(f, c->pairs[2 * (r / c->block) + 1]));
+            add_to_column(&here, pixel_y(f, c->pairs[2 * (r / c->block)]));
+        }
+        r = whole ? end - 1 : r;
+        const double value = signal_value(&t->rows[r], c->signal);
+        if (isfinite(value)) {
+            add_to_column(&here, pixel_y(f, value));
+        } else {
+            end_column(cr, &here);
+            here.any = false;
+            cairo_new_sub_path(cr);
+        }
+        r++;
+    }
+    end_column(cr, &here);
+}
+
+// Few rows: a point for each.
+static void trace_rows(cairo_t *cr, const pane_frame *f, const pane_curve *c, double until)
+{
+    const trace *t = c->rows;
+    for (size_t r = trace_row_at(t, f->from); r < t->row_count; r++) {
+        const double value = signal_value(&t->rows[r], c->signal), time = t->rows[r].time;
+        if (time > until && (c->until < f->to || time > f->to)) {
+            // the line leaves the pane on its right
+            if (c->until >= f->to && isfinite(value)) {
+                cairo_line_to(cr, pixel_x(f, time), pixel_y(f, value));
+            }
+            break;
+        }
+        if (isfinite(value)) {
+            cairo_line_to(cr, pixel_x(f, time), pixel_y(f, value));
+        } else {
+            cairo_new_sub_path(cr);
+        }
+    }
+}
+
+void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
+{
+    assert(cr != NULL && f != NULL && c != NULL && c->rows != NULL);
+    assert(f->to > f->from && f->high > f->low && f->width > 0 && f->height > 0);
+    const trace *t = c->rows;
+    const double until = fmin(c->until, f->to);
+    const double shown = (double)(trace_row_at(t, f->to) - trace_row_at(t, f->from));
+
+    cairo_new_path(cr);
+    if (shown > 2 * f->width) {
+        trace_columns(cr, f, c, until);
+    } else {
+        trace_rows(cr, f, c, until);
+    }
+    set_pen(cr, f, c);
+    cairo_stroke(cr);
+}
+
+void pane_level_paint(cairo_t *cr, const pane_frame *f, double value, colour in)
+{
+    assert(cr != NULL && f != NULL);
+    static const double dots[] = {1, 3};
+    if (!(value >= f->low && value <= f->high)) {
+        return;
+    }
+    const double y = floor(pixel_y(f, value)) + 0.5;
+    cairo_new_path(cr);
+    cairo_set_dash(cr, dots, 2, 0);
+    cairo_set_line_width(cr, 1);
+    set_colour(cr, in);
+    cairo_move_to(cr, 0, y);
+    cairo_line_to(cr, f->width, y);
+    cairo_stroke(cr);
+}
+
+void pane_instant_paint(cairo_t *cr, const pane_frame *f, double time, colour in)
+{
+    assert(cr != NULL && f != NULL);
+    if (!(time >= f->from && time <= f->to)) {
+        return;
+    }
+    const double x = floor(fmin(pixel_x(f, time), f->width - 1)) + 0.5;
+    cairo_new_path(cr);
+    cairo_set_dash(cr, NULL, 0, 0);
+    cairo_set_line_width(cr, 1);
+    set_colour(cr, in);
+    cairo_move_to(cr, x, 0);
+    cairo_line_to(cr, x, f->height);
+    cairo_stroke(cr);
+}

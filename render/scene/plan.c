@@ -1,0 +1,258 @@
+#include "render/scene/plan.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+// Sizes in beam lengths; the least of them in pixels where the arm is small.
+#define BEAM_WIDTH  0.012
+#define HUB_RADIUS  0.05
+#define PIN_RADIUS  0.008
+#define SLAB_FROM   0.93 // of a flat wall, along the arm
+#define SLAB_TO     1.07
+#define CLOSE_WIDTH 0.10 // what a close-up shows across
+#define COIL_TURNS  10
+
+// A plan in the making.
+typedef struct painter {
+    cairo_t *cr;
+    const plan *plan;
+    const plan_view *view;
+    vector *joints, *curve;
+} painter;
+
+double plan_x(const plan_view *v, double x)
+{
+    assert(v != NULL);
+    return (x - v->left) * v->scale;
+}
+
+double plan_y(const plan_view *v, double y)
+{
+    assert(v != NULL);
+    return v->height - (y - v->bottom) * v->scale * v->magnified;
+}
+
+plan_view plan_close_up(const parameters *p, double width, double height)
+{
+    assert(p != NULL && width > 0 && height > 0);
+    const double length = p->arm.length, scale = width / (CLOSE_WIDTH * length);
+    return (plan_view){.left = length * cos(p->wall.angle) - 0.6 * width / scale,
+                       .bottom = length * sin(p->wall.angle) - 0.5 * height / scale,
+                       .scale = scale,
+                       .magnified = 1,
+                       .width = width,
+                       .height = height};
+}
+
+// A length in beam lengths as pixels, not less than `least`.
+static double size_of(const painter *g, double lengths, double least)
+{
+    return fmax(least, lengths * g->plan->parameters->arm.length * g->view->scale);
+}
+
+static void pen(const painter *g, colour c, double width)
+{
+    set_colour(g->cr, c);
+    cairo_set_dash(g->cr, NULL, 0, 0);
+    cairo_set_line_width(g->cr, width);
+    cairo_set_line_cap(g->cr, CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_join(g->cr, CAIRO_LINE_JOIN_ROUND);
+}
+
+// A colour on its way to the ground.
+static colour paler(const painter *g, colour c, double share)
+{
+    const colour ground = g->plan->colours.ground;
+    return (colour){c.red + share * (ground.red - c.red),
+                    c.green + share * (ground.green - c.green),
+                    c.blue + share * (ground.blue - c.blue)};
+}
+
+// --- what stands still ------------------------------------------------------------------------
+
+// Short strokes behind a line, from (x, y) on along (dx, dy) [pixels].
+static void hatch(const painter *g, double x, double y, double dx, double dy)
+{
+    const double length = hypot(dx, dy), step = 7, depth = 9;
+    const double ux = dx / length, uy = dy / length;
+    for (double at = 0; at <= length; at += step) {
+        cairo_move_to(g->cr, x + at * ux, y + at * uy);
+        cairo_line_to(g->cr, x + at * ux + depth * (0.5 * ux + uy),
+                      y + at * uy + depth * (0.5 * uy - ux));
+    }
+    cairo_stroke(g->cr);
+}
+
+// A flat wall lies along the arm, on the far side of it; any wall has the place where the tip meets
+// it.
+static void paint_wall(const painter *g)
+{
+    const parameters *p = g->plan->parameters;
+    const colour wall = g->plan->colours.wall;
+    const double off = 0.5 * size_of(g, BEAM_WIDTH, 3);
+    const double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
+    if (p->wall.kind == WALL_NONE) {
+        return;
+    }
+
+    // across the arm, half the beam away: up on the page
+    const double tip_x = plan_x(g->view, x), tip_y = plan_y(g->view, y);
+    const double hub_x = plan_x(g->view, 0), hub_y = plan_y(g->view, 0);
+    const double length = hypot(tip_x - hub_x, tip_y - hub_y);
+    const double nx = (tip_y - hub_y) / length, ny = -(tip_x - hub_x) / length;
+    if (p->wall.kind == WALL_PLANE) {
+        const double from_x = hub_x + SLAB_FROM * (tip_x - hub_x) + off * nx;
+        const double from_y = hub_y + SLAB_FROM * (tip_y - hub_y) + off * ny;
+        const double dx = (SLAB_TO - SLAB_FROM) * (tip_x - hub_x);
+        const double dy = (SLAB_TO - SLAB_FROM) * (tip_y - hub_y);
+        pen(g, wall, 1);
+        hatch(g, from_x, from_y, dx, dy);
+        pen(g, wall, 2);
+        cairo_move_to(g->cr, from_x, from_y);
+        cairo_line_to(g->cr, from_x + dx, from_y + dy);
+        cairo_stroke(g->cr);
+        return;
+    }
+
+    // a point: a pin that the beam's edge meets
+    const double radius = size_of(g, PIN_RADIUS, 4);
+    pen(g, wall, 1.5);
+    cairo_arc(g->cr, tip_x + (off + radius) * nx, tip_y + (off + radius) * ny, radius, 0, 2 * M_PI);
+    set_colour(g->cr, paler(g, wall, 0.5));
+    cairo_fill_preserve(g->cr);
+    set_colour(g->cr, wall);
+    cairo_stroke(g->cr);
+}
+
+// --- the arm ----------------------------------------------------------------------------------
+
+// The beam's curve at an instant of a run as cairo's path; returns the row there.
+static sample beam_path(const painter *g, const trace *rows)
+{
+    const int links = g->plan->parameters->arm.links;
+    const sample row = scene_joints(rows, g->plan->parameters, g->plan->time, g->joints);
+    scene_exaggerate(g->joints, links, g->plan->exaggerate);
+    const int count = scene_curve(g->joints, links, g->curve);
+    cairo_new_path(g->cr);
+    for (int i = 0; i < count; i++) {
+        cairo_line_to(g->cr, plan_x(g->view, g->curve[i].x), plan_y(g->view, g->curve[i].y));
+    }
+    return row;
+}
+
+static void paint_hub(const painter *g, double angle)
+{
+    const double x = plan_x(g->view, 0), y = plan_y(g->view, 0);
+    const double radius = fmin(size_of(g, HUB_RADIUS, 6), 0.3 * g->view->height);
+    pen(g, g->plan->colours.hub, 2);
+    cairo_new_path(g->cr);
+    cairo_arc(g->cr, x, y, radius, 0, 2 * M_PI);
+    set_colour(g->cr, paler(g, g->plan->colours.hub, 0.75));
+    cairo_fill_preserve(g->cr);
+    set_colour(g->cr, g->plan->colours.hub);
+    cairo_stroke(g->cr);
+
+    // a spoke tells its angle
+    cairo_move_to(g->cr, x, y);
+    cairo_line_to(g->cr, x + radius * cos(angle), y - radius * sin(angle));
+    cairo_stroke(g->cr);
+}
+
+// The wall's force on the tip: an arrow that points at it, as long as its share of the peak.
+static void paint_force(const painter *g, double x, double y, const sample *row)
+{
+    const double share = row->contact > 0 && g->plan->peak > 0 ? row->force / g->plan->peak : 0;
+    const double length = 0.42 * g->view->height * fmin(share, 1), head = fmin(10, length);
+    const double off = 0.5 * size_of(g, BEAM_WIDTH, 3) + 1;
+    if (!(length > 1)) {
+        return;
+    }
+    pen(g, g->plan->colours.force, 3);
+    cairo_set_line_cap(g->cr, CAIRO_LINE_CAP_BUTT);
+    cairo_move_to(g->cr, x, y - off - length);
+    cairo_line_to(g->cr, x, y - off - 0.8 * head);
+    cairo_stroke(g->cr);
+    cairo_move_to(g->cr, x, y - off);
+    cairo_line_to(g->cr, x - 0.45 * head, y - off - head);
+    cairo_line_to(g->cr, x + 0.45 * head, y - off - head);
+    cairo_close_path(g->cr);
+    cairo_fill(g->cr);
+}
+
+// The spring that pulls at the tip: a zigzag between straight ends.
+static void paint_pull(const painter *g, double x, double y)
+{
+    const double to_x = plan_x(g->view, g->plan->pull_x), to_y = plan_y(g->view, g->plan->pull_y);
+    const double length = hypot(to_x - x, to_y - y);
+    if (!g->plan->pulled || !(length > 1)) {
+        return;
+    }
+    const double ux = (to_x - x) / length, uy = (to_y - y) / length, wide = fmin(6, 0.2 * length);
+    pen(g, g->plan->colours.force, 1.5);
+    cairo_move_to(g->cr, x, y);
+    for (int i = 0; i <= COIL_TURNS; i++) {
+        const double along = length * (0.1 + 0.8 * i / COIL_TURNS);
+        const double across = i == 0 || i == COIL_TURNS ? 0 : i % 2 ? wide : -wide;
+        cairo_line_to(g->cr, x + along * ux - across * uy, y + along * uy + across * ux);
+    }
+    cairo_line_to(g->cr, to_x, to_y);
+    cairo_stroke(g->cr);
+    cairo_arc(g->cr, to_x, to_y, 3, 0, 2 * M_PI);
+    cairo_fill(g->cr);
+}
+
+static void paint_all(const painter *g)
+{
+    const plan *p = g->plan;
+    const int links = p->parameters->arm.links;
+    const double beam = size_of(g, BEAM_WIDTH, 3);
+
+    // from the back to the front: the wall, the other run, the hub, the beam and its forces
+    paint_wall(g);
+    if (p->other != NULL) {
+        beam_path(g, p->other);
+        pen(g, paler(g, p->colours.other, 0.35), fmax(1.5, 0.5 * beam));
+        cairo_stroke(g->cr);
+    }
+    const sample row = beam_path(g, p->rows);
+    cairo_path_t *path = cairo_copy_path(g->cr);
+    paint_hub(g, row.hub_angle);
+
+    // a rim, and the beam's own colour inside it
+    cairo_new_path(g->cr);
+    cairo_append_path(g->cr, path);
+    cairo_path_destroy(path);
+    pen(g, p->colours.arm, beam);
+    cairo_stroke_preserve(g->cr);
+    pen(g, paler(g, p->colours.arm, 0.45), fmax(1, beam - 3));
+    cairo_stroke(g->cr);
+
+    const double x = plan_x(g->view, g->joints[links].x), y = plan_y(g->view, g->joints[links].y);
+    paint_force(g, x, y, &row);
+    paint_pull(g, x, y);
+}
+
+bool plan_paint(cairo_t *cr, const plan *p, const plan_view *v)
+{
+    assert(cr != NULL && p != NULL && v != NULL && p->rows != NULL && p->rows->row_count > 0);
+    assert(v->scale > 0 && v->magnified > 0 && isfinite(p->time));
+    const size_t links = (size_t)p->parameters->arm.links;
+    painter g = {.cr = cr, .plan = p, .view = v};
+    g.joints = malloc((links + 1) * sizeof *g.joints);
+    g.curve = malloc((size_t)scene_curve_length((int)links) * sizeof *g.curve);
+    const bool done = g.joints != NULL && g.curve != NULL;
+
+    if (done) {
+        cairo_save(cr);
+        cairo_rectangle(cr, 0, 0, v->width, v->height);
+        cairo_clip(cr);
+        set_colour(cr, p->colours.ground);
+        cairo_paint(cr);
+        paint_all(&g);
+        cairo_restore(cr);
+    }
+    free(g.joints);
+    free(g.curve);
+    return done;
+}

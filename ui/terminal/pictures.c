@@ -1,0 +1,151 @@
+#include "ui/terminal/pictures.h"
+
+#include <assert.h>
+#include <stddef.h>
+
+void pictures_finish(picture_layer *layer)
+{
+    assert(layer != NULL);
+    for (int i = 0; i < PICTURES; i++) {
+        if (layer->items[i].surface != NULL) {
+            cairo_surface_destroy(layer->items[i].surface);
+        }
+    }
+    *layer = (picture_layer){0};
+}
+
+void pictures_clear(screen *s)
+{
+    assert(s != NULL);
+    if (s->pictures != NULL) {
+        s->pictures->count = 0;
+    }
+}
+
+// Makes sure that a picture has a surface of its size; false without memory.
+static bool fit_surface(screen_picture *p, int width, int height)
+{
+    if (p->surface != NULL && cairo_image_surface_get_width(p->surface) == width &&
+        cairo_image_surface_get_height(p->surface) == height) {
+        return true;
+    }
+    if (p->surface != NULL) {
+        cairo_surface_destroy(p->surface);
+    }
+    p->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    if (cairo_surface_status(p->surface) == CAIRO_STATUS_SUCCESS) {
+        return true;
+    }
+    cairo_surface_destroy(p->surface);
+    p->surface = NULL;
+    return false;
+}
+
+cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
+{
+    assert(s != NULL);
+    picture_layer *layer = s->pictures;
+
+    // kept within the screen
+    width = x + width > s->width ? s->width - x : width;
+    height = y + height > s->height ? s->height - y : height;
+    if (layer == NULL || layer->count == PICTURES || x < 0 || y < 0 || width < 1 || height < 1) {
+        return NULL;
+    }
+    screen_picture *p = &layer->items[layer->count];
+    if (!fit_surface(p, width * layer->cell_width, height * layer->cell_height)) {
+        return NULL;
+    }
+
+    // its cells
+    p->x = x;
+    p->y = y;
+    p->width = width;
+    p->height = height;
+    for (int row = y; row < y + height; row++) {
+        for (int column = x; column < x + width; column++) {
+            screen_put(s, column, row, GLYPH_PICTURE + (uint32_t)layer->count, INK_TEXT);
+        }
+    }
+    layer->count++;
+
+    // its ground
+    cairo_t *cr = cairo_create(p->surface);
+    cairo_set_source_rgb(cr, layer->ground.red / 255.0, layer->ground.green / 255.0,
+                         layer->ground.blue / 255.0);
+    cairo_paint(cr);
+    return cr;
+}
+
+// How many cells from (x, y) on show a picture, in one row.
+static int run_length(const screen *s, int x, int y, uint32_t glyph)
+{
+    int length = 0;
+    while (x + length < s->width && s->cells[(long)y * s->width + x + length].glyph == glyph) {
+        length++;
+    }
+    return length;
+}
+
+// The regions of one picture, behind the `count` there are: rows with the same run hang together.
+static int add_regions(const screen *s, int picture, int most_width, int most_height,
+                       picture_region *regions, int count)
+{
+    const screen_picture *p = &s->pictures->items[picture];
+    const uint32_t glyph = GLYPH_PICTURE + (uint32_t)picture;
+    const int first = count;
+    for (int y = p->y; y < p->y + p->height; y++) {
+        for (int x = p->x; x < p->x + p->width;) {
+            int length = run_length(s, x, y, glyph);
+            length = length > most_width ? most_width : length;
+            if (length == 0) {
+                x++;
+                continue;
+            }
+
+            // the one above goes on, or another begins
+            bool goes_on = false;
+            for (int k = first; k < count && !goes_on; k++) {
+                picture_region *above = &regions[k];
+                goes_on = above->x == x && above->width == length &&
+                          above->y + above->height == y && above->height < most_height;
+                above->height += goes_on;
+            }
+            if (!goes_on && count < PICTURE_REGIONS) {
+                regions[count++] = (picture_region){picture, x, y, length, 1};
+            }
+            x += length;
+        }
+    }
+    return count;
+}
+
+int pictures_regions(const screen *s, int most_width, int most_height,
+                     picture_region regions[PICTURE_REGIONS])
+{
+    assert(s != NULL && most_width > 0 && most_height > 0);
+    int count = 0;
+    for (int i = 0; s->pictures != NULL && i < s->pictures->count; i++) {
+        cairo_surface_flush(s->pictures->items[i].surface);
+        count = add_regions(s, i, most_width, most_height, regions, count);
+    }
+    return count;
+}
+
+rgb picture_ink(const screen *s, colour_theme theme, ink i)
+{
+    assert(s != NULL && s->pictures != NULL);
+    const rgb black = {0, 0, 0}, white = {255, 255, 255};
+    const rgb ground = s->pictures->ground;
+    rgb colour;
+    if (ink_rgb(theme, i, &colour)) {
+        return colour;
+    }
+    return rgb_contrast(white, ground) > rgb_contrast(black, ground) ? white : black;
+}
+
+void picture_set_ink(cairo_t *cr, const screen *s, colour_theme theme, ink i)
+{
+    const rgb c = picture_ink(s, theme, i);
+    cairo_set_source_rgb(cr, c.red / 255.0, c.green / 255.0, c.blue / 255.0);
+}

@@ -1,0 +1,201 @@
+// Keys, the mouse and answers from the terminal.
+#include "ui/terminal/terminal_state.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+#include <wchar.h>
+
+#include "src/base/clock.h"
+#include "ui/terminal/escape_sequence.h"
+
+#define SEQUENCE_TIME 0.25 // after such a pause what is missing of a sequence does not come [s]
+
+static int key_of_curses(int key)
+{
+    static const struct {
+        int curses, ours;
+    } keys[] = {
+        {KEY_LEFT, KEY_CODE_LEFT},
+        {KEY_RIGHT, KEY_CODE_RIGHT},
+        {KEY_UP, KEY_CODE_UP},
+        {KEY_DOWN, KEY_CODE_DOWN},
+        {KEY_HOME, KEY_CODE_HOME},
+        {KEY_END, KEY_CODE_END},
+        {KEY_PPAGE, KEY_CODE_PAGE_UP},
+        {KEY_NPAGE, KEY_CODE_PAGE_DOWN},
+        {KEY_DC, KEY_CODE_DELETE},
+        {KEY_BACKSPACE, KEY_CODE_BACKSPACE},
+        {KEY_F(1), KEY_CODE_F1},
+        {KEY_ENTER, KEY_CODE_ENTER},
+        {KEY_SLEFT, KEY_CODE_SHIFT_LEFT},
+        {KEY_SRIGHT, KEY_CODE_SHIFT_RIGHT},
+        {KEY_SR, KEY_CODE_SHIFT_UP},
+        {KEY_SF, KEY_CODE_SHIFT_DOWN},
+    };
+
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+        if (keys[i].curses == key) {
+            return keys[i].ours;
+        }
+    }
+    return 0;
+}
+
+// Goes on with a sequence by the next character. False if that is a key of its own; *in is then the
+// escape before it, if that stood alone.
+static bool take_sequence(wint_t key, int kind, terminal_input *in)
+{
+    bool escaped = tty.sequence.state == SEQUENCE_ESCAPED;
+    sequence_result result = SEQUENCE_OTHER_KEY;
+
+    if (kind == OK &&
+        (escaped || clock_seconds(CLOCK_MONOTONIC) - tty.sequence_time < SEQUENCE_TIME)) {
+        result = escape_sequence_take(&tty.sequence, (int)key, &in->pointer);
+    }
+    tty.sequence_time = clock_seconds(CLOCK_MONOTONIC);
+
+    // a key after the escape: it was no sequence, and the escape a key of its own
+    if (result == SEQUENCE_OTHER_KEY) {
+        tty.sequence.state = SEQUENCE_NONE;
+        *in = (terminal_input){.kind = escaped ? TERMINAL_KEY : TERMINAL_NONE,
+                               .code = KEY_CODE_ESCAPE};
+        return false;
+    }
+
+    // an answer that changes what can be shown has all drawn anew
+    if (result == SEQUENCE_ANSWER) {
+        in->kind = terminal_take_answer() ? TERMINAL_RESIZE : TERMINAL_NONE;
+        return true;
+    }
+    in->kind = result == SEQUENCE_MOUSE ? TERMINAL_POINTER : TERMINAL_NONE;
+    return true;
+}
+
+// What has come already; TERMINAL_NONE if that is nothing, or not yet all of a sequence.
+static terminal_input pending_input(void)
+{
+    terminal_input in = {.kind = TERMINAL_NONE};
+    wint_t key = 0;
+    int kind;
+    while ((kind = get_wch(&key)) != ERR) {
+        // in the middle of a sequence
+        if (tty.sequence.state != SEQUENCE_NONE) {
+            if (take_sequence(key, kind, &in)) {
+                if (in.kind != TERMINAL_NONE) {
+                    return in;
+                }
+                continue;
+            }
+            if (in.kind != TERMINAL_NONE) {
+                // the key after the escape is the next one
+                if (kind == KEY_CODE_YES) {
+                    ungetch((int)key);
+                } else {
+                    unget_wch((wchar_t)key);
+                }
+                return in;
+            }
+        }
+
+        if (kind == KEY_CODE_YES) {
+            return key == KEY_RESIZE
+                       ? (terminal_input){.kind = TERMINAL_RESIZE}
+                       : (terminal_input){.kind = TERMINAL_KEY, .code = key_of_curses((int)key)};
+        }
+
+        if (key != KEY_CODE_ESCAPE) {
+            return (terminal_input){.kind = TERMINAL_KEY, .code = (int)key};
+        }
+        tty.sequence.state = SEQUENCE_ESCAPED;
+    }
+
+    // no more came after an escape: it was the key
+    if (tty.sequence.state == SEQUENCE_ESCAPED) {
+        tty.sequence.state = SEQUENCE_NONE;
+        return (terminal_input){.kind = TERMINAL_KEY, .code = KEY_CODE_ESCAPE};
+    }
+
+    return (terminal_input){.kind = TERMINAL_NONE};
+}
+
+// Gives the terminal back, mouse included, stops until the shell lets us go on, and takes the
+// terminal over again.
+static void suspend(void)
+{
+    struct sigaction ours, plain = {.sa_handler = SIG_DFL};
+    terminal_mouse(false);
+    terminal_remove_pictures();
+    erase();
+    refresh();
+    endwin();
+
+    // nothing stops a program that no shell could wake
+    sigaction(SIGTSTP, &plain, &ours);
+    raise(SIGTSTP);
+    sigaction(SIGTSTP, &ours, NULL);
+
+    // what is shown is the shell's
+    clearok(stdscr, TRUE);
+    refresh();
+    curs_set(0);
+}
+
+// Takes the bytes that signals left, and the terminal's new size.
+static terminal_input after_signal(void)
+{
+    char bytes[64];
+    struct winsize size;
+
+    // the bytes only woke the loop, the flags tell why
+    while (read(tty.wake[0], bytes, sizeof bytes) > 0) {
+    }
+
+    // after a stop it goes on below, perhaps in another size
+    if (terminal_suspending != 0) {
+        terminal_suspending = 0;
+        suspend();
+    }
+    if (terminal_leaving != 0) {
+        return (terminal_input){.kind = TERMINAL_LEAVE};
+    }
+
+    // whatever the signal was, the size is asked for
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
+        resizeterm(size.ws_row, size.ws_col);
+    }
+    terminal_ask_cell();
+    return (terminal_input){.kind = TERMINAL_RESIZE};
+}
+
+terminal_input terminal_wait(double seconds)
+{
+    terminal_input in = pending_input();
+    if (in.kind != TERMINAL_NONE) {
+        return in;
+    }
+
+    // for a key, or for a signal's byte
+    struct pollfd watched[2] = {{STDIN_FILENO, POLLIN, 0}, {tty.wake[0], POLLIN, 0}};
+    int ready = poll(watched, 2, seconds < 0 ? -1 : (int)(1e3 * seconds + 0.999));
+    if (ready > 0 && watched[1].revents != 0) {
+        return after_signal();
+    }
+    if (ready > 0 && watched[0].revents & POLLIN) {
+        in = pending_input();
+
+        // readable, but there is nothing: its other end was closed
+        int waiting = 0;
+        bool ended = in.kind == TERMINAL_NONE && ioctl(STDIN_FILENO, FIONREAD, &waiting) == 0 &&
+                     waiting == 0 && watched[0].revents & (POLLHUP | POLLERR);
+        in.kind = ended ? TERMINAL_LEAVE : in.kind;
+        return in;
+    }
+
+    // neither has anything and yet something happened: the terminal is gone
+    if (ready > 0) {
+        in.kind = TERMINAL_LEAVE;
+    }
+    return in;
+}
