@@ -1,4 +1,5 @@
-// The terminal lab in a pseudo-terminal under random keys, mouse reports, commands and sizes. It
+// The terminal lab in a pseudo-terminal under random keys, mouse reports, commands and sizes, on
+// terminals with sixels, with kitty's protocol, without pictures and with nonsense for answers. It
 // must answer all along; at the end what it saves must reproduce its run, and the terminal must be
 // as it was. One session after the other until the time is over, each with a seed of its own.
 //
@@ -27,11 +28,18 @@
 #define ESCAPE_PAUSE  0.08  // after an escape that stands alone [s]
 #define LAST_DURATION "0.7"
 
+#define SLOW_ANSWER   1.0 // from which on an answer is told with what led to it [s]
+
 enum { PRIVATE_MODES = 3000, TAIL = 4000, MOST_PROBES = 100000 };
+
+// What a session's terminal says of pictures.
+typedef enum terminal_kind { DUMB, SIXEL, KITTY, LIAR, TERMINAL_KINDS } terminal_kind;
 
 // What the terminal makes of the bytes it gets.
 typedef struct tracker {
-    enum { PLAIN, ESCAPED, SEQUENCE } state;
+    enum { PLAIN, ESCAPED, SEQUENCE, STRING, STRING_ENDS } state;
+    bool asks_attributes, asks_cell, asks_kitty; // a question came
+    long pictures;                               // strings of sixels or kitty's that were drawn
     char sequence[64];
     size_t length;
     bool mode[PRIVATE_MODES]; // set by CSI ? NUMBER h
@@ -47,11 +55,13 @@ typedef struct soak {
     int master, slave;
     int width, height; // of the terminal
     pid_t child;
+    terminal_kind kind;
     tracker seen;
     struct termios before;
     char folder[64];
     double *answers; // times that probes took [s]
     size_t answer_count, keys;
+    long drawn;          // pictures
     char last_keys[400]; // what was sent lately
     size_t sent;
 } soak;
@@ -80,18 +90,40 @@ static void end_sequence(tracker *t, char last)
                 t->mode[mode] = last == 'h';
             }
         }
+    } else if (last == 'c') {
+        t->asks_attributes = true;
+    } else if (last == 't' && strcmp(t->sequence, "16") == 0) {
+        t->asks_cell = true;
     } else if (last == 'J' && (t->length == 0 || strcmp(t->sequence, "2") == 0)) {
         t->cleared++;
     }
 }
 
+// The end of a string: a question of kitty's, or a picture.
+static void end_string(tracker *t)
+{
+    t->sequence[t->length] = '\0';
+    t->asks_kitty = t->asks_kitty || strstr(t->sequence, "a=q") != NULL;
+    t->pictures += strstr(t->sequence, "a=T") != NULL || t->sequence[0] == '0';
+}
+
 static void track(tracker *t, char c)
 {
+    const bool in_string = t->state == STRING || t->state == STRING_ENDS;
     t->tail[t->bytes++ % TAIL] = c;
-    if (c == '\033') {
+    if (in_string) {
+        // its beginning is kept; it ends with ESC \ or a bell
+        const bool ends = t->state == STRING_ENDS ? c == '\\' : c == '\a';
+        if (ends) {
+            end_string(t);
+        } else if (t->length + 1 < sizeof t->sequence) {
+            t->sequence[t->length++] = c;
+        }
+        t->state = ends ? PLAIN : c == '\033' ? STRING_ENDS : STRING;
+    } else if (c == '\033') {
         t->state = ESCAPED;
     } else if (t->state == ESCAPED) {
-        t->state = c == '[' ? SEQUENCE : PLAIN;
+        t->state = c == '[' ? SEQUENCE : c == 'P' || c == '_' || c == ']' ? STRING : PLAIN;
         t->length = 0;
     } else if (t->state == SEQUENCE && c >= 0x40 && c <= 0x7e) {
         end_sequence(t, c);
@@ -99,6 +131,17 @@ static void track(tracker *t, char c)
     } else if (t->state == SEQUENCE && t->length + 1 < sizeof t->sequence) {
         t->sequence[t->length++] = c;
     }
+}
+
+// What was sent lately, on one line.
+static void tell_keys(const soak *s)
+{
+    for (size_t i = s->sent > sizeof s->last_keys ? s->sent - sizeof s->last_keys : 0; i < s->sent;
+         i++) {
+        const unsigned char c = (unsigned char)s->last_keys[i % sizeof s->last_keys];
+        fprintf(stderr, c >= ' ' && c < 127 ? "%c" : "\\x%02x", c);
+    }
+    fputc('\n', stderr);
 }
 
 // Ends the test with what is wrong, how to get there again and what was seen last.
@@ -110,12 +153,8 @@ static void __attribute__((format(printf, 2, 3), noreturn)) fail(soak *s, const 
     vfprintf(stderr, format, list);
     va_end(list);
     fprintf(stderr, "\nsent last: ");
-    for (size_t i = s->sent > sizeof s->last_keys ? s->sent - sizeof s->last_keys : 0; i < s->sent;
-         i++) {
-        unsigned char c = (unsigned char)s->last_keys[i % sizeof s->last_keys];
-        fprintf(stderr, c >= ' ' && c < 127 ? "%c" : "\\x%02x", c);
-    }
-    fprintf(stderr, "\nseen last: ");
+    tell_keys(s);
+    fprintf(stderr, "seen last: ");
     for (size_t i = s->seen.bytes > TAIL ? s->seen.bytes - TAIL : 0; i < s->seen.bytes; i++) {
         char c = s->seen.tail[i % TAIL];
         fputc(c == '\033' ? '~' : c, stderr);
@@ -125,6 +164,26 @@ static void __attribute__((format(printf, 2, 3), noreturn)) fail(soak *s, const 
         kill(s->child, SIGABRT);
     }
     exit(1);
+}
+
+// Answers what the program asked, as this session's terminal does.
+static void answer(soak *s)
+{
+    static const char *const kitty[] = {NULL, NULL, "\033_Gi=31;OK\033\\", "\033_Gi=31;OKOK;OK"};
+    static const char *const cell[] = {NULL, "\033[6;16;8t", "\033[6;20;10t", "\033[6;0;999999t"};
+    static const char *const attributes[] = {NULL, "\033[?62;4;22c", "\033[?62c",
+                                             "\033]11;rgb:zz\a\033[?2;0;0;0S\033[?4;4;4;4c"};
+    tracker *t = &s->seen;
+    const char *texts[] = {t->asks_kitty ? kitty[s->kind] : NULL,
+                           t->asks_cell ? cell[s->kind] : NULL,
+                           t->asks_attributes ? attributes[s->kind] : NULL};
+    t->asks_kitty = t->asks_cell = t->asks_attributes = false;
+    for (int i = 0; i < 3; i++) {
+        // what does not fit is lost, as on a bad line
+        if (texts[i] != NULL && write(s->master, texts[i], strlen(texts[i])) < 0) {
+            return;
+        }
+    }
 }
 
 // Takes what the program shows for some time, 0: what is there.
@@ -142,6 +201,7 @@ static void watch(soak *s, double seconds)
         for (ssize_t i = 0; i < count; i++) {
             track(&s->seen, bytes[i]);
         }
+        answer(s);
     } while (seconds_now() < until);
 }
 
@@ -201,8 +261,13 @@ static void probe(soak *s)
             fail(s, "no answer within %g s", ANSWER_TIME);
         }
     }
+    const double took = seconds_now() - start;
     if (s->answer_count < MOST_PROBES) {
-        s->answers[s->answer_count++] = seconds_now() - start;
+        s->answers[s->answer_count++] = took;
+    }
+    if (took > SLOW_ANSWER) {
+        fprintf(stderr, "%.2f s with seed %llu after ", took, (unsigned long long)s->seed);
+        tell_keys(s);
     }
 }
 
@@ -240,7 +305,8 @@ static void give_command(soak *s)
         "rename %d other", "difference 0.0%d", "difference off", "sweep motor.voltage=1:%d:4",
         "sweep arm.k2=4,5,6", "sweep off", "metric", "lanes all", "lanes off", "lanes auto",
         "phase force gap", "spectrum force", "statistics", "lesson hybrid-law", "lesson step-size",
-        "answer %d", "continue", "lesson off", "palette volt",
+        "answer %d", "continue", "lesson off", "palette volt", "pixels off", "pixels auto",
+        "closeup", "bending %d", "slow %d", "slow off",
         // none of these can be done
         "frobnicate %d", "set arm.k2 NaN", "set arm.links -%d", "open nothing/such", "set",
         "set motor.voltage", "seek", "save", "save a.doc", "save /proc/none/a.csv", "speed 0",
@@ -426,6 +492,12 @@ static void check_terminal(soak *s)
             fail(s, "the terminal is left with private mode %d", off[i]);
         }
     }
+    if (s->seen.state == STRING || s->seen.state == STRING_ENDS) {
+        fail(s, "a string is left open");
+    }
+    if (s->seen.pictures > 0 && s->kind == DUMB) {
+        fail(s, "pictures for a terminal that has not asked for any");
+    }
     if (!s->seen.mode[25]) {
         fail(s, "the cursor is left hidden");
     }
@@ -478,6 +550,7 @@ static void finish(soak *s)
 static void run_session(soak *s, uint64_t seed, double seconds)
 {
     s->seed = seed;
+    s->kind = (terminal_kind)(seed % TERMINAL_KINDS);
     s->seen = (tracker){0};
     s->sent = 0;
     random_seed(&s->random, seed);
@@ -498,6 +571,7 @@ static void run_session(soak *s, uint64_t seed, double seconds)
     save(s, "last.csv");
     save(s, "last.yaml");
     leave(s);
+    s->drawn += s->seen.pictures;
     check_terminal(s);
     check_record(s);
     finish(s);
@@ -526,6 +600,7 @@ int main(int count, char **arguments)
         run_session(&s, seed++, left < SESSION_TIME ? left : SESSION_TIME);
     } while (seconds_now() < until - 1);
     qsort(answers, s.answer_count, sizeof answers[0], by_size);
+    printf("%ld pictures, ", s.drawn);
     printf("seeds %llu to %llu, %zu keys, %zu answers: median %.1f ms, 99 %% within %.1f ms, all "
            "within %.1f ms\n",
            (unsigned long long)first, (unsigned long long)seed - 1, s.keys, s.answer_count,

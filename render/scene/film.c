@@ -37,31 +37,37 @@ typedef struct film {
 
 // ---- the clock
 
+film_clock film_clock_round(double start, double end, double instant, double slow)
+{
+    assert(end >= start && isfinite(instant));
+    const double span = end - start;
+    return (film_clock){.start = start,
+                        .end = end,
+                        .slow = slow,
+                        .slow_from = instant - 0.01 * span,
+                        .slow_to = instant + 0.04 * span,
+                        .taper = 0.03 * span};
+}
+
 film_clock film_clock_of(const run_result *result, double seconds, double slow)
 {
     assert(result != NULL && result->trace.row_count > 0 && seconds > 0);
     const trace *t = &result->trace;
-    const summary *m = &result->summary;
-    film_clock c = {.start = t->rows[0].time,
-                    .end = t->rows[t->row_count - 1].time,
-                    .slow = 1,
-                    .seconds = seconds};
+    const double contact = result->summary.first_contact_s;
+    film_clock c = {.start = t->rows[0].time, .end = t->rows[t->row_count - 1].time, .slow = 1};
 
     // slow from shortly before the first contact
-    double span = c.end - c.start;
-    if (!isnan(m->first_contact_s)) {
-        c.slow = slow;
-        c.slow_from = m->first_contact_s - 0.01 * span;
-        c.slow_to = m->first_contact_s + 0.04 * span;
-        c.taper = 0.03 * span;
+    if (!isnan(contact)) {
+        c = film_clock_round(c.start, c.end, contact, slow);
     }
+    c.seconds = seconds;
     return c;
 }
 
-// How many times slower the run goes at t than where it is not slowed down: between, half a cosine.
-static double slowness(const film_clock *c, double t)
+double film_clock_slowness(const film_clock *c, double time)
 {
-    double outside = fmax(fmax(c->slow_from - t, t - c->slow_to), 0);
+    assert(c != NULL);
+    double outside = fmax(fmax(c->slow_from - time, time - c->slow_to), 0);
     if (c->slow <= 1 || outside >= c->taper) {
         return 1;
     }
@@ -73,13 +79,13 @@ double film_clock_time(const film_clock *c, double film_time, double *speed)
     assert(c != NULL && c->seconds > 0 && speed != NULL);
     double span = c->end - c->start, cell = span / CLOCK_CELLS, total = 0, passed = 0;
     for (int i = 0; i < CLOCK_CELLS; i++) {
-        total += slowness(c, c->start + (i + 0.5) * cell);
+        total += film_clock_slowness(c, c->start + (i + 0.5) * cell);
     }
 
     // the cell in which the share of the film's time is passed
     double wanted = fmin(1, fmax(0, film_time / c->seconds)) * total;
     for (int i = 0; i < CLOCK_CELLS; i++) {
-        double here = slowness(c, c->start + (i + 0.5) * cell);
+        double here = film_clock_slowness(c, c->start + (i + 0.5) * cell);
         if (passed + here >= wanted) {
             *speed = total * cell / c->seconds / here;
             return c->start + (i + (wanted - passed) / here) * cell;
@@ -88,7 +94,7 @@ double film_clock_time(const film_clock *c, double film_time, double *speed)
     }
 
     // rounding passed the last cell
-    *speed = total * cell / c->seconds / slowness(c, c->end);
+    *speed = total * cell / c->seconds / film_clock_slowness(c, c->end);
     return c->end;
 }
 

@@ -32,6 +32,14 @@ typedef struct film_clock {
 // the force has risen `slow` times slower than the rest.
 film_clock film_clock_of(const run_result *result, double seconds, double slow);
 
+// The same for a run from `start` to `end` [s] and what happens at an instant of it [s]; the film's
+// length is left open.
+film_clock film_clock_round(double start, double end, double instant, double slow);
+
+// How many times slower the run goes at an instant [s] than where it is not slowed down: between,
+// half a cosine.
+double film_clock_slowness(const film_clock *c, double time);
+
 // The instant of the run [s] shown at a film's time [s], and how many seconds of the run pass in a
 // second of film there.
 double film_clock_time(const film_clock *c, double film_time, double *speed);

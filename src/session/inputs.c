@@ -165,13 +165,29 @@ status session_adjust(session *s, int parameter, const char *text, fault *f)
     return STATUS_OK;
 }
 
+unsigned session_new_gesture(const session *s)
+{
+    assert(s != NULL);
+    unsigned highest = 0;
+    for (int i = 0; i < s->input_total; i++) {
+        highest = s->inputs[i].gesture > highest ? s->inputs[i].gesture : highest;
+    }
+    return highest + 1;
+}
+
 status session_push(session *s, double impulse, fault *f)
+{
+    return session_pull(s, impulse, 0, f);
+}
+
+status session_pull(session *s, double impulse, unsigned gesture, fault *f)
 {
     assert(s != NULL);
     session_input in = {.kind = SESSION_INPUT_PUSH,
                         .time = effect_time(s),
                         .parameter = -1,
                         .value = impulse,
+                        .gesture = gesture,
                         .before = (double)NAN};
     remember_cursor(s, &in);
 
@@ -184,6 +200,13 @@ status session_push(session *s, double impulse, fault *f)
     return add_input(s, &in, f);
 }
 
+// Whether an input and the one before it belong to one gesture.
+static bool are_one_gesture(const session *s, int index)
+{
+    const unsigned gesture = s->inputs[index].gesture;
+    return gesture != 0 && s->inputs[index - 1].gesture == gesture;
+}
+
 status session_undo(session *s, fault *f)
 {
     assert(s != NULL);
@@ -191,11 +214,14 @@ status session_undo(session *s, fault *f)
         return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo");
     }
 
-    // computed without the last one, which stays if that fails
-    s->input_count--;
+    // computed without the last one, or all of its gesture, which stay if that fails
+    const int before = s->input_count;
+    do {
+        s->input_count--;
+    } while (s->input_count > 0 && are_one_gesture(s, s->input_count));
     status code = session_compute(s, f);
     if (code != STATUS_OK) {
-        s->input_count++;
+        s->input_count = before;
         return code;
     }
     restore_cursor(s, &s->inputs[s->input_count]);
@@ -209,10 +235,13 @@ status session_redo(session *s, fault *f)
         return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo");
     }
 
-    s->input_count++;
+    const int before = s->input_count;
+    do {
+        s->input_count++;
+    } while (s->input_count < s->input_total && are_one_gesture(s, s->input_count));
     status code = session_compute(s, f);
     if (code != STATUS_OK) {
-        s->input_count--;
+        s->input_count = before;
         return code;
     }
 

@@ -15,6 +15,11 @@ status session_adjust(session *s, int parameter, const char *text, fault *f);
 // The same as session_change for an impulse at the tip [N s].
 status session_push(session *s, double impulse, fault *f);
 
+// Pushes that are one gesture: undone and put in again together. A number that no input has, and a
+// push of that gesture (as session_push).
+unsigned session_new_gesture(const session *s);
+status session_pull(session *s, double impulse, unsigned gesture, fault *f);
+
 // Gives another value to what inputs[index] changed, at its instant; an input of its own, which
 // undoing takes back. STATUS_BAD_ARGUMENT for a push.
 status session_change_input(session *s, int index, const char *text, fault *f);

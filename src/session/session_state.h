@@ -21,6 +21,7 @@ typedef struct session_input {
     double value;                  // the new value; push: impulse [N s]
     char text[SESSION_INPUT_TEXT]; // the value as it was given
     double before;                 // the value until then; NaN for a text and for a push
+    unsigned gesture;              // undone together with its neighbours of this number; 0: alone
     double seen_at;                // where the cursor was when it was given [s]
     size_t seen_row;
 } session_input;

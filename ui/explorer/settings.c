@@ -9,8 +9,8 @@
 #include "ui/explorer/state/settings_folder.h"
 
 static const char *const remembered[] = {"theme", "glyphs",  "colours", "pixels", "closeup",
-                                         "mouse", "bending", "lanes",   "speed",  "panes",
-                                         "axis",  "key",     "unkey"};
+                                         "mouse", "bending", "lanes",   "slow",   "speed",
+                                         "panes", "axis",    "key",     "unkey"};
 
 static bool is_remembered(const char *line)
 {
@@ -124,8 +124,8 @@ static void write_settings(const explorer_state *st, FILE *stream)
             glyph_set_words[l->glyphs], colour_depth_words[l->depth]);
     fprintf(stream, "pixels %s\ncloseup %s\nbending %g\n", pixel_words[l->pixels],
             close_up_words[l->close_up], l->bending);
-    fprintf(stream, "mouse %s\nlanes %s\nspeed %g\n", mouse_words[l->mouse],
-            lane_choice_words[l->lanes], st->playback.speed);
+    fprintf(stream, "mouse %s\nlanes %s\nspeed %g\nslow %g\n", mouse_words[l->mouse],
+            lane_choice_words[l->lanes], st->playback.speed, st->playback.slow);
 
     // panes that nobody chose are the ones that suit the scenario
     fputs(st->panes.chosen ? "panes " : "", stream);

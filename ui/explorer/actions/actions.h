@@ -55,6 +55,15 @@ void act_scrub(explorer_state *st, double time);
 void act_zoom_at(explorer_state *st, double factor, double time);
 void act_pan_by(explorer_state *st, double seconds);
 
+// --- pulling the tip --------------------------------------------------------------------------
+
+// Takes hold of the tip with a pointer at a place [m], moves that, and lets go of it.
+action_result act_hold_tip(explorer_state *st, plane_vector place);
+void act_move_pull(explorer_state *st, plane_vector place);
+action_result act_drop_pull(explorer_state *st);
+// Gives the run the pushes that are due until an instant [s], if the tip is held.
+action_result act_pull_until(explorer_state *st, double time);
+
 // --- filters ----------------------------------------------------------------------------------
 
 // After the filter of a panel changed: back to its top, with something selected that it lets

@@ -8,6 +8,8 @@
 
 #include "src/base/instant.h"
 
+enum { MOST_SLOW = 100 }; // how much slower impacts can be shown
+
 action_result act_read_number(const char *text, double *value)
 {
     assert(text != NULL && value != NULL);
@@ -43,13 +45,22 @@ action_result act_advance(explorer_state *st, double seconds)
         return result_done();
     }
 
+    // slower round impacts; a tip that is held is pulled on the way
+    const double before = s->now, duration = s->effective.parameters.run.duration;
+    play->slowed = playback_slowness(play, &s->run.trace, duration, before);
+    const double next = before + seconds * play->speed / play->slowed;
+    const action_result pulled = act_pull_until(st, next);
+    if (!result_ok(&pulled)) {
+        return pulled;
+    }
+
     // the cursor waits at the end of what has been computed
-    double before = s->now;
-    session_seek(s, before + seconds * play->speed);
+    session_seek(s, next);
     playback_measure(play, s->now - before, seconds);
     if (s->now < session_end(s) || s->computing != NULL) {
         return result_done();
     }
+    act_drop_pull(st);
     play->playing = false;
     if (s->run.summary.status != STATUS_OK || s->run.summary.inaccurate) {
         return act_tell_failed_run(st);
@@ -194,6 +205,23 @@ action_result act_set_speed(explorer_state *st, const char *argument)
     }
     st->playback.speed = wanted;
     return result_done();
+}
+
+action_result act_set_slow(explorer_state *st, const char *argument)
+{
+    double factor = 1;
+    if (strcmp(argument, "off") != 0) {
+        action_result read = act_read_number(argument, &factor);
+        if (!result_ok(&read)) {
+            return read;
+        }
+    }
+    if (!(factor >= 1 && factor <= MOST_SLOW)) {
+        return result_refused("impacts are shown 1 to %d times slower", MOST_SLOW);
+    }
+    st->playback.slow = factor;
+    return factor > 1 ? result_news("impacts are shown %g times slower", factor)
+                      : result_news("impacts are shown at the speed of the rest");
 }
 
 action_result act_restart(explorer_state *st, const char *argument)

@@ -109,16 +109,11 @@ static plan_view whole_view(const explorer_state *st, const arm_extent *extent, 
 }
 
 // Where the tip is at the cursor, as it was recorded [m].
-static vector tip_of(const explorer_state *st)
+static plane_vector tip_of(const explorer_state *st)
 {
     const session *e = &st->session;
-    const arm_parameters *beam = &e->effective.parameters.arm;
-    vector tip = {0};
-    for (int i = 0; i < beam->links; i++) {
-        const double angle = link_angle(&e->run.trace, beam->links, e->row, i);
-        tip.x += beam->length / beam->links * cos(angle);
-        tip.y += beam->length / beam->links * sin(angle);
-    }
+    plane_vector tip, across;
+    recorded_tip(&e->run.trace, &e->effective.parameters.arm, e->row, &tip, &across);
     return tip;
 }
 
@@ -188,7 +183,7 @@ static void draw_wall(const stage *v, const parameters *p)
 }
 
 // An arrow that pushes on the arm at its tip, as long as the force is a share of the run's peak.
-static void draw_force(const stage *v, vector tip, double force, double peak)
+static void draw_force(const stage *v, plane_vector tip, double force, double peak)
 {
     if (!(force > 0) || !(peak > 0)) {
         return;
@@ -215,6 +210,11 @@ static void draw_dots(const explorer_state *st, const stage *g)
     }
     draw_hub(g, row->hub_angle);
     draw_links(st, g, &e->run.trace, e->now, INK_ARM, false);
+    if (st->pull.held) {
+        const plane_vector tip = tip_of(st);
+        canvas_line(&g->canvas, dot_x(g, tip.x), dot_y(g, tip.y), dot_x(g, st->pull.x),
+                    dot_y(g, st->pull.y), INK_FORCE);
+    }
     draw_force(g, tip_of(st), row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
 }
 
@@ -240,6 +240,9 @@ static void draw_pixels(const explorer_state *st, const stage *g)
                      : NULL,
         .exaggerate = st->looks.bending,
         .peak = e->run.summary.peak_force_N,
+        .pulled = st->pull.held,
+        .pull_x = st->pull.x,
+        .pull_y = st->pull.y,
         .colours = {.ground = {ground.red / 255.0, ground.green / 255.0, ground.blue / 255.0},
                     .arm = colour_of(st, s, INK_ARM),
                     .hub = colour_of(st, s, INK_HUB),
@@ -291,7 +294,7 @@ static void draw_close_up(const explorer_state *st, screen *s, area a)
 static void draw_words(const explorer_state *st, const stage *g, area a)
 {
     const sample *row = session_sample(&st->session);
-    const vector tip = tip_of(st);
+    const plane_vector tip = tip_of(st);
     screen *s = g->canvas.screen;
     const double across = g->view.width / g->canvas.width, down = g->view.height / g->canvas.height;
     const int x = g->canvas.x + (int)(dot_x(g, tip.x) / across);
@@ -303,6 +306,10 @@ static void draw_words(const explorer_state *st, const stage *g, area a)
         a.height >= 9 && a.width >= 40) {
         screen_text(s, a.x + a.width - 18, a.y + a.height - 2, 17, INK_WALL,
                     "\u25c6 contact point");
+    }
+    if (st->pull.held) {
+        screen_print(s, a.x + 14, a.y + a.height - 2, a.width - 34, INK_FORCE, "pulled with %.3g N",
+                     st->pull.force);
     }
     if (row->sticking != 0) {
         screen_text(s, a.x + 2, a.y + a.height - 2, 12, INK_DIM, "hub sticks");
@@ -338,6 +345,51 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
     draw_stage(st, &g);
     draw_words(st, &g, a);
+
+    // for the mouse
+    const canvas *c = &g.canvas;
+    lay->stage = (arm_stage){.x = c->x,
+                             .y = c->y,
+                             .width = c->width,
+                             .height = c->height,
+                             .left = g.view.left,
+                             .bottom = g.view.bottom,
+                             .across = g.view.scale * c->width / g.view.width,
+                             .up = g.view.scale * g.view.magnified * c->height / g.view.height};
+    layout_add_hit(lay, (hit_area){PANEL_ARM, PART_BODY, 0, {c->x, c->y, c->width, c->height}});
 }
 
-const panel arm_panel = {.name = "arm", .draw = draw};
+// --- the mouse --------------------------------------------------------------------------------
+
+// A press near the tip takes hold of it.
+static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+{
+    enum { NEAR_ACROSS = 4, NEAR_DOWN = 2 }; // [cells]
+    int x, y;
+    *result = result_done();
+    if (st->stage.width < 1 || st->stage.height < 1) {
+        return false;
+    }
+    const plane_vector place = stage_place(&st->stage, g->event.x, g->event.y);
+
+    switch (g->event.kind) {
+    case POINTER_PRESS:
+        stage_cell(&st->stage, tip_of(st), &x, &y);
+        if (abs(x - g->event.x) <= NEAR_ACROSS && abs(y - g->event.y) <= NEAR_DOWN) {
+            *result = act_hold_tip(st, place);
+        }
+        return true;
+    case POINTER_DRAG:
+        if (st->pull.held) {
+            act_move_pull(st, place);
+        }
+        return true;
+    case POINTER_RELEASE:
+        *result = act_drop_pull(st);
+        return true;
+    default:
+        return false;
+    }
+}
+
+const panel arm_panel = {.name = "arm", .draw = draw, .point = point};

@@ -79,7 +79,9 @@ static int write_status(const explorer_state *st, status_item items[STATUS_ITEMS
         snprintf(law, sizeof law, ", %s", name);
     }
     if (st->playback.playing) {
-        snprintf(speed, sizeof speed, " (%.3g)", st->playback.measured);
+        const bool slowed = st->playback.slowed > 1.05;
+        snprintf(speed, sizeof speed, slowed ? " slow motion (%.2g)" : " (%.3g)",
+                 st->playback.measured);
     }
 
     // each part with what it is worth where not all fit

@@ -40,6 +40,7 @@ void layout_begin(layout *lay, const explorer_state *st)
     assert(lay != NULL && st != NULL);
     lay->hit_count = 0;
     lay->plot = (area){0};
+    lay->stage = (arm_stage){0};
     lay->page_lines = st->page.lines;
     lay->first_scenario = st->scenarios.first;
     memcpy(lay->scroll, st->scroll, sizeof lay->scroll);
@@ -84,4 +85,5 @@ void layout_settle(const layout *lay, explorer_state *st)
     st->page.lines = lay->page_lines;
     st->scenarios.first = lay->first_scenario;
     memcpy(st->scroll, lay->scroll, sizeof st->scroll);
+    st->stage = lay->stage;
 }

@@ -66,6 +66,7 @@ typedef struct layout {
     int scroll[PANEL_IDS];        // by panel: the state's, kept within what there is
     int page_lines;               // of the page that are shown at once
     int first_scenario;           // line of the list of scenarios that is shown first
+    arm_stage stage;              // where the arm was drawn
     arm_extent extent;            // remembered
     linearised_answer linearised; // remembered
     lane_survey lanes;            // remembered

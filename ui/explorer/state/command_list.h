@@ -10,6 +10,7 @@
     X("", "touch", "[-1]", "just before the arm touches next, or did last", act_step_touch)        \
     X("", "seek", "TIME|end", "to an instant [s]", act_seek)                                       \
     X("", "speed", "up|down|X", "simulated seconds a second, 1 is real time", act_set_speed)       \
+    X("", "slow", "FACTOR|off", "playing is that many times slower round impacts", act_set_slow)   \
     X("", "restart", "", "play from the start", act_restart)                                       \
     X("Changing the run", "set", "PATH VALUE", "another value, from now on or from the start",     \
       act_set)                                                                                     \

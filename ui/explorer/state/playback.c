@@ -3,13 +3,33 @@
 #include <assert.h>
 #include <stddef.h>
 
-#define NEW_SHARE 0.1 // of the last measurement in the mean
+#include "render/scene/film.h"
+
+#define NEW_SHARE 0.1  // of the last measurement in the mean
+#define APART     0.05 // of the run, between impacts that are slowed down each for itself
 
 void playback_measure(playback *p, double simulated, double seconds)
 {
     assert(p != NULL && seconds > 0);
     double factor = simulated / seconds;
     p->measured = p->measured > 0 ? (1 - NEW_SHARE) * p->measured + NEW_SHARE * factor : factor;
+}
+
+double playback_slowness(const playback *p, const trace *t, double duration, double time)
+{
+    assert(p != NULL && t != NULL && duration > 0);
+    double most = 1, last = -duration;
+    for (size_t i = 0; i < t->event_count && p->slow > 1; i++) {
+        const event *e = &t->events[i];
+        if (e->kind != EVENT_IMPACT) {
+            continue;
+        }
+        const film_clock c = film_clock_round(0, duration, e->time, p->slow);
+        const double here = e->time - last > APART * duration ? film_clock_slowness(&c, time) : 1;
+        most = here > most ? here : most;
+        last = e->time;
+    }
+    return most;
 }
 
 double playback_next_speed(const playback *p, int direction)

@@ -101,6 +101,7 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
     st->looks.mouse = true;
     st->looks.pixels = true;
     st->looks.bending = 1;
+    st->playback.slow = USUAL_SLOW;
     st->side.panel = panel_first_on_side();
     scenario_menu_read(&st->scenarios);
     look_afresh(st);

@@ -18,6 +18,7 @@
 #include "ui/explorer/state/parameter_list.h"
 #include "ui/explorer/state/playback.h"
 #include "ui/explorer/state/prompt.h"
+#include "ui/explorer/state/pull.h"
 #include "ui/explorer/state/run_list.h"
 #include "ui/explorer/state/run_log.h"
 #include "ui/explorer/state/scenario_menu.h"
@@ -83,6 +84,8 @@ typedef struct explorer_state {
     int change;            // selected among the changes, index in session.inputs
     int scroll[PANEL_IDS]; // by panel: lines it is away from where it stands by itself
     slider_grip slider;
+    tip_pull pull;
+    arm_stage stage; // of the arm
     looks looks;
     screen_size size; // of the screen drawn last
 
