@@ -1,4 +1,4 @@
-#include "ui/terminal/terminal_state.h"
+#include "ui/terminal/terminal.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -10,6 +10,7 @@
 #include <term.h>
 
 #include "ui/terminal/paint.h"
+#include "ui/terminal/terminal_state.h"
 
 terminal_state tty = {.wake = {-1, -1}};
 

@@ -1,4 +1,5 @@
 // Keys, the mouse and answers from the terminal.
+#include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
 #include <errno.h>

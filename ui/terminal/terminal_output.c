@@ -1,4 +1,5 @@
 // What the terminal shows.
+#include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
 #include <assert.h>

@@ -1,4 +1,5 @@
 // Pictures on the terminal: what it says of them, and what is shown.
+#include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
 #include <stdlib.h>

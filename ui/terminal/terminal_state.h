@@ -9,7 +9,7 @@
 #include <curses.h>
 
 #include "ui/terminal/pixel_answers.h"
-#include "ui/terminal/terminal.h"
+#include "ui/terminal/screen.h"
 
 typedef struct terminal_state {
     SCREEN *curses;
