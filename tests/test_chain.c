@@ -6,6 +6,24 @@
 
 enum { LARGEST = 12 };
 
+// What the dense equations are written with: the numbers as they were given.
+typedef struct dense_beam {
+    double length[LARGEST], stiffness[LARGEST]; // of link k and of the joint before it
+    double drag, stiffening;                    // of a joint
+} dense_beam;
+
+static dense_beam beam;
+
+static double dense_mass(int k)
+{
+    return 0.40108 * beam.length[k] / beam.length[LARGEST - 1]; // the last holds the sum
+}
+
+static double dense_inertia(int k)
+{
+    return dense_mass(k) * beam.length[k] * beam.length[k] / 12;
+}
+
 static arm make_arm(int links, const char *hub, const char *wall)
 {
     char n[32], joint[64], kind[64];
@@ -14,6 +32,53 @@ static arm make_arm(int links, const char *hub, const char *wall)
     snprintf(kind, sizeof kind, "wall.kind=%s", wall);
     parameters p =
         fixture_parameters(SETTINGS(n, joint, kind, "arm.k1=90", "arm.damping_ratio=0.02"));
+    beam = (dense_beam){.length[LARGEST - 1] = 1};
+    for (int k = 0; k < links; k++) {
+        beam.length[k] = 1.0 / links;
+        beam.stiffness[k] = k > 0 ? 4.92 * links / 2 : 90;
+    }
+    arm a;
+    arm_init(&a, &p);
+    return a;
+}
+
+// Links and joints that all differ, in air; every second arm has a beam's root.
+static arm make_uneven_arm(int links, const char *wall, bool rooted)
+{
+    char n[32], kind[64], lengths[160] = "arm.link_lengths=", springs[160] = "arm.joint_stiffness=";
+    snprintf(n, sizeof n, "arm.links=%d", links);
+    snprintf(kind, sizeof kind, "wall.kind=%s", wall);
+    beam = (dense_beam){.drag = 0.3};
+    for (int k = 0; k < links; k++) {
+        beam.length[k] = 0.1 + 0.01 * ((k * 7) % 5);
+        beam.length[LARGEST - 1] += beam.length[k];
+        beam.stiffness[k] = 8 + (k * 5) % 7 + 0.5 * k;
+        size_t l = strlen(lengths), j = strlen(springs);
+        snprintf(lengths + l, sizeof lengths - l, "%s%g", k > 0 ? "," : "", beam.length[k]);
+        if (k > 0 || rooted) {
+            snprintf(springs + j, sizeof springs - j, "%s%g", k > !rooted ? "," : "",
+                     beam.stiffness[k]);
+        }
+    }
+    parameters p = fixture_parameters(SETTINGS(n, kind, lengths, springs, "arm.air_drag=0.3",
+                                               rooted ? "arm.hub_joint=beam" : "run.duration=1"));
+    arm a;
+    arm_init(&a, &p);
+    return a;
+}
+
+// Equal joints that stiffen with their bend.
+static arm make_stiffening_arm(int links, const char *wall)
+{
+    char n[32], kind[64];
+    snprintf(n, sizeof n, "arm.links=%d", links);
+    snprintf(kind, sizeof kind, "wall.kind=%s", wall);
+    parameters p = fixture_parameters(SETTINGS(n, kind, "arm.stiffening=2.5"));
+    beam = (dense_beam){.length[LARGEST - 1] = 1, .stiffening = 2.5 * links * links / 4};
+    for (int k = 0; k < links; k++) {
+        beam.length[k] = 1.0 / links;
+        beam.stiffness[k] = 4.92 * links / 2;
+    }
     arm a;
     arm_init(&a, &p);
     return a;
@@ -45,14 +110,15 @@ static void numeric_jacobian(const arm *a, double *q, const double *w, double *j
 // M_ij = A_ij cos(q_i - q_j) of the Lagrangian, by direct summation over the links' centres.
 static double mass(const arm *a, const double *q, int i, int j)
 {
-    double sum = i == j && i >= a->first ? a->link_inertia : 0;
+    double sum = i == j && i >= a->first ? dense_inertia(i - a->first) : 0;
     if (i == 0 && j == 0) {
         sum += a->hub_inertia;
     }
     for (int body = a->first; body < a->dof && i >= a->first && j >= a->first; body++) {
-        double ri = body > i ? a->link_length : body == i ? a->link_length / 2 : 0;
-        double rj = body > j ? a->link_length : body == j ? a->link_length / 2 : 0;
-        sum += a->link_mass * ri * rj * cos(q[i] - q[j]);
+        double li = beam.length[i - a->first], lj = beam.length[j - a->first];
+        double ri = body > i ? li : body == i ? li / 2 : 0;
+        double rj = body > j ? lj : body == j ? lj / 2 : 0;
+        sum += dense_mass(body - a->first) * ri * rj * cos(q[i] - q[j]);
     }
     return sum;
 }
@@ -63,9 +129,10 @@ static double coriolis(const arm *a, const double *q, const double *w, int i)
     double sum = 0;
     for (int j = a->first; j < a->dof; j++) {
         for (int body = a->first; body < a->dof && i >= a->first; body++) {
-            double ri = body > i ? a->link_length : body == i ? a->link_length / 2 : 0;
-            double rj = body > j ? a->link_length : body == j ? a->link_length / 2 : 0;
-            sum += a->link_mass * ri * rj * sin(q[i] - q[j]) * w[j] * w[j];
+            double li = beam.length[i - a->first], lj = beam.length[j - a->first];
+            double ri = body > i ? li : body == i ? li / 2 : 0;
+            double rj = body > j ? lj : body == j ? lj / 2 : 0;
+            sum += dense_mass(body - a->first) * ri * rj * sin(q[i] - q[j]) * w[j] * w[j];
         }
     }
     return sum;
@@ -75,10 +142,32 @@ static double spring_torque(const arm *a, const double *q, const double *w, int 
 {
     double sum = 0;
     for (int k = 1; k < a->dof; k++) {
-        double s = k == a->first ? a->hub_stiffness : a->joint_stiffness;
+        double s = beam.stiffness[k - a->first], bend = q[k] - q[k - 1];
         double c = k == a->first ? a->hub_joint_damping : a->joint_damping;
-        double torque = s * (q[k] - q[k - 1]) + c * (w[k] - w[k - 1]);
+        double torque = s * (bend + beam.stiffening * bend * bend * bend) + c * (w[k] - w[k - 1]);
         sum += i == k - 1 ? torque : i == k ? -torque : 0;
+    }
+    return sum;
+}
+
+// Generalised force of the air, its drag summed over points of Gauss's rule along each link, of
+// which two are exact.
+static double drag(const arm *a, const double *q, const double *w, int i)
+{
+    double sum = 0;
+    for (int body = i; body < a->dof && i >= a->first; body++) {
+        const double length = beam.length[body - a->first];
+        for (int side = -1; side <= 1; side += 2) {
+            const double along = length * (0.5 + side / sqrt(12));
+            double vx = 0, vy = 0;
+            for (int k = a->first; k <= body; k++) {
+                const double reach = k == body ? along : beam.length[k - a->first];
+                vx -= reach * sin(q[k]) * w[k];
+                vy += reach * cos(q[k]) * w[k];
+            }
+            const double reach = i == body ? along : beam.length[i - a->first];
+            sum -= beam.drag * length / 2 * reach * (cos(q[i]) * vy - sin(q[i]) * vx);
+        }
     }
     return sum;
 }
@@ -92,7 +181,8 @@ static double largest_residual(const arm *a, double *q, const double *w, const d
         numeric_jacobian(a, q, w, jacobian);
     }
     for (int i = 0; i < a->dof; i++) {
-        double sum = coriolis(a, q, w, i) - spring_torque(a, q, w, i) + jacobian[i] * r->force;
+        double sum = coriolis(a, q, w, i) - spring_torque(a, q, w, i) - drag(a, q, w, i) +
+                     jacobian[i] * r->force;
         for (int j = 0; j < a->dof; j++) {
             sum += mass(a, q, i, j) * alpha[j];
         }
@@ -157,6 +247,36 @@ static void satisfies_the_lagrangian(void **state)
         }
     }
     assert_int_equal(cases, 10 * 36 - 6);
+}
+
+// Links and joints that differ, air, joints that stiffen: the same equations; what damping takes is
+// the power of its forces.
+static void satisfies_it_with_any_links_and_joints(void **state)
+{
+    (void)state;
+    static const char *const walls[] = {"point", "plane", "none"};
+    static const hub_friction frictions[] = {HUB_FORWARD, HUB_STICK};
+    for (int links = 2; links <= 10; links++) {
+        for (int choice = 0; choice < 3 * 3 * 2 * 2; choice++) {
+            const char *wall = walls[choice % 3];
+            const int kind = choice / 3 % 3;
+            arm a = kind < 2 ? make_uneven_arm(links, wall, kind == 1)
+                             : make_stiffening_arm(links, wall);
+            contact_state mode = {choice / 18 == 1 && wall_stands(&a.wall),
+                                  frictions[choice / 9 % 2]};
+            double q[LARGEST], w[LARGEST], alpha[LARGEST], lost = 0;
+            chain_link work[LARGEST];
+            chain_reaction r;
+            some_state(&a, choice, q, w);
+            w[0] = mode.friction == HUB_STICK ? 0 : w[0];
+            chain_accelerations(&a, work, q, w, mode, alpha, &r);
+            check_below(largest_residual(&a, q, w, alpha, &r), 1e-7);
+            for (int i = 0; i < a.dof; i++) {
+                lost -= drag(&a, q, w, i) * w[i];
+            }
+            check_close(r.damping_power, lost, 1e-12 * (1 + lost));
+        }
+    }
 }
 
 static void rates_follow_from_the_penetration(void **state)
@@ -225,14 +345,46 @@ static void energies_match_the_dense_form(void **state)
     }
 }
 
+// The same of links and joints that differ, and of joints whose torque is the energy's slope.
+static void energies_match_with_any_links_and_joints(void **state)
+{
+    (void)state;
+    for (int links = 2; links <= 6; links++) {
+        arm a = make_uneven_arm(links, "none", links % 2);
+        double q[LARGEST], w[LARGEST], kinetic = 0;
+        some_state(&a, links, q, w);
+        for (int i = 0; i < a.dof; i++) {
+            for (int j = 0; j < a.dof; j++) {
+                kinetic += 0.5 * mass(&a, q, i, j) * w[i] * w[j];
+            }
+        }
+        check_relative(chain_kinetic_energy(&a, q, w), kinetic, 1e-13);
+        for (int kind = 0; kind < 2; kind++) {
+            const double step = 1e-5, angle = q[links - 1];
+            double energy[2];
+            a = kind == 0 ? a : make_stiffening_arm(links, "none");
+            for (int side = 0; side < 2; side++) {
+                q[links - 1] = angle + (side ? step : -step);
+                energy[side] = chain_strain_energy(&a, q);
+            }
+            q[links - 1] = angle;
+            double still[LARGEST] = {0};
+            check_close((energy[1] - energy[0]) / (2 * step),
+                        -spring_torque(&a, q, still, links - 1), 1e-7);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(satisfies_the_lagrangian),
+        cmocka_unit_test(satisfies_it_with_any_links_and_joints),
         cmocka_unit_test(rates_follow_from_the_penetration),
         cmocka_unit_test(penetration_of_two_links_is_equation_3_9),
         cmocka_unit_test(one_link_on_a_rigid_hub_is_held_by_the_wall),
         cmocka_unit_test(energies_match_the_dense_form),
+        cmocka_unit_test(energies_match_with_any_links_and_joints),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

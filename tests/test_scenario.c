@@ -240,6 +240,16 @@ static void impossible_combinations_point_at_the_key(void **state)
     check_fault("arm:\n  links: 3\n  link_inertia: 1e-5\n", 3, 17, "two links only");
     check_fault("arm:\n  EI: 2.46\n  k2: 4.92\n", 2, 7, "both given");
     check_fault("arm: {hub_joint: beam, k1: 90}\n", 1, 28, "arm.hub_joint = spring");
+    // lists of the beam
+    check_fault("arm:\n  links: 4\n  joint_stiffness: [10, 12]\n", 3, 20, "expected 3");
+    check_fault("arm:\n  links: 4\n  joint_stiffness: [10, -3, 9]\n", 3, 25, "-3 is out of range");
+    check_fault("arm:\n  links: 3\n  link_lengths:\n    - 0.3\n    - long\n    - 1\n", 5, 7,
+                "'long' is not a number");
+    check_fault("arm:\n  k2: 5\n  joint_stiffness: [7]\n", 3, 20, "both given");
+    check_fault("arm: {hub_joint: beam}\nscript:\n  - at: 0.1 s\n    set: {arm.k1: 90}\n", 4, 19,
+                "arm.k1 is for arm.hub_joint = spring");
+    check_fault("arm: {joint_stiffness: [7]}\nscript:\n  - at: 0.1 s\n    set: {arm.EI: 9}\n", 4,
+                19, "follows from arm.joint_stiffness");
     // all of them, not the first one only
     check_faults(
         "arm: {model: printed, links: 5, hub_joint: rigid}\n"

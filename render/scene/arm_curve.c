@@ -25,16 +25,17 @@ sample scene_joints(const trace *t, const parameters *p, double time, vector *jo
 {
     assert(t != NULL && t->row_count > 0 && p != NULL && joints != NULL && isfinite(time));
     size_t after, links = (size_t)p->arm.links, first = (size_t)t->angle_count - links;
-    double share, l = p->arm.length / p->arm.links;
+    double share, lengths[PARAMETER_LINKS_MOST];
     size_t before = bracket(t, time, &after, &share);
     const double *a = t->angles + before * (size_t)t->angle_count + first;
     const double *b = t->angles + after * (size_t)t->angle_count + first;
+    parameters_link_lengths(&p->arm, lengths);
 
     // link by link from the hub
     joints[0] = (vector){0};
     for (size_t k = 0; k < links; k++) {
         double angle = between(a[k], b[k], share);
-        joints[k + 1] = vector_sum(joints[k], l, (vector){cos(angle), sin(angle), 0});
+        joints[k + 1] = vector_sum(joints[k], lengths[k], (vector){cos(angle), sin(angle), 0});
     }
 
     // the row between the two

@@ -323,12 +323,13 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
     // the value as the parameter takes it
     fault f = {.text = "", .path = ""};
     parameters p = scenario_parameters_at(s, time);
-    if (parameter_set_text(&p, index, text, &f) != STATUS_OK) {
+    if (parameter_may_change(&p, index, &f) != STATUS_OK ||
+        parameter_set_text(&p, index, text, &f) != STATUS_OK) {
         return api_error(error, &f);
     }
     action a = {
         .time = time, .kind = ACTION_SET, .parameter = index, .value = parameter_get(&p, index)};
-    if (parameter_table[index].type == PARAMETER_TEXT) {
+    if (parameter_is_text(&parameter_table[index])) {
         parameter_format(&p, index, a.text, sizeof a.text);
     }
 

@@ -14,14 +14,13 @@ static pthread_once_t filled = PTHREAD_ONCE_INIT;
 
 static impactlab_parameter parameter_row(const parameter_info *info)
 {
-    static const char *const types[] = {[PARAMETER_REAL] = "real",
-                                        [PARAMETER_INTEGER] = "integer",
-                                        [PARAMETER_BOOLEAN] = "boolean",
-                                        [PARAMETER_CHOICE] = "choice",
-                                        [PARAMETER_TEXT] = "text"};
+    static const char *const types[] = {
+        [PARAMETER_REAL] = "real",       [PARAMETER_INTEGER] = "integer",
+        [PARAMETER_BOOLEAN] = "boolean", [PARAMETER_CHOICE] = "choice",
+        [PARAMETER_TEXT] = "text",       [PARAMETER_LIST] = "list"};
 
     // a text has neither a number to begin with nor bounds
-    const bool text = info->type == PARAMETER_TEXT;
+    const bool text = parameter_is_text(info);
     return (impactlab_parameter){.path = info->path,
                                  .type = types[info->type],
                                  .unit = info->unit,

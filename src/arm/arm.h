@@ -12,27 +12,86 @@
 #include "src/arm/motor.h"
 #include "src/arm/wall.h"
 
+// Links and joints of a chain whose links or joints are not all alike; [k] is the k-th from the
+// hub.
+typedef struct link_table {
+    double length[PARAMETER_LIST_MOST];    // [m]
+    double mass[PARAMETER_LIST_MOST];      // [kg]
+    double inertia[PARAMETER_LIST_MOST];   // about the centre of mass [kg m2]
+    double stiffness[PARAMETER_LIST_MOST]; // of the joint before it [N m/rad]
+    double damping[PARAMETER_LIST_MOST];   // of the joint before it [N m s/rad]
+} link_table;
+
 typedef struct arm {
     int links;                // N
     int dof;                  // degrees of freedom n: N, or N + 1 with a hub spring
     int first;                // index of the first link's angle: 0, or 1 with a hub spring
     bool hub_spring;          // the hub is a body of its own, on a spring
     bool root_bends;          // that spring is part of the beam: its root
-    double link_length;       // l [m]
-    double link_mass;         // m [kg]
-    double link_inertia;      // about the centre of mass [kg m2]
+    bool uneven;              // links and joints are those of `each`
+    double link_length;       // l, of an uneven arm the mean [m]
+    double link_mass;         // m, of an uneven arm the mean [kg]
+    double link_inertia;      // about the centre of mass, of an uneven arm the mean [kg m2]
     double hub_inertia;       // I1 [kg m2]
     double tip_mass;          // that the tip carries [kg]
     double hub_stiffness;     // k1 or k2 N, zero with a rigid hub joint [N m/rad]
-    double joint_stiffness;   // of each inner joint, k2 N/2 [N m/rad]
+    double joint_stiffness;   // of each inner joint, k2 N/2, of an uneven arm the largest [N m/rad]
     double hub_joint_damping; // structural damping of the hub spring [N m s/rad]
-    double joint_damping;     // structural damping of each inner joint [N m s/rad]
-    motor_model motor;        // with the command in force
+    double joint_damping;     // structural damping of each inner joint or that one [N m s/rad]
+    double stiffening; // share by which a joint stiffens with the square of its bend [1/rad2]
+    double air_drag;   // force on the beam per its length and velocity [N s/m2]
+    int damped_modes;  // how many rows modal_damping has
+    motor_model motor; // with the command in force
     wall_model wall;
     double highest_frequency; // upper estimate over the arm's free modes [rad/s]
     double fastest_decay;     // of overdamped modes and of the hub alone [1/s]
     double fastest_rate;      // the same or, if faster, weighted decays: sets the steps [1/s]
+    link_table each;          // of an uneven arm
+    // row i gives the joints the torques g (g'(bend rates)); g[k] is of the joint before link k
+    double modal_damping[PARAMETER_MODES_MOST][PARAMETER_LIST_MOST]; // [(N m s/rad)^(1/2)]
 } arm;
+
+// Whether the arm is equal bare links with equal linear joints, damped in proportion to their
+// stiffness or not: what the equations of special engines and predictors are for.
+static inline bool arm_is_plain(const arm *a)
+{
+    return a->tip_mass == 0 && !a->uneven && a->stiffening == 0 && a->air_drag == 0 &&
+           a->damped_modes == 0;
+}
+
+// Length [m], mass [kg] and moment of inertia about the centre of mass [kg m2] of link k, and
+// stiffness [N m/rad] and structural damping [N m s/rad] of the joint before it.
+static inline double arm_link_length(const arm *a, int k)
+{
+    return a->uneven ? a->each.length[k] : a->link_length;
+}
+static inline double arm_link_mass(const arm *a, int k)
+{
+    return a->uneven ? a->each.mass[k] : a->link_mass;
+}
+static inline double arm_link_inertia(const arm *a, int k)
+{
+    return a->uneven ? a->each.inertia[k] : a->link_inertia;
+}
+static inline double arm_joint_stiffness(const arm *a, int k)
+{
+    return a->uneven ? a->each.stiffness[k] : k > 0 ? a->joint_stiffness : a->hub_stiffness;
+}
+// Torque of that joint at a bend [rad] beyond its linear one, and the energy it holds there, [N m]
+// and [J]: stiffness x stiffening x bend^3. A hub spring of its own does not stiffen.
+static inline double arm_stiffening_torque(const arm *a, int k, double bend)
+{
+    if (a->stiffening == 0 || (k == 0 && !a->root_bends)) {
+        return 0;
+    }
+    // a root is half a joint: it bends half as far at the same curvature
+    const double share = k == 0 ? 4 * a->stiffening : a->stiffening;
+    return arm_joint_stiffness(a, k) * share * bend * bend * bend;
+}
+static inline double arm_joint_damping(const arm *a, int k)
+{
+    return a->uneven ? a->each.damping[k] : k > 0 ? a->joint_damping : a->hub_joint_damping;
+}
 
 // Derives the constants from resolved parameters (corrected model); the command is motor.voltage.
 // Cost grows linearly with N. In arm_setup.c, which sweeps the chain for its fastest mode.

@@ -2,9 +2,11 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "src/arm/chain.h"
+#include "src/arm/modal_damping.h"
 
 // What a decay counts against a vibration: it dies within a step or two and need only be stable,
 // not accurate, which an explicit method is at a step several times longer.
@@ -24,7 +26,6 @@ static double first_clamped_frequency(const arm *a)
 {
     // the angles of a quadratic deflection are a fair first shape; Rayleigh's quotient after one
     // smoothing sweep is right to second order in the error of the shape
-    double l = a->link_length, m = a->link_mass;
     enum { LONGEST = 1024, SWEEPS = 6 };
     double shape[LONGEST], next[LONGEST], frequency = 0;
     for (int k = 0; k < a->links; k++) {
@@ -36,20 +37,21 @@ static double first_clamped_frequency(const arm *a)
         double y = 0, moment_beyond = 0;
         double tip_y[LONGEST];
         for (int k = 0; k < a->links; k++) {
-            y += l * shape[k];
+            y += arm_link_length(a, k) * shape[k];
             tip_y[k] = y;
         }
 
         // M x as the moment on each joint, from the tip inwards
         double force = a->tip_mass * y;
         for (int k = a->links - 1; k >= (a->root_bends ? 0 : 1); k--) {
+            const double l = arm_link_length(a, k);
             double base = tip_y[k] - l * shape[k];
-            double own_force = m * (base + l * shape[k] / 2);
+            double own_force = arm_link_mass(a, k) * (base + l * shape[k] / 2);
             double moment =
-                moment_beyond + force * l + own_force * l / 2 + a->link_inertia * shape[k];
+                moment_beyond + force * l + own_force * l / 2 + arm_link_inertia(a, k) * shape[k];
             moment_beyond = moment;
             force += own_force;
-            next[k] = moment / (k > 0 ? a->joint_stiffness : a->hub_stiffness); // bend of joint k
+            next[k] = moment / arm_joint_stiffness(a, k); // bend of joint k
         }
 
         // the next shape, and Rayleigh's quotient on the way
@@ -70,34 +72,38 @@ static double first_clamped_frequency(const arm *a)
     return frequency;
 }
 
-// Upper estimate of the highest frequency of the straight, free chain: power iteration on
-// M^-1 K through the contact-free sweeps, times a margin.
-static double highest_frequency(const arm *source)
+// Largest eigenvalue of M^-1 K of the straight, free chain or, of velocities, of M^-1 C, by power
+// iteration through the contact-free sweeps: the square of a frequency or a decay.
+static double largest_eigenvalue(const arm *source, bool of_velocities)
 {
-    enum { LONGEST = 1025, SWEEPS = 60 };
+    enum { LONGEST = PARAMETER_LINKS_MOST + 1, SWEEPS = 60 };
     static const contact_state free_mode = {false, HUB_FORWARD};
 
-    // nothing but masses and springs
+    // nothing but masses and springs, or dampers
     arm a = *source;
     a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping = a.hub_joint_damping = 0;
+    memset(a.each.damping, 0, sizeof a.each.damping);
+    a.stiffening = a.air_drag = 0;
+    a.damped_modes = of_velocities ? a.damped_modes : 0;
     a.wall.kind = WALL_NONE;
     chain_link work[LONGEST];
-    double q[LONGEST], w[LONGEST], alpha[LONGEST], value = 0;
+    double x[LONGEST], still[LONGEST], alpha[LONGEST], value = 0;
     const double small = 1e-6; // small angles: the linear range
 
     // a shape near the fastest mode's, then sweep after sweep until the quotient stands
-    memset(w, 0, sizeof w);
+    memset(still, 0, sizeof still);
     for (int k = 0; k < a.dof; k++) {
-        q[k] = (k % 2 ? -small : small) * (1 + 0.1 * k / a.dof);
+        x[k] = (k % 2 ? -small : small) * (1 + 0.1 * k / a.dof);
     }
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         chain_reaction reaction;
         double size = 0;
-        chain_accelerations(&a, work, q, w, free_mode, alpha, &reaction);
+        chain_accelerations(&a, work, of_velocities ? still : x, of_velocities ? x : still,
+                            free_mode, alpha, &reaction);
         double before = 0;
         for (int k = 0; k < a.dof; k++) {
             size += alpha[k] * alpha[k];
-            before += q[k] * q[k];
+            before += x[k] * x[k];
         }
         if (size == 0) {
             return 0;
@@ -110,10 +116,16 @@ static double highest_frequency(const arm *source)
         }
 
         for (int k = 0; k < a.dof; k++) {
-            q[k] = -alpha[k] * small / sqrt(size);
+            x[k] = -alpha[k] * small / sqrt(size);
         }
     }
-    return 1.05 * sqrt(value);
+    return value;
+}
+
+// Upper estimate of the highest frequency of the straight, free chain.
+static double highest_frequency(const arm *a)
+{
+    return 1.05 * sqrt(largest_eigenvalue(a, false));
 }
 
 // How fast the linear motion can be, for choosing steps: modes vibrate at w; overdamped ones, since
@@ -125,14 +137,45 @@ static double fastest_decay(const arm *a)
     double damping = fmax(a->joint_damping, a->hub_joint_damping);
     double ratio = stiffest > 0 ? 0.5 * w * damping / stiffest : 0;
     double decay = ratio > 1 ? w * (ratio + sqrt(ratio * ratio - 1)) : 0;
-    double reach = a->link_length * (a->hub_spring ? 0 : 1);
-    double hub = a->hub_inertia + a->link_mass * reach * reach / 12;
+    double reach = arm_link_length(a, 0) * (a->hub_spring ? 0 : 1);
+    double hub = a->hub_inertia + arm_link_mass(a, 0) * reach * reach / 12;
+    decay = fmax(decay, a->air_drag * a->link_length / a->link_mass);
+    if (a->damped_modes > 0) {
+        decay = fmax(decay, 1.05 * largest_eigenvalue(a, true));
+    }
     return fmax(decay, hub > 0 ? a->motor.damping / hub : 0);
+}
+
+// Links and joints one by one, where lists make them differ; equal ones are a chain like any other.
+static void set_links(arm *a, const arm_parameters *p)
+{
+    link_table *each = &a->each;
+    if (p->joint_stiffness[0] == '\0' && p->link_lengths[0] == '\0') {
+        return;
+    }
+    parameters_link_lengths(p, each->length);
+    parameters_joint_stiffness(p, each->stiffness);
+    a->uneven = !parameters_even_links(p);
+
+    // rods of one beam
+    const double density = p->mass / p->length;
+    for (int k = 0; k < a->links; k++) {
+        const double l = each->length[k];
+        each->mass[k] = density * l;
+        each->inertia[k] = each->mass[k] * l * l / 12;
+        each->damping[k] = 0;
+    }
+
+    // as it stands in the list; of different ones the largest says how long steps may be
+    a->joint_stiffness = a->links > 1 ? each->stiffness[a->links - 1] : a->joint_stiffness;
+    for (int k = 1; k < a->links; k++) {
+        a->joint_stiffness = fmax(a->joint_stiffness, each->stiffness[k]);
+    }
 }
 
 void arm_init(arm *a, const parameters *p)
 {
-    memset(a, 0, sizeof *a);
+    memset(a, 0, offsetof(arm, each)); // the tables behind it have lengths of their own
 
     // degrees of freedom
     a->links = p->arm.links;
@@ -149,6 +192,8 @@ void arm_init(arm *a, const parameters *p)
     a->tip_mass = p->arm.tip_mass;
     a->hub_stiffness = a->hub_spring ? p->arm.k1 : 0;
     a->joint_stiffness = p->arm.k2 * a->links / 2;
+    set_links(a, &p->arm);
+    a->stiffening = p->arm.stiffening * a->links * a->links / 4;
     motor_init(&a->motor, &p->motor);
     wall_init(&a->wall, p);
 
@@ -158,7 +203,13 @@ void arm_init(arm *a, const parameters *p)
         double per_stiffness = 2 * p->arm.damping_ratio / first_clamped_frequency(a);
         a->joint_damping = per_stiffness * a->joint_stiffness;
         a->hub_joint_damping = per_stiffness * a->hub_stiffness;
+        for (int k = 0; a->uneven && k < a->links; k++) {
+            a->each.damping[k] = per_stiffness * a->each.stiffness[k];
+        }
     }
+
+    a->air_drag = p->arm.air_drag;
+    a->damped_modes = modal_damping_rows(a, p->arm.modal_ratios, a->modal_damping);
 
     // how fast it can be
     a->highest_frequency = highest_frequency(a);

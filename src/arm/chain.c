@@ -22,8 +22,8 @@ void chain_node(const arm *a, const double *q, int k, double *x, double *y)
 {
     *x = *y = 0;
     for (int i = 0; i < k; i++) {
-        *x += a->link_length * inline_cos(q[a->first + i]);
-        *y += a->link_length * inline_sin(q[a->first + i]);
+        *x += arm_link_length(a, i) * inline_cos(q[a->first + i]);
+        *y += arm_link_length(a, i) * inline_sin(q[a->first + i]);
     }
 }
 
@@ -37,15 +37,16 @@ static wall_contact contact_of(const arm *a, const double *q, const double *w, d
     double x = 0, y = 0;
     *vx = *vy = 0;
     for (int k = a->first; k < last; k++) {
-        double c = inline_cos(q[k]), s = inline_sin(q[k]);
-        x += a->link_length * c;
-        y += a->link_length * s;
-        *vx -= a->link_length * s * w[k];
-        *vy += a->link_length * c * w[k];
+        const double c = inline_cos(q[k]), s = inline_sin(q[k]);
+        const double l = arm_link_length(a, k - a->first);
+        x += l * c;
+        y += l * s;
+        *vx -= l * s * w[k];
+        *vy += l * c * w[k];
     }
 
-    return wall_contact_at(&a->wall, a->link_length, x, y, *vx, *vy, inline_cos(q[last]),
-                           inline_sin(q[last]), w[last]);
+    return wall_contact_at(&a->wall, arm_link_length(a, a->links - 1), x, y, *vx, *vy,
+                           inline_cos(q[last]), inline_sin(q[last]), w[last]);
 }
 
 double chain_penetration_rate(const arm *a, const double *q, const double *v)
@@ -53,7 +54,8 @@ double chain_penetration_rate(const arm *a, const double *q, const double *v)
     double vx, vy;
     int last = a->first + a->links - 1;
     wall_contact wall = contact_of(a, q, v, &vx, &vy);
-    double lever = wall_last_lever(&wall, a->link_length, inline_cos(q[last]), inline_sin(q[last]));
+    const double l = arm_link_length(a, a->links - 1);
+    double lever = wall_last_lever(&wall, l, inline_cos(q[last]), inline_sin(q[last]));
     return wall_penetration_rate(&wall, vx, vy, lever, v[last]);
 }
 
@@ -93,15 +95,14 @@ bool chain_is_folded(const arm *a, const double *q)
 static void unit_response(const arm *a, chain_link *link, const double *q, double ex, double ey,
                           double lever, bool hub_locked, double *response)
 {
-    const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
-
     // tip to hub: each link's answer if its base rested
     double pxx = a->tip_mass, pxy = 0, pyy = a->tip_mass, fx = ex, fy = ey;
     for (int k = a->links - 1; k >= 0; k--) {
+        const double l = arm_link_length(a, k), m = arm_link_mass(a, k), half = 0.5 * l;
         double c = inline_cos(q[a->first + k]), s = inline_sin(q[a->first + k]);
         double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c;
         double ux = l * ptx - m * half * s, uy = l * pty + m * half * c;
-        double d = a->link_inertia + m * half * half + l * l * (c * pty - s * ptx);
+        double d = arm_link_inertia(a, k) + m * half * half + l * l * (c * pty - s * ptx);
         double moment = -l * (c * fy - s * fx) - (k == a->links - 1 ? lever : 0);
         if (k == 0 && !a->hub_spring) {
             d += a->hub_inertia;
@@ -123,8 +124,8 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
     response[0] = 0; // a hub behind a spring does not feel an impulse
     for (int k = 0; k < a->links; k++) {
         double jump = link[k].unit - (link[k].ux * bx + link[k].uy * by) * link[k].inv_d;
-        bx -= l * link[k].s * jump;
-        by += l * link[k].c * jump;
+        bx -= arm_link_length(a, k) * link[k].s * jump;
+        by += arm_link_length(a, k) * link[k].c * jump;
         response[a->first + k] = jump;
     }
 }
@@ -146,15 +147,17 @@ void chain_tip_response(const arm *a, chain_link *work, const double *q, double 
 
 double chain_kinetic_energy(const arm *a, const double *q, const double *w)
 {
-    double l = a->link_length, vx = 0, vy = 0, twice = a->hub_inertia * w[0] * w[0];
+    double vx = 0, vy = 0, twice = a->hub_inertia * w[0] * w[0];
 
     // each link about its centre, its base moving with the links before
     for (int k = a->first; k < a->dof; k++) {
         double s, c;
         inline_sincos(q[k], &s, &c);
+        const double l = arm_link_length(a, k - a->first);
         double across_x = -l * s * w[k], across_y = l * c * w[k];
         double cx = vx + across_x / 2, cy = vy + across_y / 2;
-        twice += a->link_mass * (cx * cx + cy * cy) + a->link_inertia * w[k] * w[k];
+        twice += arm_link_mass(a, k - a->first) * (cx * cx + cy * cy) +
+                 arm_link_inertia(a, k - a->first) * w[k] * w[k];
         vx += across_x;
         vy += across_y;
     }
@@ -168,7 +171,8 @@ double chain_strain_energy(const arm *a, const double *q)
     double twice = 0;
     for (int k = 1; k < a->dof; k++) {
         double bend = q[k] - q[k - 1];
-        twice += (k == a->first ? a->hub_stiffness : a->joint_stiffness) * bend * bend;
+        twice += arm_joint_stiffness(a, k - a->first) * bend * bend +
+                 arm_stiffening_torque(a, k - a->first, bend) * bend / 2;
     }
     return twice / 2;
 }

@@ -9,11 +9,34 @@
 
 #define KERNEL static inline __attribute__((always_inline))
 
-// Whether the node beyond the last link carries a mass, or may feel a force that its place and
+// Whether the chain is more than a plain one, or its tip may feel a force that its place and
 // velocity say before any acceleration is known.
 static inline bool chain_is_loaded(const arm *a)
 {
-    return a->tip_mass > 0 || wall_gives(&a->wall);
+    return !arm_is_plain(a) || wall_gives(&a->wall);
+}
+
+// Sums of the rows of the modal damping, g'(bend rates), into sums[damped_modes] [N m s^(1/2)]; the
+// torques are g times them. Returns the power lost [W].
+static inline double chain_modal_rates(const arm *a, const double *w, double *sums)
+{
+    double power = 0;
+    for (int i = 0; i < a->damped_modes; i++) {
+        sums[i] = 0;
+        for (int k = a->first > 0 ? 0 : 1; k < a->links; k++) {
+            sums[i] += a->modal_damping[i][k] * (w[a->first + k] - w[a->first + k - 1]);
+        }
+        power += sums[i] * sums[i];
+    }
+    return power;
+}
+static inline double chain_modal_torque(const arm *a, const double *sums, int k)
+{
+    double torque = 0;
+    for (int i = 0; i < a->damped_modes; i++) {
+        torque += a->modal_damping[i][k] * sums[i];
+    }
+    return torque;
 }
 
 // Accelerations under `mode`; N, hub_spring, contact (which is mode.contact) and loaded
@@ -23,18 +46,17 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
                                bool gap, chain_link *link, const double *q, const double *w,
                                contact_state mode, double *alpha, chain_reaction *reaction)
 {
-    const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
-    const double own = a->link_inertia + m * half * half;
-    const double kj = a->joint_stiffness, cj = a->joint_damping;
+    const bool uneven = loaded && a->uneven, drags = loaded && a->air_drag > 0;
     const int first = hub_spring ? 1 : 0;
     const double *theta = q + first, *omega = w + first;
     const bool gives = loaded && wall_gives(&a->wall) && wall_stands(&a->wall);
     const bool constrained = contact && !gives;
-    const bool wanted = contact || gap || gives; // the wall's geometry
+    const bool wanted = contact || gap || gives || drags; // the last link's base and its velocity
 
     // directions of the links, and place and velocity of the last one's base
     double x = 0, y = 0, vx = 0, vy = 0;
     for (int k = 0; k < N; k++) {
+        const double l = uneven ? a->each.length[k] : a->link_length;
         inline_sincos(theta[k], &link[k].s, &link[k].c);
         if (wanted && k < N - 1) {
             x += l * link[k].c;
@@ -43,10 +65,11 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
             vy += l * link[k].c * omega[k];
         }
     }
+    const double l_last = uneven ? a->each.length[N - 1] : a->link_length;
     wall_contact wall = {0};
     if (wanted && wall_stands(&a->wall)) {
-        wall =
-            wall_contact_at(&a->wall, l, x, y, vx, vy, link[N - 1].c, link[N - 1].s, omega[N - 1]);
+        wall = wall_contact_at(&a->wall, l_last, x, y, vx, vy, link[N - 1].c, link[N - 1].s,
+                               omega[N - 1]);
     }
 
     // a single link on a rigid hub is held by the wall alone; friction then has no say
@@ -56,7 +79,7 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     // a wall that gives answers to place and velocity alone
     double pressed = 0, wall_power = 0;
     if (gives && (mode.contact || mode.parted)) {
-        double lever = wall_last_lever(&wall, l, link[N - 1].c, link[N - 1].s);
+        double lever = wall_last_lever(&wall, l_last, link[N - 1].c, link[N - 1].s);
         double depth = wall.penetration;
         double rate = wall_penetration_rate(&wall, vx, vy, lever, omega[N - 1]);
         pressed = mode.contact ? wall_force(&a->wall, depth, rate) : 0;
@@ -66,11 +89,17 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     // motor, damping and sliding friction at the hub
     const double sliding = held ? 0 : -mode.friction * a->motor.stiction;
     double hub = a->motor.torque - a->motor.damping * w[0] + sliding;
-    double hub_joint = 0, damping_power = 0;
+    double hub_joint = 0, damping_power = 0, modal[PARAMETER_MODES_MOST];
+    if (loaded) {
+        damping_power = chain_modal_rates(a, w, modal);
+    }
     if (hub_spring) {
-        double rate = omega[0] - w[0];
-        hub_joint = a->hub_stiffness * (theta[0] - q[0]) + a->hub_joint_damping * rate;
-        damping_power = a->hub_joint_damping * rate * rate;
+        double rate = omega[0] - w[0], bend = theta[0] - q[0];
+        hub_joint = a->hub_stiffness * bend + a->hub_joint_damping * rate;
+        damping_power += a->hub_joint_damping * rate * rate;
+        if (loaded) {
+            hub_joint += arm_stiffening_torque(a, 0, bend) + chain_modal_torque(a, modal, 0);
+        }
         hub += hub_joint;
     }
 
@@ -85,8 +114,16 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     double ux2 = wall.ex, uy2 = wall.ey; // Q of a unit contact force
     double outer = 0;                    // torque of the joint beyond
     double root_free = 0, root_unit = 0; // moments on the first link before division
+    double end_x = 0, end_y = 0;         // velocity of the link's end, where air drags
+    if (drags) {
+        end_x = vx - l_last * link[N - 1].s * omega[N - 1];
+        end_y = vy + l_last * link[N - 1].c * omega[N - 1];
+    }
     for (int k = N - 1; k >= 0; k--) {
         const bool tip = k == N - 1, bare = tip && !loaded;
+        const double l = uneven ? a->each.length[k] : a->link_length, half = 0.5 * l;
+        const double m = uneven ? a->each.mass[k] : a->link_mass;
+        const double own = (uneven ? a->each.inertia[k] : a->link_inertia) + m * half * half;
         double c = link[k].c, s = link[k].s, w2 = omega[k] * omega[k];
         double ux = -m * half * s, uy = m * half * c, d = own, fx = 0, fy = 0;
         if (!bare) {
@@ -100,9 +137,14 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
         }
         double torque = outer;
         if (k > 0) {
-            double rate = omega[k] - omega[k - 1];
-            outer = kj * (theta[k] - theta[k - 1]) + cj * rate;
+            const double kj = uneven ? a->each.stiffness[k] : a->joint_stiffness;
+            const double cj = uneven ? a->each.damping[k] : a->joint_damping;
+            double rate = omega[k] - omega[k - 1], bend = theta[k] - theta[k - 1];
+            outer = kj * bend + cj * rate;
             damping_power += cj * rate * rate;
+            if (loaded) {
+                outer += arm_stiffening_torque(a, k, bend) + chain_modal_torque(a, modal, k);
+            }
             torque -= outer;
         } else if (hub_spring) {
             torque -= hub_joint;
@@ -114,6 +156,17 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
         double moment2 = 0;
         if (loaded && tip) {
             moment -= pressed * wall.lever;
+        }
+        double drag_x = 0, drag_y = 0; // of air on the link
+        if (drags) {
+            const double turn = l * omega[k], turning = a->air_drag * l * l * l / 12 * omega[k];
+            drag_x = a->air_drag * l * (end_x + half * s * omega[k]);
+            drag_y = a->air_drag * l * (end_y - half * c * omega[k]);
+            moment -= half * (c * drag_y - s * drag_x) + turning;
+            damping_power +=
+                (drag_x * drag_x + drag_y * drag_y) / (a->air_drag * l) + turning * omega[k];
+            end_x += s * turn;
+            end_y -= c * turn;
         }
         if (constrained) {
             moment2 = -l * (c * uy2 - s * ux2) - (tip ? wall.lever : 0);
@@ -136,6 +189,10 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
         if (k > 0) {
             qx = fx - m * half * w2 * c + ux * link[k].free;
             qy = fy - m * half * w2 * s + uy * link[k].free;
+            if (drags) {
+                qx += drag_x;
+                qy += drag_y;
+            }
             if (constrained) {
                 ux2 += ux * link[k].unit;
                 uy2 += uy * link[k].unit;
@@ -159,7 +216,7 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
             link[k].unit -= (link[k].ux * bx + link[k].uy * by) * link[k].inv_d;
         }
         if (k < N - 1) {
-            double w2 = omega[k] * omega[k];
+            const double l = uneven ? a->each.length[k] : a->link_length, w2 = omega[k] * omega[k];
             ax -= l * (s * out[k] + c * w2);
             ay += l * (c * out[k] - s * w2);
             if (constrained) {
@@ -172,7 +229,7 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     // d2g/dt2 = 0 gives the force
     double last = 0, rate2 = 0, force = pressed; // J_N, d2g/dt2
     if (wanted) {
-        last = wall_last_lever(&wall, l, link[N - 1].c, link[N - 1].s);
+        last = wall_last_lever(&wall, l_last, link[N - 1].c, link[N - 1].s);
         rate2 = wall.ex * ax + wall.ey * ay + last * out[N - 1] + wall.convective;
     }
     if (constrained) {
@@ -203,7 +260,7 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     reaction->wall_power = wall_power;
 }
 
-// The same for an arm whose tip carries nothing, on a rigid wall.
+// The same for equal bare links, on a rigid wall.
 KERNEL void chain_sweep(const arm *a, int N, bool hub_spring, bool contact, bool gap,
                         chain_link *link, const double *q, const double *w, contact_state mode,
                         double *alpha, chain_reaction *reaction)

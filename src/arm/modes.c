@@ -13,22 +13,24 @@ extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const i
 void modes_matrices(const arm *a, double *mass, double *stiffness)
 {
     const int n = a->dof, N = a->links;
-    const double l = a->link_length, m = a->link_mass, tip = a->tip_mass * l * l;
 
     // straight, all cosines are 1: every link beyond the outer one counts whole, that one half
-    for (int i = 0; i < N; i++) {
-        for (int j = 0; j < N; j++) {
-            int outer = i > j ? i : j;
-            double coupling = m * l * l * (N - 1 - outer + 0.5) + tip;
-            double own = m * l * l * (N - 1 - i + 0.25) + a->link_inertia + tip;
-            mass[(a->first + i) * n + a->first + j] = i == j ? own : coupling;
+    double beyond = a->tip_mass;
+    for (int j = N - 1; j >= 0; j--) {
+        const double l = arm_link_length(a, j), m = arm_link_mass(a, j);
+        double *row = mass + (a->first + j) * n + a->first;
+        for (int i = 0; i < j; i++) {
+            row[i] = mass[(a->first + i) * n + a->first + j] =
+                l * arm_link_length(a, i) * (beyond + 0.5 * m);
         }
+        row[j] = l * l * (beyond + 0.25 * m) + arm_link_inertia(a, j);
+        beyond += m;
     }
     mass[0] += a->hub_inertia;
 
     // a spring between each body and the one before
     for (int k = 1; k < n; k++) {
-        double s = k == a->first ? a->hub_stiffness : a->joint_stiffness;
+        double s = arm_joint_stiffness(a, k - a->first);
         stiffness[(k - 1) * n + k - 1] += s;
         stiffness[k * n + k] += s;
         stiffness[(k - 1) * n + k] -= s;

@@ -85,6 +85,14 @@ static status ask_impact_dynamics(predictor which, const prediction_question *qu
                      "no delay goes with the mean of the prescribed voltage over it");
 }
 
+// Whether the thesis's two links stand for the beam: they know one stiffness, and of damping what
+// is proportional to it.
+static bool is_plain_beam(const arm_parameters *a)
+{
+    return parameters_even_links(a) && a->stiffening == 0 && a->modal_ratios[0] == '\0' &&
+           a->air_drag == 0;
+}
+
 static prediction_outcome ask(predictor which, const prediction_question *question, prediction *out,
                               fault *f)
 {
@@ -98,6 +106,9 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     }
     if (which != PREDICTOR_LINEARISED && p->arm.tip_mass > 0) {
         return PREDICTION_BARE_TIP_ONLY;
+    }
+    if (which != PREDICTOR_LINEARISED && !is_plain_beam(&p->arm)) {
+        return PREDICTION_EQUAL_LINKS_ONLY;
     }
     if (which == PREDICTOR_ENERGY && question->command.count > 0) {
         return PREDICTION_KNOWS_NO_TIME;

@@ -28,6 +28,7 @@ typedef enum predictor {
     X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                                   \
     X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                                         \
     X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                             \
+    X(PREDICTION_EQUAL_LINKS_ONLY, "for equal links with equal linear joints only")                \
     X(PREDICTION_KNOWS_NO_TIME, "knows no time over which a voltage could act")                    \
     X(PREDICTION_LINKS_UNKNOWN, "the state of all links is not known")                             \
     X(PREDICTION_FAILED, "there is no prediction")

@@ -403,8 +403,8 @@ static void follow(follower *f, pulse *out)
 // Of the outermost joint, as a force across the tip meets it [N/m].
 static double tip_stiffness(const arm *a)
 {
-    double joint = a->links > 1 ? a->joint_stiffness : a->hub_stiffness;
-    return joint / (a->link_length * a->link_length);
+    const double l = arm_link_length(a, a->links - 1);
+    return arm_joint_stiffness(a, a->links - 1) / (l * l);
 }
 
 status pulse_follow(const arm *a, chain_link *work, const pulse_start *start, pulse *out)

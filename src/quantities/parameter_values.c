@@ -36,6 +36,7 @@ static void store(parameters *p, const parameter_info *info, double value)
         break;
     }
     case PARAMETER_TEXT:
+    case PARAMETER_LIST:
         memset(at, 0, PARAMETER_TEXT_SIZE);
         snprintf(at, PARAMETER_TEXT_SIZE, "%s", info->choices ? info->choices : "");
         break;
@@ -64,6 +65,7 @@ double parameter_get(const parameters *p, int index)
         memcpy(&whole, at, sizeof whole);
         return whole;
     case PARAMETER_TEXT:
+    case PARAMETER_LIST:
         return 0;
     }
     return (double)NAN;
@@ -87,23 +89,16 @@ void parameters_defaults(parameters *p, arm_model_kind model)
     }
 }
 
-status parameter_set_number(parameters *p, int index, double value, fault *f)
+// Whether a number may be the value of a parameter, or one of a list's.
+static status check_number(const parameter_info *info, double value, fault *f)
 {
-    assert(p != NULL);
-    const parameter_info *info = row_of(index);
     const char *unit = info->unit, *space = unit[0] ? " " : "";
-
-    // type and range, each with a sentence of its own
-    if (info->type == PARAMETER_TEXT) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s is a text and takes no number",
-                            info->path);
-    }
     if (!isfinite(value)) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
                             "%s is not a finite number, expected %g to %g%s%s", info->path,
                             info->minimum, info->maximum, space, unit);
     }
-    if (info->type != PARAMETER_REAL && value != floor(value)) {
+    if (info->type != PARAMETER_REAL && info->type != PARAMETER_LIST && value != floor(value)) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s = %g is not a whole number",
                             info->path, value);
     }
@@ -112,10 +107,23 @@ status parameter_set_number(parameters *p, int index, double value, fault *f)
                             "%s = %g is out of range, expected %g to %g%s%s", info->path, value,
                             info->minimum, info->maximum, space, unit);
     }
-
-    store(p, info, value);
-    p->set[index] = 1;
     return STATUS_OK;
+}
+
+status parameter_set_number(parameters *p, int index, double value, fault *f)
+{
+    assert(p != NULL);
+    const parameter_info *info = row_of(index);
+    if (parameter_is_text(info)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s is a %s and takes no number",
+                            info->path, info->type == PARAMETER_LIST ? "list" : "text");
+    }
+    status code = check_number(info, value, f);
+    if (code == STATUS_OK) {
+        store(p, info, value);
+        p->set[index] = 1;
+    }
+    return code;
 }
 
 // Position of text in "a|b|c", or -1.
@@ -181,6 +189,59 @@ static status store_text(parameters *p, int index, const char *text, size_t leng
     return STATUS_OK;
 }
 
+// Reads "[10, 12 N m/rad, 9]" and stores it as "10, 12, 9".
+static status store_list(parameters *p, int index, const char *text, size_t length, fault *f)
+{
+    const parameter_info *info = row_of(index);
+    char list[PARAMETER_TEXT_SIZE] = "";
+    size_t used = 0;
+    const bool bracketed = length > 1 && text[0] == '[' && text[length - 1] == ']';
+    const char *end = text + length - bracketed;
+    text += bracketed;
+
+    for (int count = 0; text < end; count++) {
+        // what stands before the next comma, without blanks around it
+        char word[PARAMETER_TEXT_SIZE], number[NUMBER_TEXT];
+        const char *comma = memchr(text, ',', (size_t)(end - text));
+        const char *first = text, *last = comma != NULL ? comma : end;
+        while (first < last && is_blank(*first)) {
+            first++;
+        }
+        while (last > first && is_blank(last[-1])) {
+            last--;
+        }
+        snprintf(word, sizeof word, "%.*s", (int)(last - first), first);
+
+        // a number of the parameter's unit and range, and no comma too many
+        double value;
+        if (first == last) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s: number %d is missing, expected numbers with commas between "
+                                "them",
+                                info->path, count + 1);
+        }
+        status code = parse_quantity(info, word, &value, f);
+        code = code == STATUS_OK ? check_number(info, value, f) : code;
+        if (code != STATUS_OK) {
+            return code;
+        }
+
+        // in as few digits as give it back
+        number_format_short(number, value);
+        used +=
+            (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "", number);
+        if (count == PARAMETER_LIST_MOST || used >= sizeof list) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s is too long, expected at most %d numbers and 127 characters",
+                                info->path, PARAMETER_LIST_MOST);
+        }
+        text = comma != NULL && comma + 1 == end ? comma : comma != NULL ? comma + 1 : end;
+    }
+    memcpy((char *)p + info->offset, list, sizeof list);
+    p->set[index] = 1;
+    return STATUS_OK;
+}
+
 // Reads a word without surrounding space as the number of a parameter that is no text.
 static status parse_word(const parameter_info *info, const char *word, double *value, fault *f)
 {
@@ -220,6 +281,9 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
     if (info->type == PARAMETER_TEXT && length < PARAMETER_TEXT_SIZE) {
         return store_text(p, index, text, length, f);
     }
+    if (info->type == PARAMETER_LIST) {
+        return store_list(p, index, text, length, f);
+    }
 
     char word[PARAMETER_TEXT_SIZE];
     if (length == 0 || length >= sizeof word) {
@@ -245,6 +309,7 @@ void parameter_format(const parameters *p, int index, char *text, size_t size)
     // as a scenario file would have it
     switch (info->type) {
     case PARAMETER_TEXT:
+    case PARAMETER_LIST:
         snprintf(text, size, "%s", (const char *)p + info->offset);
         break;
     case PARAMETER_BOOLEAN:

@@ -13,6 +13,7 @@
 #define BOOLEAN                  .type = PARAMETER_BOOLEAN, .unit = "", .maximum = 1
 #define CHOICE(last, words)      .type = PARAMETER_CHOICE, .unit = "", .maximum = last, .choices = words
 #define TEXT(without)            .type = PARAMETER_TEXT, .unit = "", .maximum = 1, .choices = without
+#define LIST(in, from, to)       .type = PARAMETER_LIST, .unit = in, .minimum = from, .maximum = to
 #define DEFAULT(value)           .default_corrected = value, .default_printed = value
 #define DEFAULTS(ours, printed_) .default_corrected = ours, .default_printed = printed_
 #define TIMED                    .timed = true
@@ -36,7 +37,7 @@
 const parameter_info parameter_table[] = {
     {PATH(arm.model), CHOICE(1, "corrected|printed"), DEFAULTS(ARM_CORRECTED, ARM_PRINTED),
      MEANING("equations of motion: derived anew, or as the thesis prints them")},
-    {PATH(arm.links), INTEGER(1, 1024), DEFAULT(2),
+    {PATH(arm.links), INTEGER(1, PARAMETER_LINKS_MOST), DEFAULT(2),
      MEANING("number of rigid links the beam is cut into (N)")},
     {PATH(arm.hub_joint), CHOICE(2, "rigid|spring|beam"), DEFAULTS(HUB_RIGID, HUB_SPRING),
      MEANING("joint between hub and first link: one body, the spring k1, or the beam's own root, a "
@@ -56,8 +57,22 @@ const parameter_info parameter_table[] = {
          "stiffness of the middle joint of the two-link beam; each joint of N links has k2 N/2")},
     {PATH(arm.EI), REAL("N m2", 1e-9, 1e12), DEFAULT(DERIVED), TIMED,
      MEANING("bending stiffness of the beam, in place of arm.k2 = 2 EI/length")},
+    {PATH(arm.joint_stiffness), LIST("N m/rad", 1e-6, 1e9),
+     MEANING("stiffness of every joint between links from the hub outwards, of a beam the root's "
+             "first, in place of arm.k2")},
+    {PATH(arm.link_lengths), LIST("m", 1e-4, 100),
+     MEANING("length of every link from the hub outwards, in place of arm.length; masses go with "
+             "the lengths")},
     {PATH(arm.damping_ratio), REAL("", 0, 1), DEFAULT(0),
      MEANING("structural damping ratio of the first clamped-free mode")},
+    {PATH(arm.modal_ratios), LIST("", 0, 1000),
+     MEANING("damping ratios of the modes with the hub held, from the slowest on, in place of "
+             "arm.damping_ratio; modes beyond the list have none")},
+    {PATH(arm.air_drag), REAL("N s/m2", 0, 1e6), DEFAULT(0),
+     MEANING("drag of the air on the beam per length and velocity")},
+    {PATH(arm.stiffening), REAL("1/rad2", 0, 1e6), DEFAULT(0),
+     MEANING("share by which k2 grows with the square of its bend, the torque being k2 b (1 + "
+             "stiffening b^2); of N links the same curvature counts")},
     {PATH(arm.tip_mass), REAL("kg", 0, 1000), DEFAULT(0),
      MEANING("mass that the tip carries, such as a sensor")},
 

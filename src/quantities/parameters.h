@@ -23,6 +23,13 @@ typedef enum listing_reevaluation {
     REEVALUATE_NONE
 } listing_reevaluation;
 
+enum {
+    PARAMETER_TEXT_SIZE = 128,   // room for a parameter that is a text, its end included
+    PARAMETER_LINKS_MOST = 1024, // largest arm.links
+    PARAMETER_LIST_MOST = 32,    // numbers of a parameter that is a list
+    PARAMETER_MODES_MOST = 16    // of arm.modal_ratios
+};
+
 typedef struct arm_parameters {
     int model;            // arm_model_kind
     int links;            // number of links of the beam, N
@@ -36,6 +43,12 @@ typedef struct arm_parameters {
     double EI;            // bending stiffness of the beam, k2 length/2 [N m2]
     double damping_ratio; // structural damping ratio of the first clamped-free mode [-]
     double tip_mass;      // of what the tip carries, a sensor [kg]
+    double stiffening;    // share by which k2 grows with the square of its bend [1/rad2]
+    double air_drag;      // force per length and velocity of the beam [N s/m2]
+    char modal_ratios[PARAMETER_TEXT_SIZE];    // list: damping ratios of the first modes [-]
+    char joint_stiffness[PARAMETER_TEXT_SIZE]; // list: each inner joint, of a beam the root too,
+                                               // from the hub outwards [N m/rad]
+    char link_lengths[PARAMETER_TEXT_SIZE];    // list: of each link, from the hub outwards [m]
 } arm_parameters;
 
 typedef struct motor_parameters {
@@ -92,8 +105,6 @@ typedef struct initial_parameters {
 typedef struct run_parameters {
     double duration; // [s]
 } run_parameters;
-
-enum { PARAMETER_TEXT_SIZE = 128 }; // room for a parameter that is a text, its end included
 
 typedef struct control_parameters {
     int law;                            // control_law
@@ -192,7 +203,7 @@ typedef struct parameters {
     sensor_parameters sensor;
     bool code_allowed;      // the user lets the scenario start a program or load a plug-in; no file
                             // can say so
-    unsigned char set[128]; // set[i] is 1 if parameter i was given, 0 if it is a default
+    unsigned char set[160]; // set[i] is 1 if parameter i was given, 0 if it is a default
 } parameters;
 
 typedef enum parameter_type {
@@ -200,7 +211,8 @@ typedef enum parameter_type {
     PARAMETER_INTEGER,
     PARAMETER_BOOLEAN,
     PARAMETER_CHOICE,
-    PARAMETER_TEXT // of at most PARAMETER_TEXT_SIZE - 1 bytes; has no number, no range
+    PARAMETER_TEXT, // of at most PARAMETER_TEXT_SIZE - 1 bytes; has no number, no range
+    PARAMETER_LIST  // of numbers, kept as such a text "10, 12, 9"; unit and range are each number's
 } parameter_type;
 
 typedef struct parameter_info {
@@ -220,6 +232,27 @@ typedef struct parameter_info {
 // The table and its length.
 extern const parameter_info parameter_table[];
 extern const int parameter_count;
+
+// Whether its value is kept as a text and has no number.
+static inline bool parameter_is_text(const parameter_info *info)
+{
+    return info->type == PARAMETER_TEXT || info->type == PARAMETER_LIST;
+}
+
+// The numbers of a list as it is kept; returns how many there are, 0 for the empty list, which is
+// the default.
+int parameter_list_numbers(const char *list, double numbers[PARAMETER_LIST_MOST]);
+
+// Length of each link [m], lengths[links], of resolved parameters.
+void parameters_link_lengths(const arm_parameters *a, double *lengths);
+
+// Stiffness of the joint before each link [N m/rad], stiffness[links], of resolved parameters: that
+// of the hub's spring or the beam's root (0 with a rigid hub), then of the inner joints.
+void parameters_joint_stiffness(const arm_parameters *a, double *stiffness);
+
+// Whether all links have one length and all joints the stiffness of one beam, as they do without
+// lists; a hub spring of its own does not count.
+bool parameters_even_links(const arm_parameters *a);
 
 // Index of a path in the table, or -1.
 int parameter_find(const char *path);
@@ -251,7 +284,8 @@ void parameters_defaults(parameters *p, arm_model_kind model);
 void parameter_set_default(parameters *p, int index);
 
 // Parses text as a value of parameter `index` and stores it, marked as set. A trailing unit equal
-// to the parameter's own is accepted ("0.1 rad"). On a wrong type, a value that is not finite or
+// to the parameter's own is accepted ("0.1 rad"); the numbers of a list stand between commas, in
+// brackets or not ("[10, 12 N m/rad]"). On a wrong type, a value that is not finite or
 // one out of range nothing is stored and f says what was wrong and what was expected.
 status parameter_set_text(parameters *p, int index, const char *text, fault *f);
 
@@ -270,6 +304,10 @@ void parameter_format(const parameters *p, int index, char *text, size_t size);
 // beam's root. Checks combinations (arm.link_inertia with N != 2, arm.EI beside arm.k2, the printed
 // model with N != 2 ...). Call after the last parameter was set.
 status parameters_resolve(parameters *p, fault *f);
+
+// Whether a parameter may be given another value in resolved parameters: not what follows from
+// others there, arm.k1 of a beam's root, arm.k2 and arm.EI beside arm.joint_stiffness. f says why.
+status parameter_may_change(const parameters *p, int index, fault *f);
 
 // Lets what depends on parameter `index` follow it in resolved parameters, as a change during a run
 // asks for it: arm.k2, arm.EI and the root of a beam.

@@ -15,7 +15,7 @@ static bool group_differs(const parameters *a, const parameters *b, const char *
 {
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
-        const bool number = info->type != PARAMETER_TEXT;
+        const bool number = !parameter_is_text(info);
         if (number && strncmp(info->path, group, strlen(group)) == 0 &&
             parameter_get(a, i) != parameter_get(b, i)) {
             return true;

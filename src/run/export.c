@@ -9,14 +9,18 @@
 
 static json_t *parameter_value(const parameters *p, int index)
 {
-    char text[128];
+    char text[PARAMETER_TEXT_SIZE];
+    double numbers[PARAMETER_LIST_MOST];
 
-    // only integers and reals are numbers
+    // only integers and reals are numbers, alone or in lists
     switch (parameter_table[index].type) {
     case PARAMETER_CHOICE:
     case PARAMETER_TEXT:
         parameter_format(p, index, text, sizeof text);
         return json_text(text);
+    case PARAMETER_LIST:
+        parameter_format(p, index, text, sizeof text);
+        return json_numbers(numbers, parameter_list_numbers(text, numbers));
     case PARAMETER_BOOLEAN:
         return json_boolean(parameter_get(p, index) != 0);
     case PARAMETER_INTEGER:
@@ -75,7 +79,7 @@ static json_t *event_object(const scenario *s, const event *e)
     if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
         const action *a = &s->actions[e->index];
         json_object_set_new(object, "parameter", json_string(parameter_table[a->parameter].path));
-        bool text = parameter_table[a->parameter].type == PARAMETER_TEXT;
+        bool text = parameter_is_text(&parameter_table[a->parameter]);
         json_object_set_new(object, "value", text ? json_text(a->text) : json_number(a->value));
     }
     return object;

@@ -234,7 +234,9 @@ static status act(run_loop *l, const action *todo, fault *f)
     }
 
     parameters tried = l->recording.now;
-    status code = action_apply(todo, &tried, &why);
+    status code =
+        todo->kind == ACTION_SET ? parameter_may_change(&tried, todo->parameter, &why) : STATUS_OK;
+    code = code == STATUS_OK ? action_apply(todo, &tried, &why) : code;
     if (code == STATUS_OK) {
         code = l->failed = corrected_act(&l->run, todo, -1, &l->fault);
         return stay_failed(l, f);
@@ -269,7 +271,7 @@ status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
                    .kind = ACTION_SET,
                    .parameter = parameter,
                    .value = parameter_get(&read, parameter)};
-    if (parameter_table[parameter].type == PARAMETER_TEXT) {
+    if (parameter_is_text(&parameter_table[parameter])) {
         parameter_format(&read, parameter, todo.text, sizeof todo.text);
     }
     return act(l, &todo, f);

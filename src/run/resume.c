@@ -11,7 +11,7 @@
 
 static bool same_parameter(const parameters *a, const parameters *b, int i)
 {
-    if (parameter_table[i].type == PARAMETER_TEXT) {
+    if (parameter_is_text(&parameter_table[i])) {
         size_t at = parameter_table[i].offset;
         return strcmp((const char *)a + at, (const char *)b + at) == 0;
     }

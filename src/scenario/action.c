@@ -24,7 +24,7 @@ status action_apply(const action *a, parameters *p, fault *f)
     if (a->kind != ACTION_SET) {
         return STATUS_OK;
     }
-    if (parameter_table[a->parameter].type == PARAMETER_TEXT) {
+    if (parameter_is_text(&parameter_table[a->parameter])) {
         return parameter_set_text(p, a->parameter, a->text, f);
     }
 

@@ -74,6 +74,41 @@ const char *reader_value_text(reader *r, const tree_node *node, const char *path
     return node->text;
 }
 
+// The numbers of a YAML list with commas between them, each checked where it stands; a value that
+// is no list stays as it is. NULL after a fault.
+static const char *list_text(reader *r, const tree_node *node, int index,
+                             char list[PARAMETER_TEXT_SIZE])
+{
+    const char *path = parameter_table[index].path;
+    if (node->kind != TREE_LIST) {
+        return reader_value_text(r, node, path);
+    }
+
+    // a number at a time
+    size_t used = 0;
+    list[0] = '\0';
+    for (const tree_node *child = node->first; child != NULL; child = child->next) {
+        fault f;
+        parameters scratch = r->s->parameters;
+        const char *text = reader_value_text(r, child, path);
+        if (text == NULL) {
+            return NULL;
+        }
+        if (parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
+            report_node(r, child, "%s", f.text);
+            return NULL;
+        }
+        used += (size_t)snprintf(list + used, PARAMETER_TEXT_SIZE - used, "%s%s",
+                                 used > 0 ? ", " : "", text);
+        if (used >= PARAMETER_TEXT_SIZE) {
+            report_node(r, child, "%s is too long, expected at most %d characters", path,
+                        PARAMETER_TEXT_SIZE - 1);
+            return NULL;
+        }
+    }
+    return list;
+}
+
 void reader_group(reader *r, const tree_node *map, const char *group)
 {
     fault f;
@@ -105,7 +140,10 @@ void reader_group(reader *r, const tree_node *map, const char *group)
         }
 
         // its value, and where it stands
-        const char *text = reader_value_text(r, child, path);
+        char list[PARAMETER_TEXT_SIZE];
+        const char *text = parameter_table[index].type == PARAMETER_LIST
+                               ? list_text(r, child, index, list)
+                               : reader_value_text(r, child, path);
         if (text != NULL && parameter_set_text(&r->s->parameters, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
         } else if (text != NULL) {

@@ -51,7 +51,8 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
         // a scratch copy checks and converts the value
         fault f;
         parameters scratch = r->s->parameters;
-        if (parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
+        if (parameter_may_change(&scratch, index, &f) != STATUS_OK ||
+            parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
 
             // in force from the instant on, or from the start
@@ -60,7 +61,7 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
                         .kind = ACTION_SET,
                         .parameter = index,
                         .value = parameter_get(&scratch, index)};
-            if (parameter_table[index].type == PARAMETER_TEXT) {
+            if (parameter_is_text(&parameter_table[index])) {
                 parameter_format(&scratch, index, a.text, sizeof a.text);
             }
             if (index == PARAMETER_INDEX(control.lock)) {

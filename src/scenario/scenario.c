@@ -91,7 +91,12 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
         result = scenario_check_locks(&changed, controller_of(p->control.law), f);
     }
 
-    // a push acts on the corrected arm only
+    // what the script sets may change, and a push acts on the corrected arm only
+    for (int i = 0; i < s->action_count && result == STATUS_OK; i++) {
+        if (s->actions[i].kind == ACTION_SET) {
+            result = parameter_may_change(p, s->actions[i].parameter, f);
+        }
+    }
     for (int i = 0; i < s->action_count && result == STATUS_OK; i++) {
         if (s->actions[i].kind == ACTION_PUSH && p->arm.model == ARM_PRINTED) {
             result = fault_set(f, STATUS_BAD_SCENARIO,

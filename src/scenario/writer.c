@@ -29,6 +29,8 @@ static void write_value(FILE *stream, const parameters *p, int index)
     parameter_format(p, index, text, sizeof text);
     if (info->type == PARAMETER_TEXT) {
         write_text(stream, text);
+    } else if (info->type == PARAMETER_LIST) {
+        fprintf(stream, "[%s]", text);
     } else {
         fprintf(stream, "%s%s%s", text, info->unit[0] ? " " : "", info->unit);
     }

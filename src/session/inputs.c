@@ -96,14 +96,16 @@ status session_change(session *s, int parameter, const char *text, fault *f)
 
     // a copy of the parameters checks the value
     parameters scratch = session_parameters_at(s, s->now);
-    in.before = info->type == PARAMETER_TEXT ? (double)NAN : parameter_get(&scratch, parameter);
-    status code = parameter_set_text(&scratch, parameter, text, f);
+    in.before = parameter_is_text(info) ? (double)NAN : parameter_get(&scratch, parameter);
+    const bool timed = rig_can_change(&s->effective.parameters, parameter) && s->now > 0;
+    status code = timed ? parameter_may_change(&scratch, parameter, f) : STATUS_OK;
+    code = code == STATUS_OK ? parameter_set_text(&scratch, parameter, text, f) : code;
     if (code != STATUS_OK) {
         return code;
     }
 
     in.value = parameter_get(&scratch, parameter);
-    if (rig_can_change(&s->effective.parameters, parameter) && s->now > 0) {
+    if (timed) {
         in.kind = SESSION_INPUT_TIMED;
     } else {
         in.time = s->now;

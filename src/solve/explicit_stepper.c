@@ -172,6 +172,19 @@ static status step(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
+// Square of the largest bend of a joint that stiffens, of a root as one of a whole joint [rad2]; it
+// may grow a little within a stride.
+static double most_bend(const arm *a, const motion *m)
+{
+    const double *q = state_angles(m, m->state);
+    double most = 0;
+    for (int k = 1; k < a->dof && a->stiffening > 0; k++) {
+        const double bend = (k == a->first ? 2 : 1) * (q[k] - q[k - 1]);
+        most = fmax(most, bend * bend);
+    }
+    return 1.5 * most;
+}
+
 // Upper estimate of how fast the state can change [1/s]: by the arm's own rate, and by its
 // rotation, which stretches the chain. A chain that hangs in the field of its own rotation at rate
 // w vibrates in the plane at w sqrt(n (2 n - 1) - 1), n = 1..N, its springs apart; squares of
@@ -179,11 +192,12 @@ static status step(const arm *a, motion *m, double h)
 static double rate_of_change(const arm *a, const motion *m)
 {
     const double *w = state_velocities(m, m->state), *al = state_accelerations(m, m->state);
-    const double n = a->links, stretched = n * (2 * n - 1), own = fmax(a->fastest_rate, 1e-3);
-    double fastest = 0;
+    const double n = a->links, stretched = n * (2 * n - 1);
+    double fastest = 0, own = fmax(a->fastest_rate, 1e-3);
     for (int i = 0; i < a->dof; i++) {
         fastest = fmax(fastest, fabs(w[i]));
     }
+    own *= sqrt(1 + 3 * a->stiffening * most_bend(a, m)); // slope of b + stiffening b^3
     double hub = fabs(al[0]) * LONG_RESOLUTION / own;
     fastest = fmax(fastest, fmin(fabs(w[0]) + hub, sqrt(fabs(al[0]))));
     return sqrt(own * own + stretched * fastest * fastest);

@@ -32,7 +32,7 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = method->gamma;
     } else if (method->name == METHOD_EVENT && taylor_engine_suits(a)) {
         m->engine = &taylor_engine;
-    } else if (method->name == METHOD_EVENT && too_stiff && !m->wall_gives) {
+    } else if (method->name == METHOD_EVENT && too_stiff && !m->wall_gives && arm_is_plain(a)) {
         m->engine = &modal_engine;
     } else if (method->name == METHOD_GENERALIZED_ALPHA) {
         m->engine = &generalized_alpha_engine;

@@ -46,7 +46,7 @@ bool taylor_engine_suits(const arm *a)
     const bool wall =
         a->wall.kind == WALL_NONE || a->wall.kind == WALL_POINT || a->wall.kind == WALL_PLANE;
     const bool gives = wall_stands(&a->wall) && wall_gives(&a->wall);
-    return a->links == 2 && wall && !gives && a->tip_mass == 0;
+    return a->links == 2 && wall && !gives && arm_is_plain(a);
 }
 
 // --- polynomials --------------------------------------------------------------------------------

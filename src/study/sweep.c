@@ -26,9 +26,10 @@ static status find_parameter(const sweep *s, sweep_axis *axis, const char *path,
     }
 
     // texts have no values between
-    if (sweep_axis_parameter(axis)->type == PARAMETER_TEXT) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "%s is a text, only numbers and words are varied",
-                         path);
+    if (parameter_is_text(sweep_axis_parameter(axis))) {
+        const bool list = sweep_axis_parameter(axis)->type == PARAMETER_LIST;
+        return fault_set(f, STATUS_BAD_ARGUMENT, "%s is a %s, only numbers and words are varied",
+                         path, list ? "list" : "text");
     }
     for (int i = 0; i < s->axis_count; i++) {
         if (s->axes[i].parameter == axis->parameter) {

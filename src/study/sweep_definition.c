@@ -86,7 +86,7 @@ static void define_script(definition *d, const scenario *s)
         char time[NUMBER_TEXT], value[NUMBER_TEXT];
         number_format(time, a->time);
         number_format(value, a->value);
-        bool text_valued = !push && parameter_table[a->parameter].type == PARAMETER_TEXT;
+        bool text_valued = !push && parameter_is_text(&parameter_table[a->parameter]);
         fprintf(stream, "%sat %s %s = %s", i > 0 ? "; " : "", time,
                 push ? "push" : parameter_table[a->parameter].path, text_valued ? a->text : value);
     }

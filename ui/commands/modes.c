@@ -96,12 +96,13 @@ static void deflections(const arm *a, const double *shape, double *x, double *y)
 {
     // the hub's own angle moves nothing
     const double *links = shape + (a->dof - a->links);
-    double length = a->link_length, largest = 0;
+    double largest = 0;
 
     // from joint to joint, each link at its own angle
     x[0] = y[0] = 0;
     for (int i = 0; i < a->links; i++) {
-        x[i + 1] = length * (i + 1);
+        const double length = arm_link_length(a, i);
+        x[i + 1] = x[i] + length;
         y[i + 1] = y[i] + length * links[i];
         largest = fmax(largest, fabs(y[i + 1]));
     }

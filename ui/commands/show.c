@@ -16,6 +16,8 @@ static void print_range(const parameter_info *info)
         snprintf(text, sizeof text, "true|false");
     } else if (info->type == PARAMETER_TEXT) {
         snprintf(text, sizeof text, "text");
+    } else if (info->type == PARAMETER_LIST) {
+        snprintf(text, sizeof text, "list of %g to %g", info->minimum, info->maximum);
     } else {
         snprintf(text, sizeof text, "%g to %g", info->minimum, info->maximum);
     }

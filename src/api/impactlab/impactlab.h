@@ -72,7 +72,7 @@ IMPACTLAB_EXPORT const char *impactlab_status_text(int status);
 // A parameter of a scenario. Rows are constants of the library.
 typedef struct impactlab_parameter {
     const char *path;        // "arm.k2"
-    const char *type;        // "real", "integer", "boolean", "choice" or "text"
+    const char *type;        // "real", "integer", "boolean", "choice", "text" or "list" of reals
     const char *unit;        // "N m/rad", "" for a pure number
     const char *choices;     // "rigid|spring|beam" of a choice, else ""
     const char *description; // one sentence without a full stop

@@ -158,8 +158,9 @@ action_result act_nudge(explorer_state *st, const char *argument)
     if (strcmp(info->path, "control.lock") == 0) {
         return act_lock(st, direction > 0 ? "next" : "previous");
     }
-    if (info->type == PARAMETER_TEXT) {
-        return result_refused("%s is a text: Enter edits it", info->path);
+    if (parameter_is_text(info)) {
+        return result_refused("%s is a %s: Enter edits it", info->path,
+                              info->type == PARAMETER_LIST ? "list" : "text");
     }
 
     // a number by a step, anything else to its neighbour
@@ -200,7 +201,7 @@ action_result act_edit(explorer_state *st, const char *argument)
     if (info->choices != NULL && info->type == PARAMETER_CHOICE) {
         return result_news("%s: %s", info->description, info->choices);
     }
-    if (info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER) {
+    if (info->type != PARAMETER_TEXT && info->type != PARAMETER_BOOLEAN) {
         return result_news("%s: %g to %g %s", info->description, info->minimum, info->maximum,
                            info->unit);
     }

@@ -56,12 +56,14 @@ static void find_extent(const explorer_state *st, arm_extent *known)
     const size_t first = grows && goes_on ? known->rows : 0, samples = grows ? 100 : 2000;
     double low = anew ? 0 : known->lowest, high = anew ? 0 : known->highest;
     double most = anew ? 0 : known->most_angle;
+    double lengths[PARAMETER_LINKS_MOST];
+    parameters_link_lengths(beam, lengths);
     size_t stride = (t->row_count - first) / samples + 1;
     for (size_t r = first; r < t->row_count; r += stride) {
         double y = 0;
         for (int i = 0; i < beam->links; i++) {
             double angle = link_angle(t, beam->links, r, i);
-            y += beam->length / beam->links * sin(angle);
+            y += lengths[i] * sin(angle);
             most = fmax(most, fabs(angle));
             low = fmin(low, y);
             high = fmax(high, y);

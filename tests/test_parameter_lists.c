@@ -1,0 +1,291 @@
+// Lists of joint stiffnesses and link lengths: as they are written, what contradicts them, and what
+// they make of the arm.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/arm/modes.h"
+#include "src/predict/predictors.h"
+#include "src/run/run.h"
+#include "tests/arm_fixture.h"
+
+static const char *set_list(parameters *p, const char *path, const char *text, fault *f)
+{
+    static char list[PARAMETER_TEXT_SIZE];
+    parameters_defaults(p, ARM_CORRECTED);
+    *f = (fault){0};
+    parameter_set_text(p, parameter_index(path), text, f);
+    parameter_format(p, parameter_index(path), list, sizeof list);
+    return list;
+}
+
+static void lists_are_written_in_one_way(void **state)
+{
+    (void)state;
+    static const char *const same[] = {"10,12.5,9",          "10, 12.5, 9",  "[10, 12.5, 9]",
+                                       " [ 10 ,12.5 , 9 ] ", "1e1,12.50,9.", "10 N m/rad, 12.5, 9"};
+    parameters p;
+    fault f;
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
+        assert_string_equal(set_list(&p, "arm.joint_stiffness", same[i], &f), "10, 12.5, 9");
+    }
+
+    // every bit comes back, and the empty list is none
+    double numbers[PARAMETER_LIST_MOST];
+    set_list(&p, "arm.link_lengths", "0.1,0.30000000000000004,0.7000000000000001", &f);
+    assert_int_equal(parameter_list_numbers(p.arm.link_lengths, numbers), 3);
+    check_close(numbers[1], 0.30000000000000004, 0);
+    check_close(numbers[2], 0.7000000000000001, 0);
+    assert_string_equal(set_list(&p, "arm.joint_stiffness", "[]", &f), "");
+    assert_int_equal(parameter_list_numbers(p.arm.joint_stiffness, numbers), 0);
+}
+
+static void check_refused(const char *path, const char *text, const char *expected)
+{
+    parameters p;
+    fault f;
+    assert_string_equal(set_list(&p, path, text, &f), "");
+    if (f.code == STATUS_OK || strstr(f.text, expected) == NULL) {
+        fail_msg("%s = %s gave '%s', expected '%s'", path, text, f.text, expected);
+    }
+    assert_string_equal(f.path, path);
+}
+
+static void what_is_no_list_of_its_numbers_is_refused(void **state)
+{
+    (void)state;
+    check_refused("arm.joint_stiffness", "10,-1,9", "-1 is out of range");
+    check_refused("arm.joint_stiffness", "10,stiff,9", "'stiff' is not a number");
+    check_refused("arm.joint_stiffness", "10,,9", "number 2 is missing");
+    check_refused("arm.joint_stiffness", "10,9,", "number 3 is missing");
+    check_refused("arm.joint_stiffness", "10 m,9", "expected N m/rad");
+    check_refused("arm.joint_stiffness", "10,nan", "not finite");
+    check_refused("arm.joint_stiffness", "10 12", "expected N m/rad");
+    check_refused("arm.link_lengths", "0.5,0", "0 is out of range");
+    check_refused("arm.link_lengths",
+                  "1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1",
+                  "at most 32 numbers");
+    check_refused("arm.modal_ratios", "0.1,-0.1", "-0.1 is out of range");
+}
+
+static void check_conflict(const char *const *settings, const char *path, const char *expected)
+{
+    parameters p;
+    fault f = {0};
+    parameters_defaults(&p, ARM_CORRECTED);
+    for (int i = 0; settings[i] != NULL; i += 2) {
+        assert_int_equal(parameter_set_text(&p, parameter_index(settings[i]), settings[i + 1], &f),
+                         STATUS_OK);
+    }
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    if (strstr(f.text, expected) == NULL) {
+        fail_msg("'%s', expected '%s'", f.text, expected);
+    }
+    assert_string_equal(f.path, path);
+}
+
+static void lists_contradict_other_parameters(void **state)
+{
+    (void)state;
+    const char *const stiffness = "arm.joint_stiffness", *const lengths = "arm.link_lengths";
+    check_conflict(SETTINGS("arm.links", "4", stiffness, "10,12"), stiffness,
+                   "has 2 numbers, expected 3");
+    check_conflict(SETTINGS("arm.links", "3", "arm.hub_joint", "beam", stiffness, "10,12"),
+                   stiffness, "has 2 numbers, expected 3");
+    check_conflict(SETTINGS("arm.links", "3", lengths, "0.5,0.5"), lengths, "has 2 numbers");
+    check_conflict(SETTINGS(stiffness, "10", "arm.k2", "10"), stiffness, "arm.k2 are both given");
+    check_conflict(SETTINGS(stiffness, "10", "arm.EI", "10"), stiffness, "arm.EI are both given");
+    check_conflict(SETTINGS("arm.k2", "4", "arm.EI", "10"), "arm.EI", "both given");
+    check_conflict(SETTINGS(lengths, "0.4,0.6", "arm.length", "1"), lengths, "both given");
+    check_conflict(SETTINGS(lengths, "0.4,0.6", "arm.link_inertia", "1e-5"), "arm.link_inertia",
+                   "two equal links");
+    check_conflict(SETTINGS(lengths, "0.4,0.6", "method.name", "newmark"), lengths, "event only");
+    check_conflict(SETTINGS("arm.air_drag", "0.1", "arm.model", "printed"), "arm.air_drag",
+                   "printed model has not");
+    check_conflict(SETTINGS(stiffness, "10", "arm.stiffening", "1"), "arm.stiffening",
+                   "equal links and joints");
+    check_conflict(SETTINGS("arm.modal_ratios", "0.1,0.2"), "arm.modal_ratios",
+                   "expected at most 1");
+    check_conflict(SETTINGS("arm.modal_ratios", "0.1", "arm.damping_ratio", "0.1"),
+                   "arm.modal_ratios", "both given");
+}
+
+// What follows from others does not change by itself during a run.
+static void what_follows_from_others_may_not_change(void **state)
+{
+    (void)state;
+    fault f;
+    parameters beam = fixture_parameters(SETTINGS("arm.hub_joint=beam"));
+    parameters spring = fixture_parameters(SETTINGS("arm.hub_joint=spring"));
+    parameters list = fixture_parameters(SETTINGS("arm.joint_stiffness=10"));
+    assert_int_equal(parameter_may_change(&beam, PARAMETER_INDEX(arm.k1), &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.path, "arm.k1");
+    assert_int_equal(parameter_may_change(&spring, PARAMETER_INDEX(arm.k1), &f), STATUS_OK);
+    assert_int_equal(parameter_may_change(&beam, PARAMETER_INDEX(arm.k2), &f), STATUS_OK);
+    assert_int_equal(parameter_may_change(&list, PARAMETER_INDEX(arm.k2), &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_may_change(&list, PARAMETER_INDEX(arm.EI), &f), STATUS_BAD_SCENARIO);
+}
+
+// A run's summary, as bytes, and the rows of its trace.
+static run_result run_of(const char *const *settings)
+{
+    scenario s = {.name = (char *)"list", .parameters = fixture_parameters(settings)};
+    run_result r;
+    if (run_scenario(&s, true, &r) != STATUS_OK) {
+        fail_msg("%s", r.summary.message);
+    }
+    return r;
+}
+
+static void check_same_bytes(const char *const *settings, const char *const *listed)
+{
+    run_result one = run_of(settings), other = run_of(listed);
+    assert_int_equal(one.trace.row_count, other.trace.row_count);
+    assert_memory_equal(one.trace.rows, other.trace.rows,
+                        one.trace.row_count * sizeof *one.trace.rows);
+    assert_true(one.summary.contact_impulse_Ns > 0);
+    run_finish(&one);
+    run_finish(&other);
+}
+
+static void equal_numbers_are_the_uniform_arm_to_the_last_bit(void **state)
+{
+    (void)state;
+    check_same_bytes(SETTINGS("arm.k2=7"), SETTINGS("arm.joint_stiffness=7"));
+    check_same_bytes(SETTINGS("arm.links=4", "arm.k2=5", "wall.kind=plane"),
+                     SETTINGS("arm.links=4", "arm.joint_stiffness=10,10,10", "wall.kind=plane",
+                              "arm.link_lengths=0.25,0.25,0.25,0.25"));
+    check_same_bytes(
+        SETTINGS("arm.links=4", "arm.k2=5", "arm.hub_joint=beam"),
+        SETTINGS("arm.links=4", "arm.joint_stiffness=20,10,10,10", "arm.hub_joint=beam"));
+}
+
+// Lists that differ from the uniform arm by nothing that counts, and go the general way.
+static void the_general_way_meets_the_uniform_one(void **state)
+{
+    (void)state;
+    run_result one = run_of(SETTINGS("arm.links=4", "arm.k2=5", "run.duration=0.33"));
+    run_result other = run_of(
+        SETTINGS("arm.links=4", "arm.joint_stiffness=10,10.000000000001,10", "run.duration=0.33"));
+    check_relative(other.summary.first_contact_s, one.summary.first_contact_s, 1e-12);
+    check_relative(other.summary.contact_impulse_Ns, one.summary.contact_impulse_Ns, 1e-11);
+    check_relative(other.summary.first_pulse_peak_N, one.summary.first_pulse_peak_N, 1e-10);
+    check_below(fabs(other.summary.energy_residual_J), 1e-11);
+    run_finish(&one);
+    run_finish(&other);
+}
+
+// A tip load on the held arm: the sum of lever^2/stiffness over the joints.
+static double tip_compliance(const char *const *settings)
+{
+    parameters p = fixture_parameters(settings);
+    double length[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST], lever = 0, sum = 0;
+    parameters_link_lengths(&p.arm, length);
+    parameters_joint_stiffness(&p.arm, stiffness);
+    for (int k = p.arm.links - 1; k >= (p.arm.hub_joint == HUB_BEAM ? 0 : 1); k--) {
+        lever += length[k];
+        sum += lever * lever / stiffness[k];
+    }
+    return sum;
+}
+
+static void k2_of_a_list_bends_the_same_under_a_tip_load(void **state)
+{
+    (void)state;
+    static const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
+    for (int hub = 0; hub < 2; hub++) {
+        const char *const list =
+            hub ? "arm.joint_stiffness=30,12,9,14" : "arm.joint_stiffness=12,9,14";
+        const char *const *listed =
+            SETTINGS("arm.links=4", hubs[hub], list, "arm.link_lengths=0.2,0.3,0.25,0.25");
+        char k2[48];
+        snprintf(k2, sizeof k2, "arm.k2=%.17g", fixture_parameters(listed).arm.k2);
+        check_relative(tip_compliance(SETTINGS("arm.links=4", hubs[hub], k2)),
+                       tip_compliance(listed), 1e-13);
+    }
+
+    // a beam cut into unequal links has its joints from the middles of two links
+    parameters p = fixture_parameters(
+        SETTINGS("arm.links=3", "arm.EI=2", "arm.hub_joint=beam", "arm.link_lengths=0.2,0.3,0.5"));
+    double stiffness[PARAMETER_LIST_MOST];
+    parameters_joint_stiffness(&p.arm, stiffness);
+    check_relative(stiffness[0], 2 / 0.1, 1e-15);
+    check_relative(stiffness[1], 2 / 0.25, 1e-15);
+    check_relative(stiffness[2], 2 / 0.4, 1e-15);
+    check_relative(p.arm.k1, 2 / 0.1, 1e-15);
+    check_relative(p.arm.length, 1.0, 1e-15);
+}
+
+// The same beam cut otherwise: the first clamped frequency goes to Euler and Bernoulli's.
+static void a_beam_cut_into_unequal_links_converges(void **state)
+{
+    (void)state;
+    double off[2];
+    for (int i = 0; i < 2; i++) {
+        const int n = 10 << i;
+        char links[32], lengths[PARAMETER_TEXT_SIZE] = "arm.link_lengths=";
+        snprintf(links, sizeof links, "arm.links=%d", n);
+        for (int k = 0; k < n; k++) { // coarse at the hub, fine at the tip
+            const size_t used = strlen(lengths);
+            snprintf(lengths + used, sizeof lengths - used, "%s%g", k > 0 ? "," : "",
+                     k < n / 2 ? 1.2 / n : 0.8 / n);
+        }
+        parameters p = fixture_parameters(SETTINGS(links, lengths, "arm.hub_joint=beam"));
+        arm a;
+        int count;
+        double w[21], shapes[21 * 21];
+        arm_init(&a, &p);
+        assert_true(a.uneven);
+        assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, w, shapes), STATUS_OK);
+        const double x = 1.875104068711961;
+        off[i] = w[0] / (x * x * sqrt(p.arm.EI / p.arm.mass)) - 1;
+    }
+    print_message("first mode off by %.2e and %.2e, order %.3f\n", off[0], off[1],
+                  log2(off[0] / off[1]));
+    check_close(log2(off[0] / off[1]), 2, 0.1);
+}
+
+// The linearised arm takes any links and joints, the thesis's two links say that they do not.
+static void predictors_take_lists_or_say_so(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(
+        SETTINGS("arm.links=3", "arm.joint_stiffness=8,5", "arm.link_lengths=0.4,0.35,0.25"));
+    const double q[3] = {0.1, 0.1, 0.1}, w[3] = {0.6, 0.6, 0.6};
+    const prediction_question question = {.parameters = &p,
+                                          .bodies = {{0.1, 0.1, 0.1}, {0.6, 0.6, 0.6}},
+                                          .angles = q,
+                                          .velocities = w};
+    for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
+        const prediction_answer answer = predict_with(which, &question);
+        if (which != PREDICTOR_LINEARISED) {
+            assert_int_equal(answer.outcome, PREDICTION_EQUAL_LINKS_ONLY);
+            continue;
+        }
+        assert_int_equal(answer.outcome, PREDICTION_HOLDS);
+
+        // against the run from there
+        run_result r = run_of(SETTINGS("arm.links=3", "arm.joint_stiffness=8,5",
+                                       "arm.link_lengths=0.4,0.35,0.25", "initial.angle=0.1",
+                                       "initial.velocity=0.6", "run.duration=0.3"));
+        check_relative(answer.prediction.force, r.summary.first_pulse_peak_N, 0.01);
+        check_relative(answer.prediction.impulse, r.summary.contact_impulse_Ns, 1e-6);
+        run_finish(&r);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lists_are_written_in_one_way),
+        cmocka_unit_test(what_is_no_list_of_its_numbers_is_refused),
+        cmocka_unit_test(lists_contradict_other_parameters),
+        cmocka_unit_test(what_follows_from_others_may_not_change),
+        cmocka_unit_test(equal_numbers_are_the_uniform_arm_to_the_last_bit),
+        cmocka_unit_test(the_general_way_meets_the_uniform_one),
+        cmocka_unit_test(k2_of_a_list_bends_the_same_under_a_tip_load),
+        cmocka_unit_test(a_beam_cut_into_unequal_links_converges),
+        cmocka_unit_test(predictors_take_lists_or_say_so),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
