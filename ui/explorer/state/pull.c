@@ -20,13 +20,15 @@ void stage_cell(const arm_stage *g, plane_vector place, int *x, int *y)
 void recorded_tip(const trace *t, const arm_parameters *beam, size_t row, plane_vector *tip,
                   plane_vector *across)
 {
+    double lengths[PARAMETER_LINKS_MOST];
+    parameters_link_lengths(beam, lengths);
     assert(t != NULL && beam != NULL && row < t->row_count && tip != NULL && across != NULL);
     const size_t links = (size_t)beam->links;
     const double *angles = t->angles + (row + 1) * (size_t)t->angle_count - links;
     *tip = (plane_vector){0};
     for (size_t i = 0; i < links; i++) {
-        tip->x += beam->length / beam->links * cos(angles[i]);
-        tip->y += beam->length / beam->links * sin(angles[i]);
+        tip->x += lengths[i] * cos(angles[i]);
+        tip->y += lengths[i] * sin(angles[i]);
     }
     *across = (plane_vector){-sin(angles[links - 1]), cos(angles[links - 1])};
 }
