@@ -1,6 +1,6 @@
 // Runs of many kinds written as JSON and CSV to the standard output, without what depends on the
 // machine's speed; tests/optimisation_levels.sh compares it over the compiler's optimisation
-// levels.
+// levels. With names of scenarios: their runs instead (tests/second_architecture compares those).
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,42 +59,70 @@ static void print_prediction(const parameters *p, const run_result *result)
     motion_destroy(m);
 }
 
-static int print_run(const char *settings)
+// What a run leaves, and its status.
+static status print_run(const scenario *s)
+{
+    run_result result;
+    status code = run_scenario(s, true, &result);
+    result.summary.cpu_time_s = result.summary.wall_time_s = 0;
+    json_t *object = export_run(s, &result);
+    json_write(stdout, object);
+    json_decref(object);
+    export_csv(stdout, &result.trace, s->parameters.arm.links);
+    if (s->parameters.arm.model == ARM_CORRECTED) {
+        print_prediction(&s->parameters, &result);
+    }
+    if (code != STATUS_OK) {
+        fail(s->name, result.summary.message);
+    }
+    run_finish(&result);
+    return code;
+}
+
+// A scenario of nothing but settings, which is to come to its end.
+static int print_settings(const char *settings)
 {
     static const char text[] = "title: t\n";
     scenario s;
-    run_result result;
     fault f;
     if (scenario_parse(&s, text, strlen(text), "t.yaml", "t", NULL, NULL) != STATUS_OK) {
         return fail(settings, "the empty scenario was refused");
     }
-    int code = 0;
-    if (apply(&s, settings, &f) != STATUS_OK) {
-        code = fail(settings, f.text);
+    status code = apply(&s, settings, &f);
+    if (code != STATUS_OK) {
+        fail(settings, f.text);
     } else {
-        run_scenario(&s, true, &result);
-        result.summary.cpu_time_s = result.summary.wall_time_s = 0;
-        json_t *object = export_run(&s, &result);
-        json_write(stdout, object);
-        json_decref(object);
-        export_csv(stdout, &result.trace, s.parameters.arm.links);
-        if (s.parameters.arm.model == ARM_CORRECTED) {
-            print_prediction(&s.parameters, &result);
-        }
-        if (result.summary.status != STATUS_OK) {
-            code = fail(settings, result.summary.message);
-        }
-        run_finish(&result);
+        code = print_run(&s);
     }
     scenario_finish(&s);
-    return code;
+    return code != STATUS_OK;
 }
 
-int main(void)
+static void tell(void *context, const char *sentence)
+{
+    fail(context, sentence);
+}
+
+// A shipped one, which may end as it likes.
+static int print_shipped(char *name)
+{
+    scenario s;
+    if (scenario_open(&s, name, tell, name) != STATUS_OK) {
+        return 1;
+    }
+    print_run(&s);
+    scenario_finish(&s);
+    return 0;
+}
+
+int main(int argc, char **argv)
 {
     int code = 0;
-    for (int i = 0; i < RUNS; i++) {
-        code |= print_run(runs[i]);
+    for (int i = 1; i < argc; i++) {
+        code |= print_shipped(argv[i]);
+    }
+    for (int i = 0; i < RUNS && argc == 1; i++) {
+        code |= print_settings(runs[i]);
     }
     return code;
 }
