@@ -153,9 +153,25 @@ static void digits_of_known_numbers(void **state)
     }
 }
 
+static void decimals(void **state)
+{
+    (void)state;
+    double value;
+    const char *rest;
+    assert_true(decimal_read("-1.5e2  N", &value, &rest));
+    check_close(value, -150, 0);
+    assert_string_equal(rest, "N");
+    static const char *const none[] = {"",     "x",   "-",    ".",   "+-1",
+                                       "0x10", "inf", ".inf", "nan", " 1"};
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
+        assert_false(decimal_read(none[i], &value, &rest));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(decimals),
         cmocka_unit_test(digits_are_as_few_as_read_back),
         cmocka_unit_test(digits_of_known_numbers),
         cmocka_unit_test(numbers_are_short_and_read_back),

@@ -115,9 +115,20 @@ static void lines_keep_their_ends(void **state)
     assert_string_equal(text, "one\ntwo?\n?three");
 }
 
+static void distances_of_words(void **state)
+{
+    (void)state;
+    assert_int_equal(edit_distance("", "", 9), 0);
+    assert_int_equal(edit_distance("abc", "", 9), 3);
+    assert_int_equal(edit_distance("kitten", "sitting", 9), 3);
+    assert_int_equal(edit_distance("sitting", "kitten", 9), 3);
+    assert_int_equal(edit_distance("kitten", "sitting", 2), 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(distances_of_words),
         cmocka_unit_test(distances_count_single_edits),
         cmocka_unit_test(distances_are_symmetric_and_obey_the_triangle),
         cmocka_unit_test(words_too_long_for_the_table_are_far),

@@ -1,0 +1,42 @@
+// What the tests of scenarios share: reading a text and keeping the sentences about it.
+#pragma once
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/scenario/scenario.h"
+#include "tests/check.h"
+
+// All sentences of one reading, a line each.
+typedef struct sentences {
+    int count;
+    size_t used;
+    char text[16384];
+} sentences;
+
+static inline void keep_sentence(void *context, const char *sentence)
+{
+    sentences *all = context;
+    assert_null(strchr(sentence, '\n'));
+    int length = snprintf(all->text + all->used, sizeof all->text - all->used, "%s\n", sentence);
+    all->used += (size_t)length < sizeof all->text - all->used ? (size_t)length : 0;
+    all->count++;
+}
+
+static inline status parse(scenario *s, const char *text, sentences *all)
+{
+    *all = (sentences){0};
+    return scenario_parse(s, text, strlen(text), "f.yaml", NULL, keep_sentence, all);
+}
+
+// The text is read without a fault.
+static inline scenario good(const char *text)
+{
+    scenario s;
+    sentences all;
+    if (parse(&s, text, &all) != STATUS_OK || all.count != 0) {
+        fail_msg("refused:\n%s", all.text);
+    }
+    return s;
+}

@@ -1,0 +1,347 @@
+// Scenarios as files: found by name, listed, changed by --set, and written so that they read back.
+#include "tests/scenario_fixture.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/run/run.h"
+
+// ---- files --------------------------------------------------------------------------------------
+
+// A folder for one test, with a file in it.
+static char folder[64];
+
+static void write_file(const char *name, const char *text)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static int make_folder(void **state)
+{
+    (void)state;
+    char path[128];
+    strcpy(folder, "/tmp/impactlab-scenario-XXXXXX");
+    if (mkdtemp(folder) == NULL) {
+        return -1;
+    }
+    snprintf(path, sizeof path, "%s/deep", folder);
+    mkdir(path, 0700);
+    write_file("beta.yaml", "title: Beta\n");
+    write_file("deep/alpha-10.yaml", "title: Ten\n");
+    write_file("deep/alpha-9.yaml", "title: Nine\n");
+    write_file("deep/notes.txt", "not a scenario\n");
+    write_file(".hidden.yaml", "title: Hidden\n");
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"beta.yaml",
+                                        "deep/alpha-10.yaml",
+                                        "deep/alpha-9.yaml",
+                                        "deep/notes.txt",
+                                        ".hidden.yaml",
+                                        "deep",
+                                        ""};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        char path[128];
+        snprintf(path, sizeof path, "%s/%s", folder, files[i]);
+        remove(path);
+    }
+    return 0;
+}
+
+// Opens with the folder of this test as the scenario folder.
+static status open_here(scenario *s, const char *name, sentences *all)
+{
+    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    *all = (sentences){0};
+    setenv("IMPACTLAB_SCENARIOS", folder, 1);
+    status result = scenario_open(s, name, keep_sentence, all);
+    setenv("IMPACTLAB_SCENARIOS", before, 1);
+    free(before);
+    return result;
+}
+
+static void scenarios_open_by_name_and_by_file(void **state)
+{
+    (void)state;
+    scenario s;
+    sentences all;
+    char path[128];
+    assert_int_equal(open_here(&s, "deep/alpha-9", &all), STATUS_OK);
+    assert_string_equal(s.name, "deep/alpha-9");
+    assert_string_equal(s.title, "Nine");
+    snprintf(path, sizeof path, "%s/deep/alpha-9.yaml", folder);
+    assert_string_equal(s.file, path);
+    scenario_finish(&s);
+    assert_int_equal(open_here(&s, path, &all), STATUS_OK);
+    assert_string_equal(s.name, path);
+    scenario_finish(&s);
+    snprintf(path, sizeof path, "%s/deep/alpha-10", folder);
+    assert_int_equal(open_here(&s, path, &all), STATUS_OK);
+    assert_string_equal(s.title, "Ten");
+    scenario_finish(&s);
+}
+
+static void an_unknown_name_suggests_the_nearest(void **state)
+{
+    (void)state;
+    scenario s;
+    sentences all;
+    assert_int_equal(open_here(&s, "deep/alpha-8", &all), STATUS_BAD_ARGUMENT);
+    assert_int_equal(all.count, 1);
+    assert_non_null(strstr(all.text, "did you mean 'deep/alpha-9'?"));
+    assert_int_equal(open_here(&s, "alpha-10", &all), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(all.text, "did you mean 'deep/alpha-10'?"));
+    assert_int_equal(open_here(&s, "alpha-9.yaml", &all), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(all.text, "did you mean 'deep/alpha-9'?"));
+    assert_int_equal(open_here(&s, "zzzzzzzzzz", &all), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(all.text, "impactlab list"));
+    assert_int_equal(open_here(&s, "../etc/passwd", &all), STATUS_BAD_ARGUMENT);
+    assert_int_equal(open_here(&s, "", &all), STATUS_BAD_ARGUMENT);
+}
+
+static void files_that_cannot_be_read(void **state)
+{
+    (void)state;
+    scenario s;
+    sentences all = {0};
+    assert_int_equal(scenario_read(&s, "/nonexistent/x.yaml", NULL, keep_sentence, &all),
+                     STATUS_CANNOT_READ);
+    assert_non_null(strstr(all.text, "/nonexistent/x.yaml:1:1: cannot be opened (No such file"));
+    all = (sentences){0};
+    assert_int_equal(scenario_read(&s, folder, NULL, keep_sentence, &all), STATUS_CANNOT_READ);
+    assert_non_null(strstr(all.text, ":1:1: it is a folder"));
+    assert_int_equal(open_here(&s, folder, &all), STATUS_CANNOT_READ);
+    assert_int_equal(all.count, 1);
+    all = (sentences){0};
+    assert_int_equal(scenario_read(&s, "/dev/zero", NULL, keep_sentence, &all),
+                     STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(all.text, "/dev/zero:1:1: the file is larger"));
+}
+
+static void the_list_is_complete_and_sorted(void **state)
+{
+    (void)state;
+    char **names;
+    int count;
+    fault f;
+    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    setenv("IMPACTLAB_SCENARIOS", folder, 1);
+    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    const char *const own[] = {"beta", "deep/alpha-9", "deep/alpha-10"};
+    int found = 0, shipped = 0;
+    for (int i = 0; i < count; i++) {
+        found += found < 3 && strcmp(names[i], own[found]) == 0;
+        shipped += strcmp(names[i], "corrected/first-impact") == 0;
+    }
+    assert_int_equal(found, 3);
+    assert_int_equal(shipped, 1);
+    for (int i = 0; i < count; i++) {
+        free(names[i]);
+    }
+    free(names);
+    setenv("IMPACTLAB_SCENARIOS", "/nonexistent", 1);
+    assert_int_equal(scenario_list(&names, &count, &f), STATUS_CANNOT_READ);
+    assert_non_null(strstr(f.text, "/nonexistent: no such folder"));
+    assert_int_equal(count, 0);
+    assert_null(names);
+    setenv("IMPACTLAB_SCENARIOS", before, 1);
+    free(before);
+}
+
+static void every_shipped_scenario_reads_clean(void **state)
+{
+    (void)state;
+    char **names;
+    int count, thesis = 0;
+    fault f;
+    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        scenario s;
+        sentences all = {0};
+        if (scenario_open(&s, names[i], keep_sentence, &all) != STATUS_OK || all.count != 0) {
+            fail_msg("%s", all.text);
+        }
+        // a title of its own, a description, and the thesis's figures on the thesis's model
+        assert_string_not_equal(s.title, names[i]);
+        assert_in_range(strlen(s.title), 8, 72);
+        assert_true(strlen(s.description) > 20);
+        bool of_thesis = strncmp(names[i], "thesis/", 7) == 0;
+        thesis += of_thesis;
+        // (what the thesis measured comes from the rig, on whatever arm it is; lessons are about
+        // both)
+        if (s.parameters.control.law == LAW_NONE && s.lesson.step_count == 0) {
+            assert_int_equal(s.parameters.arm.model, of_thesis ? ARM_PRINTED : ARM_CORRECTED);
+        }
+        scenario_finish(&s);
+        free(names[i]);
+    }
+    free(names);
+    assert_in_range(thesis, 14, 1000);
+    assert_in_range(count - thesis, 10, 1000);
+}
+
+static void every_figure_and_table_of_the_thesis_has_its_scenario(void **state)
+{
+    (void)state;
+    for (int i = 1; i <= 14; i++) {
+        scenario s;
+        sentences all = {0};
+        char name[64];
+        snprintf(name, sizeof name, i <= 11 ? "thesis/fig-3-%d" : "thesis/table-4-%d",
+                 i <= 11 ? i : i - 11);
+        assert_int_equal(scenario_open(&s, name, keep_sentence, &all), STATUS_OK);
+        bool coarse = i >= 6 && i <= 8, fast = i >= 9 && i <= 11;
+        check_close(s.parameters.method.step, coarse ? 0.01 : 0.001, 0);
+        check_close(s.parameters.motor.voltage, fast ? 5 : 1, 0);
+        check_close(s.parameters.method.beta, 0.4, 0);
+        check_close(s.parameters.method.gamma, 0.5, 0);
+        check_close(s.parameters.wall.angle, 0.1, 0);
+        double factor = i == 12 ? 100 : i == 13 ? 10 : 1;
+        check_relative(s.parameters.arm.k2, 4.92 * factor, 1e-12);
+        scenario_finish(&s);
+    }
+}
+
+// ---- --set --------------------------------------------------------------------------------------
+
+static void an_override_sets_and_resolves(void **state)
+{
+    (void)state;
+    scenario s = good("arm: {k2: 5}\n");
+    fault f;
+    assert_int_equal(scenario_override(&s, "arm.k2=49.2 N m/rad", &f), STATUS_OK);
+    check_close(s.parameters.arm.k2, 49.2, 0);
+    assert_int_equal(scenario_override(&s, "arm.model=printed", &f), STATUS_OK);
+    assert_int_equal(s.parameters.arm.hub_joint, HUB_SPRING);
+    check_close(s.parameters.arm.link_inertia, 1.67e-5, 0);
+    scenario_finish(&s);
+}
+
+// The assignment is refused with a sentence that says `what`, and nothing changes.
+static void check_override(const char *text, const char *assignment, const char *what)
+{
+    scenario s = good(text);
+    parameters before = s.parameters;
+    fault f = {0};
+    char beginning[128];
+    assert_int_not_equal(scenario_override(&s, assignment, &f), STATUS_OK);
+    assert_int_not_equal(f.code, STATUS_OK);
+    snprintf(beginning, sizeof beginning, "--set %s: ", assignment);
+    if (strncmp(f.text, beginning, strlen(beginning)) != 0 || strstr(f.text, what) == NULL) {
+        fail_msg("'%s' does not begin with '%s' and say '%s'", f.text, beginning, what);
+    }
+    assert_memory_equal(&s.parameters, &before, sizeof before);
+    scenario_finish(&s);
+}
+
+static void a_wrong_override_changes_nothing(void **state)
+{
+    (void)state;
+    check_override("{}", "arm.k2", "PATH=VALUE");
+    check_override("{}", "=3", "PATH=VALUE");
+    check_override("{}", "", "PATH=VALUE");
+    check_override("{}", "arm.k22=3", "did you mean 'arm.k2'?");
+    check_override("{}", "completely.unknown=3", "'show' lists");
+    check_override("{}", "arm.k2=stiff", "not a number");
+    check_override("{}", "arm.k2=", "no value");
+    check_override("{}", "arm.k2=-1", "out of range");
+    check_override("{}", "arm.k2=1=2", "expected N m/rad");
+    check_override("arm: {links: 5}", "arm.model=printed", "two links");
+    check_override("script: [{at: 0.5, push: 1}]", "arm.model=printed", "push");
+}
+
+static void an_endless_override_is_refused(void **state)
+{
+    (void)state;
+    scenario s = good("{}");
+    fault f;
+    char text[5000];
+    memset(text, 'a', sizeof text - 1);
+    text[sizeof text - 1] = '\0';
+    assert_int_equal(scenario_override(&s, text, &f), STATUS_BAD_ARGUMENT);
+    memcpy(text, "arm.k2=", 7);
+    assert_int_not_equal(scenario_override(&s, text, &f), STATUS_OK);
+    assert_int_not_equal(scenario_override(&s, text, NULL), STATUS_OK);
+    scenario_finish(&s);
+}
+
+// ---- writing ------------------------------------------------------------------------------------
+
+// Everything but the expectations comes back from what scenario_write writes.
+static void check_written(const scenario *s)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    scenario_write(stream, s);
+    fclose(stream);
+    scenario back = good(text);
+    assert_string_equal(back.title, s->title);
+    assert_string_equal(back.description, s->description);
+    assert_int_equal(back.action_count, s->action_count);
+    for (int i = 0; i < s->action_count; i++) {
+        const action *a = &s->actions[i], *b = &back.actions[i];
+        assert_true(a->time == b->time && a->kind == b->kind && a->value == b->value);
+        assert_true(a->kind == ACTION_PUSH || a->parameter == b->parameter);
+    }
+    for (int i = 0; i < parameter_count; i++) {
+        char one[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
+        parameter_format(&s->parameters, i, one, sizeof one);
+        parameter_format(&back.parameters, i, other, sizeof other);
+        assert_string_equal(one, other);
+        assert_int_equal(s->parameters.set[i], back.parameters.set[i]);
+    }
+    scenario_finish(&back);
+    free(text);
+}
+
+static void written_scenarios_read_back(void **state)
+{
+    (void)state;
+    char **names;
+    int count;
+    assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        scenario s;
+        assert_int_equal(scenario_open(&s, names[i], NULL, NULL), STATUS_OK);
+        check_written(&s);
+        scenario_finish(&s);
+        free(names[i]);
+    }
+    free(names);
+    scenario odd = good("title: '\"a\\b\" # no comment: {'\ndescription: \"one\\ntwo\\t'\"\n"
+                        "control: {plugin: \"a b: 'c'\"}\n"
+                        "script: [{at: 0.1 s, push: -0.02 N s}, {at: 0.2, set: {wall.restitution: "
+                        "0.5}}]\n");
+    check_written(&odd);
+    scenario_finish(&odd);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(scenarios_open_by_name_and_by_file, make_folder,
+                                        remove_folder),
+        cmocka_unit_test_setup_teardown(an_unknown_name_suggests_the_nearest, make_folder,
+                                        remove_folder),
+        cmocka_unit_test_setup_teardown(files_that_cannot_be_read, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(the_list_is_complete_and_sorted, make_folder,
+                                        remove_folder),
+        cmocka_unit_test(every_shipped_scenario_reads_clean),
+        cmocka_unit_test(every_figure_and_table_of_the_thesis_has_its_scenario),
+        cmocka_unit_test(an_override_sets_and_resolves),
+        cmocka_unit_test(a_wrong_override_changes_nothing),
+        cmocka_unit_test(an_endless_override_is_refused),
+        cmocka_unit_test(written_scenarios_read_back),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
