@@ -375,9 +375,28 @@ static void energies_match_with_any_links_and_joints(void **state)
     }
 }
 
+// m v^2 / 2 of the tip, whose velocity is the sum over the links.
+static void a_mass_at_the_tip_adds_its_own_energy(void **state)
+{
+    (void)state;
+    for (int links = 1; links <= 6; links++) {
+        arm a = make_arm(links, "spring", "none");
+        double q[LARGEST], w[LARGEST], vx = 0, vy = 0;
+        some_state(&a, links, q, w);
+        const double before = chain_kinetic_energy(&a, q, w);
+        for (int k = a.first; k < a.dof; k++) {
+            vx -= sin(q[k]) * w[k] / links;
+            vy += cos(q[k]) * w[k] / links;
+        }
+        a.tip_mass = 0.3;
+        check_relative(chain_kinetic_energy(&a, q, w), before + 0.15 * (vx * vx + vy * vy), 1e-13);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_mass_at_the_tip_adds_its_own_energy),
         cmocka_unit_test(satisfies_the_lagrangian),
         cmocka_unit_test(satisfies_it_with_any_links_and_joints),
         cmocka_unit_test(rates_follow_from_the_penetration),

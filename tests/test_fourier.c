@@ -48,9 +48,19 @@ static void amplitudes_are_those_of_the_sines(void **state)
     check_close(amplitude[30], 0, 1e-12);
 }
 
+static void nothing_is_written_behind_the_amplitudes(void **state)
+{
+    (void)state;
+    double series[N] = {0}, scratch[2 * N], amplitude[N / 2 + 1];
+    amplitude[N / 2] = 42;
+    fourier_amplitudes(series, N, scratch, amplitude);
+    check_close(amplitude[N / 2], 42, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_is_written_behind_the_amplitudes),
         cmocka_unit_test(a_transform_is_the_sum_that_defines_it),
         cmocka_unit_test(amplitudes_are_those_of_the_sines),
     };

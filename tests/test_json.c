@@ -59,9 +59,19 @@ static void numbers_that_are_missing_are_null(void **state)
     free(text);
 }
 
+static void objects_have_a_line_a_member(void **state)
+{
+    (void)state;
+    char *text = written(json_loads("{\"a\": 1, \"b\": {}, \"c\": [{\"d\": 2}]}", 0, NULL));
+    assert_string_equal(text, "{\n  \"a\": 1,\n  \"b\": {},\n  \"c\": [\n    {\n      \"d\": 2\n"
+                              "    }\n  ]\n}\n");
+    free(text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(objects_have_a_line_a_member),
         cmocka_unit_test(json_is_what_jansson_reads),
         cmocka_unit_test(text_without_utf8_is_made_readable),
         cmocka_unit_test(numbers_that_are_missing_are_null),

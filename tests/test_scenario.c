@@ -417,9 +417,42 @@ static void depth_and_size_have_limits(void **state)
     free(text);
 }
 
+static void faults_come_in_the_order_of_their_places(void **state)
+{
+    (void)state;
+    scenario s;
+    sentences all;
+    assert_int_equal(
+        parse(&s, "title: t\nrun: {duration: -1}\narm: {links: x, k2: y}\nnothing: 1\n", &all),
+        STATUS_BAD_SCENARIO);
+    const char *before = all.text;
+    for (int i = 1; i < all.count; i++) {
+        const char *next = strchr(before, '\n') + 1;
+        int line[2], column[2];
+        assert_int_equal(sscanf(before, "f.yaml:%d:%d", &line[0], &column[0]), 2);
+        assert_int_equal(sscanf(next, "f.yaml:%d:%d", &line[1], &column[1]), 2);
+        assert_true(line[0] < line[1] || (line[0] == line[1] && column[0] < column[1]));
+        before = next;
+    }
+    assert_int_equal(all.count, 4);
+}
+
+static void a_scripted_lock_is_one_of_the_laws_modes(void **state)
+{
+    (void)state;
+    scenario s = good("title: t\ncontrol: {law: hybrid}\n"
+                      "script: [{at: 0.1, set: {control.lock: force}}]\n");
+    scenario_finish(&s);
+    check_fault("title: t\ncontrol: {law: hybrid}\n"
+                "script: [{at: 0.1, set: {control.lock: nonsense}}]\n",
+                3, 40, "nonsense");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_scripted_lock_is_one_of_the_laws_modes),
+        cmocka_unit_test(faults_come_in_the_order_of_their_places),
         cmocka_unit_test(a_whole_scenario_is_read),
         cmocka_unit_test(what_is_left_out_has_a_default),
         cmocka_unit_test(the_order_of_groups_does_not_matter),

@@ -99,9 +99,37 @@ static void slow_impacts_are_plastic(void **state)
     check_close(wall_restitution(&w, 0.0099), 0, 0);
 }
 
+// Force, its rate and what the spring stores, against differences and the integral.
+static void a_soft_walls_force_has_its_slope_and_energy(void **state)
+{
+    (void)state;
+    static const char *const laws[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
+    for (int k = 0; k < 2; k++) {
+        const wall_model w = wall_of(
+            SETTINGS(laws[k], "wall.stiffness=2e4", "wall.damping=30", "wall.exponent=1.7"));
+        const double depth = 2e-3, rate = 0.4, acceleration = -35, h = 1e-6;
+        const double ahead = depth + h * rate + h * h * acceleration / 2;
+        const double behind = depth - h * rate + h * h * acceleration / 2;
+        const double slope = (wall_force(&w, ahead, rate + h * acceleration) -
+                              wall_force(&w, behind, rate - h * acceleration)) /
+                             (2 * h);
+        check_relative(wall_force_slope(&w, depth, rate, acceleration), slope, 1e-6);
+
+        // the midpoint rule over the depth, without the damper
+        double stored = 0;
+        enum { PARTS = 2000 };
+        for (int i = 0; i < PARTS; i++) {
+            stored += wall_force(&w, depth * (i + 0.5) / PARTS, 0) * depth / PARTS;
+        }
+        check_relative(wall_stored_energy(&w, depth), stored, 1e-6);
+        check_close(wall_stored_energy(&w, -depth), 0, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_soft_walls_force_has_its_slope_and_energy),
         cmocka_unit_test(the_contact_point_lies_the_arms_length_from_the_hub),
         cmocka_unit_test(rates_are_the_derivatives_of_the_penetration),
         cmocka_unit_test(a_straight_arm_at_the_walls_angle_touches_it),

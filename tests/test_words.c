@@ -125,9 +125,26 @@ static void distances_of_words(void **state)
     assert_int_equal(edit_distance("kitten", "sitting", 2), 2);
 }
 
+// U+0080 is a control character; the others of the shortest forms are not, and one less is broken.
+static void the_first_characters_of_each_length_are_whole(void **state)
+{
+    (void)state;
+    check_printable("\u07ff", "\u07ff");
+    check_printable("\xe0\xa0\x80", "\xe0\xa0\x80");
+    check_printable("\xe0\x9f\xbf", "???");
+    check_printable("\xf0\x90\x80\x80", "\xf0\x90\x80\x80");
+    check_printable("\xf0\x8f\xbf\xbf", "????");
+    check_printable("\xed\x9f\xbf", "\xed\x9f\xbf");
+    check_printable("\xed\xa0\x80", "???");
+    check_printable("\xee\x80\x80", "\xee\x80\x80");
+    check_printable("\xf4\x8f\xbf\xbd", "\xf4\x8f\xbf\xbd");
+    check_printable("\xf4\x90\x80\x80", "????");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_first_characters_of_each_length_are_whole),
         cmocka_unit_test(distances_of_words),
         cmocka_unit_test(distances_count_single_edits),
         cmocka_unit_test(distances_are_symmetric_and_obey_the_triangle),

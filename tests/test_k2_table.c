@@ -1,0 +1,88 @@
+// The table of stiffness by force: what it reads, what lies between its entries, what it refuses.
+#include "src/quantities/k2_table.h"
+
+#include <string.h>
+
+#include "tests/check.h"
+
+static k2_table read(const char *text)
+{
+    k2_table t;
+    fault f = {.text = ""};
+    if (k2_table_read(&t, text, &f) != STATUS_OK) {
+        fail_msg("refused: %s", f.text);
+    }
+    return t;
+}
+
+static void between_entries_lie_straight_lines(void **state)
+{
+    (void)state;
+    const k2_table t = read("0.5:4.8 1:5 4:0.5");
+    assert_int_equal(t.count, 3);
+    check_close(k2_table_at(&t, 0.5), 4.8, 0);
+    check_close(k2_table_at(&t, 0.75), 4.9, 1e-15);
+    check_close(k2_table_at(&t, 1), 5, 0);
+    check_close(k2_table_at(&t, 2.5), 2.75, 1e-15);
+    check_close(k2_table_at(&t, 4), 0.5, 0);
+}
+
+static void beyond_the_ends_stay_the_last_values(void **state)
+{
+    (void)state;
+    const k2_table t = read("0.5:4.8 4:0.5"), one = read("2:3");
+    check_close(k2_table_at(&t, 0), 4.8, 0);
+    check_close(k2_table_at(&t, 1e9), 0.5, 0);
+    check_close(k2_table_at(&one, 0), 3, 0);
+    check_close(k2_table_at(&one, 5), 3, 0);
+}
+
+static void it_is_written_as_it_was_read(void **state)
+{
+    (void)state;
+    char text[64], small[8];
+    const k2_table t = read("  0.5:4.8   1:5 "), none = read("");
+    assert_true(k2_table_write(&t, text, sizeof text));
+    assert_string_equal(text, "0.5:4.8 1:5");
+    assert_false(k2_table_write(&t, small, sizeof small));
+    assert_int_equal(none.count, 0);
+    assert_true(k2_table_write(&none, text, sizeof text));
+}
+
+static void what_is_no_table_is_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"1",     "1:",      ":5",      "1:0",     "1:-2",
+                                        "-1:5",  "2:5 1:5", "1:5 1:6", "1:5,2:6", "a:b",
+                                        "1:nan", "1:5 0:6", "1:5 x",   "inf:5"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        k2_table t;
+        fault f = {.text = ""};
+        if (k2_table_read(&t, wrong[i], &f) == STATUS_OK) {
+            fail_msg("'%s' is taken for a table", wrong[i]);
+        }
+        assert_string_equal(f.path, "control.k2_table");
+    }
+
+    // one entry too many
+    char text[8 * (K2_TABLE_MOST + 1) + 1] = "";
+    for (int i = 0; i <= K2_TABLE_MOST; i++) {
+        snprintf(text + strlen(text), 9, "%d:5 ", i + 1);
+    }
+    k2_table t;
+    fault f = {.text = ""};
+    assert_int_equal(k2_table_read(&t, text, &f), STATUS_BAD_SCENARIO);
+    text[strlen(text) - strlen("33:5 ")] = '\0';
+    assert_int_equal(k2_table_read(&t, text, &f), STATUS_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(between_entries_lie_straight_lines),
+        cmocka_unit_test(beyond_the_ends_stay_the_last_values),
+        cmocka_unit_test(it_is_written_as_it_was_read),
+        cmocka_unit_test(what_is_no_table_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,122 @@
+// Eigenvalues and factors of symmetric matrices against what defines them.
+#include "src/base/symmetric.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/base/random.h"
+#include "tests/check.h"
+
+enum { LARGEST = 24 };
+
+// A symmetric matrix of numbers from -1 to 1, plus `diagonal` on its diagonal.
+static void fill(int n, double diagonal, double *matrix)
+{
+    random_generator g;
+    random_seed(&g, (uint64_t)n);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++) {
+            matrix[i * n + j] = matrix[j * n + i] = 2 * random_uniform(&g) - 1;
+        }
+        matrix[i * n + i] += diagonal;
+    }
+}
+
+static void vectors_and_values_make_the_matrix_again(void **state)
+{
+    (void)state;
+    for (int n = 1; n <= LARGEST; n++) {
+        double matrix[LARGEST * LARGEST], vectors[LARGEST * LARGEST], values[LARGEST];
+        double scratch[2 * LARGEST];
+        fill(n, 0, matrix);
+        memcpy(vectors, matrix, sizeof vectors);
+        assert_true(symmetric_eigen(n, vectors, values, scratch));
+
+        for (int i = 0; i < n; i++) {
+            assert_true(i == 0 || values[i - 1] <= values[i]);
+            for (int j = 0; j < n; j++) {
+                double made = 0, product = 0;
+                for (int k = 0; k < n; k++) {
+                    made += values[k] * vectors[k * n + i] * vectors[k * n + j];
+                    product += vectors[i * n + k] * vectors[j * n + k];
+                }
+                check_close(made, matrix[i * n + j], 1e-13);
+                check_close(product, i == j, 1e-13);
+            }
+        }
+    }
+}
+
+// The second difference with fixed ends has the values 2 - 2 cos(pi k / (n + 1)).
+static void the_second_difference_has_its_closed_form(void **state)
+{
+    (void)state;
+    enum { N = 16 };
+    double matrix[N * N] = {0}, values[N], scratch[2 * N];
+    for (int i = 0; i < N; i++) {
+        matrix[i * N + i] = 2;
+        if (i > 0) {
+            matrix[i * N + i - 1] = matrix[(i - 1) * N + i] = -1;
+        }
+    }
+    assert_true(symmetric_eigen(N, matrix, values, scratch));
+    for (int k = 0; k < N; k++) {
+        check_close(values[k], 2 - 2 * cos(acos(-1) * (k + 1) / (N + 1)), 1e-14);
+    }
+}
+
+static void equal_values_and_zero_matrices_are_fine(void **state)
+{
+    (void)state;
+    double matrix[9] = {3, 0, 0, 0, 3, 0, 0, 0, 3}, values[3], scratch[6];
+    assert_true(symmetric_eigen(3, matrix, values, scratch));
+    check_close(values[0], 3, 0);
+    check_close(values[2], 3, 0);
+    memset(matrix, 0, sizeof matrix);
+    assert_true(symmetric_eigen(3, matrix, values, scratch));
+    check_close(values[1], 0, 0);
+}
+
+static void a_factor_solves_its_system(void **state)
+{
+    (void)state;
+    for (int n = 1; n <= LARGEST; n++) {
+        double matrix[LARGEST * LARGEST], factor[LARGEST * LARGEST], x[LARGEST];
+        fill(n, n, matrix);
+        memcpy(factor, matrix, sizeof factor);
+        assert_true(symmetric_factor(n, factor));
+        for (int i = 0; i < n; i++) {
+            x[i] = i - 0.5;
+        }
+        symmetric_forward(n, factor, x);
+        symmetric_backward(n, factor, x);
+        for (int i = 0; i < n; i++) {
+            double right = 0;
+            for (int j = 0; j < n; j++) {
+                right += matrix[i * n + j] * x[j];
+            }
+            check_close(right, i - 0.5, 1e-12);
+        }
+    }
+}
+
+static void what_is_not_positive_definite_has_no_factor(void **state)
+{
+    (void)state;
+    double indefinite[4] = {1, 2, 2, 1}, singular[4] = {1, 1, 1, 1}, negative[1] = {-1};
+    assert_false(symmetric_factor(2, indefinite));
+    assert_false(symmetric_factor(2, singular));
+    assert_false(symmetric_factor(1, negative));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(vectors_and_values_make_the_matrix_again),
+        cmocka_unit_test(the_second_difference_has_its_closed_form),
+        cmocka_unit_test(equal_values_and_zero_matrices_are_fine),
+        cmocka_unit_test(a_factor_solves_its_system),
+        cmocka_unit_test(what_is_not_positive_definite_has_no_factor),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
