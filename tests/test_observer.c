@@ -316,6 +316,35 @@ static void it_finds_the_wall_again(void **state)
     }
 }
 
+// The speeds of the summary are those that the rows show, and the tip does not come back faster
+// than it came.
+static void the_tip_comes_back_no_faster_than_it_came(void **state)
+{
+    (void)state;
+    const char *const settings[] = {"control.law=observer", "wall.restitution=0.3", NULL};
+    action push = {.time = 0.8, .kind = ACTION_PUSH, .parameter = -1, .value = -0.05};
+    scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
+    run_result r;
+    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+
+    double there = 0, back = 0;
+    for (size_t i = 0; i < r.trace.row_count; i++) {
+        const sample *row = &r.trace.rows[i];
+        double *largest = row->time <= r.summary.first_contact_s ? &there : &back;
+        if (row->contact == 0) {
+            *largest = fmax(*largest, -row->gap_velocity);
+        }
+    }
+    check_relative(r.summary.approach_speed_m_s, there, 1e-3);
+    check_relative(r.summary.return_speed_m_s, back, 1e-3);
+    check_below(0.01, back);
+    check_below(back, there);
+    run_finish(&r);
+
+    // contact that is never lost has nothing to come back from
+    check_close(rig_summary(SETTINGS("control.law=observer")).return_speed_m_s, 0, 0);
+}
+
 // --- laws see sensors only --------------------------------------------------------------------
 
 // The plant is replaced by a recording of what its sensors read: the commands are the same.
@@ -384,6 +413,7 @@ int main(void)
         cmocka_unit_test(readings_tell_which_arm_it_is),
         cmocka_unit_test(it_learns_how_stiff_the_arm_is),
         cmocka_unit_test(it_finds_the_wall_again),
+        cmocka_unit_test(the_tip_comes_back_no_faster_than_it_came),
         cmocka_unit_test(the_same_readings_give_the_same_commands),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

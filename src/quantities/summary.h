@@ -38,6 +38,8 @@ typedef struct summary {
     double steady_error_N;          // steady_force_N - force_command_N
     double largest_command_V;       // in magnitude, as the D/A put it out
     double electrical_energy_J;     // that the amplifier fed into the motor
+    double approach_speed_m_s;      // largest of the tip towards the wall before first contact
+    double return_speed_m_s;        // the same without contact after it, 0 if it is never lost
     double steps;                   // time steps taken
     double cpu_time_s;              // processor time of the run's own thread
     double wall_time_s;             // time that passed meanwhile

@@ -280,6 +280,12 @@ status corrected_record_step(corrected_run *c, bool at_event)
         s = follow_with_sensors(c, &force);
     }
 
+    // how fast the tip came towards the wall on its own
+    if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
+        recording_follow_flight(r,
+                                fmax(-m->trial[SLOT_GAP_VELOCITY], -m->state[SLOT_GAP_VELOCITY]));
+    }
+
     if (s == STATUS_OK && length > 0) {
         s = record_force(c, &force);
     }

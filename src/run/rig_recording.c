@@ -20,6 +20,9 @@ status recording_start_rig(recording *r, fault *f)
 
     r->command = (recorded_command){.hub_angle = p->initial.angle};
     r->result->summary.electrical_energy_J = 0;
+    if (p->arm.model != ARM_PRINTED) { // whose listing has no rate of the gap
+        r->result->summary.approach_speed_m_s = r->result->summary.return_speed_m_s = 0;
+    }
     status s = rig_create_with(&r->rig, p, r->options->law, r->options->tape, f);
     return s == STATUS_OK && !r->rig->withheld ? scenario_check_locks(r->scenario, r->rig->law, f)
                                                : s;
@@ -53,6 +56,14 @@ void recording_change_command(recording *r, double time, double hub_angle)
     r->result->summary.electrical_energy_J +=
         motor_electrical_energy(&r->now.motor, c->volts, time - c->time, hub_angle - c->hub_angle);
     r->command = (recorded_command){r->rig->voltage, time, hub_angle};
+}
+
+void recording_follow_flight(recording *r, double closing_speed)
+{
+    assert(r != NULL && r->rig != NULL);
+    summary *s = &r->result->summary;
+    double *largest = isnan(s->first_contact_s) ? &s->approach_speed_m_s : &s->return_speed_m_s;
+    *largest = fmax(*largest, closing_speed);
 }
 
 void recording_finish_rig_summary(recording *r, double hub_angle)

@@ -34,7 +34,19 @@ static void find_quantiles(double *values, size_t count, double *quantiles)
 }
 
 // Quantities of every run that a judgement takes.
-enum { COMMAND, OVER, SMOOTHED, PEAK, CONTACT, SETTLING, ERROR, SEPARATIONS, QUANTITIES };
+enum {
+    COMMAND,
+    OVER,
+    SMOOTHED,
+    PEAK,
+    CONTACT,
+    SETTLING,
+    ERROR,
+    SEPARATIONS,
+    APPROACH,
+    BACK,
+    QUANTITIES
+};
 static const char *const keys[QUANTITIES] = {
     [COMMAND] = "force_command_N",
     [OVER] = "force_over_command_N",
@@ -44,6 +56,8 @@ static const char *const keys[QUANTITIES] = {
     [SETTLING] = "settling_time_s",
     [ERROR] = "steady_error_N",
     [SEPARATIONS] = "separations",
+    [APPROACH] = "approach_speed_m_s",
+    [BACK] = "return_speed_m_s",
 };
 
 // Instant of the script's last push, 0 without one [s].
@@ -83,6 +97,8 @@ static void judge(robust_law *out, const sweep *s, double *values)
         out->overshoots[i] = 100 * of[many ? SMOOTHED : OVER][i] / command;
         of[ERROR][i] = 100 * fabs(of[ERROR][i]) / command;
 
+        of[BACK][i] /= of[APPROACH][i];
+
         // a push begins anew
         double contact = of[CONTACT][i], at = contact + of[SETTLING][i];
         of[CONTACT][i] = pushed > 0 ? (double)NAN : at;
@@ -97,6 +113,7 @@ static void judge(robust_law *out, const sweep *s, double *values)
     find_quantiles(of[SETTLING], n, out->settling);
     find_quantiles(of[CONTACT], n, out->from_start);
     find_quantiles(of[ERROR], n, out->error);
+    find_quantiles(of[BACK], n, out->back);
 }
 
 status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_store *store, fault *f)

@@ -30,7 +30,9 @@ typedef struct robust_law {
                                          // NaN where the tip is pushed [s]
     double against;                      // worst of from_start over that of another law; NaN: none
     double error[ROBUST_QUANTILES];      // steady error either way, of the command [%]
-    double *overshoots;                  // of all runs, ascending, NaN last; owned [%]
+    double back[ROBUST_QUANTILES]; // largest speed of the tip towards the wall in the air after
+                                   // first contact over that before; 0 where it stays
+    double *overshoots;            // of all runs, ascending, NaN last; owned [%]
 } robust_law;
 
 // Judges the runs of a law in a store of its sweep, all of which are there. STATUS_NO_MEMORY or

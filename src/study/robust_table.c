@@ -17,7 +17,8 @@ enum {
     SETTLING = OVER + ROBUST_QUANTILES,
     ERROR = SETTLING + ROBUST_QUANTILES,
     FROM_START = ERROR + ROBUST_QUANTILES,
-    AGAINST = FROM_START + ROBUST_QUANTILES,
+    BACK = FROM_START + ROBUST_QUANTILES,
+    AGAINST = BACK + ROBUST_QUANTILES,
     COLUMNS
 };
 
@@ -43,6 +44,9 @@ static const column columns[COLUMNS] = {
     {"from_start_median_s", "from_start_median", "s"},
     {"from_start_nine_tenths_s", "from_start_nine_tenths", "s"},
     {"from_start_worst_s", "from_start_worst", "s"},
+    {"back_share_median", "back_share_median", ""},
+    {"back_share_nine_tenths", "back_share_nine_tenths", ""},
+    {"back_share_worst", "back_share_worst", ""},
     {"from_start_share", "from_start_share", ""},
 };
 
@@ -65,12 +69,14 @@ static const shown_column of_laws[] = {
     {ERROR + ROBUST_MEDIAN, "error/%"},
     {ERROR + ROBUST_NINE_TENTHS, "90 %"},
     {ERROR + ROBUST_WORST, "worst"},
+    {BACK + ROBUST_WORST, "back/there"},
 };
 static const shown_column of_cases[] = {
     {SEPARATED, "separated/%"},
     {OVER + ROBUST_WORST, "over/%"},
     {SETTLING + ROBUST_WORST, "settling/s"},
     {ERROR + ROBUST_WORST, "error/%"},
+    {BACK + ROBUST_WORST, "back/there"},
     {FROM_START + ROBUST_WORST, "from start/s"},
     {AGAINST, ""}, // headed by the law
 };
@@ -105,6 +111,7 @@ static void values_of(const robust_law *law, double *values)
         values[SETTLING + i] = law->settling[i];
         values[ERROR + i] = law->error[i];
         values[FROM_START + i] = law->from_start[i];
+        values[BACK + i] = law->back[i];
     }
 }
 

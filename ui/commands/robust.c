@@ -341,7 +341,9 @@ const command robust_command = {
         "from a set (a Latin\nhypercube, the same draws for every law), and says which share "
         "of the runs settles, leaves the wall\nand exceeds control.force_limit (without one, "
         "1.3 times the command), and the median, the 90 %\nquantile and the worst of overshoot, "
-        "settling time and steady error. '-': that many do not settle.\n\n"
+        "settling time and steady error. '-': that many do not settle. back/there: the worst of "
+        "the\ntip's largest speed towards the wall in the air after first contact, over that "
+        "before it.\n\n"
         "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with the "
         "worst of the\nruns of each. Ctrl-C finishes the runs in hand (exit status 130); with "
         "--db they are kept.\n",
