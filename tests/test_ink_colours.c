@@ -138,6 +138,44 @@ static void test_the_number_of_colours_is_a_setting(void **state)
     explorer_finish(&ex);
 }
 
+// The curves of one pane, by the inks in the legends of a screen.
+static void test_curves_of_a_pane_differ_with_few_colours(void **state)
+{
+    (void)state;
+    static const char *const scenarios[] = {"compare/hybrid", "corrected/first-impact"};
+    for (int n = 0; n < 4; n++) {
+        explorer ex;
+        screen s = {0};
+        open_explorer(&ex, scenarios[n % 2]);
+        const colour_theme theme = n < 2 ? COLOURS_LIGHT : COLOURS_DARK;
+        ex.state.looks.theme = theme;
+        ex.state.looks.shown_depth = DEPTH_16;
+        press(&ex, ":panes 12345678<Enter>");
+        assert_true(screen_resize(&s, 120, 80));
+        explorer_draw(&ex, &s);
+
+        // a legend has a piece of line and a blank before each name
+        for (int y = ex.layout.plot.y; y < ex.layout.plot.y + ex.layout.plot.height; y++) {
+            ink seen[PANE_SIGNALS];
+            int count = 0;
+            const cell *row = &s.cells[(long)y * s.width];
+            for (int x = ex.layout.plot.x; x + 2 < ex.layout.plot.x + ex.layout.plot.width; x++) {
+                const uint32_t g = row[x].glyph;
+                const bool line = g == 0x2500 || g == 0x254c || g == 0x2508 || g == 0x2574;
+                if (line && row[x + 1].glyph == ' ' && row[x].ink >= INK_SERIES_0 &&
+                    count < PANE_SIGNALS) {
+                    for (int k = 0; k < count; k++) {
+                        assert_int_not_equal(ink_16(theme, seen[k]), ink_16(theme, row[x].ink));
+                    }
+                    seen[count++] = row[x].ink;
+                }
+            }
+        }
+        screen_finish(&s);
+        explorer_finish(&ex);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +184,7 @@ int main(void)
         cmocka_unit_test(test_curves_are_told_apart_by_everybody),
         cmocka_unit_test(test_no_colour_in_mono),
         cmocka_unit_test(test_the_number_of_colours_is_a_setting),
+        cmocka_unit_test(test_curves_of_a_pane_differ_with_few_colours),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

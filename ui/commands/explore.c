@@ -18,6 +18,8 @@
 #define PATIENCE      0.01       // a run that takes longer is computed meanwhile [s]
 #define LONGEST_FRAME 0.25       // a longer pause (suspended, dragged about) counts as this [s]
 
+enum { INPUTS_AT_ONCE = 32 }; // between two pictures, at most
+
 static const char first_scenario[] = "corrected/first-impact";
 
 // --- without a terminal -----------------------------------------------------------------------
@@ -126,6 +128,8 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
         return;
     }
     terminal_mouse(ex->state.looks.mouse);
+    const colour_depth depth = ex->state.looks.depth;
+    ex->state.looks.shown_depth = depth == DEPTH_AUTO ? terminal_depth() : depth;
     explorer_draw(ex, s);
     terminal_show(s, ex->state.looks.glyphs, ex->state.looks.theme, ex->state.looks.depth,
                   ex->state.looks.redraw);
@@ -170,10 +174,17 @@ static void run_on_terminal(explorer *ex)
             dirty = true;
         }
 
+        // all that has come by now, so that keys never wait for pictures that nobody wants
         last = now;
-        dirty |= in.kind != TERMINAL_NONE;
-        leave = in.kind == TERMINAL_LEAVE;
-        take_input(ex, in);
+        for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave; taken++) {
+            dirty = true;
+            leave = in.kind == TERMINAL_LEAVE;
+            take_input(ex, in);
+            in.kind = TERMINAL_NONE;
+            if (taken < INPUTS_AT_ONCE && !leave) {
+                in = terminal_wait(0);
+            }
+        }
     }
 
     screen_finish(&s);

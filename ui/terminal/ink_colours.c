@@ -165,13 +165,13 @@ static int nearest(colour_theme theme, ink i, int first, int last, rgb (*colour)
     return best;
 }
 
-int ink_256(colour_theme theme, ink i)
+static int find_256(colour_theme theme, ink i)
 {
     // the first 16 are whatever the user has made of them
     return nearest(theme, i, 16, 255, colour_256, 2, 0, true);
 }
 
-int ink_16(colour_theme theme, ink i)
+static int find_16(colour_theme theme, ink i)
 {
     unsigned taken = 0;
     int best = -1;
@@ -184,4 +184,40 @@ int ink_16(colour_theme theme, ink i)
     }
     // black and white are the text's own, which the user may have exchanged
     return best == 0 || best == 7 || best == 15 ? -1 : best;
+}
+
+// What one of the above found, found once: kept with 2 added, so that 0 is unknown.
+static int remembered(int (*find)(colour_theme, ink), short kept[COLOUR_THEMES][INK_COUNT],
+                      colour_theme theme, ink i)
+{
+    assert(theme < COLOUR_THEMES && i < INK_COUNT);
+    short *known = &kept[theme][i];
+    if (*known == 0) {
+        *known = (short)(find(theme, i) + 2);
+    }
+    return *known - 2;
+}
+
+int ink_256(colour_theme theme, ink i)
+{
+    static short kept[COLOUR_THEMES][INK_COUNT];
+    return remembered(find_256, kept, theme, i);
+}
+
+int ink_16(colour_theme theme, ink i)
+{
+    static short kept[COLOUR_THEMES][INK_COUNT];
+    return remembered(find_16, kept, theme, i);
+}
+
+bool inks_look_alike(colour_theme theme, colour_depth depth, ink a, ink b)
+{
+    switch (depth) {
+    case DEPTH_16:
+        return ink_16(theme, a) == ink_16(theme, b);
+    case DEPTH_256:
+        return ink_256(theme, a) == ink_256(theme, b);
+    default:
+        return a == b;
+    }
 }

@@ -15,6 +15,9 @@ bool ink_rgb(colour_theme theme, ink i, rgb *colour);
 int ink_256(colour_theme theme, ink i);
 int ink_16(colour_theme theme, ink i);
 
+// Whether two inks come out as one colour on a terminal of so many.
+bool inks_look_alike(colour_theme theme, colour_depth depth, ink a, ink b);
+
 // Grounds that a theme is made for, two: the plainest one and the least contrasting usual one.
 const rgb *theme_grounds(colour_theme theme);
 

@@ -158,24 +158,36 @@ typedef struct pane_look {
     line_style style[PANE_SIGNALS];
 } pane_look;
 
-static pane_look look_of(const pane *p)
+// Whether a slot's colour is that of one of the first curves of a pane, as the terminal shows them.
+static bool colour_is_taken(const explorer_state *st, const pane_look *look, int curves, int slot)
+{
+    const ink wanted = (ink)(INK_SERIES_0 + slot);
+    for (int k = 0; k < curves; k++) {
+        if (inks_look_alike(st->looks.theme, st->looks.shown_depth, look->colour[k], wanted)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static pane_look look_of(const explorer_state *st, const pane *p)
 {
     enum { COLOURS = 8, STYLES = 4 };
     static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT};
-    bool colour_taken[COLOURS] = {false}, style_taken[STYLES] = {false};
+    bool style_taken[STYLES] = {false};
     pane_look look;
 
     // the table's colour and line unless an earlier signal of the pane has them
     for (int k = 0; k < p->count; k++) {
         const signal_info *info = &signal_table[p->signals[k]];
         int slot = info->colour, style = (int)info->style;
-        for (int i = 0; i < COLOURS && colour_taken[slot]; i++) {
+        for (int i = 0; i < COLOURS && colour_is_taken(st, &look, k, slot); i++) {
             slot = (info->colour + 1 + i) % COLOURS;
         }
         for (int i = 0; i < STYLES && style_taken[style]; i++) {
             style = (int)plain_first[i];
         }
-        colour_taken[slot] = style_taken[style] = true;
+        style_taken[style] = true;
         look.colour[k] = (ink)(INK_SERIES_0 + slot);
         look.style[k] = (line_style)style;
     }
@@ -233,7 +245,7 @@ static int draw_legend(const explorer_state *st, screen *s, const pane *p, legen
                        int room)
 {
     int start = x, end = x + room;
-    const pane_look look = look_of(p);
+    const pane_look look = look_of(st, p);
 
     // each signal: its line, its name, its value at the cursor
     for (int k = 0; k < p->count; k++) {
@@ -322,7 +334,7 @@ static void set_look(const explorer_state *st, plot_frame *f, const shown_run *r
 static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int number)
 {
     const shown_run run = state_run(st, number);
-    const pane_look look = look_of(p);
+    const pane_look look = look_of(st, p);
 
     // of many runs a pane shows what it is about
     const bool first_only =

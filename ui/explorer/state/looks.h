@@ -23,6 +23,7 @@ typedef struct looks {
     glyph_set glyphs;
     colour_theme theme;
     colour_depth depth;
+    colour_depth shown_depth; // what that comes to on the terminal; DEPTH_AUTO off it
     lane_choice lanes;
     bool pixels; // pictures are drawn where the terminal has them
     close_up_choice close_up;
