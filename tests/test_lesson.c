@@ -33,6 +33,50 @@ static void go_through(explorer *ex, const char *name)
     assert_false(ex->state.lesson.on);
 }
 
+// A scenario as it comes out of its own copy.
+static void read_copy(const scenario *s, scenario *copy)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    scenario_write(stream, s);
+    fclose(stream);
+    const status code = scenario_parse(copy, text, size, "copy.yaml", NULL, fail_on_fault, NULL);
+    assert_int_equal(code, STATUS_OK);
+    free(text);
+}
+
+static void test_a_copy_keeps_its_lesson(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"lessons/impulse-and-force", "lessons/two-predictors",
+                                        "lessons/step-size",         "lessons/beta-and-gamma",
+                                        "lessons/hybrid-law",        "lessons/what-a-sensor-sees"};
+    for (size_t n = 0; n < sizeof names / sizeof names[0]; n++) {
+        scenario s, copy;
+        fault f = {0};
+        explorer ex;
+        assert_int_equal(scenario_open(&s, names[n], fail_on_fault, NULL), STATUS_OK);
+        read_copy(&s, &copy);
+        assert_int_equal(copy.lesson.step_count, s.lesson.step_count);
+        assert_int_equal(copy.lesson.parameter_count, s.lesson.parameter_count);
+        for (int i = 0; i < s.lesson.step_count; i++) {
+            const lesson_step *a = &s.lesson.steps[i], *b = &copy.lesson.steps[i];
+            assert_string_equal(a->say, b->say);
+            assert_string_equal(a->hint, b->hint);
+            assert_string_equal(a->then, b->then);
+            assert_int_equal(a->check, b->check);
+        }
+
+        // and can be gone through like the lesson itself
+        assert_int_equal(explorer_init(&ex, &copy, HUGE_VAL, &f), STATUS_OK);
+        go_through(&ex, names[n]);
+        explorer_finish(&ex);
+        scenario_finish(&s);
+    }
+}
+
 static void test_every_lesson_can_be_gone_through(void **state)
 {
     (void)state;
@@ -154,6 +198,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_lesson_can_be_gone_through),
+        cmocka_unit_test(test_a_copy_keeps_its_lesson),
         cmocka_unit_test(test_every_step_fits_a_small_screen),
         cmocka_unit_test(test_wrong_answers_are_not_taken),
         cmocka_unit_test(test_lessons_with_faults_are_refused),

@@ -79,9 +79,9 @@ void scenario_finish(scenario *s);
 // A copy of one's own; STATUS_NO_MEMORY, and then nothing is to be freed.
 status scenario_copy(scenario *copy, const scenario *s);
 
-// Writes a file that reads back with the same title, description, parameters and script. What it
-// expects and its lesson are not written: with other parameters they would not hold. Errors stay in
-// the stream.
+// Writes a file that reads back with the same title, description, parameters, script and lesson.
+// What it expects is not written: with other parameters it would not hold. Errors stay in the
+// stream.
 void scenario_write(FILE *stream, const scenario *s);
 
 // Gives the scenario other parameters, changed but not yet resolved: resolves them and checks that

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "src/quantities/signals.h"
+#include "src/quantities/summary.h"
 #include "src/scenario/scenario.h"
 #include "src/base/numbers.h"
 
@@ -88,6 +89,100 @@ static void write_actions(FILE *stream, const scenario *s)
     }
 }
 
+// --- lessons ----------------------------------------------------------------------------------
+
+// A list of texts behind a key, nothing without any.
+static void write_texts(FILE *stream, const char *key, char *const *texts, int count)
+{
+    for (int i = 0; i < count; i++) {
+        fprintf(stream, i == 0 ? "%s[" : ", ", key);
+        write_text(stream, texts[i]);
+    }
+    fputs(count > 0 ? "]" : "", stream);
+}
+
+// A number of a map.
+static void write_entry(FILE *stream, const char *key, double value)
+{
+    char text[NUMBER_TEXT];
+    number_format(text, value);
+    fprintf(stream, "%s: %s", key, text);
+}
+
+// What has to be so before the step is done.
+static void write_check(FILE *stream, const parameters *p, const lesson_step *step)
+{
+    parameters scratch = *p;
+    const char *quantity = summary_table[step->quantity].key;
+    switch (step->check) {
+    case LESSON_READ:
+        return;
+    case LESSON_NUMBER:
+        fprintf(stream, "      number: {quantity: %s, ", quantity);
+        write_entry(stream, "within", step->within);
+        break;
+    case LESSON_CHOICE:
+        write_texts(stream, "      choice: {of: ", step->choices, step->choice_count);
+        write_entry(stream, ", right", step->right + 1);
+        break;
+    case LESSON_CURSOR:
+        fprintf(stream, "      cursor: {at: %s, ", quantity);
+        write_entry(stream, "offset", step->offset);
+        write_entry(stream, ", within", step->within);
+        break;
+    case LESSON_VALUE:
+        parameter_set_number(&scratch, step->parameter, step->value, NULL);
+        fprintf(stream, "      value: {%s: ", parameter_table[step->parameter].path);
+        write_value(stream, &scratch, step->parameter);
+        break;
+    case LESSON_PINNED:
+        fprintf(stream, "      pinned: %d\n", step->pinned);
+        return;
+    default:
+        fprintf(stream, "      ratio: {quantity: %s, ", quantity);
+        write_entry(stream, "from", step->low);
+        write_entry(stream, ", to", step->high);
+    }
+    fputs("}\n", stream);
+}
+
+static void write_step(FILE *stream, const parameters *p, const lesson_step *step)
+{
+    fputs("    - say: ", stream);
+    write_text(stream, step->say);
+    fputc('\n', stream);
+    write_check(stream, p, step);
+
+    // what may be left out
+    const char *const keys[] = {"hint", "then"}, *const texts[] = {step->hint, step->then};
+    for (int i = 0; i < 2; i++) {
+        if (texts[i][0] != '\0') {
+            fprintf(stream, "      %s: ", keys[i]);
+            write_text(stream, texts[i]);
+            fputc('\n', stream);
+        }
+    }
+    write_texts(stream, "      do: ", step->commands, step->command_count);
+    fputs(step->command_count > 0 ? "\n" : "", stream);
+}
+
+static void write_lesson(FILE *stream, const scenario *s)
+{
+    const lesson *l = &s->lesson;
+    if (l->step_count == 0) {
+        return;
+    }
+    fputs("lesson:\n", stream);
+    for (int i = 0; i < l->parameter_count; i++) {
+        fprintf(stream, "%s%s%s", i == 0 ? "  parameters: [" : ", ",
+                parameter_table[l->parameters[i]].path, i == l->parameter_count - 1 ? "]\n" : "");
+    }
+    fputs("  steps:\n", stream);
+    for (int i = 0; i < l->step_count; i++) {
+        write_step(stream, &s->parameters, &l->steps[i]);
+    }
+}
+
 void scenario_write(FILE *stream, const scenario *s)
 {
     assert(stream != NULL && s != NULL);
@@ -110,4 +205,5 @@ void scenario_write(FILE *stream, const scenario *s)
     // what runs; expectations hold for the scenario as it was, and are left out
     write_parameters(stream, &s->parameters);
     write_actions(stream, s);
+    write_lesson(stream, s);
 }
