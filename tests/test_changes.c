@@ -470,6 +470,17 @@ static void test_the_arrow_has_its_head_on(void **state)
     explorer_finish(&ex);
 }
 
+static void test_a_filter_selects_what_has_an_effect(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    // motor.transconductance stands before control.transition_time, but the drive has none
+    press(&ex, "/trans<Enter>");
+    assert_shows(&ex, ":set control.transition_time");
+    explorer_finish(&ex);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -490,6 +501,7 @@ int main(void)
         cmocka_unit_test(test_setpoints_and_limits_are_lines),
         cmocka_unit_test(test_ticks_are_even_and_names_whole),
         cmocka_unit_test(test_the_arrow_has_its_head_on),
+        cmocka_unit_test(test_a_filter_selects_what_has_an_effect),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

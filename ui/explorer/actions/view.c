@@ -87,17 +87,22 @@ void act_settle_filter(explorer_state *st, panel_id panel)
         return;
     }
 
-    // the selected parameter if it is still there, else the first that is
+    // the selected parameter if it is still there, else the first that has an effect, else the first
     const int count = state_parameter_lines(st, lines);
     const parameter_list *list = &st->parameters;
     const int selected = parameter_list_selected(list, lines, count);
     const bool there =
         count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
+    int best = -1;
     for (int i = 0; i < count && !there; i++) {
-        if (!lines[i].heading) {
-            parameter_list_select(&st->parameters, lines[i]);
-            return;
+        const bool better = best < 0 || state_inert_reason(st, lines[best].parameter) != NULL;
+        const bool acts = state_inert_reason(st, lines[i].parameter) == NULL;
+        if (!lines[i].heading && better && (best < 0 || acts)) {
+            best = i;
         }
+    }
+    if (best >= 0) {
+        parameter_list_select(&st->parameters, lines[best]);
     }
 }
 

@@ -38,6 +38,10 @@ static const char *reason_of_arm(const parameters *p, int parameter)
     if (IS_OF(parameter, wall) && !IS_OF(parameter, wall.kind) && p->wall.kind == WALL_NONE) {
         return "there is no wall (wall.kind)";
     }
+    if ((IS_OF(parameter, motor.transconductance) || IS_OF(parameter, motor.current_limit)) &&
+        p->motor.drive != DRIVE_CURRENT) {
+        return "it belongs to motor.drive = current";
+    }
 
     // numbers of other methods
     if (of_newmark && p->method.name != METHOD_NEWMARK) {
