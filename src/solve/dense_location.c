@@ -94,7 +94,7 @@ void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *a
 
     // each function that is watched, as far as the first fall so far
     for (watch w = WATCH_GAP; w <= WATCH_STICTION; w++) {
-        if (!watch_active(a, m, w)) {
+        if (!watch_active(a, m, w) || (m->engine->clear != NULL && m->engine->clear(a, m, w, *h))) {
             continue;
         }
         point start = {0, m->engine->look(a, m, w, 0)}, end = {*h, m->engine->look(a, m, w, *h)};
@@ -177,6 +177,10 @@ void dense_peak(const arm *a, motion *m, double h)
     enum { CUTS = 4 };
     if (m->engine->peak != NULL) {
         m->engine->peak(a, m, h);
+        return;
+    }
+
+    if (m->engine->bounded != NULL && m->engine->bounded(a, m, h, m->pulse_peak)) {
         return;
     }
 

@@ -61,6 +61,12 @@ typedef struct engine {
     // ends less bend (to - from)^2 / 8. For stiction the bound is that of the friction torque.
     double (*bend)(const arm *a, const motion *m, watch w, double from, double to);
 
+    // Dense engines, or NULL: cheap tests that spare most strides the search. Whether the watched
+    // function certainly stays above zero up to h; whether the contact force certainly stays at
+    // `most` [N] or below. False says nothing.
+    bool (*clear)(const arm *a, motion *m, watch w, double h);
+    bool (*bounded)(const arm *a, motion *m, double h, double most);
+
     // Dense engines: the contact force [N] and its slope [N/s], never divided by anything.
     glance (*force_at)(const arm *a, const motion *m, double h);
 

@@ -5,6 +5,7 @@
 // lower order does. Everything within it (events, rows, peaks, quadratures) is a polynomial.
 #include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "src/base/sincos.h"
@@ -38,6 +39,7 @@ typedef struct taylor_stride {
     taylor_form form;
     polynomial watched[WATCH_STICTION + 1]; // those of the contact state; stiction: nearer limit
     polynomial far_limit;                   // of stiction
+    double force_most, force_until;         // the force's bound, for times up to the second [N, s]
     bool ready;                             // the series of the next stride were computed apart
 } taylor_stride;
 
@@ -55,6 +57,17 @@ bool taylor_engine_suits(const arm *a)
 // side by side. So the number of terms is even, the last one zero if need be.
 
 typedef double pair __attribute__((vector_size(16)));
+
+typedef int64_t pair_bits __attribute__((vector_size(16)));
+
+static inline pair magnitudes(pair x)
+{
+    pair_bits bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits &= INT64_MAX;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
 
 static inline pair terms_at(const double *terms, int n)
 {
@@ -126,10 +139,22 @@ static double bend_of(const polynomial *p, double t)
     const double u = t * t;
     pair bound = {0, 0};
     for (int n = p->count - 2; n >= 2; n -= 2) {
-        const pair size = {fabs(p->terms[n]), fabs(p->terms[n + 1])};
-        bound = bound * u + size * terms_at(falling, n);
+        bound = bound * u + magnitudes(terms_at(p->terms, n)) * terms_at(falling, n);
     }
     return bound[0] + t * bound[1];
+}
+
+// How far at most the function goes from its first term for times from 0 to t, a little more than
+// the sum of its terms' magnitudes.
+static double spread_of(const double *terms, int count, double t)
+{
+    const double u = t * t;
+    pair sum = {0, 0};
+    for (int n = count - 2; n >= 2; n -= 2) {
+        sum = sum * u + magnitudes(terms_at(terms, n));
+    }
+    sum *= u;
+    return (sum[0] + t * (sum[1] + fabs(terms[1]))) * (1 + 1e-12);
 }
 
 // Divides the function by the time as often as its first coefficients are nothing but rounding,
@@ -307,6 +332,7 @@ static double begin(const arm *a, motion *m, double remaining, double step)
         taylor_compute_one(s->block, s->form);
     }
     s->ready = false;
+    s->force_until = -1;
     prepare_watched(a, m, s);
     return s->block[AT_ALLOWED];
 }
@@ -408,7 +434,7 @@ static glance look(const arm *a, const motion *m, watch w, double h)
     const taylor_stride *s = m->memory;
     const polynomial *p = &s->watched[w];
     (void)a;
-    glance near = glance_at(p->terms, p->count, h);
+    glance near = h > 0 ? glance_at(p->terms, p->count, h) : (glance){p->terms[0], p->terms[1]};
     if (w != WATCH_STICTION) {
         return near;
     }
@@ -434,7 +460,28 @@ static glance force_at(const arm *a, const motion *m, double h)
 {
     const taylor_stride *s = m->memory;
     (void)a;
-    return glance_at(s->block + AT_FORCE, s->form.order, h);
+    const double *force = s->block + AT_FORCE;
+    return h > 0 ? glance_at(force, s->form.order, h) : (glance){force[0], force[1]};
+}
+
+static bool clear(const arm *a, motion *m, watch w, double h)
+{
+    taylor_stride *s = m->memory;
+    const polynomial *p = &s->watched[w]; // of stiction the nearer limit, as far as the other
+    const double spread = spread_of(p->terms, p->count, h);
+    (void)a;
+    if (w == WATCH_FORCE && !p->divided) {
+        s->force_most = p->terms[0] + spread;
+        s->force_until = h;
+    }
+    return p->terms[0] > spread;
+}
+
+static bool bounded(const arm *a, motion *m, double h, double most)
+{
+    const taylor_stride *s = m->memory;
+    (void)a;
+    return h <= s->force_until && s->force_most <= most;
 }
 
 const engine taylor_engine = {.name = "Taylor series",
@@ -442,5 +489,7 @@ const engine taylor_engine = {.name = "Taylor series",
                               .state_at = state_at,
                               .look = look,
                               .bend = bend,
+                              .clear = clear,
+                              .bounded = bounded,
                               .force_at = force_at,
                               .memory_size = sizeof(taylor_stride)};
