@@ -127,7 +127,7 @@ static void orders_agree_and_the_ledger_closes(void **state)
                 strides++;
             }
         }
-        assert_in_range(strides, 8, 24);
+        assert_in_range(strides, 8, 32);
         for (int k = 0; k < smooth_length(m); k++) {
             check_close(m->state[SLOT_COUNT + k], whole[SLOT_COUNT + k], 1e-12);
         }

@@ -13,8 +13,8 @@
 #include "src/solve/taylor_engine.h"
 
 // Strides stay below this over the fastest rate and the angular velocities.
-#define LONGEST_REACH 1.8
-// A decay over a stride: the series of order 16 is stable on the negative axis to 7.
+#define LONGEST_REACH 2.7
+// A decay over a stride: the series of the highest order is stable on the negative axis beyond 7.
 #define LONGEST_DECAY 4.0
 
 // What is nothing but rounding in the first coefficients of a watched function at its edge: of the
@@ -116,7 +116,8 @@ static inline void derivatives_at(const double *terms, int count, double t, doub
 // 1/1, 1/2, ...
 static const double share[TAYLOR_MOST] = {1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,
                                           1. / 7,  1. / 8,  1. / 9,  1. / 10, 1. / 11, 1. / 12,
-                                          1. / 13, 1. / 14, 1. / 15, 1. / 16};
+                                          1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17, 1. / 18,
+                                          1. / 19, 1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24};
 
 // Integral from 0 to t.
 static inline double integral_to(const double *terms, int count, double t)
@@ -130,8 +131,9 @@ static inline double integral_to(const double *terms, int count, double t)
 }
 
 // n (n - 1)
-static const double falling[MOST_TERMS] = {0,  0,  2,   6,   12,  20,  30,  42,  56,
-                                           72, 90, 110, 132, 156, 182, 210, 240, 272};
+static const double falling[MOST_TERMS] = {0,   0,   2,   6,   12,  20,  30,  42,  56,
+                                           72,  90,  110, 132, 156, 182, 210, 240, 272,
+                                           306, 342, 380, 420, 462, 506, 552, 600};
 
 // The largest second derivative for times from 0 to t, from the magnitudes of the terms.
 static double bend_of(const polynomial *p, double t)
@@ -226,7 +228,9 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
     static const struct {
         int order;
         double reach;
-    } orders[] = {{8, 0.1}, {10, 0.25}, {12, 0.5}, {14, 0.8}};
+    } orders[] = {{8, 0.04},  {10, 0.1},  {12, 0.2},  {14, 0.33},
+                  {16, 0.48}, {18, 0.66}, {20, 0.88}, {22, 1.1}};
+    enum { ORDERS = sizeof orders / sizeof orders[0] };
 
     // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
     const double *w = state_velocities(m, m->state);
@@ -242,7 +246,7 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
 
     // and the lowest order that reaches so far
     *order = TAYLOR_MOST;
-    for (int i = 3; i >= 0; i--) {
+    for (int i = ORDERS - 1; i >= 0; i--) {
         *order = wanted * rate <= orders[i].reach ? orders[i].order : *order;
     }
     return wanted;

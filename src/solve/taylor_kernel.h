@@ -83,13 +83,14 @@ typedef two halves, turns;
 // first one left out is about ten times smaller.
 #define LAST_TERMS 1e-13
 // A stride that is too long for that is shortened by this factor, at most so often.
-#define SHORTENING       0.75
-#define MOST_SHORTENINGS 100
+#define SHORTENING       0.875
+#define MOST_SHORTENINGS 200
 
 // 1/n
 static const double inverse[TAYLOR_MOST + 2] = {
-    0,      1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,  1. / 7,  1. / 8,
-    1. / 9, 1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17};
+    0,       1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,  1. / 7,  1. / 8,
+    1. / 9,  1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17,
+    1. / 18, 1. / 19, 1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24, 1. / 25};
 
 // --- numbers ----------------------------------------------------------------------------------
 
@@ -228,6 +229,19 @@ KERNEL void halves_product(const halves *x, const four *y, int n, four *result)
     *result = sum;
 }
 
+// The terms of (x y)_n from the middle's left neighbour to the first.
+KERNEL void turns_squares(const turns *x, const four *y, int n, four *result)
+{
+    four sum = FOUR((real){0}, (real){0}, (real){0}, (real){0});
+    const int terms = (n + 1) / 2;
+    const turns *last = x + terms - 1;
+    const four *first = y + (n - terms + 1);
+    for (int i = 0; i < terms; i++) {
+        ADD_TURNS(sum, last[-i], first[i]);
+    }
+    *result = sum;
+}
+
 KERNEL two both_product(const both *x, const two *y, int n)
 {
     two sum = TWO((real){0}, (real){0});
@@ -287,23 +301,24 @@ KERNEL void turn_one(const both *rate, two *direction, int n)
 // the coefficients of the two last orders.
 KERNEL real allowed_stride(real wanted, real before_last, real last, real scale, int order)
 {
-    real h = wanted;
+    real h = wanted, power = (real){0} + 1.0, base = h; // h^(order - 1)
     const real limit = LAST_TERMS * scale;
+    double shrinking = 1, factor = SHORTENING;
+    for (int e = order - 1; e > 0; e >>= 1) {
+        power = e & 1 ? power * base : power;
+        shrinking = e & 1 ? shrinking * factor : shrinking;
+        base *= base;
+        factor *= factor;
+    }
 
-    // all lanes go on until the last of them is short enough
+    // all lanes go on until the last of them is short enough, only those that are too long are cut
     for (int i = 0; i < MOST_SHORTENINGS; i++) {
-        real power = (real){0} + 1.0, base = h; // h^(order - 1)
-        for (int e = order - 1; e > 0; e >>= 1) {
-            power = e & 1 ? power * base : power;
-            base *= base;
-        }
-
-        // only the lanes that are too long are cut
         const mask bad = ~MASK((last * h + before_last) * power <= limit);
         if (!any(bad)) {
             break;
         }
         h = choose(bad, SHORTENING * h, h);
+        power = choose(bad, shrinking * power, power);
     }
     return h;
 }
@@ -398,10 +413,8 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
         }
 
         // squares of the velocities, and in contact with a point their product
-        four squares = FOUR(zero, zero, zero, zero);
-        for (int j = (n + 1) / 2 - 1; j >= 0; j--) {
-            ADD_TURNS(squares, left[j], right[n - j]);
-        }
+        four squares;
+        turns_squares(left, right, n, &squares);
         real square1 = PART(squares, 0) + PART(squares, 0);
         real square2 = PART(squares, 1) + PART(squares, 1);
         real both_rates = PART(squares, 2) + PART(squares, 3);

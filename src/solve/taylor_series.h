@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 // Highest order of the velocities' series; strides that something cuts short take less.
-enum { TAYLOR_MOST = 16, TAYLOR_WIDEST = 8 };
+enum { TAYLOR_MOST = 24, TAYLOR_WIDEST = 8 };
 
 // A block holds what the series of an arm start from and the series themselves: one number per
 // lane and place, lanes side by side. An array of places begins at the constant of its name.
