@@ -69,6 +69,16 @@ static const char *const *const swept_over = SETTINGS(
     "arm.k1=66279.214005312242", "arm.k2=38.251713922716498", "initial.angle=-1.6337701878814963",
     "initial.velocity=3.1122561770814841");
 
+// A hub that comes to rest where its torque is friction's limit to rounding.
+static const char *const *const came_to_rest =
+    SETTINGS("wall.kind=plane", "arm.hub_joint=spring", "motor.voltage=-1.0448212998938189",
+             "motor.amplifier_gain=13.269647147420386", "motor.torque_constant=11.987453114429988",
+             "motor.resistance=17.827084026420238", "motor.stiction=0.24481793328311974",
+             "wall.angle=-0.9088457802154164", "wall.restitution=0.1878727903381151",
+             "arm.length=0.5665252074976912", "arm.mass=0.039887821091463167",
+             "arm.hub_inertia=0.00065010477188868153", "arm.k1=157811.38575973807",
+             "arm.k2=34.45062209145302", "initial.angle=-1.8543484232783054");
+
 static void run_with(const char *const *settings, bool keep_trace, run_result *result)
 {
     char name[] = "random", none[] = "";
@@ -80,8 +90,8 @@ static void run_with(const char *const *settings, bool keep_trace, run_result *r
 static void test_runs_that_failed_come_to_their_end(void **state)
 {
     (void)state;
-    const char *const *const runs[] = {bounced,     broke_away, let_go,
-                                       let_go_fast, came_back,  swept_over};
+    const char *const *const runs[] = {bounced,   broke_away, let_go,      let_go_fast,
+                                       came_back, swept_over, came_to_rest};
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         run_result r;
         run_with(runs[i], false, &r);

@@ -168,14 +168,10 @@ static void leave_edge(polynomial *p, const double limits[3])
         edge++;
     }
 
-    // falling to its edge rather than from it, it is left as it is: its root is what matters
-    if (edge > 0 && p->terms[edge] < 0 && p->terms[0] > 0) {
-        return;
-    }
-
-    // nor is an acceleration taken for rounding that speaks against what comes after it
-    if (edge == 3 && p->terms[3] < 0 && p->terms[2] > 0) {
-        edge = 2;
+    // falling to its edge rather than from it, it is left as it is: its root is what matters; nor
+    // is a rate or an acceleration rounding that speaks against falling at once
+    if (edge > 0 && p->terms[edge] < 0) {
+        edge = p->terms[0] > 0 ? 0 : p->terms[edge - 1] > 0 ? edge - 1 : edge;
     }
 
     if (edge > 0) {
