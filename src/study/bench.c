@@ -4,25 +4,22 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+#include <sys/resource.h>
 
-#include "src/study/batch.h"
-#include "src/run/run.h"
-#include "src/study/thesis_tables.h"
-#include "src/predict/linearised.h"
-#include "src/solve/contact_machine.h"
 #include "src/base/clock.h"
 #include "src/base/json.h"
 
-#define LEAST_TIME    0.01 // of one measurement [s]
 #define PATIENCE      1.0  // after so long three repetitions have to do [s]
 #define LONG_PATIENCE 20.0 // and then one [s]
 #define SLOWER        1.15 // by the medians
-#define CHAIN_STEP    1e-3 // [s]
 
 double bench_computing_time(void)
 {
-    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    struct rusage started;
+    getrusage(RUSAGE_CHILDREN, &started);
+    const double seconds = (double)(started.ru_utime.tv_sec + started.ru_stime.tv_sec);
+    const double micro = (double)(started.ru_utime.tv_usec + started.ru_stime.tv_usec);
+    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) + seconds + 1e-6 * micro;
 }
 
 double bench_seconds_per_call(status (*work)(void *context), void *context, double least,
@@ -57,6 +54,7 @@ status bench_run(const benchmark *b, bench_result *result, fault *f)
 {
     assert(b != NULL && result != NULL);
     double values[BENCH_REPETITIONS], start = bench_computing_time(), value, elapsed = 0;
+    const double start_wall = clock_seconds(CLOCK_MONOTONIC);
     int count = 0;
 
     // as many times as patience allows
@@ -83,6 +81,7 @@ status bench_run(const benchmark *b, bench_result *result, fault *f)
     result->median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
     result->min = values[0];
     result->max = values[count - 1];
+    result->wall = (clock_seconds(CLOCK_MONOTONIC) - start_wall) / elapsed;
     return STATUS_OK;
 }
 
@@ -113,6 +112,7 @@ json_t *bench_export(const bench_result *results, int count)
         json_object_set_new(entry, "median", json_number(results[i].median));
         json_object_set_new(entry, "min", json_number(results[i].min));
         json_object_set_new(entry, "max", json_number(results[i].max));
+        json_object_set_new(entry, "wall_per_cpu", json_number(results[i].wall));
         json_array_append_new(array, entry);
     }
     json_object_set_new(object, "bench", array);
@@ -174,271 +174,3 @@ status bench_read(const char *path, bench_result **results, int *count, fault *f
     *results = read;
     return STATUS_OK;
 }
-
-// --- the arms that are timed ----------------------------------------------------------------
-
-// Resolved parameters of the corrected arm with the given settings, a list that ends with NULL.
-static status timed_parameters(parameters *p, const char *const (*settings)[2], fault *f)
-{
-    parameters_defaults(p, ARM_CORRECTED);
-    for (int i = 0; settings[i][0] != NULL; i++) {
-        status code = parameter_set_text(p, parameter_index(settings[i][0]), settings[i][1], f);
-        if (code != STATUS_OK) {
-            return code;
-        }
-    }
-    return parameters_resolve(p, f);
-}
-
-static status run_once(void *context)
-{
-    run_result result;
-    status code = run_scenario(context, false, &result);
-    run_finish(&result);
-    return code;
-}
-
-// Computing time of a run with the given settings for each simulated millisecond [us].
-static status time_run(const char *const (*settings)[2], double *value, fault *f)
-{
-    char name[] = "bench", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
-    status code = timed_parameters(&s.parameters, settings, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    double seconds = bench_seconds_per_call(run_once, &s, LEAST_TIME, &code);
-    *value = 1e6 * seconds / (1e3 * s.parameters.run.duration);
-    return code == STATUS_OK ? code : fault_set(f, code, "the run failed: %s", status_text(code));
-}
-
-// 1 s of two links at 1 V into the wall: the defaults.
-static status measure_arm_n2(double *value, fault *f)
-{
-    static const char *const settings[][2] = {{NULL, NULL}};
-    return time_run(settings, value, f);
-}
-
-// The same arm on the rig, under a law that samples its noisy sensors 200 times a second and hardly
-// ever gives the same command twice.
-static status measure_rig_n2(double *value, fault *f)
-{
-    static const char *const settings[][2] = {{"control.law", "hybrid"}, {NULL, NULL}};
-    return time_run(settings, value, f);
-}
-
-// A stretch of a motion that can be gone through again and again.
-typedef struct stretch {
-    arm arm;
-    motion *motion;
-    double *start; // the state at its beginning
-    double to;     // its end [s]
-} stretch;
-
-static status go(const arm *a, motion *m, double until)
-{
-    status code = STATUS_OK;
-    while (code == STATUS_OK && m->state[SLOT_TIME] < until) {
-        motion_report report;
-        code = motion_step(a, m, until, CHAIN_STEP, &report);
-        if (code == STATUS_OK && report.event != MOTION_REACHED) {
-            motion_apply(a, m, &report);
-        }
-    }
-    return code;
-}
-
-static status pass_stretch(void *context)
-{
-    stretch *s = context;
-    memcpy(s->motion->state, s->start, (size_t)s->motion->size * sizeof *s->start);
-    return go(&s->arm, s->motion, s->to);
-}
-
-// Computing time of a step of 1 ms between two instants of the motion [s].
-static status time_stretch(const parameters *p, double from, double to, double *seconds, fault *f)
-{
-    stretch s = {.to = to};
-    arm_init(&s.arm, p);
-    s.motion = motion_create(&s.arm, &p->method);
-    s.start = s.motion != NULL ? malloc((size_t)s.motion->size * sizeof *s.start) : NULL;
-
-    // to its beginning, and then through it again and again
-    status code = STATUS_NO_MEMORY;
-    if (s.start != NULL) {
-        motion_start(&s.arm, s.motion, p->initial.angle, p->initial.velocity);
-        code = go(&s.arm, s.motion, from);
-        memcpy(s.start, s.motion->state, (size_t)s.motion->size * sizeof *s.start);
-        if (code == STATUS_OK) {
-            *seconds = bench_seconds_per_call(pass_stretch, &s, LEAST_TIME, &code);
-            *seconds /= (to - from) / CHAIN_STEP;
-        }
-    }
-
-    free(s.start);
-    motion_destroy(s.motion);
-    return code == STATUS_OK ? code
-                             : fault_set(f, code, "a chain of %d links between %g and %g s: %s",
-                                         p->arm.links, from, to, status_text(code));
-}
-
-// In free flight the chain has left its start behind; it touches at about 0.3 s. After 0.7 s a long
-// chain stays on the wall; two links then are held by friction, which costs nothing, so their first
-// contact is taken, before the hub sticks.
-static status time_chain(int links, bool contact, double *seconds, fault *f)
-{
-    char count[16];
-    const char *const settings[][2] = {{"arm.links", count},
-                                       {"wall.kind", "plane"},
-                                       {"method.name", "generalized-alpha"},
-                                       {NULL, NULL}};
-    parameters p;
-    snprintf(count, sizeof count, "%d", links);
-    status code = timed_parameters(&p, settings, f);
-    double from = !contact ? 0.05 : links == 2 ? 0.30 : 0.7;
-    double to = !contact ? 0.25 : links == 2 ? 0.36 : 0.9;
-    return code == STATUS_OK ? time_stretch(&p, from, to, seconds, f) : code;
-}
-
-status bench_step_cost(int links, double *free_us, double *contact_us, fault *f)
-{
-    assert(links > 0 && free_us != NULL && contact_us != NULL);
-    double seconds[2];
-    for (int contact = 0; contact < 2; contact++) {
-        seconds[contact] = (double)INFINITY;
-
-        // the best of three: what a passing disturbance adds is no cost of the step
-        for (int i = 0; i < 3; i++) {
-            double one;
-            status code = time_chain(links, contact, &one, f);
-            if (code != STATUS_OK) {
-                return code;
-            }
-            seconds[contact] = fmin(seconds[contact], one);
-        }
-    }
-
-    *free_us = 1e6 * seconds[0];
-    *contact_us = 1e6 * seconds[1];
-    return STATUS_OK;
-}
-
-static status measure_arm_n128_free(double *value, fault *f)
-{
-    status code = time_chain(128, false, value, f);
-    *value *= 1e6;
-    return code;
-}
-
-static status measure_arm_n128_contact(double *value, fault *f)
-{
-    status code = time_chain(128, true, value, f);
-    *value *= 1e6;
-    return code;
-}
-
-typedef struct touching {
-    arm arm;
-    motion *motion;
-    const double *q, *w;
-} touching;
-
-static status predict_once(void *context)
-{
-    touching *t = context;
-    prediction p;
-    return predict_linearised(&t->arm, t->motion, t->q, t->w, &p);
-}
-
-// The predictor at the instant before the first contact of two links at 1 V.
-static status measure_predict(double *value, fault *f)
-{
-    char name[] = "bench", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
-    static const char *const settings[][2] = {{NULL, NULL}};
-    status code = timed_parameters(&s.parameters, settings, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    // a run tells the state before its first impact
-    run_result result;
-    code = run_scenario(&s, false, &result);
-    touching t = {.q = result.before_impact,
-                  .w = result.before_impact ? result.before_impact + 2 : NULL};
-
-    // the prediction there
-    arm_init(&t.arm, &s.parameters);
-    t.motion = motion_create(&t.arm, &s.parameters.method);
-    if (t.motion == NULL || result.before_impact == NULL) {
-        code = STATUS_NO_MEMORY;
-    }
-    if (code == STATUS_OK) {
-        *value = 1e6 * bench_seconds_per_call(predict_once, &t, LEAST_TIME, &code);
-    }
-
-    motion_destroy(t.motion);
-    run_finish(&result);
-    return code == STATUS_OK ? code
-                             : fault_set(f, code, "the prediction failed: %s", status_text(code));
-}
-
-// Runs of the batch: 1 s of two links into the wall with voltages from 0.5 to 1.5 V.
-enum { BATCH_RUNS = 256 };
-
-static void make_batch_run(void *context, size_t i, scenario *made)
-{
-    *made = *(const scenario *)context;
-    made->parameters.motor.voltage = 0.5 + (double)i / BATCH_RUNS;
-}
-
-// Time steps of all runs together for a second by the clock, on as many threads as processors.
-static status measure_batch(double *value, fault *f)
-{
-    char name[] = "bench", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
-    static const char *const settings[][2] = {{NULL, NULL}};
-    status code = timed_parameters(&s.parameters, settings, f);
-    summary *summaries = malloc(BATCH_RUNS * sizeof *summaries);
-    if (code != STATUS_OK || summaries == NULL) {
-        free(summaries);
-        return code != STATUS_OK ? code : fault_set(f, STATUS_NO_MEMORY, "no memory for a batch");
-    }
-
-    // all of it, by the clock
-    double start = clock_seconds(CLOCK_MONOTONIC), steps = 0;
-    int threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
-    code = batch_run(make_batch_run, &s, BATCH_RUNS, threads, summaries);
-    double elapsed = clock_seconds(CLOCK_MONOTONIC) - start;
-
-    // the steps that were made
-    for (int i = 0; i < BATCH_RUNS && code == STATUS_OK; i++) {
-        steps += summaries[i].steps;
-        code = summaries[i].status;
-    }
-    free(summaries);
-    *value = steps / elapsed;
-    return code == STATUS_OK
-               ? code
-               : fault_set(f, code, "a run of the batch failed: %s", status_text(code));
-}
-
-static status measure_tables(double *value, fault *f)
-{
-    thesis_tables t;
-    double start = bench_computing_time();
-    status code = tables_compute(&t, f);
-    *value = bench_computing_time() - start;
-    return code;
-}
-
-const benchmark bench_table[] = {
-    {"arm_n2_us_per_ms", "us/ms", false, measure_arm_n2},
-    {"rig_n2_us_per_ms", "us/ms", false, measure_rig_n2},
-    {"arm_n128_free_us_per_ms", "us/ms", false, measure_arm_n128_free},
-    {"arm_n128_contact_us_per_ms", "us/ms", false, measure_arm_n128_contact},
-    {"batch_n2_steps_per_s", "1/s", true, measure_batch},
-    {"predict_us", "us", false, measure_predict},
-    {"tables_s", "s", false, measure_tables},
-};
-const int bench_count = (int)(sizeof bench_table / sizeof bench_table[0]);

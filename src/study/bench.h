@@ -24,13 +24,17 @@ typedef struct benchmark {
 typedef struct bench_result {
     char name[BENCH_NAME], unit[BENCH_UNIT];
     double median, min, max;
+    double wall; // time by the clock for each second of computing time: 1 on an idle machine
 } bench_result;
 
 // The benchmarks of the library; programs add their own.
 extern const benchmark bench_table[];
 extern const int bench_count;
 
-// Computing time of the process so far [s].
+// Computing time that one measurement of short work goes on for, 0.5 [s]; a test takes less.
+extern double bench_window;
+
+// Computing time so far of the process and of those it has started and waited for [s].
 double bench_computing_time(void);
 
 // Seconds that one call of work(context) takes: it is repeated until `least` seconds of computing
@@ -42,7 +46,8 @@ double bench_seconds_per_call(status (*work)(void *context), void *context, doub
 // take long less has to do: three times after one second, one after twenty.
 status bench_run(const benchmark *b, bench_result *result, fault *f);
 
-// The object of `bench --json`: {"bench": [{"name", "unit", "median", "min", "max"}]}.
+// The object of `bench --json`: {"bench": [{"name", "unit", "median", "min", "max",
+// "wall_per_cpu"}]}.
 json_t *bench_export(const bench_result *results, int count);
 
 // Reads such a file. *results is to be freed. STATUS_CANNOT_READ if there is none or it is none.

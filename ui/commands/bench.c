@@ -1,8 +1,10 @@
 #include "ui/commands/command.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "render/figures/figures.h"
@@ -55,7 +57,33 @@ static status measure_figures(double *value, fault *f)
     return code;
 }
 
+// A start of the program that does nothing but say its version: computing time of the process [ms].
+static status measure_start(double *value, fault *f)
+{
+    enum { STARTS = 40 };
+    const double start = bench_computing_time();
+    char program[] = "/proc/self/exe", version[] = "--version", *line[] = {program, version, NULL};
+
+    for (int i = 0; i < STARTS; i++) {
+        int how = 0;
+        const pid_t child = fork();
+        if (child == 0) {
+            const int nowhere = open("/dev/null", O_WRONLY);
+            dup2(nowhere, STDOUT_FILENO);
+            execv(program, line);
+            _exit(1);
+        }
+        if (child < 0 || waitpid(child, &how, 0) != child || how != 0) {
+            return fault_set(f, STATUS_NO_MEMORY, "the program cannot be started once more");
+        }
+    }
+
+    *value = 1e3 * (bench_computing_time() - start) / STARTS;
+    return STATUS_OK;
+}
+
 static const benchmark own_table[] = {
+    {"start_ms", "ms", false, measure_start},
     {"figures_s", "s", false, measure_figures},
 };
 enum { OWN = sizeof own_table / sizeof own_table[0], MOST = 32 };
@@ -89,7 +117,7 @@ static const bench_result *find_result(const baseline *before, const char *name)
 
 static void print_head(const baseline *before)
 {
-    printf("%-28s %10s %10s %10s  %-8s", "", "median", "min", "max", "unit");
+    printf("%-28s %10s %10s %10s  %-8s %8s", "", "median", "min", "max", "unit", "wall/cpu");
     if (before->results != NULL) {
         printf(" %10s %8s", "baseline", "times");
     }
@@ -98,7 +126,8 @@ static void print_head(const baseline *before)
 
 static void print_result(const benchmark *b, const bench_result *r, const baseline *before)
 {
-    printf("%-28s %10.4g %10.4g %10.4g  %-8s", r->name, r->median, r->min, r->max, r->unit);
+    printf("%-28s %10.4g %10.4g %10.4g  %-8s %8.2f", r->name, r->median, r->min, r->max, r->unit,
+           r->wall);
     const bench_result *then = find_result(before, r->name);
     if (then != NULL) {
         printf(" %10.4g %8.2f%s", then->median, bench_slowdown(b, r, then),
