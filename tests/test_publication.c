@@ -33,33 +33,6 @@ static void report_of(const artwork *a, figure_report *r)
     cairo_surface_destroy(surface);
 }
 
-static const char *const kinds[] = {"2.1",  "2.2",  "2.3",  "3.4",       "3.8", "3.11",
-                                    "4.1",  "4.2",  "4.3",  "4.6",       "5.2", "5.7",
-                                    "T2.1", "T3.1", "T4.2", "beta-gamma"};
-
-// Everything is laid out at its width: letters keep their size and nothing is below 6 pt.
-static void letters_can_be_read_at_every_width(void **state)
-{
-    (void)state;
-    static const double widths[] = {85, 180};
-    static figure_report r;
-    for (size_t k = 0; k < G_N_ELEMENTS(kinds); k++) {
-        for (int i = 0; i < 2; i++) {
-            figure_options o = {.look.width = widths[i]};
-            artwork drawn = open_figure(kinds[k], &o);
-            report_of(&drawn, &r);
-            check_close(drawn.width, widths[i] / 25.4 * 72, 1e-6);
-            for (int t = 0; t < r.text_count; t++) {
-                if (r.texts[t].size < 6 - 1e-9 || r.texts[t].size > 12) {
-                    fail_msg("%s at %g mm: '%s' has letters of %.2f pt", kinds[k], widths[i],
-                             r.texts[t].text, r.texts[t].size);
-                }
-            }
-            artwork_finish(&drawn);
-        }
-    }
-}
-
 static void bare_pages_have_no_title_and_no_caption(void **state)
 {
     (void)state;
@@ -403,7 +376,6 @@ static void faults_of_recipes_have_their_places(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(letters_can_be_read_at_every_width),
         cmocka_unit_test(bare_pages_have_no_title_and_no_caption),
         cmocka_unit_test(a_bare_picture_has_its_caption_beside_it),
         cmocka_unit_test(latex_sets_the_figure),

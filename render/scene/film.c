@@ -1,278 +1,167 @@
 #include "render/scene/film.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <math.h>
-#include <stdlib.h>
+#include <signal.h>
+#include <stdio.h>
 
-#include "render/page/text.h"
 #include "render/plot/opened_run.h"
-#include "render/plot/trace_plot.h"
 #include "render/scene/film_file.h"
-#include "render/scene/labels.h"
-#include "src/base/numbers.h"
+#include "render/scene/film_frame.h"
 #include "src/base/version.h"
 
-enum { CLOCK_CELLS = 4000 };
+enum { MOST_THREADS = 2, BUFFERS = 2 };
 
-#define TRACE_SHARE   0.36 // of the picture's width, for the traces
-#define TRACE_LETTERS 2.5  // scale of the traces for a picture 720 pixels high
-#define GHOST_TIME    0.02 // of the run between one ghost and the next [s]
-#define VEIL          0.82 // how far the future of the traces is faded out
+// ---- a second thread that paints every other frame
 
-// A film in the making.
-typedef struct film {
-    const scenario *scenario;
-    const run_result *result;
-    film_options options;
-    film_clock clock;
-    scene *scene;
-    int scene_width;
-    PangoContext *context;
-    cairo_surface_t *view;   // of the scene
-    cairo_surface_t *traces; // drawn once
+// A frame to be painted, and what came of it.
+typedef struct frame_job {
+    int frame;
+    cairo_surface_t *onto;
+    status code;
+    fault fault;
+} frame_job;
+
+// The thread, one frame ahead of who asks: while one of its two surfaces is being written it
+// paints onto the other.
+typedef struct frame_helper {
+    const film_plan *plan;
+    int total;
+    GThread *thread;
+    GAsyncQueue *wanted, *painted; // frame_job
+    frame_job jobs[BUFFERS];
+} frame_helper;
+
+static double film_time_of(const film_plan *plan, int frame, int total)
+{
+    return plan->options.seconds * frame / (total - 1);
+}
+
+// Paints what is wanted until a job without a surface comes.
+static gpointer help(gpointer data)
+{
+    frame_helper *h = data;
+    fault f = {0};
+    film_painter *painter;
+
+    // signals are for the thread that writes: they end its waiting
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, NULL);
+
+    status code = film_painter_create(&painter, h->plan, &f);
+    for (;;) {
+        frame_job *job = g_async_queue_pop(h->wanted);
+        if (job->onto == NULL) {
+            break;
+        }
+        job->fault = f;
+        job->code = code != STATUS_OK
+                        ? code
+                        : film_painter_frame(painter, film_time_of(h->plan, job->frame, h->total),
+                                             job->onto, &job->fault);
+        g_async_queue_push(h->painted, job);
+    }
+    film_painter_destroy(painter);
+    return NULL;
+}
+
+// Asks for a frame, if the film has it.
+static void ask_for(frame_helper *h, int frame)
+{
+    if (h->thread != NULL && frame < h->total) {
+        frame_job *job = &h->jobs[frame / 2 % BUFFERS];
+        job->frame = frame;
+        g_async_queue_push(h->wanted, job);
+    }
+}
+
+static void helper_begin(frame_helper *h, const film_plan *plan, int total)
+{
+    *h = (frame_helper){.plan = plan, .total = total};
+    for (int i = 0; i < BUFFERS; i++) {
+        h->jobs[i].onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, plan->options.width,
+                                                     plan->options.height);
+    }
+    h->wanted = g_async_queue_new();
+    h->painted = g_async_queue_new();
+    h->thread = g_thread_new("film", help, h);
+    ask_for(h, 1);
+}
+
+static void helper_end(frame_helper *h)
+{
+    if (h->thread == NULL) {
+        return;
+    }
+    frame_job end = {0};
+    g_async_queue_push(h->wanted, &end);
+    g_thread_join(h->thread);
+    g_async_queue_unref(h->wanted);
+    g_async_queue_unref(h->painted);
+    for (int i = 0; i < BUFFERS; i++) {
+        cairo_surface_destroy(h->jobs[i].onto);
+    }
+}
+
+// ---- the frames of a film
+
+// What writes the film.
+typedef struct film_making {
+    const film_plan *plan;
+    film_painter *painter;
+    film_file *file;
     cairo_surface_t *frame;
-    figure_report *report; // where the traces' panels are
-    double trace_scale;    // pixels per point of the traces
-} film;
+    frame_helper helper; // without a thread: all frames are painted here
+} film_making;
 
-// ---- the clock
-
-film_clock film_clock_round(double start, double end, double instant, double slow)
+// The next frame in the order of the film, painted here or by the helper.
+static status next_frame(film_making *m, int frame, int total, fault *f)
 {
-    assert(end >= start && isfinite(instant));
-    const double span = end - start;
-    return (film_clock){.start = start,
-                        .end = end,
-                        .slow = slow,
-                        .slow_from = instant - 0.01 * span,
-                        .slow_to = instant + 0.04 * span,
-                        .taper = 0.03 * span};
-}
-
-film_clock film_clock_of(const run_result *result, double seconds, double slow)
-{
-    assert(result != NULL && result->trace.row_count > 0 && seconds > 0);
-    const trace *t = &result->trace;
-    const double contact = result->summary.first_contact_s;
-    film_clock c = {.start = t->rows[0].time, .end = t->rows[t->row_count - 1].time, .slow = 1};
-
-    // slow from shortly before the first contact
-    if (!isnan(contact)) {
-        c = film_clock_round(c.start, c.end, contact, slow);
-    }
-    c.seconds = seconds;
-    return c;
-}
-
-double film_clock_slowness(const film_clock *c, double time)
-{
-    assert(c != NULL);
-    double outside = fmax(fmax(c->slow_from - time, time - c->slow_to), 0);
-    if (c->slow <= 1 || outside >= c->taper) {
-        return 1;
-    }
-    return 1 + (c->slow - 1) * 0.5 * (1 + cos(M_PI * outside / c->taper));
-}
-
-double film_clock_time(const film_clock *c, double film_time, double *speed)
-{
-    assert(c != NULL && c->seconds > 0 && speed != NULL);
-    double span = c->end - c->start, cell = span / CLOCK_CELLS, total = 0, passed = 0;
-    for (int i = 0; i < CLOCK_CELLS; i++) {
-        total += film_clock_slowness(c, c->start + (i + 0.5) * cell);
+    if (m->helper.thread == NULL || frame % 2 == 0) {
+        status code =
+            film_painter_frame(m->painter, film_time_of(m->plan, frame, total), m->frame, f);
+        return code == STATUS_OK ? film_file_add(m->file, m->frame, f) : code;
     }
 
-    // the cell in which the share of the film's time is passed
-    double wanted = fmin(1, fmax(0, film_time / c->seconds)) * total;
-    for (int i = 0; i < CLOCK_CELLS; i++) {
-        double here = film_clock_slowness(c, c->start + (i + 0.5) * cell);
-        if (passed + here >= wanted) {
-            *speed = total * cell / c->seconds / here;
-            return c->start + (i + (wanted - passed) / here) * cell;
-        }
-        passed += here;
+    // it paints the one after the next while this one is written
+    frame_job *done = g_async_queue_pop(m->helper.painted);
+    ask_for(&m->helper, frame + 2);
+    if (done->code != STATUS_OK) {
+        *f = done->fault;
+        return done->code;
     }
-
-    // rounding passed the last cell
-    *speed = total * cell / c->seconds / film_clock_slowness(c, c->end);
-    return c->end;
+    return film_file_add(m->file, done->onto, f);
 }
 
-// ---- the traces
-
-static colour page_of(const film *m)
+// A frame with every colour of the film, for formats that have a palette.
+static status add_palette(film_making *m, fault *f)
 {
-    return palette_of(m->options.view.theme)->page;
+    status code = film_painter_palette(m->painter, m->frame, f);
+    return code == STATUS_OK ? film_file_add(m->file, m->frame, f) : code;
 }
 
-// Paints all of the traces once; frames veil what has not happened yet.
-static status paint_traces(film *m, fault *f)
+static status add_frames(film_making *m, fault *f)
 {
-    static const trace_panel panels[] = {
-        {.signals = {"force"}, .with_zero = true, .impulses = true, .weight = 1.2},
-        {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
-        {.label = "Angular velocity",
-         .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
-    };
-
-    // a figure of the one run
-    const trace_run run = {m->scenario, m->result, NULL};
-    trace_figure t;
-    status code = trace_figure_init(&t, NULL, panels, (int)G_N_ELEMENTS(panels), &run, 1, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    // its size: what the scene leaves of the picture
-    int width = m->options.width - m->scene_width, height = m->options.height;
-    m->trace_scale = TRACE_LETTERS * fmin(height / 720.0, m->options.width / 1280.0);
-
-    // the scene has the title
-    t.figure.title = t.figure.caption = NULL;
-    t.figure.theme = m->options.view.theme;
-    t.figure.x.low = m->clock.start;
-    t.figure.x.high = m->clock.end;
-    t.figure.width = width / m->trace_scale * 25.4 / 72;
-    t.figure.height = height / m->trace_scale * 25.4 / 72;
-
-    m->traces = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
-    cairo_t *cr = cairo_create(m->traces);
-    set_colour(cr, page_of(m));
-    cairo_paint(cr);
-    cairo_scale(cr, m->trace_scale, m->trace_scale);
-    code = figure_paint(cr, &t.figure, m->report, f);
-    cairo_destroy(cr);
-    trace_figure_finish(&t);
-    return code;
-}
-
-// The traces with the present as a line, and what comes after it under a veil.
-static void draw_traces(const film *m, cairo_t *cr, double time)
-{
-    // all of it
-    const figure_report *r = m->report;
-    const colour page = page_of(m);
-    cairo_set_source_surface(cr, m->traces, m->scene_width, 0);
-    cairo_paint(cr);
-
-    // the present as a line over each panel
-    cairo_save(cr);
-    cairo_translate(cr, m->scene_width, 0);
-    cairo_scale(cr, m->trace_scale, m->trace_scale);
-    for (int i = 0; i < r->panel_count; i++) {
-        figure_rect p = r->panels[i];
-        double x = p.x + p.width * (time - m->clock.start) / (m->clock.end - m->clock.start);
-        cairo_rectangle(cr, x, p.y, p.x + p.width - x, p.height);
-        cairo_set_source_rgba(cr, page.red, page.green, page.blue, VEIL);
-        cairo_fill(cr);
-        cairo_move_to(cr, x, p.y);
-        cairo_line_to(cr, x, p.y + p.height);
-        cairo_set_line_width(cr, 1.1);
-        cairo_set_source_rgb(cr, 0.835, 0.369, 0);
-        cairo_stroke(cr);
-    }
-    cairo_restore(cr);
-
-    // keys are of the past and the future
-    for (int i = 0; i < r->panel_count; i++) {
-        figure_rect key = r->legends[i];
-        cairo_rectangle(cr, m->scene_width + key.x * m->trace_scale, key.y * m->trace_scale,
-                        key.width * m->trace_scale, key.height * m->trace_scale);
-    }
-
-    cairo_set_source_surface(cr, m->traces, m->scene_width, 0);
-    cairo_fill(cr);
-}
-
-// ---- frames
-
-// Lets the scene's floor run out into the page of the traces.
-static void soften_seam(const film *m, cairo_t *cr)
-{
-    double width = 0.06 * m->scene_width, from = m->scene_width - width;
-    cairo_pattern_t *fade = cairo_pattern_create_linear(from, 0, m->scene_width, 0);
-    const colour page = page_of(m);
-    cairo_pattern_add_color_stop_rgba(fade, 0, page.red, page.green, page.blue, 0);
-    cairo_pattern_add_color_stop_rgba(fade, 1, page.red, page.green, page.blue, 1);
-    cairo_set_source(cr, fade);
-    cairo_rectangle(cr, from, 0, width, m->options.height);
-    cairo_fill(cr);
-    cairo_pattern_destroy(fade);
-}
-
-static void draw_speed(const film *m, cairo_t *cr, double speed)
-{
-    char text[64];
-    double scale = fmin(m->options.height / 720.0, m->scene_width / 800.0);
-
-    // the number that is larger than one
-    if (speed < 1) {
-        double times = 1 / speed;
-        decimal_print(text, sizeof text, "%.*f times slower than real", times < 9.95 ? 1 : 0,
-                      times);
-    } else {
-        decimal_print(text, sizeof text, "%.1f times faster than real", speed);
-    }
-
-    const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
-    set_colour(cr, palette_of(m->options.view.theme)->faint_text);
-    cairo_move_to(cr, 22 * scale, 20 * scale);
-    text_draw(cr, m->context, &t);
-}
-
-// A frame of the scene at `time`, with the traces until `present`, added to the file.
-static status add_frame(film *m, film_file *file, double time, double present, double speed,
-                        fault *f)
-{
-    double times[SCENE_INSTANTS];
-    int count = 0;
-    for (int i = m->options.ghosts; i >= 0; i--) {
-        double earlier = time - i * GHOST_TIME;
-        if (i == 0 || earlier >= m->clock.start) {
-            times[count++] = earlier;
-        }
-    }
-
-    status code = scene_paint(m->scene, times, count, m->view, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    cairo_t *cr = cairo_create(m->frame);
-    cairo_set_source_surface(cr, m->view, 0, 0);
-    cairo_paint(cr);
-    soften_seam(m, cr);
-    draw_traces(m, cr, present);
-    draw_speed(m, cr, speed);
-    cairo_destroy(cr);
-    return film_file_add(file, m->frame, f);
-}
-
-// A frame just after the first impact, with flash, arrow and traces: every colour of the film.
-static status add_palette(film *m, film_file *file, fault *f)
-{
-    double contact = m->result->summary.first_contact_s;
-    double wanted = isnan(contact) ? m->clock.end : fmin(m->clock.end, contact + 0.008);
-    return add_frame(m, file, wanted, m->clock.end, 1, f);
-}
-
-static status add_frames(film *m, film_file *file, fault *f)
-{
-    const film_options *o = &m->options;
+    const film_options *o = &m->plan->options;
     int total = (int)fmax(2, round(o->seconds * o->frames_per_second));
-    status code = film_file_wants_palette(file) ? add_palette(m, file, f) : STATUS_OK;
+    status code = film_file_wants_palette(m->file) ? add_palette(m, f) : STATUS_OK;
 
+    if (o->threads > 1 && code == STATUS_OK) {
+        helper_begin(&m->helper, m->plan, total);
+    }
     for (int i = 0; i < total && code == STATUS_OK; i++) {
         if (o->stop != NULL && *o->stop != 0) {
-            return fault_set(f, STATUS_STOPPED, "interrupted after %d of %d frames", i, total);
+            code = fault_set(f, STATUS_STOPPED, "interrupted after %d of %d frames", i, total);
+            break;
         }
-
-        double speed, time = film_clock_time(&m->clock, o->seconds * i / (total - 1), &speed);
-        code = add_frame(m, file, time, time, speed, f);
+        code = next_frame(m, i, total, f);
         if (code == STATUS_OK && o->progress != NULL) {
             o->progress(o->context, i + 1, total);
         }
     }
+    helper_end(&m->helper);
     return code;
 }
 
@@ -304,8 +193,8 @@ static status check_options(const film_options *o, fault *f)
     }
 
     if (!(o->slow >= 1 && o->slow <= 1000)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "the impact slowed down %g times, expected 1 to 1000", o->slow);
+        return fault_set(f, STATUS_BAD_ARGUMENT, "impacts slowed down %g times, expected 1 to 1000",
+                         o->slow);
     }
     return STATUS_OK;
 }
@@ -320,96 +209,70 @@ static film_options completed(const film_options *options)
     o.frames_per_second = o.frames_per_second ? o.frames_per_second : 30;
     o.seconds = o.seconds != 0 ? o.seconds : 10;
     o.slow = o.slow != 0 ? o.slow : 8;
+    o.threads = o.threads > 0 ? o.threads : (int)g_get_num_processors();
+    o.threads = o.threads < MOST_THREADS ? o.threads : MOST_THREADS;
     return o;
 }
 
-static status prepare(film *m, fault *f)
+static status record(film_making *m, const char *path, fault *f)
 {
-    status code = check_options(&m->options, f);
-
-    if (code == STATUS_OK && m->result->trace.row_count == 0) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw");
-    }
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    // the scene takes what the traces leave
-    m->scene_width = (int)(m->options.width * (1 - TRACE_SHARE));
-    scene_options view = m->options.view;
-    view.width = m->scene_width;
-    view.height = m->options.height;
-    view.samples = SAMPLES_QUICK;
-    view.keyless = true;
-    view.transparent = false;
-
-    m->clock = film_clock_of(m->result, m->options.seconds, m->options.slow);
-    code = scene_create(&m->scene, m->scenario, m->result, &view, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    // what the frames are made of
-    m->report = calloc(1, sizeof *m->report);
-    if (m->report == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
-    }
-    m->context = text_context_create();
-    m->view = cairo_image_surface_create(CAIRO_FORMAT_RGB24, view.width, view.height);
-    m->frame = cairo_image_surface_create(CAIRO_FORMAT_RGB24, m->options.width, m->options.height);
-    return paint_traces(m, f);
-}
-
-static void finish(film *m)
-{
-    scene_destroy(m->scene);
-    cairo_surface_destroy(m->view);
-    cairo_surface_destroy(m->traces);
-    cairo_surface_destroy(m->frame);
-    g_clear_object(&m->context);
-    free(m->report);
-}
-
-static status record(film *m, const char *path, fault *f)
-{
-    // the same notes as a picture's
-    char software[64], *values = parameters_line(m->scenario);
+    // the same notes as a picture's, of the first run
+    const film_plan *plan = m->plan;
+    char software[64], *values = parameters_line(plan->runs[0].scenario);
     snprintf(software, sizeof software, "impactlab %s", lab_version());
-    const png_note notes[] = {{"Title", m->scenario->title},
+    const png_note notes[] = {{"Title", plan->runs[0].scenario->title},
                               {"Software", software},
                               {"Parameters", values},
-                              {"Renderer", scene_renderer_name(m->scene)}};
-
-    const film_facts facts = {.width = m->options.width,
-                              .height = m->options.height,
-                              .frames_per_second = m->options.frames_per_second,
+                              {"Renderer", film_painter_name(m->painter)}};
+    const film_facts facts = {.width = plan->options.width,
+                              .height = plan->options.height,
+                              .frames_per_second = plan->options.frames_per_second,
                               .notes = notes,
                               .note_count = 4,
-                              .stop = m->options.stop};
-    film_file *file;
+                              .stop = plan->options.stop};
 
-    status code = film_file_open(&file, path, &facts, f);
+    status code = film_file_open(&m->file, path, &facts, f);
     if (code == STATUS_OK) {
-        code = add_frames(m, file, f);
+        code = add_frames(m, f);
         if (code == STATUS_OK) {
-            code = film_file_commit(file, f);
+            code = film_file_commit(m->file, f);
         } else {
-            film_file_abandon(file);
+            film_file_abandon(m->file);
         }
     }
     g_free(values);
     return code;
 }
 
-status film_write(const scenario *s, const run_result *result, const film_options *options,
+status film_write(const film_run *runs, int run_count, const film_options *options,
                   const char *path, fault *f)
 {
-    assert(s != NULL && result != NULL && options != NULL && path != NULL);
-    film m = {.scenario = s, .result = result, .options = completed(options)};
-    status code = prepare(&m, f);
+    assert(runs != NULL && run_count >= 1 && run_count <= FILM_RUNS);
+    assert(options != NULL && path != NULL);
+    const film_options o = completed(options);
+    status code = check_options(&o, f);
+    for (int i = 0; i < run_count && code == STATUS_OK; i++) {
+        if (runs[i].result->trace.row_count == 0) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw");
+        }
+    }
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // planned, then painted
+    film_plan plan;
+    film_making m = {.plan = &plan};
+    code = film_plan_init(&plan, runs, run_count, &o, f);
     if (code == STATUS_OK) {
+        code = film_painter_create(&m.painter, &plan, f);
+    }
+    if (code == STATUS_OK) {
+        m.frame = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o.width, o.height);
         code = record(&m, path, f);
     }
-    finish(&m);
+    cairo_surface_destroy(m.frame);
+    film_painter_destroy(m.painter);
+    film_plan_finish(&plan);
     return code;
 }

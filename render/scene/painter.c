@@ -14,11 +14,19 @@ struct scene_painter {
     int width, height;
     int samples; // of a pixel along each edge
     char name[300];
-    uint32_t *pixels; // of all samples: 0xAARRGGBB, a region's rows without gaps
+    // of all samples: 0xAARRGGBB, a region's rows without gaps where OpenGL paints; else of the
+    // whole picture, and between pictures 0 with depths of FARTHEST
+    uint32_t *pixels;
     gl_vertex *vertices;
     size_t vertex_capacity;
-    float *depths; // of the samples; NULL where OpenGL paints
+    float *depths;          // of the samples; NULL where OpenGL paints
+    unsigned char *touched; // which tiles of the picture hold something
+    int tiles_across, tiles_down;
 };
+
+enum { TILE = 16 }; // edge of a tile [pixels]
+
+#define FARTHEST 2.0F // deeper than everything
 
 bool scene_renderer_find(const char *name, scene_renderer *which)
 {
@@ -63,7 +71,11 @@ static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
 
     // drawing by hand needs only memory for the depths
     snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer", cairo_version_string());
-    p->depths = malloc((size_t)width * (size_t)height * sizeof *p->depths);
+    size_t count = (size_t)width * (size_t)height;
+    p->depths = malloc(count * sizeof *p->depths);
+    for (size_t i = 0; i < count && p->depths != NULL; i++) {
+        p->depths[i] = FARTHEST;
+    }
     return p->depths ? STATUS_OK : complain_memory(p, f);
 }
 
@@ -77,11 +89,14 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
         p->width = width;
         p->height = height;
         p->samples = samples;
+        p->tiles_across = (width + TILE - 1) / TILE;
+        p->tiles_down = (height + TILE - 1) / TILE;
         p->pixels =
-            malloc((size_t)width * (size_t)height * (size_t)(samples * samples) * sizeof(uint32_t));
+            calloc((size_t)width * (size_t)height, (size_t)(samples * samples) * sizeof(uint32_t));
+        p->touched = malloc((size_t)p->tiles_across * (size_t)p->tiles_down);
     }
 
-    if (p == NULL || p->pixels == NULL) {
+    if (p == NULL || p->pixels == NULL || p->touched == NULL) {
         scene_painter_destroy(p);
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width,
                          height);
@@ -103,6 +118,7 @@ void scene_painter_destroy(scene_painter *p)
         free(p->pixels);
         free(p->vertices);
         free(p->depths);
+        free(p->touched);
         free(p);
     }
 }
@@ -208,7 +224,7 @@ typedef struct ramp {
     float start, right, down;
 } ramp;
 
-// A triangle in samples of a region.
+// A triangle in samples of the picture.
 typedef struct flat_triangle {
     float x[3], y[3], twice_area;
 } flat_triangle;
@@ -236,11 +252,12 @@ static int bounded(float value, int most)
 }
 
 // Fills the samples whose centres lie in the triangle and nearer than what is there.
-static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_vertex *const v[3],
-                          int width, int height)
+static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_vertex *const v[3])
 {
-    // barycentric shares, colour and depth change linearly over the picture
+    const int width = p->samples * p->width, height = p->samples * p->height;
     ramp share[3], depth, tint[3];
+
+    // barycentric shares, colour and depth change linearly over the picture
     for (int k = 0; k < 3; k++) {
         share[k] = ramp_of(t, k == 0, k == 1, k == 2);
         tint[k] = ramp_of(t, v[0]->colour[k], v[1]->colour[k], v[2]->colour[k]);
@@ -271,38 +288,46 @@ static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_ver
     }
 }
 
-// Paints without OpenGL: every triangle into a depth buffer of our own.
-static void paint_by_hand(scene_painter *p, const mesh *m, gl_region r)
+// Corners of a triangle in samples; false if it is seen edge-on and covers nothing.
+static bool flatten(const scene_painter *p, const gl_vertex *const v[3], flat_triangle *t)
 {
-    int width = p->samples * r.width, height = p->samples * r.height;
-    size_t count = (size_t)width * (size_t)height;
-
-    // empty, and farther than everything
-    memset(p->pixels, 0, count * sizeof *p->pixels);
-    for (size_t i = 0; i < count; i++) {
-        p->depths[i] = 2;
+    for (size_t k = 0; k < 3; k++) {
+        const float *at = v[k]->place;
+        t->x[k] = (at[0] / at[3] + 1) * (float)(p->width * p->samples) / 2;
+        t->y[k] = (at[1] / at[3] + 1) * (float)(p->height * p->samples) / 2;
     }
+    t->twice_area =
+        (t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (t->x[2] - t->x[0]) * (t->y[1] - t->y[0]);
+    return fabsf(t->twice_area) > 1e-6F;
+}
 
-    // triangle by triangle
+// Remembers the tiles that a triangle may touch.
+static void touch_tiles(scene_painter *p, const flat_triangle *t)
+{
+    const float tile = (float)(TILE * p->samples);
+    int left = bounded(fminf(t->x[0], fminf(t->x[1], t->x[2])) / tile, p->tiles_across - 1);
+    int right = bounded(fmaxf(t->x[0], fmaxf(t->x[1], t->x[2])) / tile, p->tiles_across - 1);
+    int top = bounded(fminf(t->y[0], fminf(t->y[1], t->y[2])) / tile, p->tiles_down - 1);
+    int bottom = bounded(fmaxf(t->y[0], fmaxf(t->y[1], t->y[2])) / tile, p->tiles_down - 1);
+    for (int row = top; row <= bottom; row++) {
+        memset(p->touched + (ptrdiff_t)row * p->tiles_across + left, 1, (size_t)(right - left + 1));
+    }
+}
+
+// Finds the tiles that the mesh touches; without OpenGL paints every triangle into the depth
+// buffer.
+static void paint_triangles(scene_painter *p, const mesh *m)
+{
+    memset(p->touched, 0, (size_t)p->tiles_across * (size_t)p->tiles_down);
     for (size_t i = 0; i + 2 < m->corner_count; i += 3) {
-        const gl_vertex *v[3];
         flat_triangle t;
-
-        // corners in samples of the region
-        for (size_t k = 0; k < 3; k++) {
-            v[k] = &p->vertices[m->corners[i + k]];
-            const float *at = v[k]->place;
-            t.x[k] = (at[0] / at[3] + 1) * (float)(p->width * p->samples) / 2 -
-                     (float)(p->samples * r.x);
-            t.y[k] = (at[1] / at[3] + 1) * (float)(p->height * p->samples) / 2 -
-                     (float)(p->samples * r.y);
-        }
-
-        // those seen edge-on cover nothing
-        t.twice_area =
-            (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
-        if (fabsf(t.twice_area) > 1e-6F) {
-            fill_triangle(p, &t, v, width, height);
+        const gl_vertex *const v[3] = {&p->vertices[m->corners[i]], &p->vertices[m->corners[i + 1]],
+                                       &p->vertices[m->corners[i + 2]]};
+        if (flatten(p, v, &t)) {
+            touch_tiles(p, &t);
+            if (p->gl == NULL) {
+                fill_triangle(p, &t, v);
+            }
         }
     }
 }
@@ -343,20 +368,67 @@ static uint32_t over(uint32_t upper, uint32_t below)
     return upper + (even | odd << 8);
 }
 
-static void lay_over(const scene_painter *p, gl_region r, double opacity, cairo_surface_t *onto)
-{
-    cairo_surface_flush(onto);
-    unsigned char *data = cairo_image_surface_get_data(onto);
-    ptrdiff_t stride = cairo_image_surface_get_stride(onto),
-              across = (ptrdiff_t)p->samples * r.width;
-    uint32_t share = (uint32_t)(256 * opacity + 0.5);
+// The samples of a region: those of its pixels in rows of `across`.
+typedef struct sampled_region {
+    gl_region pixels;
+    const uint32_t *first;
+    ptrdiff_t across;
+} sampled_region;
 
-    for (int row = 0; row < r.height; row++) {
-        uint32_t *to = (uint32_t *)(void *)(data + (r.y + row) * stride) + r.x;
-        const uint32_t *from = p->pixels + p->samples * row * across;
-        for (int i = 0; i < r.width; i++) {
-            uint32_t mean = mean_of(p, from + (ptrdiff_t)p->samples * i, across, share);
+// The part of a tile within a region.
+static gl_region tile_within(const scene_painter *p, int tile, gl_region r)
+{
+    int x = tile % p->tiles_across * TILE, y = tile / p->tiles_across * TILE;
+    int left = x > r.x ? x : r.x, top = y > r.y ? y : r.y;
+    int right = x + TILE < r.x + r.width ? x + TILE : r.x + r.width;
+    int bottom = y + TILE < r.y + r.height ? y + TILE : r.y + r.height;
+    return (gl_region){left, top, right - left, bottom - top};
+}
+
+// Lays the means of a tile's samples over the picture.
+static void lay_tile(const scene_painter *p, const sampled_region *from, gl_region tile,
+                     uint32_t opacity, cairo_surface_t *onto)
+{
+    unsigned char *data = cairo_image_surface_get_data(onto);
+    ptrdiff_t stride = cairo_image_surface_get_stride(onto);
+    for (int row = 0; row < tile.height; row++) {
+        uint32_t *to = (uint32_t *)(void *)(data + (tile.y + row) * stride) + tile.x;
+        const uint32_t *samples = from->first +
+                                  p->samples * (tile.y + row - from->pixels.y) * from->across +
+                                  (ptrdiff_t)p->samples * (tile.x - from->pixels.x);
+        for (int i = 0; i < tile.width; i++) {
+            uint32_t mean = mean_of(p, samples + (ptrdiff_t)p->samples * i, from->across, opacity);
             to[i] = mean != 0 ? over(mean, to[i]) : to[i];
+        }
+    }
+}
+
+// Makes a tile's samples empty and far again.
+static void wipe_tile(scene_painter *p, gl_region tile)
+{
+    ptrdiff_t across = (ptrdiff_t)p->samples * p->width;
+    int count = p->samples * tile.width;
+    for (int row = p->samples * tile.y; row < p->samples * (tile.y + tile.height); row++) {
+        ptrdiff_t at = row * across + (ptrdiff_t)p->samples * tile.x;
+        memset(p->pixels + at, 0, (size_t)count * sizeof *p->pixels);
+        for (int i = 0; i < count; i++) {
+            p->depths[at + i] = FARTHEST;
+        }
+    }
+}
+
+static void lay_over(scene_painter *p, const sampled_region *from, double opacity,
+                     cairo_surface_t *onto)
+{
+    const uint32_t share = (uint32_t)(256 * opacity + 0.5);
+    cairo_surface_flush(onto);
+    for (int i = 0; i < p->tiles_across * p->tiles_down; i++) {
+        gl_region tile = tile_within(p, i, from->pixels);
+        if (p->touched[i] && tile.width > 0 && tile.height > 0) {
+            lay_tile(p, from, tile, share, onto);
+            if (p->gl == NULL) {
+                wipe_tile(p, tile);
+            }
         }
     }
     cairo_surface_mark_dirty(onto);
@@ -378,18 +450,23 @@ status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface
         return STATUS_OK;
     }
 
-    // samples, by OpenGL or by hand
+    // samples, by hand or by OpenGL
+    sampled_region samples = {.first = p->pixels};
+    paint_triangles(p, m);
     if (p->gl != NULL) {
         const gl_triangles all = {p->vertices, m->vertex_count, m->corners, m->corner_count};
         const gl_region sampled = {p->samples * r.x, p->samples * r.y, p->samples * r.width,
                                    p->samples * r.height};
+        samples.pixels = r;
+        samples.across = sampled.width;
         code = gl_offscreen_draw(p->gl, &all, sampled, p->pixels, f);
     } else {
-        paint_by_hand(p, m, r);
+        samples.pixels = (gl_region){0, 0, p->width, p->height};
+        samples.across = (ptrdiff_t)p->samples * p->width;
     }
 
     if (code == STATUS_OK) {
-        lay_over(p, r, what->opacity, onto);
+        lay_over(p, &samples, what->opacity, onto);
     }
     return code;
 }

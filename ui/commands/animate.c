@@ -1,5 +1,7 @@
 #include "ui/commands/command.h"
 
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "render/scene/film.h"
@@ -40,20 +42,96 @@ static film_options options_of(const arguments *a)
                           .stop = &signal_caught};
 }
 
-// Films the run. An interrupt ends it in order: no half film stays behind.
-static int film_run(const arguments *a, const scenario *s, const run_result *result,
-                    film_options *o)
+// The runs of a film with their scenarios.
+typedef struct filmed {
+    scenario scenarios[FILM_RUNS];
+    run_result results[FILM_RUNS];
+    const char *names[FILM_RUNS];
+    int opened, run;
+} filmed;
+
+static void finish_filmed(filmed *m)
+{
+    for (int i = 0; i < m->run; i++) {
+        run_finish(&m->results[i]);
+    }
+    for (int i = 0; i < m->opened; i++) {
+        scenario_finish(&m->scenarios[i]);
+    }
+}
+
+static void complain_sentence(void *context, const char *sentence)
+{
+    (void)context;
+    complain("%s", sentence);
+}
+
+// Opens the scenarios, then the first once more with each --beside. Returns the exit status.
+static int open_all(filmed *m, const arguments *a)
+{
+    if (a->operand_count + a->besides.count > FILM_RUNS) {
+        return complain("%d runs in one film, expected at most %d",
+                        a->operand_count + a->besides.count, FILM_RUNS);
+    }
+
+    for (int i = 0; i < a->operand_count + a->besides.count; i++) {
+        bool beside = i >= a->operand_count;
+        scenario *s = &m->scenarios[i];
+        int code = open_scenario(s, a->operands[beside ? 0 : i], a);
+        if (code != EXIT_DONE) {
+            return code;
+        }
+        m->opened++;
+        m->names[i] = s->name;
+        if (beside) {
+            m->names[i] = a->besides.items[i - a->operand_count];
+            if (scenario_override_all(s, &a->besides.items[i - a->operand_count], 1,
+                                      complain_sentence, NULL) != STATUS_OK) {
+                return EXIT_BAD_ARGUMENTS;
+            }
+            // its own words below its arm, instead of the same title twice
+            free(s->title);
+            s->title = strdup(m->names[i]);
+        }
+    }
+    return EXIT_DONE;
+}
+
+// Runs all of them. Returns the exit status.
+static int run_all(filmed *m)
+{
+    for (; m->run < m->opened; m->run++) {
+        run_result *result = &m->results[m->run];
+        status code = run_scenario(&m->scenarios[m->run], true, result);
+        if (code != STATUS_OK) {
+            // the run's own words say more than its status
+            complain("%s failed: %s", m->names[m->run],
+                     result->summary.message[0] ? result->summary.message : status_text(code));
+            m->run++;
+            return EXIT_FAILED;
+        }
+    }
+    return EXIT_DONE;
+}
+
+// Films the runs. An interrupt ends it in order: no half film stays behind.
+static int film_runs(const arguments *a, const filmed *m)
 {
     fault f = {0};
+    film_run runs[FILM_RUNS];
+    film_options o = options_of(a);
     struct sigaction caught = {.sa_handler = catch_signal}, old[2];
     bool bar = isatty(STDERR_FILENO) && !a->quiet;
-    o->progress = bar ? show_progress : NULL;
+    o.progress = bar ? show_progress : NULL;
+    for (int i = 0; i < m->run; i++) {
+        runs[i] = (film_run){&m->scenarios[i], &m->results[i], m->names[i]};
+    }
 
     // a signal ends the film, not the program: no half file stays
     sigemptyset(&caught.sa_mask);
     sigaction(SIGINT, &caught, &old[0]);
     sigaction(SIGTERM, &caught, &old[1]);
-    status code = film_write(s, result, o, a->output, &f);
+    status code = film_write(runs, m->run, &o, a->output, &f);
     sigaction(SIGINT, &old[0], NULL);
     sigaction(SIGTERM, &old[1], NULL);
 
@@ -63,31 +141,13 @@ static int film_run(const arguments *a, const scenario *s, const run_result *res
 
     if (code == STATUS_OK) {
         if (!a->quiet) {
-            say("%s: %s\n", s->name, a->output);
+            say("%s: %s\n", m->names[0], a->output);
         }
         return EXIT_DONE;
     }
 
     int exit_status = complain_fault(&f);
     return signal_caught != 0 ? 128 + signal_caught : exit_status;
-}
-
-static int simulate_and_film(const arguments *a, scenario *s)
-{
-    run_result result;
-    film_options o = options_of(a);
-    int exit_status = EXIT_FAILED;
-    status code = run_scenario(s, true, &result);
-
-    // the run's own words say more than its status
-    if (code != STATUS_OK) {
-        complain("%s failed: %s", s->name,
-                 result.summary.message[0] ? result.summary.message : status_text(code));
-    } else {
-        exit_status = film_run(a, s, &result, &o);
-    }
-    run_finish(&result);
-    return exit_status;
 }
 
 static int animate(const arguments *a)
@@ -106,10 +166,21 @@ static int animate(const arguments *a)
     if (film_file_check(a->output, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    return with_scenario(a->operands[0], a, simulate_and_film);
+
+    filmed m = {0};
+    code = open_all(&m, a);
+    code = code == EXIT_DONE ? run_all(&m) : code;
+    code = code == EXIT_DONE ? film_runs(a, &m) : code;
+    finish_filmed(&m);
+    return code;
 }
 
 static const option_row rows[] = {
+    {.name = "beside",
+     .type = OPTION_PARAMETERS,
+     .value = "PATH=VALUE",
+     .help = "the first scenario once more with this change, in a view of its own; up to 3 of them",
+     PLACE(besides)},
     {.name = "output",
      .letter = 'o',
      .type = OPTION_PLACE,
@@ -146,7 +217,7 @@ static const option_row rows[] = {
     {.name = "slow",
      .type = OPTION_NUMBER,
      .value = "N",
-     .help = "how much the first impact is slowed down (8)",
+     .help = "how much impacts are slowed down (8)",
      PLACE(slow),
      .low = 1,
      .high = 1000},
@@ -156,14 +227,15 @@ static const option_table options = OPTION_TABLE("Options", rows);
 const command animate_command = {
     .name = "animate",
     .group = GROUP_PICTURES,
-    .operands = "SCENARIO",
+    .operands = "SCENARIO...",
     .summary = "Make a film of a run: the arm in space and its traces",
-    .help = "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any other "
-            "name is that "
-            "of a folder, to\nbe made, for PNG frames. The first impact is slowed down against "
-            "the rest.\n",
+    .help =
+        "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any other "
+        "name is that "
+        "of a folder, to\nbe made, for PNG frames. Every impact is slowed down against the rest. "
+        "Several scenarios, or\n--beside, share the screen and one clock.\n",
     .least = 1,
-    .most = 1,
+    .most = FILM_RUNS,
     .takes_scenarios = true,
     .options = {&set_options, &options, &quiet_options, &view_options},
     .run = animate,

@@ -25,6 +25,7 @@ typedef struct arguments {
     text_list sets;                // --set
     bool allow_code;               // --allow-code
     text_list varies;              // --vary
+    text_list besides;             // --beside
     const char *sampling;          // --sample, NULL: grid
     uint64_t runs, seed;           // --runs (0 if not given), --seed
     uint64_t jobs;                 // runs at a time, 0 if not given

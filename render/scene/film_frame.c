@@ -1,0 +1,317 @@
+#include "render/scene/film_frame.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/page/text.h"
+#include "render/plot/trace_plot.h"
+#include "render/scene/labels.h"
+#include "src/base/numbers.h"
+
+#define TRACE_SHARE   0.36 // of the picture's width, for the traces beside one arm
+#define STRIP_SHARE   0.30 // of its height, for those below several
+#define TRACE_LETTERS 2.5  // scale of the traces for a picture 720 pixels high
+#define GHOST_TIME    0.02 // of the run between one ghost and the next [s]
+#define VEIL          0.82 // how far the future of the traces is faded out
+#define GAP           2    // between views [pixels]
+
+struct film_painter {
+    const film_plan *plan;
+    scene *scenes[FILM_RUNS];
+    cairo_surface_t *views[FILM_RUNS];
+    PangoContext *context;
+};
+
+// ---- the plan
+
+static colour page_of(const film_plan *plan)
+{
+    return palette_of(plan->options.view.theme)->page;
+}
+
+// One arm beside its traces; several in two columns above theirs.
+static void place_views(film_plan *plan)
+{
+    int width = plan->options.width, height = plan->options.height;
+    if (plan->run_count == 1) {
+        int scene_width = (int)(width * (1 - TRACE_SHARE));
+        plan->views[0] = (film_view){0, 0, scene_width, height};
+        plan->strip = (film_view){scene_width, 0, width - scene_width, height};
+        return;
+    }
+
+    int rows = (plan->run_count + 1) / 2, strip = (int)(height * STRIP_SHARE);
+    int view_width = (width - GAP) / 2, view_height = (height - strip - (rows - 1) * GAP) / rows;
+    for (int i = 0; i < plan->run_count; i++) {
+        plan->views[i] = (film_view){i % 2 * (view_width + GAP), i / 2 * (view_height + GAP),
+                                     view_width, view_height};
+    }
+    plan->strip = (film_view){0, height - strip, width, strip};
+}
+
+// The traces: force, angles and velocities of one run, the forces of several.
+static status describe_traces(const film_plan *plan, trace_figure *t, fault *f)
+{
+    static const trace_panel one[] = {
+        {.signals = {"force"}, .with_zero = true, .impulses = true, .weight = 1.2},
+        {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
+        {.label = "Angular velocity",
+         .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
+    };
+    static const trace_panel several[] = {{.signals = {"force"}, .with_zero = true}};
+    trace_run runs[FILM_RUNS];
+
+    for (int i = 0; i < plan->run_count; i++) {
+        runs[i] = (trace_run){.scenario = plan->runs[i].scenario,
+                              .result = plan->runs[i].result,
+                              .name = plan->runs[i].name,
+                              .rank = plan->run_count > 1 ? i + 1 : 0};
+    }
+    return plan->run_count == 1
+               ? trace_figure_init(t, NULL, one, (int)G_N_ELEMENTS(one), runs, 1, f)
+               : trace_figure_init(t, NULL, several, 1, runs, plan->run_count, f);
+}
+
+// Paints all of the traces once; frames veil what has not happened yet.
+static status paint_traces(film_plan *plan, fault *f)
+{
+    trace_figure t;
+    status code = describe_traces(plan, &t, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // its size: what the views leave of the picture
+    const film_view *strip = &plan->strip;
+    plan->trace_scale =
+        TRACE_LETTERS * fmin(plan->options.height / 720.0, plan->options.width / 1280.0);
+
+    // the views have the titles
+    t.figure.title = t.figure.caption = NULL;
+    t.figure.theme = plan->options.view.theme;
+    t.figure.x.low = plan->clock.start;
+    t.figure.x.high = plan->clock.end;
+    t.figure.width = strip->width / plan->trace_scale * 25.4 / 72;
+    t.figure.height = strip->height / plan->trace_scale * 25.4 / 72;
+
+    plan->traces = cairo_image_surface_create(CAIRO_FORMAT_RGB24, strip->width, strip->height);
+    cairo_t *cr = cairo_create(plan->traces);
+    set_colour(cr, page_of(plan));
+    cairo_paint(cr);
+    cairo_scale(cr, plan->trace_scale, plan->trace_scale);
+    code = figure_paint(cr, &t.figure, plan->report, f);
+    cairo_destroy(cr);
+    trace_figure_finish(&t);
+    return code;
+}
+
+status film_plan_init(film_plan *plan, const film_run *runs, int run_count,
+                      const film_options *options, fault *f)
+{
+    assert(plan != NULL && runs != NULL && run_count >= 1 && run_count <= FILM_RUNS);
+    assert(options != NULL && options->width > 0 && options->slow >= 1);
+    *plan = (film_plan){.runs = runs, .run_count = run_count, .options = *options};
+
+    const run_result *results[FILM_RUNS];
+    for (int i = 0; i < run_count; i++) {
+        results[i] = runs[i].result;
+    }
+    plan->clock = film_clock_of(results, run_count, options->seconds, options->slow);
+    place_views(plan);
+
+    plan->report = calloc(1, sizeof *plan->report);
+    return plan->report != NULL ? paint_traces(plan, f)
+                                : fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
+}
+
+void film_plan_finish(film_plan *plan)
+{
+    cairo_surface_destroy(plan->traces);
+    free(plan->report);
+    *plan = (film_plan){0};
+}
+
+// ---- painters
+
+status film_painter_create(film_painter **out, const film_plan *plan, fault *f)
+{
+    assert(out != NULL && plan != NULL);
+    film_painter *p = calloc(1, sizeof *p);
+    *out = NULL;
+    if (p == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
+    }
+    p->plan = plan;
+    p->context = text_context_create();
+
+    // a scene for each run, as large as its view
+    status code = STATUS_OK;
+    for (int i = 0; i < plan->run_count && code == STATUS_OK; i++) {
+        scene_options view = plan->options.view;
+        view.width = plan->views[i].width;
+        view.height = plan->views[i].height;
+        view.keyless = true;
+        view.transparent = false;
+        code = scene_create(&p->scenes[i], plan->runs[i].scenario, plan->runs[i].result, &view, f);
+        p->views[i] = cairo_image_surface_create(CAIRO_FORMAT_RGB24, view.width, view.height);
+    }
+
+    if (code != STATUS_OK) {
+        film_painter_destroy(p);
+        return code;
+    }
+    *out = p;
+    return STATUS_OK;
+}
+
+void film_painter_destroy(film_painter *p)
+{
+    if (p == NULL) {
+        return;
+    }
+    for (int i = 0; i < FILM_RUNS; i++) {
+        scene_destroy(p->scenes[i]);
+        cairo_surface_destroy(p->views[i]);
+    }
+    g_clear_object(&p->context);
+    free(p);
+}
+
+const char *film_painter_name(const film_painter *p)
+{
+    assert(p != NULL);
+    return scene_renderer_name(p->scenes[0]);
+}
+
+// ---- what lies round the arms
+
+// Lets the floor of a single view run out into the page of the traces.
+static void soften_seam(const film_plan *plan, cairo_t *cr)
+{
+    double end = plan->views[0].width, width = 0.06 * end, from = end - width;
+    cairo_pattern_t *fade = cairo_pattern_create_linear(from, 0, end, 0);
+    const colour page = page_of(plan);
+    cairo_pattern_add_color_stop_rgba(fade, 0, page.red, page.green, page.blue, 0);
+    cairo_pattern_add_color_stop_rgba(fade, 1, page.red, page.green, page.blue, 1);
+    cairo_set_source(cr, fade);
+    cairo_rectangle(cr, from, 0, width, plan->options.height);
+    cairo_fill(cr);
+    cairo_pattern_destroy(fade);
+}
+
+// The traces with the present as a line, and what comes after it under a veil.
+static void draw_traces(const film_plan *plan, cairo_t *cr, double time)
+{
+    // all of it
+    const figure_report *r = plan->report;
+    const colour page = page_of(plan);
+    const film_view *strip = &plan->strip;
+    cairo_set_source_surface(cr, plan->traces, strip->x, strip->y);
+    cairo_paint(cr);
+
+    // the present as a line over each panel
+    cairo_save(cr);
+    cairo_translate(cr, strip->x, strip->y);
+    cairo_scale(cr, plan->trace_scale, plan->trace_scale);
+    for (int i = 0; i < r->panel_count; i++) {
+        figure_rect p = r->panels[i];
+        double x =
+            p.x + p.width * (time - plan->clock.start) / (plan->clock.end - plan->clock.start);
+        cairo_rectangle(cr, x, p.y, p.x + p.width - x, p.height);
+        cairo_set_source_rgba(cr, page.red, page.green, page.blue, VEIL);
+        cairo_fill(cr);
+        cairo_move_to(cr, x, p.y);
+        cairo_line_to(cr, x, p.y + p.height);
+        cairo_set_line_width(cr, 1.1);
+        cairo_set_source_rgb(cr, 0.835, 0.369, 0);
+        cairo_stroke(cr);
+    }
+    cairo_restore(cr);
+
+    // keys are of the past and the future
+    for (int i = 0; i < r->panel_count; i++) {
+        figure_rect key = r->legends[i];
+        cairo_rectangle(cr, strip->x + key.x * plan->trace_scale,
+                        strip->y + key.y * plan->trace_scale, key.width * plan->trace_scale,
+                        key.height * plan->trace_scale);
+    }
+
+    cairo_set_source_surface(cr, plan->traces, strip->x, strip->y);
+    cairo_fill(cr);
+}
+
+static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
+{
+    char text[64];
+    const film_plan *plan = p->plan;
+    double scale = fmin(plan->options.height / 720.0, plan->options.width / 1280.0);
+
+    // the number that is larger than one
+    if (speed < 1) {
+        double times = 1 / speed;
+        decimal_print(text, sizeof text, "%.*f times slower than real", times < 9.95 ? 1 : 0,
+                      times);
+    } else {
+        decimal_print(text, sizeof text, "%.1f times faster than real", speed);
+    }
+
+    const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
+    set_colour(cr, palette_of(plan->options.view.theme)->faint_text);
+    cairo_move_to(cr, 22 * scale, 20 * scale);
+    text_draw(cr, p->context, &t);
+}
+
+// ---- frames
+
+// The arms at `time`, with the traces until `present`.
+static status paint_frame(film_painter *p, double time, double present, double speed,
+                          cairo_surface_t *onto, fault *f)
+{
+    // earlier arms, and the one of now
+    const film_plan *plan = p->plan;
+    double times[SCENE_INSTANTS];
+    int count = 0;
+    for (int i = plan->options.ghosts; i >= 0; i--) {
+        double earlier = time - i * GHOST_TIME;
+        if (i == 0 || earlier >= plan->clock.start) {
+            times[count++] = earlier;
+        }
+    }
+
+    cairo_t *cr = cairo_create(onto);
+    set_colour(cr, palette_of(plan->options.view.theme)->grid);
+    cairo_paint(cr);
+    status code = STATUS_OK;
+    for (int i = 0; i < plan->run_count && code == STATUS_OK; i++) {
+        code = scene_paint(p->scenes[i], times, count, p->views[i], f);
+        cairo_set_source_surface(cr, p->views[i], plan->views[i].x, plan->views[i].y);
+        cairo_paint(cr);
+    }
+
+    // what lies round and over them
+    if (code == STATUS_OK) {
+        if (plan->run_count == 1) {
+            soften_seam(plan, cr);
+        }
+        draw_traces(plan, cr, present);
+        draw_speed(p, cr, speed);
+    }
+    cairo_destroy(cr);
+    return code;
+}
+
+status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *onto, fault *f)
+{
+    assert(p != NULL && onto != NULL);
+    double speed, time = film_clock_time(&p->plan->clock, film_time, &speed);
+    return paint_frame(p, time, time, speed, onto, f);
+}
+
+status film_painter_palette(film_painter *p, cairo_surface_t *onto, fault *f)
+{
+    assert(p != NULL && onto != NULL);
+    const film_clock *c = &p->plan->clock;
+    double wanted = c->impact_count > 0 ? fmin(c->end, c->impacts[0] + 0.008) : c->end;
+    return paint_frame(p, wanted, c->end, 1, onto, f);
+}

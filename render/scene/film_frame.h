@@ -1,0 +1,46 @@
+// Frames of a film: the arms of one or more runs in space, each in its own view, with traces in
+// step. What all frames share is planned once; every thread that paints has a painter of its own.
+#pragma once
+
+#include "render/scene/film.h"
+#include "render/scene/film_clock.h"
+
+// A view's place on the frame [pixels].
+typedef struct film_view {
+    int x, y, width, height;
+} film_view;
+
+// What all frames of a film share; nothing of it changes while they are painted.
+typedef struct film_plan {
+    const film_run *runs;
+    int run_count;
+    film_options options; // nothing left to choose
+    film_clock clock;
+    film_view views[FILM_RUNS], strip; // of the arms, and of the traces
+    cairo_surface_t *traces;           // of all the time, painted once
+    figure_report *report;             // where their panels are
+    double trace_scale;                // pixels of a point of them
+} film_plan;
+
+typedef struct film_painter film_painter;
+
+// Plans a film of runs with rows. The options are complete and in range. Fails as figure_paint
+// does. film_plan_finish in either case.
+status film_plan_init(film_plan *plan, const film_run *runs, int run_count,
+                      const film_options *options, fault *f);
+void film_plan_finish(film_plan *plan);
+
+// A painter of a plan's frames, to be used and destroyed by the thread that creates it. Fails as
+// scene_create does.
+status film_painter_create(film_painter **out, const film_plan *plan, fault *f);
+void film_painter_destroy(film_painter *p);
+
+// What paints, for the film's notes.
+const char *film_painter_name(const film_painter *p);
+
+// Paints the frame at a film's time [s] onto a surface RGB24 of the film's size.
+status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *onto, fault *f);
+
+// Paints a frame with every colour of the film: just after the first impact, with flash, arrow and
+// all of the traces.
+status film_painter_palette(film_painter *p, cairo_surface_t *onto, fault *f);

@@ -1,0 +1,160 @@
+// Recorded runs, a folder for files, and ways to look at pictures of the arm.
+#pragma once
+
+#include "tests/check.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "render/scene/scene.h"
+#include "render/page/text.h"
+
+enum { WIDTH = 320, HEIGHT = 180 };
+
+typedef struct recorded {
+    scenario scenario;
+    run_result result;
+} recorded;
+
+static char folder[] = "/tmp/test-scene-XXXXXX";
+
+static inline void complain(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static inline recorded record(const char *name)
+{
+    recorded r;
+    assert_int_equal(scenario_open(&r.scenario, name, complain, NULL), STATUS_OK);
+    assert_int_equal(run_scenario(&r.scenario, true, &r.result), STATUS_OK);
+    return r;
+}
+
+static inline void forget(recorded *r)
+{
+    run_finish(&r->result);
+    scenario_finish(&r->scenario);
+}
+
+static inline const char *in_folder(const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+// True if a renderer can be had here.
+static inline bool is_there(scene_renderer which)
+{
+    scene_painter *painter;
+    if (scene_painter_create(&painter, which, 16, 16, SAMPLES_QUICK, NULL) != STATUS_OK) {
+        return false;
+    }
+    scene_painter_destroy(painter);
+    return true;
+}
+
+static inline cairo_surface_t *picture(const recorded *r, scene_options options,
+                                       const double *times, int count)
+{
+    scene *sc;
+    fault f = {0};
+    options.width = options.width ? options.width : WIDTH;
+    options.height = options.height ? options.height : HEIGHT;
+    if (scene_create(&sc, &r->scenario, &r->result, &options, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    cairo_surface_t *surface =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, options.width, options.height);
+    assert_int_equal(scene_paint(sc, times, count, surface, &f), STATUS_OK);
+    scene_destroy(sc);
+    cairo_surface_flush(surface);
+    return surface;
+}
+
+static inline unsigned pixel_at(cairo_surface_t *s, int x, int y)
+{
+    const unsigned char *data = cairo_image_surface_get_data(s);
+    unsigned pixel;
+    memcpy(&pixel, data + (ptrdiff_t)y * cairo_image_surface_get_stride(s) + 4 * x, sizeof pixel);
+    return pixel & 0xFFFFFF;
+}
+
+static inline int channel_of(unsigned pixel, int index)
+{
+    return (int)(pixel >> (16 - 8 * index) & 255);
+}
+
+// Pixels as blue as the beam, or as red as the arrow.
+static inline int count_beam(unsigned pixel)
+{
+    return channel_of(pixel, 2) > channel_of(pixel, 0) + 90;
+}
+
+static inline int count_arrow(unsigned pixel)
+{
+    return channel_of(pixel, 0) > channel_of(pixel, 2) + 140 &&
+           channel_of(pixel, 0) > channel_of(pixel, 1) + 70;
+}
+
+static inline int count_pixels(cairo_surface_t *s, int (*counts)(unsigned))
+{
+    int count = 0;
+    for (int y = 0; y < cairo_image_surface_get_height(s); y++) {
+        for (int x = 0; x < cairo_image_surface_get_width(s); x++) {
+            count += counts(pixel_at(s, x, y));
+        }
+    }
+    return count;
+}
+
+// Pixels that differ by more than `tolerance` levels in some channel.
+static inline int count_different(cairo_surface_t *a, cairo_surface_t *b, int tolerance)
+{
+    int count = 0;
+    assert_int_equal(cairo_image_surface_get_width(a), cairo_image_surface_get_width(b));
+    assert_int_equal(cairo_image_surface_get_height(a), cairo_image_surface_get_height(b));
+    for (int y = 0; y < cairo_image_surface_get_height(a); y++) {
+        for (int x = 0; x < cairo_image_surface_get_width(a); x++) {
+            unsigned p = pixel_at(a, x, y), q = pixel_at(b, x, y);
+            bool differs = false;
+            for (int i = 0; i < 3; i++) {
+                differs = differs || abs(channel_of(p, i) - channel_of(q, i)) > tolerance;
+            }
+            count += differs;
+        }
+    }
+    return count;
+}
+
+static inline void check_contains(const char *path, const char *text)
+{
+    FILE *stream = fopen(path, "rb");
+    assert_non_null(stream);
+    static char bytes[1 << 20];
+    size_t length = fread(bytes, 1, sizeof bytes, stream);
+    fclose(stream);
+    if (memmem(bytes, length, text, strlen(text)) == NULL) {
+        fail_msg("'%s' is not in %s", text, path);
+    }
+}
+
+static inline int set_up(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) == NULL;
+}
+
+static inline int tear_down(void **state)
+{
+    char command[128];
+    (void)state;
+    text_release();
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command) != 0;
+}

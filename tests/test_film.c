@@ -1,0 +1,309 @@
+// Films of runs: their clock, their frames, and what becomes of them when the encoder fails.
+#include "tests/scene_fixture.h"
+
+#include "render/scene/film.h"
+#include "render/scene/film_clock.h"
+#include "render/scene/film_file.h"
+
+static status film_of(const recorded *r, const film_options *options, const char *path, fault *f)
+{
+    const film_run run = {&r->scenario, &r->result, r->scenario.name};
+    return film_write(&run, 1, options, path, f);
+}
+
+static film_clock clock_of(const recorded *r, double seconds, double slow)
+{
+    const run_result *result = &r->result;
+    return film_clock_of(&result, 1, seconds, slow);
+}
+
+// The film runs through the whole run, forwards, and slower round the impact by what was asked for.
+static void test_clock(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    film_clock c = clock_of(&r, 10, 8);
+    double speed, last = -1, outside, inside = 0, run = 0;
+    film_clock_time(&c, 0.5, &outside);
+    for (int i = 0; i <= 1000; i++) {
+        double time = film_clock_time(&c, i / 100.0, &speed);
+        check_below(last, time);
+        last = time;
+        run += i < 1000 ? speed / 100 : 0;
+        if (fabs(time - r.result.summary.first_contact_s) < 0.005) {
+            inside = speed;
+        }
+    }
+    check_close(last, 1, 1e-9);
+    check_close(film_clock_time(&c, 0, &speed), 0, 1e-9);
+    check_relative(outside / inside, 8.0, 1e-6);
+    // the speeds told add up to the run
+    check_relative(run, 1.0, 0.01);
+    forget(&r);
+    r = record("corrected/free-vibration");
+    c = clock_of(&r, 5, 8);
+    film_clock_time(&c, 2, &speed);
+    check_relative(speed, r.scenario.parameters.run.duration / 5, 1e-6);
+    forget(&r);
+}
+
+static film_options small_film(void)
+{
+    return (film_options){.view.renderer = RENDER_CAIRO,
+                          .width = 320,
+                          .height = 240,
+                          .frames_per_second = 10,
+                          .seconds = 0.5};
+}
+
+static int count_files(const char *path)
+{
+    int count = 0;
+    DIR *opened = opendir(path);
+    assert_non_null(opened);
+    for (struct dirent *entry; (entry = readdir(opened)) != NULL;) {
+        count += entry->d_name[0] != '.';
+    }
+    closedir(opened);
+    return count;
+}
+
+static void test_frames(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+    char path[256];
+    snprintf(path, sizeof path, "%s", in_folder("frames"));
+    if (film_of(&r, &options, path, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    assert_int_equal(count_files(path), 5);
+    cairo_surface_t *frame =
+        cairo_image_surface_create_from_png(in_folder("frames/frame-00003.png"));
+    assert_int_equal(cairo_image_surface_get_width(frame), 320);
+    assert_int_equal(cairo_image_surface_get_height(frame), 240);
+    check_below(100, count_pixels(frame, count_beam));
+    cairo_surface_destroy(frame);
+    // frames of two films do not mix
+    assert_int_equal(film_of(&r, &options, path, &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "not empty"));
+    forget(&r);
+}
+
+static void test_film(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/plane-wall");
+    film_options options = small_film();
+    fault f = {0};
+    if (film_file_check(in_folder("film.mp4"), &f) != STATUS_OK) {
+        assert_non_null(strstr(f.text, "install the package ffmpeg"));
+        forget(&r);
+        skip();
+    }
+    const char *const names[] = {"film.mp4", "film.webm", "film.gif"};
+    const char *const marks[] = {"ftypisom", "webm", "GIF89a"};
+    for (int i = 0; i < 3; i++) {
+        if (film_of(&r, &options, in_folder(names[i]), &f) != STATUS_OK) {
+            fail_msg("%s", f.text);
+        }
+        check_contains(in_folder(names[i]), marks[i]);
+    }
+    forget(&r);
+}
+
+// Puts a program of the given text in the place of ffmpeg. Returns the old PATH, to be restored.
+static char *with_encoder(const char *text)
+{
+    char path[256], *old = strdup(getenv("PATH"));
+    FILE *stream = fopen(in_folder("ffmpeg"), "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+    assert_int_equal(chmod(in_folder("ffmpeg"), 0755), 0);
+    snprintf(path, sizeof path, "%s:/bin:/usr/bin", folder);
+    setenv("PATH", path, 1);
+    return old;
+}
+
+static void restore_encoder(char *old)
+{
+    setenv("PATH", old, 1);
+    free(old);
+    unlink(in_folder("ffmpeg"));
+}
+
+// An encoder that gives up is quoted, and nothing of the film is left.
+static void test_encoder_fails(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+    char *old = with_encoder("#!/bin/sh\necho 'no such codec' >&2\nexit 1\n");
+    int before = count_files(folder);
+    assert_int_equal(film_of(&r, &options, in_folder("bad.mp4"), &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "no such codec"));
+    assert_int_equal(count_files(folder), before);
+    restore_encoder(old);
+    old = with_encoder("#!/bin/sh\n");
+    setenv("PATH", "/nowhere", 1);
+    assert_int_equal(film_of(&r, &options, in_folder("bad.mp4"), &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "install the package ffmpeg"));
+    restore_encoder(old);
+    forget(&r);
+}
+
+// A GIF has the size and the frames that were asked for: nothing scales or drops them.
+static void test_gif_as_asked(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+    char *old = with_encoder("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
+                             "printf 'GIF89a %s;' \"$*\" >\"${last#file:}\"\n");
+    if (film_of(&r, &options, in_folder("asked.gif"), &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    restore_encoder(old);
+    char words[4096] = "";
+    FILE *stream = fopen(in_folder("asked.gif"), "r");
+    assert_non_null(stream);
+    assert_non_null(fgets(words, sizeof words, stream));
+    fclose(stream);
+    assert_non_null(strstr(words, "-s 320x240 -r 10 "));
+    assert_null(strstr(words, "scale="));
+    assert_null(strstr(words, "fps="));
+    forget(&r);
+}
+
+static volatile sig_atomic_t stopped;
+
+static void stop_soon(void *context, int done, int total)
+{
+    (void)context;
+    (void)total;
+    stopped = done >= 2;
+}
+
+static void test_interrupted(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+    stopped = 0;
+    options.progress = stop_soon;
+    options.stop = &stopped;
+    char *old = with_encoder("#!/bin/sh\ncat >/dev/null\n");
+    int before = count_files(folder);
+    assert_int_equal(film_of(&r, &options, in_folder("half.mp4"), &f), STATUS_STOPPED);
+    assert_non_null(strstr(f.text, "interrupted after 2 of 5"));
+    assert_int_equal(count_files(folder), before);
+    restore_encoder(old);
+    forget(&r);
+}
+
+// A complaint is a failure whatever the encoder's status is, as with a full disk; and what it
+// leaves without a complaint must be a film.
+static void test_encoder_complains(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *script, *said;
+    } cases[] = {
+        {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\nprintf 'xxxxftyp' >\"${last#file:}\"\n"
+         "echo 'av_interleaved_write_frame(): No space left on device' >&2\n",
+         "No space left"},
+        {"#!/bin/sh\ncat >/dev/null\n", "no such film"},
+        {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho nonsense >\"${last#file:}\"\n",
+         "no such film"},
+    };
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+
+    // a film that was there before stays
+    FILE *kept = fopen(in_folder("kept.mp4"), "w");
+    assert_non_null(kept);
+    fputs("old", kept);
+    fclose(kept);
+    for (int i = 0; i < 3; i++) {
+        char *old = with_encoder(cases[i].script), text[8] = "";
+        assert_int_equal(film_of(&r, &options, in_folder("kept.mp4"), &f), STATUS_CANNOT_WRITE);
+        restore_encoder(old);
+        assert_non_null(strstr(f.text, cases[i].said));
+        kept = fopen(in_folder("kept.mp4"), "r");
+        assert_non_null(kept);
+        assert_non_null(fgets(text, sizeof text, kept));
+        fclose(kept);
+        assert_string_equal(text, "old");
+    }
+    unlink(in_folder("kept.mp4"));
+    forget(&r);
+}
+
+static void stop_now(int number)
+{
+    (void)number;
+    stopped = 1;
+}
+
+// An encoder that hangs, before the first frame or after the last, is left at the first signal.
+static void test_encoder_hangs(void **state)
+{
+    (void)state;
+    static const char *const scripts[] = {"#!/bin/sh\ntrap '' TERM\nexec sleep 1000\n",
+                                          "#!/bin/sh\ncat >/dev/null\nexec sleep 1000\n"};
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+    options.stop = &stopped;
+    struct sigaction act = {.sa_handler = stop_now};
+    sigaction(SIGALRM, &act, NULL);
+    for (int i = 0; i < 2; i++) {
+        char *old = with_encoder(scripts[i]);
+        int before = count_files(folder);
+        stopped = 0;
+        alarm(1);
+        assert_int_equal(film_of(&r, &options, in_folder("half.mp4"), &f), STATUS_STOPPED);
+        assert_int_equal(count_files(folder), before);
+        restore_encoder(old);
+    }
+    forget(&r);
+}
+
+static void test_film_refused(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    film_options options = small_film();
+    fault f = {0};
+    assert_int_equal(film_file_check(in_folder("film.avi"), &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, ".webm"));
+    options.width = 321;
+    assert_int_equal(film_of(&r, &options, in_folder("odd.mp4"), &f), STATUS_BAD_ARGUMENT);
+    options = small_film();
+    options.seconds = -1;
+    assert_int_equal(film_of(&r, &options, in_folder("odd.mp4"), &f), STATUS_BAD_ARGUMENT);
+    forget(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_clock),
+        cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_film),
+        cmocka_unit_test(test_encoder_fails),
+        cmocka_unit_test(test_gif_as_asked),
+        cmocka_unit_test(test_interrupted),
+        cmocka_unit_test(test_encoder_complains),
+        cmocka_unit_test(test_encoder_hangs),
+        cmocka_unit_test(test_film_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down) != 0;
+}
