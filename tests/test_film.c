@@ -56,6 +56,31 @@ static film_options small_film(void)
                           .seconds = 0.5};
 }
 
+// Every impact is slowed down, not the first alone, and the speed told is the clock's own.
+static void test_clock_of_bounces(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    film_clock c = clock_of(&r, 10, 8);
+    double speed, fastest = 0;
+    int slowed = 0;
+    assert_true(c.impact_count >= 2);
+    for (int i = 0; i <= 2000; i++) {
+        film_clock_time(&c, i / 200.0, &speed);
+        fastest = fmax(fastest, speed);
+    }
+    for (int k = 0; k < c.impact_count; k++) {
+        bool seen = false;
+        for (int i = 0; i <= 2000; i++) {
+            double time = film_clock_time(&c, i / 200.0, &speed);
+            seen = seen || (fabs(time - c.impacts[k]) < 0.005 && speed < 1.01 * fastest / 8);
+        }
+        slowed += seen;
+    }
+    assert_int_equal(slowed, c.impact_count);
+    forget(&r);
+}
+
 static int count_files(const char *path)
 {
     int count = 0;
@@ -90,6 +115,72 @@ static void test_frames(void **state)
     assert_int_equal(film_of(&r, &options, path, &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "not empty"));
     forget(&r);
+}
+
+static void expect_same_frames(const char *one, const char *two, int count)
+{
+    for (int i = 1; i <= count; i++) {
+        char command[600], first[256];
+        snprintf(first, sizeof first, "%s/%s/frame-%05d.png", folder, one, i);
+        snprintf(command, sizeof command, "cmp %s %s/%s/frame-%05d.png", first, folder, two, i);
+        assert_int_equal(system(command), 0);
+    }
+}
+
+// Two threads write what one does, of one run and of several.
+static void test_threads(void **state)
+{
+    (void)state;
+    recorded r[3] = {record("corrected/first-impact"), record("corrected/plane-wall"),
+                     record("corrected/first-impact")};
+    const film_run runs[3] = {{&r[0].scenario, &r[0].result, "one"},
+                              {&r[1].scenario, &r[1].result, "two"},
+                              {&r[2].scenario, &r[2].result, "three"}};
+    static const char *const names[][2] = {{"one-1", "one-2"}, {"many-1", "many-2"}};
+    for (int k = 0; k < 2; k++) {
+        for (int threads = 1; threads <= 2; threads++) {
+            film_options options = small_film();
+            fault f = {0};
+            options.threads = threads;
+            options.view.samples = SAMPLES_QUICK;
+            if (film_write(runs, k == 0 ? 1 : 3, &options, in_folder(names[k][threads - 1]), &f) !=
+                STATUS_OK) {
+                fail_msg("%s", f.text);
+            }
+        }
+        expect_same_frames(names[k][0], names[k][1], 5);
+    }
+    for (int i = 0; i < 3; i++) {
+        forget(&r[i]);
+    }
+}
+
+// Each run has a view of its own: with an arm in it, and the first's own picture in the first.
+static void test_split_screen(void **state)
+{
+    (void)state;
+    recorded r[2] = {record("corrected/first-impact"), record("corrected/plane-wall")};
+    const film_run runs[2] = {{&r[0].scenario, &r[0].result, "one"},
+                              {&r[1].scenario, &r[1].result, "two"}};
+    film_options options = small_film();
+    fault f = {0};
+    if (film_write(runs, 2, &options, in_folder("split"), &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    cairo_surface_t *frame =
+        cairo_image_surface_create_from_png(in_folder("split/frame-00003.png"));
+    assert_int_equal(cairo_image_surface_get_width(frame), 320);
+    int beam[2] = {0, 0};
+    for (int y = 0; y < 160; y++) {
+        for (int x = 0; x < 320; x++) {
+            beam[x / 160] += count_beam(pixel_at(frame, x, y));
+        }
+    }
+    check_below(60, beam[0]);
+    check_below(60, beam[1]);
+    cairo_surface_destroy(frame);
+    forget(&r[0]);
+    forget(&r[1]);
 }
 
 static void test_film(void **state)
@@ -295,15 +386,12 @@ static void test_film_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clock),
-        cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_film),
-        cmocka_unit_test(test_encoder_fails),
-        cmocka_unit_test(test_gif_as_asked),
-        cmocka_unit_test(test_interrupted),
-        cmocka_unit_test(test_encoder_complains),
-        cmocka_unit_test(test_encoder_hangs),
-        cmocka_unit_test(test_film_refused),
+        cmocka_unit_test(test_clock),         cmocka_unit_test(test_clock_of_bounces),
+        cmocka_unit_test(test_frames),        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_split_screen),  cmocka_unit_test(test_film),
+        cmocka_unit_test(test_encoder_fails), cmocka_unit_test(test_gif_as_asked),
+        cmocka_unit_test(test_interrupted),   cmocka_unit_test(test_encoder_complains),
+        cmocka_unit_test(test_encoder_hangs), cmocka_unit_test(test_film_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down) != 0;
 }

@@ -209,6 +209,35 @@ static void test_samples(void **state)
     forget(&r);
 }
 
+// Where the floor fades, squares of 8 x 8 pixels that hold no line mix two levels: a gradient
+// without dithering would be flat in nearly all of them and jump between.
+static void test_no_bands(void **state)
+{
+    (void)state;
+    recorded r = record("corrected/first-impact");
+    const double start = 0;
+    int smooth = 0, mixed = 0;
+    cairo_surface_t *s = picture(
+        &r, (scene_options){.renderer = RENDER_CAIRO, .plain = true, .width = 640, .height = 360},
+        &start, 1);
+    for (int y = 0; y + 8 <= 360; y += 8) {
+        for (int x = 0; x + 8 <= 640; x += 8) {
+            int low = 255, high = 0;
+            for (int i = 0; i < 64; i++) {
+                int level = channel_of(pixel_at(s, x + i % 8, y + i / 8), 1);
+                low = level < low ? level : low;
+                high = level > high ? level : high;
+            }
+            smooth += high - low <= 1 && low > 243 && high < 255;
+            mixed += high - low == 1 && low > 243 && high < 255;
+        }
+    }
+    check_below(100, smooth);
+    check_below(smooth / 2, mixed);
+    cairo_surface_destroy(s);
+    forget(&r);
+}
+
 static const struct {
     const char *file, *scenario;
     camera_kind camera;
@@ -325,8 +354,9 @@ int main(void)
         cmocka_unit_test(test_instants),     cmocka_unit_test(test_camera),
         cmocka_unit_test(test_camera_words), cmocka_unit_test(test_exaggerated),
         cmocka_unit_test(test_samples),      cmocka_unit_test(test_content),
-        cmocka_unit_test(test_golden_cairo), cmocka_unit_test(test_golden_gl),
-        cmocka_unit_test(test_file),         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_no_bands),     cmocka_unit_test(test_golden_cairo),
+        cmocka_unit_test(test_golden_gl),    cmocka_unit_test(test_file),
+        cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down) != 0;
 }

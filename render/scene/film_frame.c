@@ -30,6 +30,12 @@ static colour page_of(const film_plan *plan)
     return palette_of(plan->options.view.theme)->page;
 }
 
+// Of letters: 1 for a film of 1280 x 720.
+static double film_scale(const film_plan *plan)
+{
+    return fmin(plan->options.height / 720.0, plan->options.width / 1280.0);
+}
+
 // One arm beside its traces; several in two columns above theirs.
 static void place_views(film_plan *plan)
 {
@@ -84,8 +90,7 @@ static status paint_traces(film_plan *plan, fault *f)
 
     // its size: what the views leave of the picture
     const film_view *strip = &plan->strip;
-    plan->trace_scale =
-        TRACE_LETTERS * fmin(plan->options.height / 720.0, plan->options.width / 1280.0);
+    plan->trace_scale = TRACE_LETTERS * film_scale(plan);
 
     // the views have the titles
     t.figure.title = t.figure.caption = NULL;
@@ -153,6 +158,8 @@ status film_painter_create(film_painter **out, const film_plan *plan, fault *f)
         view.height = plan->views[i].height;
         view.keyless = true;
         view.transparent = false;
+        // small views have the letters of the whole
+        view.letters = plan->run_count > 1 ? film_scale(plan) : 0;
         code = scene_create(&p->scenes[i], plan->runs[i].scenario, plan->runs[i].result, &view, f);
         p->views[i] = cairo_image_surface_create(CAIRO_FORMAT_RGB24, view.width, view.height);
     }
@@ -200,6 +207,22 @@ static void soften_seam(const film_plan *plan, cairo_t *cr)
     cairo_pattern_destroy(fade);
 }
 
+// The page, and lines between several views.
+static void draw_gaps(const film_plan *plan, cairo_t *cr)
+{
+    const film_view *first = &plan->views[0];
+    set_colour(cr, page_of(plan));
+    cairo_paint(cr);
+    set_colour(cr, palette_of(plan->options.view.theme)->grid);
+    if (plan->run_count > 1) {
+        cairo_rectangle(cr, first->width, 0, GAP, plan->strip.y);
+    }
+    if (plan->run_count > 2) {
+        cairo_rectangle(cr, 0, first->height, plan->options.width, GAP);
+    }
+    cairo_fill(cr);
+}
+
 // The traces with the present as a line, and what comes after it under a veil.
 static void draw_traces(const film_plan *plan, cairo_t *cr, double time)
 {
@@ -245,7 +268,7 @@ static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
 {
     char text[64];
     const film_plan *plan = p->plan;
-    double scale = fmin(plan->options.height / 720.0, plan->options.width / 1280.0);
+    double scale = film_scale(plan), width, height;
 
     // the number that is larger than one
     if (speed < 1) {
@@ -258,7 +281,11 @@ static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
 
     const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
     set_colour(cr, palette_of(plan->options.view.theme)->faint_text);
-    cairo_move_to(cr, 22 * scale, 20 * scale);
+    text_measure(p->context, &t, &width, &height);
+
+    // several arms leave a corner beside their traces' axis
+    double bottom = plan->options.height - height - 6 * scale;
+    cairo_move_to(cr, 22 * scale, plan->run_count == 1 ? 20 * scale : bottom);
     text_draw(cr, p->context, &t);
 }
 
@@ -280,8 +307,7 @@ static status paint_frame(film_painter *p, double time, double present, double s
     }
 
     cairo_t *cr = cairo_create(onto);
-    set_colour(cr, palette_of(plan->options.view.theme)->grid);
-    cairo_paint(cr);
+    draw_gaps(plan, cr);
     status code = STATUS_OK;
     for (int i = 0; i < plan->run_count && code == STATUS_OK; i++) {
         code = scene_paint(p->scenes[i], times, count, p->views[i], f);

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,14 +30,24 @@ static colour mixed(colour a, colour b, double share)
                     a.blue + share * (b.blue - a.blue)};
 }
 
-static uint32_t rgb_of(colour c)
+// What decides at a pixel whether a value between two levels goes to the upper one: Bayer's matrix
+// of 8 x 8 (1973), 1/128 to 127/128. Gradients of few levels show no bands then.
+static double threshold_at(int column, int row)
 {
-    return (uint32_t)(255 * c.red + 0.5) << 16 | (uint32_t)(255 * c.green + 0.5) << 8 |
-           (uint32_t)(255 * c.blue + 0.5);
+    unsigned x = (unsigned)column & 7, y = (unsigned)row & 7, z = x ^ y;
+    unsigned rank =
+        (z & 1) << 5 | (y & 1) << 4 | (z & 2) << 2 | (y & 2) << 1 | (z & 4) >> 1 | (y & 4) >> 2;
+    return (rank + 0.5) / 64;
+}
+
+static uint32_t rgb_of(colour c, double threshold)
+{
+    return (uint32_t)(255 * c.red + threshold) << 16 | (uint32_t)(255 * c.green + threshold) << 8 |
+           (uint32_t)(255 * c.blue + threshold);
 }
 
 // Colour of the floor at (x, y) within its reach, a pixel being `wide` by `deep` there.
-static uint32_t floor_colour(const scene_floor *floor, double x, double y, double wide, double deep)
+static colour floor_colour(const scene_floor *floor, double x, double y, double wide, double deep)
 {
     // fades out towards its reach
     double away_x = x - floor->middle.x, away_y = y - floor->middle.y;
@@ -50,7 +61,7 @@ static uint32_t floor_colour(const scene_floor *floor, double x, double y, doubl
     double cover = dense * (1 - (1 - over_x) * (1 - over_y));
 
     colour c = mixed(floor->ground_colour, floor->line, cover);
-    return rgb_of(mixed(floor->page, c, fade));
+    return mixed(floor->page, c, fade);
 }
 
 // Rays through pixels: of the first one's centre, and how they change to the right and downwards.
@@ -71,7 +82,7 @@ static void paint_pixel(scene_floor *floor, const camera *c, const ray_field *ra
     bool meets = ray.z < 0 && away_x * away_x + away_y * away_y < floor->reach * floor->reach;
     floor->x[at] = meets ? (float)x : 1e30F;
     floor->y[at] = meets ? (float)y : 1e30F;
-    floor->ground[at] = rgb_of(floor->page);
+    floor->ground[at] = rgb_of(floor->page, 0.5);
 
     // how far a pixel reaches on the floor along both directions
     if (meets) {
@@ -79,7 +90,9 @@ static void paint_pixel(scene_floor *floor, const camera *c, const ray_field *ra
         const vector *r = &rays->right, *d = &rays->down;
         double wide = fabs(along * (r->x - slope_x * r->z)) + fabs(along * (d->x - slope_x * d->z));
         double deep = fabs(along * (r->y - slope_y * r->z)) + fabs(along * (d->y - slope_y * d->z));
-        floor->ground[at] = floor_colour(floor, x, y, wide, deep);
+        int column = (int)(at % (size_t)floor->width), row = (int)(at / (size_t)floor->width);
+        floor->ground[at] =
+            rgb_of(floor_colour(floor, x, y, wide, deep), threshold_at(column, row));
     }
 }
 
@@ -204,11 +217,39 @@ static float shadow_at(const scene_floor *floor, float x, float y)
     return (1 - b) * ((1 - a) * at[0] + a * at[1]) + b * ((1 - a) * at[MAP] + a * at[MAP + 1]);
 }
 
-static uint32_t darkened(uint32_t rgb, float shadow)
+// A rectangle of the floor [m].
+typedef struct floor_box {
+    float left, right, low, high;
+} floor_box;
+
+// What the shadow covers, a cell to spare; right < left where there is none.
+static floor_box shadow_box(const scene_floor *floor)
 {
-    uint32_t light = 256 - (uint32_t)(shadow * (float)(SHADOW_DEPTH * 256 / 255));
-    uint32_t red = (rgb >> 16 & 255) * light >> 8, green = (rgb >> 8 & 255) * light >> 8;
-    return 0xFF000000U | red << 16 | green << 8 | (rgb & 255) * light >> 8;
+    int left = MAP, right = -1, low = MAP, high = -1;
+    for (int row = 0; row < MAP; row++) {
+        const unsigned char *line = floor->mask + (ptrdiff_t)row * MAP;
+        for (int i = 0; i < MAP; i++) {
+            if (line[i] != 0) {
+                left = i < left ? i : left;
+                right = i > right ? i : right;
+                low = row < low ? row : low;
+                high = row;
+            }
+        }
+    }
+    const double cell = floor->map_cell;
+    return (floor_box){
+        (float)(floor->map_left + (left - 1) * cell), (float)(floor->map_left + (right + 2) * cell),
+        (float)(floor->map_low + (low - 1) * cell), (float)(floor->map_low + (high + 2) * cell)};
+}
+
+// A colour under a shadow of 0 to 255; threshold [1/65536] as of threshold_at.
+static uint32_t darkened(uint32_t rgb, float shadow, uint32_t threshold)
+{
+    uint32_t light = 65536 - (uint32_t)(shadow * (float)(SHADOW_DEPTH * 65536 / 255));
+    uint32_t red = ((rgb >> 16 & 255) * light + threshold) >> 16;
+    uint32_t green = ((rgb >> 8 & 255) * light + threshold) >> 16;
+    return 0xFF000000U | red << 16 | green << 8 | ((rgb & 255) * light + threshold) >> 16;
 }
 
 void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
@@ -220,13 +261,21 @@ void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
     unsigned char *data = cairo_image_surface_get_data(onto);
     ptrdiff_t stride = cairo_image_surface_get_stride(onto);
 
+    const floor_box shade = shadow_box(floor);
     for (int row = 0; row < floor->height; row++) {
         uint32_t *to = (uint32_t *)(void *)(data + row * stride);
         size_t at = (size_t)row * (size_t)floor->width;
+        uint32_t thresholds[8];
+        for (int i = 0; i < 8; i++) {
+            thresholds[i] = (uint32_t)(65536 * threshold_at(i, row));
+        }
+
         for (int column = 0; column < floor->width; column++, at++) {
-            float shadow = shadow_at(floor, floor->x[at], floor->y[at]);
-            to[column] =
-                shadow > 0 ? darkened(floor->ground[at], shadow) : 0xFF000000U | floor->ground[at];
+            float x = floor->x[at], y = floor->y[at];
+            bool covered = x > shade.left && x < shade.right && y > shade.low && y < shade.high;
+            float shadow = covered ? shadow_at(floor, x, y) : 0;
+            to[column] = shadow > 0 ? darkened(floor->ground[at], shadow, thresholds[column & 7])
+                                    : 0xFF000000U | floor->ground[at];
         }
     }
     cairo_surface_mark_dirty(onto);

@@ -251,6 +251,21 @@ static int bounded(float value, int most)
     return value <= 0 ? 0 : value >= (float)most ? most : (int)value;
 }
 
+// The columns of a row in which a ramp may be above zero: narrows [*from, *to), a column to spare.
+static void narrow(ramp r, float y, int *from, int *to)
+{
+    float value = ramp_at(r, 0.5F, y); // in column 0
+    if (r.right > 0) {
+        int first = bounded(-value / r.right - 1, *to);
+        *from = first > *from ? first : *from;
+    } else if (r.right < 0) {
+        int end = bounded(-value / r.right + 3, *to);
+        *to = end < *to ? end : *to;
+    } else if (value < 0) {
+        *to = *from;
+    }
+}
+
 // Fills the samples whose centres lie in the triangle and nearer than what is there.
 static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_vertex *const v[3])
 {
@@ -272,9 +287,15 @@ static void fill_triangle(scene_painter *p, const flat_triangle *t, const gl_ver
     int right = bounded(fmaxf(t->x[0], fmaxf(t->x[1], t->x[2])) + 1, width);
 
     for (int row = top; row < bottom; row++) {
-        ptrdiff_t at = (ptrdiff_t)row * width + left;
+        // of these only what may be inside
         float y = (float)row + 0.5F;
-        for (int column = left; column < right; column++, at++) {
+        int from = left, to = right;
+        for (int k = 0; k < 3; k++) {
+            narrow(share[k], y, &from, &to);
+        }
+
+        ptrdiff_t at = (ptrdiff_t)row * width + from;
+        for (int column = from; column < to; column++, at++) {
             // inside, and nearer than what is there
             float x = (float)column + 0.5F, z = ramp_at(depth, x, y);
             if (ramp_at(share[0], x, y) >= 0 && ramp_at(share[1], x, y) >= 0 &&
@@ -335,13 +356,13 @@ static void paint_triangles(scene_painter *p, const mesh *m)
 // Two of a pixel's four channels, with room for sums.
 #define PAIR 0x00FF00FFU
 
-// The mean of a pixel's samples, as much of it as the opacity [1/256] lets through.
-static uint32_t mean_of(const scene_painter *p, const uint32_t *first, ptrdiff_t across,
-                        uint32_t opacity)
+// The mean of a pixel's samples x samples, as much of it as the opacity [1/256] lets through.
+static inline uint32_t mean_of(int samples, const uint32_t *first, ptrdiff_t across,
+                               uint32_t opacity)
 {
-    uint32_t even = 0, odd = 0, count = (uint32_t)(p->samples * p->samples);
-    for (int row = 0; row < p->samples; row++) {
-        for (int column = 0; column < p->samples; column++) {
+    uint32_t even = 0, odd = 0, count = (uint32_t)(samples * samples);
+    for (int row = 0; row < samples; row++) {
+        for (int column = 0; column < samples; column++) {
             uint32_t one = first[row * across + column];
             even += one & PAIR;
             odd += one >> 8 & PAIR;
@@ -357,6 +378,12 @@ static uint32_t mean_of(const scene_painter *p, const uint32_t *first, ptrdiff_t
         mean |= (channels[i] * opacity + 128 * count) / (256 * count) << (8 * i);
     }
     return mean;
+}
+
+// The same with a number of samples that the compiler knows: twice as fast.
+static uint32_t mean_of_fine(const uint32_t *first, ptrdiff_t across, uint32_t opacity)
+{
+    return mean_of(SAMPLES_FINE, first, across, opacity);
 }
 
 // A colour, opacity multiplied in, over another one.
@@ -397,7 +424,10 @@ static void lay_tile(const scene_painter *p, const sampled_region *from, gl_regi
                                   p->samples * (tile.y + row - from->pixels.y) * from->across +
                                   (ptrdiff_t)p->samples * (tile.x - from->pixels.x);
         for (int i = 0; i < tile.width; i++) {
-            uint32_t mean = mean_of(p, samples + (ptrdiff_t)p->samples * i, from->across, opacity);
+            const uint32_t *first = samples + (ptrdiff_t)p->samples * i;
+            uint32_t mean = p->samples == SAMPLES_FINE
+                                ? mean_of_fine(first, from->across, opacity)
+                                : mean_of(p->samples, first, from->across, opacity);
             to[i] = mean != 0 ? over(mean, to[i]) : to[i];
         }
     }

@@ -497,6 +497,13 @@ static void draw_flashes(scene *sc, const labels *l, double time)
     }
 }
 
+// Of letters and lines: 1 for a picture 720 pixels high.
+static double letter_scale(const scene *sc)
+{
+    return sc->options.letters > 0 ? sc->options.letters
+                                   : fmin(sc->camera.height / 720, sc->camera.width / 800);
+}
+
 static void draw_labels(scene *sc, const double *times, const colour *inks, int count,
                         cairo_surface_t *onto)
 {
@@ -505,7 +512,7 @@ static void draw_labels(scene *sc, const double *times, const colour *inks, int 
                 .camera = &sc->camera,
                 .strong = sc->around->strong,
                 .faint = sc->around->faint,
-                .scale = fmin(sc->camera.height / 720, sc->camera.width / 800)};
+                .scale = letter_scale(sc)};
     double time = times[count - 1];
     vector start, end;
     draw_flashes(sc, &l, time);
@@ -569,7 +576,7 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
                     .camera = &sc->camera,
                     .strong = sc->around->strong,
                     .faint = sc->around->faint,
-                    .scale = fmin(sc->camera.height / 720, sc->camera.width / 800)};
+                    .scale = letter_scale(sc)};
         cairo_set_source_surface(l.cr, view, left, margin);
         cairo_paint(l.cr);
         set_colour(l.cr, sc->around->faint);

@@ -19,6 +19,7 @@ typedef struct scene_options {
     int samples;        // of a pixel along each edge; 0: SAMPLES_FINE
     bool plain;         // no text
     bool keyless;       // no key of the instants
+    double letters;     // scale of letters, 1 for a picture 720 pixels high; 0: by its size
     double exaggerate;  // bending is drawn that many times as large, and this is said; 0: as it is
     bool inset;         // the contact from near by in a corner
     figure_theme theme; // THEME_DARK, else light
