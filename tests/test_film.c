@@ -49,7 +49,7 @@ static void test_clock(void **state)
 
 static film_options small_film(void)
 {
-    return (film_options){.view.renderer = RENDER_CAIRO,
+    return (film_options){.view = {.renderer = RENDER_CAIRO, .samples = SAMPLES_QUICK},
                           .width = 320,
                           .height = 240,
                           .frames_per_second = 10,
@@ -142,7 +142,6 @@ static void test_threads(void **state)
             film_options options = small_film();
             fault f = {0};
             options.threads = threads;
-            options.view.samples = SAMPLES_QUICK;
             if (film_write(runs, k == 0 ? 1 : 3, &options, in_folder(names[k][threads - 1]), &f) !=
                 STATUS_OK) {
                 fail_msg("%s", f.text);
