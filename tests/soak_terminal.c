@@ -61,8 +61,8 @@ typedef struct soak {
     char folder[64];
     double *answers; // times that probes took [s]
     size_t answer_count, keys;
-    long drawn;     // pictures
-    double longest; // of the lab's processor that an answer took [s]
+    long drawn;          // pictures
+    double longest;      // of the lab's processor that an answer took [s]
     char last_keys[400]; // what was sent lately
     size_t sent;
 } soak;

@@ -87,7 +87,8 @@ void act_settle_filter(explorer_state *st, panel_id panel)
         return;
     }
 
-    // the selected parameter if it is still there, else the first that has an effect, else the first
+    // the selected parameter if it is still there, else the first that has an effect, else the
+    // first
     const int count = state_parameter_lines(st, lines);
     const parameter_list *list = &st->parameters;
     const int selected = parameter_list_selected(list, lines, count);
