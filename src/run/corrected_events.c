@@ -163,9 +163,13 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
         failed = rig_retune(r->rig, &r->now, c->motion->state[SLOT_TIME], f);
     }
 
-    // the motion goes on with the arm that is bound anew
+    // the motion goes on with the arm that is bound anew; a voltage changes nothing but its torque
     arm before = c->arm;
-    corrected_bind_arm(c);
+    if (todo->parameter != PARAMETER_INDEX(motor.voltage)) {
+        corrected_bind_arm(c);
+    } else if (r->rig == NULL) {
+        arm_set_voltage(&c->arm, r->now.motor.voltage);
+    }
     motion_rebind(&before, &c->arm, c->motion);
     return failed;
 }
