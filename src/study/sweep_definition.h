@@ -2,6 +2,7 @@
 // database of an equal definition only.
 #pragma once
 
+#include "src/base/sha256.h"
 #include "src/study/sweep_database.h"
 
 typedef struct definition_line {
@@ -19,6 +20,9 @@ typedef struct definition {
 // parameter and the script. definition_finish in any case; out_of_memory says if it is incomplete.
 void definition_init(definition *d, const sweep *s);
 void definition_finish(definition *d);
+
+// A text that two definitions share only if they are equal (SHA-256 of their lines).
+void definition_digest(const definition *d, char digest[SHA256_TEXT]);
 
 // Reads the definition that the database holds, with the same remarks.
 status definition_read(sweep_store *store, definition *d, fault *f);

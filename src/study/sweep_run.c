@@ -8,9 +8,13 @@
 
 #include "src/base/clock.h"
 #include "src/run/run.h"
+#include "src/study/pool_ranks.h"
+#include "src/study/sweep_definition.h"
 #include "src/study/sweep_rows.h"
 
 #define COMMIT_INTERVAL 0.5 // [s]
+
+enum { PIECES_A_RANK = 4 }; // at least, so that a slow rank holds nobody up
 
 // A sweep being computed; all but what is to be computed, and how, is the calling thread's.
 typedef struct sweep_execution {
@@ -18,9 +22,10 @@ typedef struct sweep_execution {
     sweep_store *store;
     const sweep_options *options;
     sweep_progress *progress;
-    size_t *wanted;          // the runs that are missing, in order
-    size_t count, together;  // of them; so many make a piece of work
-    double start, committed; // instants by the clock [s]
+    size_t *wanted;               // the runs that are missing, in order; of several ranks all runs
+    size_t count, together;       // of them; so many make a piece of work
+    const unsigned char *present; // runs that are not to be stored
+    double start, committed;      // instants by the clock [s]
 } sweep_execution;
 
 // What a thread needs for a piece.
@@ -80,6 +85,7 @@ static void compute_piece(void *context, size_t piece, void *scratch, void *resu
     for (size_t i = 0; i < length; i++) {
         summaries[i].cpu_time_s = cpu / (double)length;
         summaries[i].wall_time_s = wall / (double)length;
+        summaries[i].path = NULL; // nobody reads it, and it means nothing to another process
     }
 }
 
@@ -106,7 +112,8 @@ static status store_piece(void *context, size_t piece, const void *result, fault
     const summary *summaries = result;
     status code = STATUS_OK;
     for (size_t i = 0; i < piece_length(e, piece) && code == STATUS_OK; i++) {
-        code = store_run(e, e->wanted[piece * e->together + i], &summaries[i], f);
+        const size_t run = e->wanted[piece * e->together + i];
+        code = e->present[run] ? STATUS_OK : store_run(e, run, &summaries[i], f);
     }
     return code;
 }
@@ -180,21 +187,46 @@ static size_t choose_together(const sweep_execution *e, int jobs)
     return share < 1 ? 1 : share < most ? share : most;
 }
 
+// Computes with other processes. They know nothing of what is stored, so a piece is the same runs
+// for all of them, and rank 0 leaves out those that are there as a whole.
+static status compute_on_ranks(sweep_execution *e, const pool_work *work, fault *f)
+{
+    definition d;
+    char digest[SHA256_TEXT];
+    unsigned char *done = calloc(work->count + 1, sizeof *done);
+    definition_init(&d, e->sweep);
+    status code = d.out_of_memory || done == NULL ? fault_no_memory(f) : STATUS_OK;
+    if (code == STATUS_OK) {
+        for (size_t piece = 0; piece < work->count; piece++) {
+            const unsigned char *first = e->present + piece * e->together;
+            done[piece] = memchr(first, 0, piece_length(e, piece)) == NULL;
+        }
+        definition_digest(&d, digest);
+        code = pool_run_on_ranks(work, done, e->options->ranks, digest, f);
+    }
+    definition_finish(&d);
+    free(done);
+    return code;
+}
+
 // Computes what is not present.
 static status run_missing(sweep_execution *e, const unsigned char *present, fault *f)
 {
+    const rank_group *ranks = e->options->ranks;
+    const bool shared = ranks != NULL && ranks->count > 1;
+    e->present = present;
     e->wanted = malloc((e->sweep->run_count + 1) * sizeof *e->wanted);
     if (e->wanted == NULL) {
         return fault_no_memory(f);
     }
     for (size_t run = 0; run < e->sweep->run_count; run++) {
-        if (!present[run]) {
+        if (shared || !present[run]) {
             e->wanted[e->count++] = run;
         }
     }
 
-    // no more threads than pieces
-    e->together = choose_together(e, e->options->jobs);
+    // enough pieces for everybody
+    e->together = choose_together(e, shared ? PIECES_A_RANK * ranks->count : e->options->jobs);
     const size_t pieces = (e->count + e->together - 1) / e->together;
     const pool_work work = {.context = e,
                             .count = pieces,
@@ -204,8 +236,11 @@ static status run_missing(sweep_execution *e, const unsigned char *present, faul
                             .collect = store_piece,
                             .tick = commit_and_report,
                             .stop = e->options->stop};
+
+    // no more threads than pieces
     const int jobs = pieces < (size_t)e->options->jobs ? (int)pieces : e->options->jobs;
-    const status code = pool_run(&work, jobs > 0 ? jobs : 1, f);
+    const status code =
+        shared ? compute_on_ranks(e, &work, f) : pool_run(&work, jobs > 0 ? jobs : 1, f);
     free(e->wanted);
     return code;
 }

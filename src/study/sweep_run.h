@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/study/pool.h"
+#include "src/study/ranks.h"
 #include "src/study/sweep.h"
 #include "src/study/sweep_store.h"
 
@@ -23,6 +24,7 @@ typedef struct sweep_share {
 typedef struct sweep_options {
     sweep_share share;
     int jobs;                          // threads that compute, 1 ... SWEEP_MOST_JOBS
+    const rank_group *ranks;           // that compute together instead, NULL or one: only this one
     const volatile sig_atomic_t *stop; // becomes true to end early; NULL if nothing does
     void (*report)(void *context, const sweep_progress *p); // about ten times a second, or NULL
     void *context;

@@ -11,6 +11,7 @@
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_BAD_ARGUMENTS = 2 };
 
+struct rank_group;
 typedef struct command command;
 
 // What stood on the command line after the command's name, checked by the rows of its options.
@@ -22,20 +23,21 @@ typedef struct arguments {
     bool quiet;
 
     // what is run
-    text_list sets;                // --set
-    bool allow_code;               // --allow-code
-    text_list varies;              // --vary
-    text_list besides;             // --beside
-    const char *sampling;          // --sample, NULL: grid
-    uint64_t runs, seed;           // --runs (0 if not given), --seed
-    uint64_t jobs;                 // runs at a time, 0 if not given
-    const char *part;              // --part, "K/N"
-    const char *quantity;          // --quantity, a key
-    const char *only, *baseline;   // of bench
-    const char *against, *columns; // of compare
-    double tolerance;              // of compare [%]
-    const char *laws, *over;       // of robust
-    const char *then;              // of predict, "TIME:VOLTS,..."
+    text_list sets;                 // --set
+    bool allow_code;                // --allow-code
+    text_list varies;               // --vary
+    text_list besides;              // --beside
+    const char *sampling;           // --sample, NULL: grid
+    uint64_t runs, seed;            // --runs (0 if not given), --seed
+    uint64_t jobs;                  // runs at a time, 0 if not given
+    const struct rank_group *ranks; // that share the runs, NULL if this is the only process
+    const char *part;               // --part, "K/N"
+    const char *quantity;           // --quantity, a key
+    const char *only, *baseline;    // of bench
+    const char *against, *columns;  // of compare
+    double tolerance;               // of compare [%]
+    const char *laws, *over;        // of robust
+    const char *then;               // of predict, "TIME:VOLTS,..."
 
     // where results go
     const char *json, *csv, *plot, *scene, *output, *db, *markdown, *format;
@@ -95,6 +97,7 @@ struct command {
     // other words an operand may be: the i-th, NULL behind the last; NULL if there are none
     const char *(*operand_word)(int i);
     const option_table *options[COMMAND_TABLES]; // ends with NULL; --help is every command's
+    bool on_ranks;                               // every rank runs it (a.ranks), not only rank 0
     int (*run)(const arguments *a);              // returns the exit status
 };
 

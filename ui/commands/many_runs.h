@@ -9,6 +9,9 @@
 // Threads that --jobs asks for, or as many as there are processors.
 int many_runs_jobs(const arguments *a);
 
+// Whether this process only computes runs for rank 0, which keeps and tells them.
+bool many_runs_only_computes(const arguments *a);
+
 // From now on SIGINT and SIGTERM let the runs in hand finish. Returns what becomes true then; a
 // second signal, a second or more later, ends the program.
 const volatile sig_atomic_t *many_runs_catch_signals(void);

@@ -1,0 +1,88 @@
+// impactlab-mpi: the same program as one of several processes that MPI has started.
+#include <mpi.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "src/base/clock.h"
+#include "ui/program.h"
+
+#define NAP_US 500 // between two looks for a message [us]
+
+enum { TAG = 1, LOOKS = 5 }; // looks before the first nap
+
+// MPI's own waiting would keep a processor busy that others compute on: what has to be waited for
+// is looked for again and again, with naps after the first few looks.
+static void nap(int looks)
+{
+    if (looks >= LOOKS) {
+        usleep(NAP_US);
+    }
+}
+
+static void send_message(void *context, int to, const void *bytes, size_t size)
+{
+    int sent = 0;
+    MPI_Request request;
+    (void)context;
+    MPI_Isend(bytes, (int)size, MPI_BYTE, to, TAG, MPI_COMM_WORLD, &request);
+    for (int looks = 0; !sent; looks++) {
+        MPI_Test(&request, &sent, MPI_STATUS_IGNORE);
+        if (!sent) {
+            nap(looks);
+        }
+    }
+}
+
+static bool wait_for_message(void *context, double seconds, int *from, size_t *size)
+{
+    const double until = clock_seconds(CLOCK_MONOTONIC) + seconds;
+    (void)context;
+    for (int looks = 0;; looks++) {
+        int there = 0, bytes;
+        MPI_Status what;
+        MPI_Iprobe(MPI_ANY_SOURCE, TAG, MPI_COMM_WORLD, &there, &what);
+        if (there) {
+            MPI_Get_count(&what, MPI_BYTE, &bytes);
+            *from = what.MPI_SOURCE;
+            *size = (size_t)bytes;
+            return true;
+        }
+        if (seconds == 0 || clock_seconds(CLOCK_MONOTONIC) >= until) {
+            return false;
+        }
+        nap(looks);
+    }
+}
+
+static void receive_message(void *context, int from, void *bytes, size_t size)
+{
+    (void)context;
+    MPI_Recv(bytes, (int)size, MPI_BYTE, from, TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+}
+
+int main(int argc, char **argv)
+{
+    bool dismissed = false;
+    int gone = 0;
+    rank_group group = {.send = send_message,
+                        .wait = wait_for_message,
+                        .receive = receive_message,
+                        .dismissed = &dismissed,
+                        .gone = &gone};
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &group.rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &group.count);
+
+    // what goes wrong for everybody is told once
+    if (group.rank > 0 &&
+        (freopen("/dev/null", "w", stdout) == NULL || freopen("/dev/null", "w", stderr) == NULL)) {
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+
+    int result = program_run(argc, argv, group.count > 1 ? &group : NULL);
+    if (group.count > 1) {
+        ranks_part(&group);
+    }
+    MPI_Finalize();
+    return group.rank == 0 ? result : 0;
+}

@@ -1,0 +1,204 @@
+// impactlab on the command line: finds the command and hands over to it.
+#include "ui/program.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <locale.h>
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "render/page/text.h"
+#include "src/base/json.h"
+#include "src/base/whole_file.h"
+#include "src/base/version.h"
+#include "ui/commands/command.h"
+#include "ui/terminal/terminal.h"
+
+// Without a command: what there is to run, and how.
+static int print_welcome(void)
+{
+    const command *list = command_find("list");
+    const arguments none = {.command = list};
+    assert(list != NULL);
+    printf("impactlab %s: impact and force control of a flexible robot arm\n\nScenarios:\n",
+           lab_version());
+    int result = list->run(&none);
+    printf("\nRun one:        impactlab run SCENARIO\n"
+           "Its parameters: impactlab show SCENARIO\n"
+           "All commands:   impactlab --help\n");
+    return result;
+}
+
+// Whether a word is "--NAME" or "--NAME=VALUE".
+static bool is_called(const char *name, const char *word)
+{
+    size_t length = strlen(name);
+    return strncmp(word + 2, name, length) == 0 &&
+           (word[2 + length] == '\0' || word[2 + length] == '=');
+}
+
+// The lab's own options may stand without a command.
+static bool is_lab_option(const char *word)
+{
+    const option_row *o;
+    if (strncmp(word, "--", 2) != 0) {
+        return false;
+    }
+    for (int i = 0; (o = command_option(&lab_command, i)) != NULL; i++) {
+        bool named = is_called(o->name, word) || (o->alias != NULL && is_called(o->alias, word));
+        if (named && o != help_options.rows) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Reads what follows the command's name argv[0] and runs it. Returns the exit status.
+static int run_command(const command *c, int argc, char **argv, const rank_group *ranks)
+{
+    arguments a;
+    int result;
+
+    // of several ranks all run what they can share, and the first one the rest
+    if (ranks != NULL && ranks->rank > 0 && !c->on_ranks) {
+        return EXIT_DONE;
+    }
+    if (!arguments_read(&a, c, argc, argv, &result)) {
+        return result;
+    }
+    a.ranks = ranks;
+    result = check_results(&a);
+    if (result == EXIT_DONE) {
+        result = c->run(&a);
+    }
+    arguments_finish(&a);
+    return result;
+}
+
+// Runs the command that argv asks for. Returns the exit status.
+static int dispatch(int argc, char **argv, const rank_group *ranks)
+{
+    fault f = {0};
+    const char *word = argc > 1 ? argv[1] : NULL;
+
+    // without a command, or with options of its own, it is the lab
+    if (word == NULL) {
+        char *call[] = {"lab", NULL};
+        return terminal_usable(&f) ? run_command(&lab_command, 1, call, ranks) : print_welcome();
+    }
+    if (is_lab_option(word)) {
+        return run_command(&lab_command, argc, argv, ranks);
+    }
+
+    // what is asked of the program as a whole
+    if (strcmp(word, "--version") == 0) {
+        printf("impactlab %s\n", lab_version());
+        return EXIT_DONE;
+    }
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
+        print_commands(stdout);
+        return EXIT_DONE;
+    }
+    const command *found = command_find(word);
+    return found != NULL ? run_command(found, argc - 1, argv + 1, ranks) : complain_command(word);
+}
+
+// What was printed must have arrived, unless its reader went away first (impactlab list | head).
+static int close_output(int result)
+{
+    int reason = stream_failure(stdout);
+    if (reason == 0 || reason == EPIPE || result != EXIT_DONE) {
+        return result;
+    }
+    complain("the standard output cannot be written: %s", strerror(reason));
+    return EXIT_FAILED;
+}
+
+// A signal that ends the program leaves no half-written file behind.
+static void end_cleanly(int number)
+{
+    whole_file_remove_unfinished();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+// GLib found no memory for a picture: our sentence, no half-written file, no signal.
+static void end_without_memory(const char *reason)
+{
+    whole_file_remove_unfinished();
+    complain("out of memory for a picture: %s", reason);
+    _exit(EXIT_FAILED);
+}
+
+// A crash: no half-written file, and a sentence. In the font libraries it is for want of memory,
+// which is no fault of ours and ends the program as everywhere else.
+static void end_crashed(int number)
+{
+    static const char fonts[] =
+        "impactlab: the font library crashed, as it does where it finds no memory\n";
+    static const char own[] = "impactlab: crashed, for want of memory in a library or by a "
+                              "fault of its own; no half-written file is left\n";
+    const bool in_fonts = text_in_fonts();
+    ssize_t ignored = in_fonts ? write(STDERR_FILENO, fonts, sizeof fonts - 1)
+                               : write(STDERR_FILENO, own, sizeof own - 1);
+    (void)ignored;
+    if (in_fonts) {
+        whole_file_remove_unfinished();
+        _exit(EXIT_FAILED);
+    }
+    end_cleanly(number);
+}
+
+static void catch_endings(void)
+{
+    static const int crashes[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP};
+    for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++) {
+        struct sigaction before;
+        struct sigaction wanted = {.sa_handler = end_crashed};
+        // a sanitizer or a debugger may have handlers of its own
+        if (sigaction(crashes[i], NULL, &before) == 0 && before.sa_handler == SIG_DFL) {
+            sigaction(crashes[i], &wanted, NULL);
+        }
+    }
+
+    static const int endings[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        struct sigaction before;
+        struct sigaction wanted = {.sa_handler = end_cleanly};
+        // nohup and shells' background jobs ask for a signal to be ignored
+        if (sigaction(endings[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+            sigaction(endings[i], &wanted, NULL);
+        }
+    }
+}
+
+// Standard descriptors that whoever started the program left closed become /dev/null, or else the
+// first file opened would take their number and what is printed would end in it.
+static bool open_missing_descriptors(void)
+{
+    int opened;
+    do {
+        opened = open("/dev/null", O_RDWR);
+    } while (opened >= 0 && opened <= STDERR_FILENO);
+    return opened >= 0 && close(opened) == 0;
+}
+
+int program_run(int argc, char **argv, const rank_group *ranks)
+{
+    if (!open_missing_descriptors()) {
+        complain("/dev/null cannot be opened: %s", strerror(errno));
+        return EXIT_FAILED;
+    }
+
+    // numbers keep their decimal point: only the character set follows the locale
+    setlocale(LC_CTYPE, "");
+    // a write that fails is reported where it is made, not by a signal
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+    catch_endings();
+    json_watch_memory();
+    text_when_giving_up(end_without_memory);
+    return close_output(dispatch(argc, argv, ranks));
+}
