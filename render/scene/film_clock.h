@@ -21,8 +21,8 @@ typedef struct film_clock {
 // begin of contact counts.
 film_clock film_clock_of(const run_result *const *results, int count, double seconds, double slow);
 
-// The same for a time from `start` to `end` [s] and what happens at an instant of it [s]; the film's
-// length is left open.
+// The same for a time from `start` to `end` [s] and what happens at an instant of it [s]; the
+// film's length is left open.
 film_clock film_clock_round(double start, double end, double instant, double slow);
 
 // How many times slower the run goes at an instant [s] than where it is not slowed down: between,
