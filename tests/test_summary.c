@@ -20,7 +20,7 @@ static void every_key_is_unique_and_found(void **state)
     assert_null(summary_suggest("xyzzy"));
 }
 
-// "contact_impulse_Ns" is "contact_impulse" in "N s".
+// "contact_impulse_Ns" is "contact_impulse" in "N s", "return_speed_m_s" one in "m/s".
 static void keys_are_names_with_units(void **state)
 {
     (void)state;
@@ -28,7 +28,7 @@ static void keys_are_names_with_units(void **state)
         const summary_info *info = &summary_table[i];
         char key[64], label[64], unit[16] = "";
         for (const char *c = info->unit; *c != '\0'; c++) {
-            strncat(unit, *c == ' ' ? "" : c, 1);
+            strncat(unit, *c == ' ' ? "" : *c == '/' ? "_" : c, 1);
         }
         snprintf(key, sizeof key, "%s%s%s", info->name, unit[0] != '\0' ? "_" : "",
                  strcmp(unit, "%") == 0 ? "percent" : unit);
