@@ -52,11 +52,12 @@ typedef struct arm {
 } arm;
 
 // Whether the arm is equal bare links with equal linear joints, damped in proportion to their
-// stiffness or not: what the equations of special engines and predictors are for.
+// stiffness or not, with a motor whose current follows at once: what the equations of special
+// engines and predictors are for.
 static inline bool arm_is_plain(const arm *a)
 {
     return a->tip_mass == 0 && !a->uneven && a->stiffening == 0 && a->air_drag == 0 &&
-           a->damped_modes == 0;
+           a->damped_modes == 0 && !a->motor.electric;
 }
 
 // Length [m], mass [kg] and moment of inertia about the centre of mass [kg m2] of link k, and

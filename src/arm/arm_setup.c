@@ -81,6 +81,7 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
 
     // nothing but masses and springs, or dampers
     arm a = *source;
+    a.motor.electric = false;
     a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping = a.hub_joint_damping = 0;
     memset(a.each.damping, 0, sizeof a.each.damping);
     a.stiffening = a.air_drag = 0;
@@ -143,7 +144,15 @@ static double fastest_decay(const arm *a)
     if (a->damped_modes > 0) {
         decay = fmax(decay, 1.05 * largest_eigenvalue(a, true));
     }
-    return fmax(decay, hub > 0 ? a->motor.damping / hub : 0);
+
+    // the motor brakes by back EMF as fast as its current follows
+    const motor_model *motor = &a->motor;
+    double braking = motor->damping;
+    if (motor->electric) {
+        braking += motor->torque_constant * motor->back_emf / motor->resistance;
+        decay = motor->inductance > 0 ? fmax(decay, motor->resistance / motor->inductance) : decay;
+    }
+    return fmax(decay, hub > 0 ? braking / hub : 0);
 }
 
 // Links and joints one by one, where lists make them differ; equal ones are a chain like any other.
@@ -215,4 +224,7 @@ void arm_init(arm *a, const parameters *p)
     a->highest_frequency = highest_frequency(a);
     a->fastest_decay = fastest_decay(a);
     a->fastest_rate = fmax(a->highest_frequency, DECAY_WEIGHT * a->fastest_decay);
+    if (a->motor.inductance > 0) { // the current is no decay to be passed over
+        a->fastest_rate = fmax(a->fastest_rate, a->motor.resistance / a->motor.inductance);
+    }
 }

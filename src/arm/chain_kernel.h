@@ -89,6 +89,11 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     // motor, damping and sliding friction at the hub
     const double sliding = held ? 0 : -mode.friction * a->motor.stiction;
     double hub = a->motor.torque - a->motor.damping * w[0] + sliding;
+    double motor_torque = 0;
+    if (loaded && a->motor.electric) {
+        motor_torque = a->motor.torque_constant * motor_current(&a->motor, mode.current, w[0]);
+        hub += motor_torque;
+    }
     double hub_joint = 0, damping_power = 0, modal[PARAMETER_MODES_MOST];
     if (loaded) {
         damping_power = chain_modal_rates(a, w, modal);
@@ -258,6 +263,7 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     reaction->viscous_power = a->motor.damping * w[0] * w[0];
     reaction->damping_power = damping_power;
     reaction->wall_power = wall_power;
+    reaction->motor_torque = motor_torque;
 }
 
 // The same for equal bare links, on a rigid wall.

@@ -18,7 +18,8 @@ typedef enum hub_friction { HUB_STICK = 0, HUB_FORWARD = 1, HUB_BACKWARD = -1 } 
 typedef struct contact_state {
     bool contact;
     hub_friction friction;
-    bool parted; // the arm is still within a wall that gives, whose face no longer follows
+    bool parted;    // the arm is still within a wall that gives, whose face no longer follows
+    double current; // of a motor whose current is a state of its own [A]
 } contact_state;
 
 typedef struct chain_reaction {
@@ -29,4 +30,5 @@ typedef struct chain_reaction {
     double viscous_power;     // lost to back EMF and viscous friction [W]
     double damping_power;     // lost in the springs' structural damping [W]
     double wall_power;        // lost in a wall that gives [W]
+    double motor_torque;      // of the current of an electric drive, else 0 [N m]
 } chain_reaction;

@@ -41,11 +41,19 @@ double motor_damping(const motor_parameters *p)
     return p->viscous_friction + p->torque_constant * p->back_emf / p->resistance;
 }
 
+static bool is_electric(const motor_parameters *p)
+{
+    return p->drive == DRIVE_VOLTAGE && (p->inductance > 0 || p->current_limit > 0);
+}
+
 double motor_electrical_energy(const motor_parameters *p, double volts, double duration,
                                double turn)
 {
     assert(p != NULL);
     double command = motor_limited_voltage(p, volts);
+    if (is_electric(p)) {
+        return (double)NAN;
+    }
     if (p->drive == DRIVE_CURRENT) {
         // heat of the current, and its work against back EMF
         double current = p->transconductance * command;
@@ -62,6 +70,17 @@ void motor_init(motor_model *m, const motor_parameters *p)
                        .torque_per_volt = motor_torque_per_volt(p),
                        .damping = motor_damping(p),
                        .stiction = p->stiction};
+    if (is_electric(p)) {
+        m->electric = true;
+        m->torque_per_volt = 0;
+        m->damping = p->viscous_friction;
+        m->gain = p->amplifier_gain;
+        m->torque_constant = p->torque_constant;
+        m->back_emf = p->back_emf;
+        m->resistance = p->resistance;
+        m->inductance = p->inductance;
+        m->current_limit = p->current_limit > 0 ? p->current_limit : HUGE_VAL;
+    }
     motor_set_voltage(m, p->voltage);
 }
 

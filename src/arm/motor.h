@@ -12,10 +12,20 @@
 //
 // and its limit of current is one of the command.
 //
+// With the armature's inductance L the current is a state of its own,
+//
+//     L di/dt = gain u - Ra i - kB w,      torque = kT i - kfr w - Coulomb friction,
+//
+// and where an amplifier of voltage limits the current, i stays within the limit either way:
+// without inductance it is (gain u - kB w)/Ra cut there. Such a drive is called electric here; its
+// constants `torque` and `damping` hold nothing of the current.
+//
 // `motor.voltage` among the parameters is the command of an arm without a controller, and the one
 // every arm starts with. The command in force is `voltage` here: a controller changes it from
 // sample to sample, and leaves the parameter alone.
 #pragma once
+
+#include <math.h>
 
 #include "src/quantities/parameters.h"
 
@@ -26,7 +36,34 @@ typedef struct motor_model {
     double stiction;        // Coulomb friction torque, kst [N m]
     double voltage;         // command in force, as the converter limits it [V]
     double torque;          // that it gives before back EMF and friction [N m]
+    bool electric;          // the current is followed: the rest is of such a drive
+    double gain;            // of the amplifier [-]
+    double torque_constant; // kT [N m/A]
+    double back_emf;        // kB [V s/rad]
+    double resistance;      // Ra [ohm]
+    double inductance;      // L, 0: the current follows at once [H]
+    double current_limit;   // HUGE_VAL: none [A]
 } motor_model;
+
+// Current [A] of an electric drive at the hub's velocity w [rad/s]; `state` is the current where it
+// is a state of its own.
+static inline double motor_current(const motor_model *m, double state, double w)
+{
+    double current =
+        m->inductance > 0 ? state : (m->gain * m->voltage - m->back_emf * w) / m->resistance;
+    return fmax(-m->current_limit, fmin(current, m->current_limit));
+}
+
+// Rate of that state [A/s]; none at the limit, as long as the voltage would drive it beyond.
+static inline double motor_current_rate(const motor_model *m, double state, double w)
+{
+    if (m->inductance == 0) {
+        return 0;
+    }
+    const double rate =
+        (m->gain * m->voltage - m->resistance * state - m->back_emf * w) / m->inductance;
+    return fabs(state) >= m->current_limit && rate * state > 0 ? 0 : rate;
+}
 
 // Derives the constants from resolved parameters; the command is `motor.voltage`.
 void motor_init(motor_model *m, const motor_parameters *p);
@@ -49,6 +86,7 @@ double motor_damping(const motor_parameters *p);
 
 // What the amplifier feeds into the motor [J] while a command [V] is in force for `duration` [s]
 // and the hub turns by `turn` [rad]: the integral of V (V - kB w) / Ra, V = gain x limited command;
-// of a current drive that of i (Ra i + kB w).
+// of a current drive that of i (Ra i + kB w). NaN of an electric drive, whose current these do not
+// say.
 double motor_electrical_energy(const motor_parameters *p, double volts, double duration,
                                double turn);

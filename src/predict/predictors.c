@@ -100,6 +100,12 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     const three_body_state *s = &question->bodies;
     status code = STATUS_OK;
 
+    if (p->motor.inductance > 0 ||
+        (which != PREDICTOR_LINEARISED && p->motor.drive == DRIVE_VOLTAGE &&
+         p->motor.current_limit > 0)) {
+        return PREDICTION_CURRENT_AT_ONCE_ONLY;
+    }
+
     // the thesis's begin with an impact of two bare links
     if (which != PREDICTOR_LINEARISED && p->wall.contact != WALL_RIGID) {
         return PREDICTION_RIGID_WALL_ONLY;

@@ -29,6 +29,7 @@ typedef enum predictor {
     X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                                         \
     X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                             \
     X(PREDICTION_EQUAL_LINKS_ONLY, "for equal links with equal linear joints only")                \
+    X(PREDICTION_CURRENT_AT_ONCE_ONLY, "for a motor whose current follows at once only")           \
     X(PREDICTION_KNOWS_NO_TIME, "knows no time over which a voltage could act")                    \
     X(PREDICTION_LINKS_UNKNOWN, "the state of all links is not known")                             \
     X(PREDICTION_FAILED, "there is no prediction")

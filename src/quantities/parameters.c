@@ -88,6 +88,8 @@ const parameter_info parameter_table[] = {
      MEANING("back electromotive force (kB)")},
     {PATH(motor.resistance), REAL("ohm", 1e-3, 1e6), DEFAULT(33.6),
      MEANING("armature resistance (Ra)")},
+    {PATH(motor.inductance), REAL("H", 0, 1000), DEFAULT(0),
+     MEANING("armature inductance (motor.drive = voltage); 0: the current follows at once")},
     {PATH(motor.viscous_friction), REAL("N m s/rad", 0, 1000), DEFAULT(5.4192e-3), TIMED,
      MEANING("viscous friction at the hub (kfr)")},
     {PATH(motor.stiction), REAL("N m", 0, 1000), DEFAULT(0.045), TIMED,
@@ -99,7 +101,7 @@ const parameter_info parameter_table[] = {
      MEANING("current per volt of command (motor.drive = current), amplifier_gain/resistance if "
              "not given: the same torque at rest")},
     {PATH(motor.current_limit), REAL("A", 0, 1e6), DEFAULT(0),
-     MEANING("largest current either way (motor.drive = current); 0: none")},
+     MEANING("largest current that the amplifier gives either way; 0: none")},
 
     {PATH(wall.kind), CHOICE(2, "point|plane|none"), DEFAULT(WALL_POINT),
      MEANING("a fixed point the last link's line may not pass, a flat wall the tip may not pass, "

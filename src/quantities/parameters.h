@@ -57,10 +57,11 @@ typedef struct motor_parameters {
     double voltage_limit;    // largest command the D/A gives [V]
     double amplifier_gain;   // [-]
     double transconductance; // of a current drive, amperes per volt of command [A/V]
-    double current_limit;    // of a current drive, 0: none [A]
+    double current_limit;    // of the amplifier, 0: none [A]
     double torque_constant;  // kT [N m/A]
     double back_emf;         // kB [V s/rad]
     double resistance;       // Ra [ohm]
+    double inductance;       // of the armature, 0: its current follows at once [H]
     double viscous_friction; // kfr [N m s/rad]
     double stiction;         // kst, Coulomb friction torque [N m]
 } motor_parameters;

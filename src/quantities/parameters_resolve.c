@@ -261,15 +261,20 @@ static status resolve_motor(parameters *p, fault *f)
     if (isnan(m->transconductance)) {
         m->transconductance = m->amplifier_gain / m->resistance;
     }
+    const bool electric = m->inductance > 0 || (m->current_limit > 0 && m->drive == DRIVE_VOLTAGE);
+    if (electric && p->method.name != METHOD_EVENT) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME3(p, motor.inductance, motor.current_limit, method.name),
+            "%s runs with method.name = event only",
+            m->inductance > 0 ? "motor.inductance" : "motor.current_limit under a voltage");
+    }
+    if (m->drive == DRIVE_CURRENT && m->inductance > 0) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, motor.inductance, motor.drive),
+                            "motor.inductance is for motor.drive = voltage; an amplifier that "
+                            "holds a current overcomes it");
+    }
     if (m->drive == DRIVE_CURRENT) {
         return STATUS_OK;
-    }
-
-    // under a voltage the current follows from the speed, and a limit on it would have to as well
-    if (m->current_limit > 0) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, motor.current_limit, motor.drive),
-                            "motor.current_limit is for motor.drive = current; under a voltage "
-                            "the current follows from the speed");
     }
     if (IS_SET(p, motor.transconductance)) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, motor.transconductance, motor.drive),

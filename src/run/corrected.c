@@ -241,7 +241,7 @@ void corrected_sum_up(corrected_run *c, status failed)
     summary *s = &r->result->summary;
     s->steps = (double)m->steps;
     s->max_penetration_m = fmax(0, m->largest_penetration);
-    s->motor_work_J = m->state[SLOT_MOTOR_WORK];
+    s->motor_work_J = motion_motor_work(m, m->state);
     if (m->wall_gives) {
         s->wall_loss_J = state_quadratures(m, m->state)[QUADRATURE_WALL];
     }

@@ -24,7 +24,7 @@ status corrected_audit(corrected_run *c)
     double residual = motion_energy_residual(&c->arm, m, m->state);
     s->energy_residual_J = fmax(s->energy_residual_J, fabs(residual));
 
-    double turned_over = fabs(m->state[SLOT_MOTOR_WORK]) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
+    double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
                          m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN + TINY_ENERGY;
     // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
     double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
@@ -62,11 +62,11 @@ sample corrected_row(const corrected_run *c, double *state, double impulse)
         .contact = state[SLOT_CONTACT],
         .sticking = state[SLOT_FRICTION] == HUB_STICK,
         .voltage = a->motor.voltage,
-        .motor_torque = a->motor.torque,
+        .motor_torque = a->motor.torque + state[SLOT_MOTOR_TORQUE],
         .friction_torque = state[SLOT_FRICTION_TORQUE],
         .kinetic_energy = kinetic,
         .strain_energy = strain,
-        .motor_work = state[SLOT_MOTOR_WORK],
+        .motor_work = motion_motor_work(m, state),
         .external_work = state[SLOT_EXTERNAL_WORK],
         .viscous_loss = quadrature[QUADRATURE_VISCOUS],
         .friction_loss = state[SLOT_FRICTION_LOSS],
@@ -270,7 +270,7 @@ status corrected_record_step(corrected_run *c, bool at_event)
     if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
         r->state.separated = step_separated(c);
     }
-    r->state.energy_put_in += fabs(m->state[SLOT_MOTOR_WORK] - m->trial[SLOT_MOTOR_WORK]);
+    r->state.energy_put_in += fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial));
 
     // an arm held still has the energy it had
     status s = motion_held_still(m) ? STATUS_OK : corrected_audit(c);

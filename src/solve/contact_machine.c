@@ -572,7 +572,7 @@ void motion_retorque(const arm *a, motion *m, double before)
     double *state = m->state;
     const bool sticks = contact_state_of(state).friction == HUB_STICK;
     double friction = state[SLOT_FRICTION_TORQUE] - (a->motor.torque - before);
-    if (sticks && m->dof > 1 && fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
+    if (sticks && !m->electric && m->dof > 1 && fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
         state[SLOT_FRICTION_TORQUE] = friction;
         return;
     }

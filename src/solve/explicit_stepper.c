@@ -97,7 +97,9 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
 {
     const int length = 2 * n + QUADRATURE_COUNT;
     const int wanted = loaded ? length : length - (QUADRATURE_COUNT - QUADRATURE_WALL);
-    const contact_state mode = contact_state_of(m->state);
+    const int current = 2 * n + QUADRATURE_CURRENT; // the one that enters the accelerations
+    const int moving = loaded && m->electric ? length : 2 * n;
+    contact_state mode = contact_state_of(m->state);
     const double *y0 = state_angles(m, m->state);
     double *y = state_angles(m, m->trial);
     double *rate = m->stages; // rate[i * length]: derivative of the smooth part in stage i
@@ -110,6 +112,10 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
         rate[i] = y0[n + i];
         rate[n + i] = a0[i];
     }
+    if (loaded) {
+        quadrature[QUADRATURE_CURRENT] = motor_current_rate(&a->motor, y0[current], y0[n]);
+        quadrature[QUADRATURE_MOTOR] = m->state[SLOT_MOTOR_TORQUE] * y0[n];
+    }
     quadrature[QUADRATURE_VISCOUS] = m->state[SLOT_VISCOUS_POWER];
     quadrature[QUADRATURE_DAMPING] = m->state[SLOT_DAMPING_POWER];
     quadrature[QUADRATURE_FORCE] = m->state[SLOT_FORCE];
@@ -118,7 +124,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
 #pragma GCC unroll 12
     for (int stage = 1; stage <= stages; stage++) {
         // the quadratures do not enter the accelerations: only their result is wanted
-        for (int i = 0; i < (stage < stages ? 2 * n : wanted); i++) {
+        for (int i = 0; i < (stage < stages ? moving : wanted); i++) {
             double sum = weights[stage][0] * rate[i];
 #pragma GCC unroll 12
             for (int j = 1; j < stage; j++) {
@@ -132,10 +138,19 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
             break;
         }
         double *k = rate + stage * length;
-        chain_sweep_loaded(a, links, hub_spring, contact, loaded, false, m->links, y, y + n, mode,
-                           k + n, &reaction);
+        mode.current = loaded && m->electric ? y[current] : 0;
+        if (loaded) { // general, and seldom worth its place between the stages
+            chain_accelerations(a, m->links, y, y + n, mode, k + n, &reaction);
+        } else {
+            chain_sweep(a, links, hub_spring, contact, false, m->links, y, y + n, mode, k + n,
+                        &reaction);
+        }
         for (int i = 0; i < n; i++) {
             k[i] = y[n + i];
+        }
+        if (loaded) {
+            k[current] = motor_current_rate(&a->motor, y[current], y[n]);
+            k[2 * n + QUADRATURE_MOTOR] = reaction.motor_torque * y[n];
         }
         k[2 * n + QUADRATURE_VISCOUS] = reaction.viscous_power;
         k[2 * n + QUADRATURE_DAMPING] = reaction.damping_power;
@@ -164,6 +179,10 @@ static status step(const arm *a, motion *m, double h)
         step_by(brief_weights, BRIEF_STAGES, a, m, h);
     } else {
         step_by(long_weights, LONG_STAGES, a, m, h);
+    }
+    if (m->electric) { // what a step that ends at the limit goes beyond it
+        double *current = &state_quadratures(m, m->trial)[QUADRATURE_CURRENT];
+        *current = fmax(-a->motor.current_limit, fmin(*current, a->motor.current_limit));
     }
     motion_evaluate(a, m, m->trial);
     if (m->trial[SLOT_CONTACT] != 0 && !m->wall_gives) {
@@ -223,6 +242,28 @@ static double graded(const arm *a, const motion *m, double rate, double longest)
     return fmin(longest, fmax(GRADING * to_touch, SHORTEST_RESOLUTION / rate));
 }
 
+// How long a step may be for the sake of the current's limit, on either side of which the equations
+// are smooth.
+static double graded_current(const arm *a, const motion *m, double rate, double longest)
+{
+    const motor_model *motor = &a->motor;
+    const double w = state_velocities(m, m->state)[0], al = state_accelerations(m, m->state)[0];
+    const double state = state_quadratures(m, m->state)[QUADRATURE_CURRENT];
+    const double limit = motor->current_limit,
+                 free = motor->gain * motor->voltage - motor->back_emf * w;
+    if (!m->electric || limit == HUGE_VAL) {
+        return longest;
+    }
+
+    // the current without a limit, and how fast it goes there; at the limit the voltage left over
+    const bool held = motor->inductance > 0 && fabs(state) >= limit;
+    const double now = motor->inductance > 0 && !held ? state : free / motor->resistance;
+    const double slope = motor->inductance > 0 && !held ? motor_current_rate(motor, state, w)
+                                                        : -motor->back_emf * al / motor->resistance;
+    const double to_limit = slope != 0 ? fabs((fabs(now) - limit) / slope) : HUGE_VAL;
+    return fmin(longest, fmax(GRADING * to_limit, SHORTEST_RESOLUTION / rate));
+}
+
 // How long the next step may be, and by which form of the method.
 static double begin(const arm *a, motion *m, double remaining, double step_length)
 {
@@ -233,6 +274,7 @@ static double begin(const arm *a, motion *m, double remaining, double step_lengt
     double longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step_length
                                 : step_length / ceil(step_length * rate / EXPLICIT_RESOLUTION);
     longest = pressed ? graded(a, m, rate, longest) : longest;
+    longest = m->electric ? graded_current(a, m, rate, longest) : longest;
 
     // a step that something cuts to half or less, such as the next sample of a controller
     m->brief = remaining < 0.5 * longest && remaining * rate <= BRIEF_RESOLUTION;

@@ -20,6 +20,7 @@
 static void choose_engine(const arm *a, motion *m, const method_parameters *method)
 {
     double rho = method->spectral_radius;
+    m->electric = a->motor.electric;
     m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall);
 
     // how many explicit substeps a step would take
@@ -110,8 +111,11 @@ void motion_destroy(motion *m)
 void motion_evaluate(const arm *a, motion *m, double *state)
 {
     chain_reaction r;
-    chain_accelerations(a, m->links, state_angles(m, state), state_velocities(m, state),
-                        contact_state_of(state), state_accelerations(m, state), &r);
+    contact_state mode = contact_state_of(state);
+    mode.current = state_quadratures(m, state)[QUADRATURE_CURRENT];
+    chain_accelerations(a, m->links, state_angles(m, state), state_velocities(m, state), mode,
+                        state_accelerations(m, state), &r);
+    state[SLOT_MOTOR_TORQUE] = r.motor_torque;
     state[SLOT_FORCE] = r.force;
     state[SLOT_FRICTION_TORQUE] = r.friction;
     state[SLOT_GAP_ACCELERATION] = r.gap_acceleration;
@@ -153,7 +157,7 @@ double motion_unaccounted(const motion *m, double *state, double energy)
 {
     const double *quadrature = state_quadratures(m, state);
     double stored = energy - m->start_energy;
-    double work = state[SLOT_MOTOR_WORK] + state[SLOT_EXTERNAL_WORK];
+    double work = motion_motor_work(m, state) + state[SLOT_EXTERNAL_WORK];
     double lost = state[SLOT_FRICTION_LOSS] + state[SLOT_IMPACT_LOSS] +
                   quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING] +
                   quadrature[QUADRATURE_WALL];
@@ -209,7 +213,10 @@ status motion_try_step(const arm *a, motion *m, double h)
     memcpy(trial, m->state, SLOT_COUNT * sizeof(double));
     trial[SLOT_TIME] += h;
     trial[SLOT_JUMPED] = trial[SLOT_IMPULSE] = 0;
-    state_quadratures(m, trial)[QUADRATURE_WALL] = state_quadratures(m, m->state)[QUADRATURE_WALL];
+    static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR};
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
+        state_quadratures(m, trial)[kept[i]] = state_quadratures(m, m->state)[kept[i]];
+    }
     status s = m->engine->state_at(a, m, h);
     if (s != STATUS_OK) {
         return s;

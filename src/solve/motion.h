@@ -32,6 +32,7 @@ enum motion_slot {
     SLOT_JUMPED,           // 1 just after an event, before the first step
     SLOT_IMPULSE,          // of an unresolved impact, which the next step is to deliver [N s]
     SLOT_PARTED,           // 1 within a wall that gives whose face no longer follows
+    SLOT_MOTOR_TORQUE,     // of an electric drive's current, at this state [N m]
     SLOT_WALL_POWER,       // lost in a wall that gives, at this state [W]
     SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
@@ -45,7 +46,10 @@ enum motion_quadrature {
     QUADRATURE_VISCOUS, // lost to back EMF and viscous friction [J]
     QUADRATURE_DAMPING, // lost to structural damping [J]
     QUADRATURE_FORCE,   // integral of f dt [N s]
-    QUADRATURE_WALL,    // lost in a wall that gives; engines for rigid walls leave it [J]
+    QUADRATURE_WALL, // lost in a wall that gives; engines for plain arms leave it and what follows
+                     // [J]
+    QUADRATURE_CURRENT, // current of an electric drive, where it is a state: enters the motion [A]
+    QUADRATURE_MOTOR,   // work of an electric drive's torque [J]
     QUADRATURE_COUNT
 };
 
@@ -61,6 +65,7 @@ struct motion {
     const engine *engine;
     double nominal_step; // method.step [s]
     bool wall_gives;     // contact is no constraint
+    bool electric;       // the motor's current is followed
     bool brief;          // explicit: the step takes the method of order 6
     double cut; // an instant at which a step ends without being made for it [s]; HUGE_VAL: none
     double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
@@ -127,9 +132,12 @@ void motion_watch(motion *m);
 // Evaluates accelerations, reactions and gap of a state in its own contact state.
 void motion_evaluate(const arm *a, motion *m, double *state);
 
-// Whether contact and friction together leave the arm no way to move.
+// Whether contact and friction together leave the arm no way to move, and nothing else can change.
 static inline bool motion_held_still(const motion *m)
 {
+    if (m->electric) {
+        return false;
+    }
     contact_state now = contact_state_of(m->state);
     int holds = (now.contact && !m->wall_gives) + (now.friction == HUB_STICK);
     return m->dof == 1 ? holds > 0 : holds >= m->dof;
@@ -164,6 +172,12 @@ static inline bool motion_is_implicit(const motion *m)
 static inline bool motion_unresolved(const arm *a, const motion *m)
 {
     return motion_is_implicit(m) && m->nominal_step * a->fastest_rate > 1;
+}
+
+// Work of the motor's torque up to a state of this motion [J].
+static inline double motion_motor_work(const motion *m, double *state)
+{
+    return state[SLOT_MOTOR_WORK] + state_quadratures(m, state)[QUADRATURE_MOTOR];
 }
 
 // Energy that the ledger does not account for at a state of this motion [J].
