@@ -2,7 +2,10 @@
 // with and without structural damping, on both walls, with plastic impacts and with bounces; by the
 // engine that a run takes, and by the straight chain's modes.
 //
-//   test_reference_chain [LINKS...]     default: 8
+//   test_reference_chain [LINKS[:KIND]...]     default: 8, all kinds
+//
+// KIND is the sum of 1 (beam root, else rigid), 2 (plane wall, else point), 4 (e = 0.5, else 0) and
+// 8 (1 % damping, else none).
 #include <stdlib.h>
 #include <string.h>
 
@@ -166,7 +169,7 @@ static void library_agrees(void **state)
 
 int main(int argc, char **argv)
 {
-    enum { KINDS = 16, MOST = 8 };
+    enum { KINDS = 16, MOST = 16 };
     static reference_case cases[MOST * KINDS];
     static char names[MOST * KINDS][80];
     static struct CMUnitTest tests[MOST * KINDS];
@@ -174,8 +177,12 @@ int main(int argc, char **argv)
     char **given = argc > 1 ? argv : (char **)defaults;
     int numbers = argc > 1 ? argc - 1 : 1, count = 0;
     for (int i = 1; i <= numbers && i <= MOST; i++) {
-        int links = atoi(given[i]);
+        const char *colon = strchr(given[i], ':');
+        const int links = atoi(given[i]), only = colon != NULL ? atoi(colon + 1) : -1;
         for (int kind = 0; kind < KINDS; kind++) {
+            if (only >= 0 && kind != only) {
+                continue;
+            }
             bool beam = kind & 1, plane = kind & 2, bounces = kind & 4, damped = kind & 8;
             snprintf(names[count], sizeof names[count], "N = %d, %s root, %s, e = %g, %g %%", links,
                      beam ? "beam" : "rigid", plane ? "plane" : "point", bounces ? 0.5 : 0,

@@ -12,7 +12,6 @@
 #include "src/base/instant.h"
 
 #define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
-#define RESTORED_SHARE  1e-4  // of the energy put in, that may have been put back into vibrations
 #define LEDGER_ROUNDING 1e-13 // what the ledger may lack whatever was put in [J]
 #define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
 
@@ -221,15 +220,6 @@ static void judge(const corrected_run *c)
                "method.residual_bound = %g allows: the method was %s, a shorter method.step may "
                "help",
                s->energy_residual_J, energy, bound, m->engine->name);
-    }
-
-    double restored = fabs(m->state[SLOT_RESTORED]);
-    if (restored > RESTORED_SHARE * energy) {
-        s->inaccurate = true;
-        remark(s,
-               "%.3g J of the %.3g J put in had to be put back into vibrations, more than a share "
-               "of %g: a shorter method.step may help",
-               restored, energy, RESTORED_SHARE);
     }
 }
 

@@ -32,6 +32,8 @@
 // Steps that are cut short and stay below this take the method's brief form, and with them all that
 // is located within.
 #define BRIEF_RESOLUTION 0.2
+// Rotation counts this many times: no small oscillation, it feeds errors from link to link.
+#define TURNING 3
 // At most this many time steps are taken at once.
 #define MOST_AT_ONCE 12
 
@@ -213,12 +215,13 @@ static double rate_of_change(const arm *a, const motion *m)
     const double *w = state_velocities(m, m->state), *al = state_accelerations(m, m->state);
     const double n = a->links, stretched = n * (2 * n - 1);
     double fastest = 0, own = fmax(a->fastest_rate, 1e-3);
-    for (int i = 0; i < a->dof; i++) {
-        fastest = fmax(fastest, fabs(w[i]));
-    }
     own *= sqrt(1 + 3 * a->stiffening * most_bend(a, m)); // slope of b + stiffening b^3
-    double hub = fabs(al[0]) * LONG_RESOLUTION / own;
-    fastest = fmax(fastest, fmin(fabs(w[0]) + hub, sqrt(fabs(al[0]))));
+    for (int i = 0; i < a->dof; i++) {
+        double gained = fabs(al[i]) * LONG_RESOLUTION / own;
+        fastest = fmax(fastest, fabs(w[i]));
+        fastest = fmax(fastest, fmin(fabs(w[i]) + gained, sqrt(fabs(al[i]))));
+    }
+    fastest *= TURNING;
     return sqrt(own * own + stretched * fastest * fastest);
 }
 

@@ -12,7 +12,7 @@ static const double reciprocal[] = {
     1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17, 1. / 18, 1. / 19,
     1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24, 1. / 25, 1. / 26, 1. / 27, 1. / 28, 1. / 29,
     1. / 30, 1. / 31, 1. / 32, 1. / 33, 1. / 34, 1. / 35, 1. / 36, 1. / 37, 1. / 38, 1. / 39,
-    1. / 40, 1. / 41, 1. / 42, 1. / 43, 1. / 44, 1. / 45};
+    1. / 40, 1. / 41, 1. / 42, 1. / 43, 1. / 44, 1. / 45, 1. / 46, 1. / 47, 1. / 48, 1. / 49};
 
 double modal_decay(double x)
 {
@@ -116,7 +116,7 @@ static void phi(double x, double t, int count, double *out)
 void modal_respond(double a, double w, double t, int powers, modal_response *r)
 {
     // slow against t
-    if (w * t <= 2 && a * t <= 1) {
+    if (w * t <= 4 && a * t <= 1) {
         respond_by_series(a, w, t, powers, r);
         return;
     }

@@ -1,7 +1,7 @@
 // What a mode, x'' + 2 a x' + w^2 x = n(t), does from rest under a force that is a power of time.
 #pragma once
 
-enum { MODAL_POWERS = 8 };
+enum { MODAL_POWERS = 12 };
 
 // Response at time t >= 0 to an impulse and to powers, of length t:
 //   impulse: G with G(0) = 0, G'(0) = 1 [s], and its derivative [-];

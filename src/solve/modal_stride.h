@@ -18,12 +18,10 @@
 #include "src/solve/modal_response.h"
 #include "src/solve/modal_sum.h"
 
-enum { MODAL_NODES = 4, MODAL_CONTACT_STATES = 4 };
+enum { MODAL_NODES = 6, MODAL_CONTACT_STATES = 4 };
 
 // Strides of 2^-MODAL_LONGEST_LEVEL s and so many shorter powers of two keep their responses.
-enum { MODAL_LONGEST_LEVEL = 9, MODAL_KEPT_LEVELS = 14 };
-
-#define MODAL_FAST 4 // rate times length of a stride from which on a vibration stays out of r and s
+enum { MODAL_LONGEST_LEVEL = 8, MODAL_KEPT_LEVELS = 15 };
 
 // Responses of all modes at one instant, arrays of as many as there are modes.
 typedef struct modal_table {
@@ -62,6 +60,8 @@ typedef struct modal_stride {
     contact_state mode;
     int dof, count;
     double length;               // [s]
+    double shown_turn;           // up to which the points show a vibration [rad]
+    bool start_holds;            // drifts[0] and forces[0] are those of the start itself
     double start_energy;         // kinetic and strain [J]
     double per_stiffness;        // c, structural damping over stiffness [s]
     double *damping;             // a, by mode [1/s]
@@ -72,7 +72,7 @@ typedef struct modal_stride {
     double *force[MODAL_NODES];  // s(t), the same
     modal_table at[MODAL_NODES]; // responses at the points of collocation; [0] at any other instant
     double *drifts[MODAL_NODES], *forces[MODAL_NODES]; // r and s there, by mode
-    double *columns, *more_columns, *modal;            // 2 * (MODAL_NODES - 1) vectors of dof each
+    double *columns, *more_columns, *modal;            // 2 * MODAL_NODES vectors of dof each
     double *angles, *velocities, *rates;               // at one instant
     double *point_angles[MODAL_NODES], *point_velocities[MODAL_NODES]; // at the points; [0] unused
     double *place, *momenta;   // x and y at the instant of the state last asked for
@@ -90,11 +90,10 @@ void modal_stride_place(modal_stride *s, const arm *a);
 status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, contact_state mode,
                           const double *q, const double *w);
 
-// Fits n to a stride of the given length. `change` is what the last of the sweeps changed, `cut`
-// what the highest power of time does, both as shares of the greatest velocity.
+// Fits r and s to a stride of the given length.
 typedef struct modal_fit {
-    double change, cut;
-    int sweeps; // that were made
+    double change; // by the last of the sweeps, as a share of all momenta
+    int sweeps;    // that were made
 } modal_fit;
 modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
                            double length);
@@ -115,10 +114,10 @@ double modal_stride_fastest(const modal_stride *s);
 // The same of all modes, decays included [1/s].
 double modal_stride_quickest(const modal_stride *s);
 
-// Velocities along[dof] at angles q of the fast vibrations alone, at the instant of the state last
-// asked for, admissible in its contact state. False if there are none.
-bool modal_stride_vibration(modal_stride *s, const arm *a, chain_link *links, const double *q,
-                            double *along);
+// The fastest vibration that the points of a stride from here on have to show: all faster ones
+// together have less than `energy` [J] at its start, beyond what they follow without vibrating
+// [rad/s]. A number near zero if there is none.
+double modal_stride_shown(const modal_stride *s, double energy);
 
 // Energy lost until the instant of the state last asked for [J]: to back EMF and viscous friction,
 // and in the springs. Integrals of the modes' own motion, not of samples.

@@ -37,7 +37,6 @@ enum motion_slot {
     SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
     SLOT_STRIDE,           // that the engine proposes, 0 if none [s]
-    SLOT_RESTORED,         // energy that the engine put back into vibrations, in sum [J]
     SLOT_COUNT
 };
 

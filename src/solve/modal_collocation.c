@@ -1,0 +1,225 @@
+#include <math.h>
+#include <string.h>
+
+#include "src/solve/modal_parts.h"
+
+enum { FEW_SWEEPS = 4, MOST_SWEEPS = 30 };
+
+#define CONVERGED   3e-8 // change of a sweep that ends them, of the modes' momenta
+#define SLOW_SWEEPS 0.6  // of the last change is left: a shorter stride costs less
+
+// Lobatto's points on [0, 1].
+static const double points[MODAL_NODES] = {0,
+                                           0.11747233803526765357,
+                                           0.35738424175967745184,
+                                           0.64261575824032254816,
+                                           0.88252766196473234643,
+                                           1};
+
+// Coefficients of the polynomial through values at the points: row j gives that of (t/h)^j.
+static const double to_powers[MODAL_NODES][MODAL_NODES] = {
+    {1, 0, 0, 0, 0, 0},
+    {-15, 20.2828318726393386, -8.07237454061069601, 4.48936929635233365, -2.6998266283809762, 1},
+    {70, -131.581984462996828, 98.4982356860737689, -60.3544529094590041, 37.4382016863820634, -14},
+    {-140, 299.687857326012612, -289.4574355386068, 220.335880473893995, -146.566302261299807, 56},
+    {126, -288.460915381973069, 320.199031477787411, -285.638253945431009, 211.900137849616667,
+     -84},
+    {-42, 100.072210646317947, -121.167457084643684, 121.167457084643684, -100.072210646317947,
+     42}};
+
+void modal_polynomial(const double values[MODAL_NODES], double length, double out[MODAL_NODES])
+{
+    double scale = 1;
+    for (int j = 0; j < MODAL_NODES; j++) {
+        out[j] = 0;
+        for (int i = 0; i < MODAL_NODES; i++) {
+            out[j] += to_powers[j][i] * values[i];
+        }
+        out[j] *= scale;
+        scale *= (j + 1) / length;
+    }
+}
+
+// The polynomials of r and s from their values; returns what changed, as the momenta and, times
+// their rates, coordinates that it makes in the stride.
+static double fit_polynomials(modal_stride *s, double h)
+{
+    const modal_table *end = &s->at[MODAL_NODES - 1];
+    double square = 0;
+    for (int k = 0; k < s->count; k++) {
+        const double twice = 2 * s->damping[k], rate = s->modes->rate[k];
+        double scale = 1, moved = 0, placed = 0, lower = end->impulse[k];
+
+        // power by power: the new coefficients, and what their change does until the end
+        for (int j = 0; j < MODAL_NODES; j++) {
+            double drift = 0, force = 0;
+            for (int i = 0; i < MODAL_NODES; i++) {
+                drift += to_powers[j][i] * s->drifts[i][k];
+                force += to_powers[j][i] * s->forces[i][k];
+            }
+            drift *= scale;
+            force *= scale;
+            const double dd = drift - s->drift[j][k], df = force - s->force[j][k];
+            const double power = end->power[j][k];
+            placed += df * power + dd * (lower + twice * power);
+            moved += df * lower - rate * rate * dd * power;
+            lower = power;
+            s->drift[j][k] = drift;
+            s->force[j][k] = force;
+            scale *= (j + 1) / h;
+        }
+
+        square += moved * moved + rate * rate * placed * placed;
+    }
+    return sqrt(square);
+}
+
+bool modal_is_fast(const modal_stride *s, int k)
+{
+    const double rate = s->modes->rate[k];
+    return k != s->modes->across && s->damping[k] < rate && rate * s->length > s->shown_turn;
+}
+
+void modal_follow(const modal_stride *s, int k, double p[MODAL_NODES + 2])
+{
+    const double twice = 2 * s->damping[k], stiff = s->modes->rate[k] * s->modes->rate[k];
+    p[MODAL_NODES] = p[MODAL_NODES + 1] = 0;
+    for (int j = MODAL_NODES - 1; j >= 0; j--) {
+        const double turn = j + 1 < MODAL_NODES ? s->drift[j + 1][k] : 0;
+        const double n = s->force[j][k] + twice * s->drift[j][k] + turn;
+        p[j] = (n - twice * p[j + 1] - p[j + 2]) / stiff;
+    }
+}
+
+// Such a mode without its vibration, at t within the stride: what follows the polynomials.
+static void without_vibration(const modal_stride *s, int k, double t, double *x, double *y)
+{
+    double p[MODAL_NODES + 2], place = 0, speed = 0, drift = 0, power = 1;
+    modal_follow(s, k, p);
+    for (int j = 0; j < MODAL_NODES; j++) {
+        place += p[j] * power;
+        speed += p[j + 1] * power;
+        drift += s->drift[j][k] * power;
+        power *= t / (j + 1);
+    }
+    *x = place;
+    *y = speed - drift;
+}
+
+// The modes' responses at the points of collocation: of a length that is a power of two they are
+// computed once a basis.
+static void take_tables(modal_stride *s, double length)
+{
+    int exponent;
+    const bool round = frexp(length, &exponent) == 0.5;
+    const int slot = 1 - exponent - MODAL_LONGEST_LEVEL;
+    const bool kept = round && slot >= 0 && slot < MODAL_KEPT_LEVELS;
+    modal_kept *keep = kept ? &s->kept[s->modes - s->basis][slot] : &s->passing;
+
+    // a kept table is filled once, the passing one every time
+    if (!kept || !keep->known) {
+        for (int i = 1; i < MODAL_NODES; i++) {
+            modal_fill_table(s, points[i] * length, modal_kept_powers(i), s->count, &keep->at[i]);
+        }
+        keep->known = true;
+    }
+
+    // from here on it makes no difference where they are kept
+    for (int i = 1; i < MODAL_NODES; i++) {
+        s->at[i] = keep->at[i];
+    }
+}
+
+// The first point at which r and s are to be found anew: what the start says holds in every sweep,
+// unless vibrations are left out of it.
+static int first_point(modal_stride *s)
+{
+    for (int k = 0; k < s->count && s->start_holds; k++) {
+        s->start_holds = !modal_is_fast(s, k);
+    }
+    return s->start_holds ? 1 : 0;
+}
+
+// r and s at the points of collocation from the present polynomials.
+static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, const double *q)
+{
+    const int n = s->dof, first = first_point(s);
+    const size_t pair = 2 * (size_t)n;
+
+    // the modes' places and momenta, as angles
+    for (int i = first; i < MODAL_NODES; i++) {
+        double *x = s->columns + (size_t)i * pair;
+        if (i > 0) {
+            modal_momenta_at(s, &s->at[i], x, x + n);
+        } else {
+            memset(x, 0, (size_t)n * sizeof *x);
+            memcpy(x + n, s->start, (size_t)s->count * sizeof *x);
+        }
+        for (int k = 0; k < s->count && first == 0; k++) {
+            if (modal_is_fast(s, k)) {
+                without_vibration(s, k, points[i] * s->length, x + k, x + n + k);
+            }
+        }
+        memcpy(s->modal + (size_t)i * pair, x, pair * sizeof *x);
+        modal_to_momenta(s, a, x, x + n);
+    }
+    const size_t skipped = (size_t)first * pair;
+    const int columns = 2 * (MODAL_NODES - first);
+    modal_to_angles(s->modes, n, columns, s->columns + skipped, s->more_columns + skipped, n);
+
+    // velocities and forces there by the sweeps
+    for (int i = first; i < MODAL_NODES; i++) {
+        double *turn = s->more_columns + (size_t)i * pair;
+        double *momentum = s->columns + (size_t)i * pair, impulse;
+        modal_mass_times(a, turn + n, momentum);
+        for (int k = 0; k < n; k++) {
+            s->angles[k] = q[k] + turn[k];
+            momentum[k] += s->momentum[k];
+        }
+        chain_from_momentum(a, links, s->mode, s->angles, momentum, s->velocities, s->rates,
+                            &impulse);
+        memcpy(s->point_angles[i], s->angles, (size_t)n * sizeof *q);
+        memcpy(s->point_velocities[i], s->velocities, (size_t)n * sizeof *q);
+        modal_prepare_remainders(s, a, s->velocities, turn);
+    }
+
+    // brought back to the modes
+    modal_from_angles(s->modes, n, columns, s->more_columns + skipped, s->columns + skipped, n);
+    for (int i = first; i < MODAL_NODES; i++) {
+        const double *x = s->modal + (size_t)i * pair;
+        modal_take_remainders(s, i, x, x + n, s->columns + (size_t)i * pair);
+    }
+}
+
+modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
+                           double length)
+{
+    const size_t size = (size_t)s->count * sizeof(double);
+    s->length = length;
+
+    // first guess: what holds at the start
+    double speed = 1e-30;
+    take_tables(s, length);
+    for (int i = 1; i < MODAL_NODES; i++) {
+        memcpy(s->drifts[i], s->drifts[0], size);
+        memcpy(s->forces[i], s->forces[0], size);
+    }
+    for (int k = 0; k < s->count; k++) {
+        speed += s->start[k] * s->start[k];
+    }
+
+    // sweeps until nothing changes
+    modal_fit fit = {0};
+    fit_polynomials(s, length);
+    for (int i = 0; i < MOST_SWEEPS; i++) {
+        evaluate_points(s, a, links, q);
+        const double last = fit.change;
+        fit.change = fit_polynomials(s, length) / sqrt(speed);
+        fit.sweeps = i + 1;
+        bool idle = i >= FEW_SWEEPS && fit.change > SLOW_SWEEPS * last;
+        if (!(fit.change < 1e3) || fit.change < CONVERGED || idle) {
+            break;
+        }
+    }
+    return fit;
+}

@@ -1,0 +1,39 @@
+// What the files of a stride of the modes (modal_stride.h) share: its parts that nothing else
+// wants.
+//
+//     modal_storage.c      where everything is
+//     modal_stride.c       bases, the start, the modes' own answer, states
+//     modal_collocation.c  r and s by Picard's sweeps
+//     modal_losses.c       walks along the stride, energy lost in it
+#pragma once
+
+#include "src/solve/modal_stride.h"
+
+// Powers of time that are wanted at a point of collocation: all at the stride's end.
+static inline int modal_kept_powers(int point)
+{
+    return point < MODAL_NODES - 1 ? MODAL_NODES + 1 : MODAL_POWERS;
+}
+
+// Responses of the first `count` modes at t [s] to an impulse and to `powers` powers of time.
+void modal_fill_table(const modal_stride *s, double t, int powers, int count,
+                      const modal_table *at);
+
+// x[count] and y[count] of all modes at the instant of the responses `at`.
+void modal_momenta_at(const modal_stride *s, const modal_table *at, double *x, double *y);
+
+// From x and y to what stands for angles and momenta: in `y` the change of V' P.
+void modal_to_momenta(const modal_stride *s, const arm *a, const double *x, double *y);
+
+// r and s of one instant from x, y, the velocities w[dof] there and dT/dq + J'^T L in s->rates:
+// what is to be brought to the modes into columns[2 dof], and, brought there as modal[2 dof], into
+// s->drifts[point] and s->forces[point].
+void modal_prepare_remainders(modal_stride *s, const arm *a, const double *w, double *columns);
+void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
+                           const double *modal);
+
+// Whether a mode vibrates too fast in the stride to be seen in r and s.
+bool modal_is_fast(const modal_stride *s, int k);
+
+// What a mode with a spring does under the polynomials without vibrating: x = sum p[j] t^j / j!.
+void modal_follow(const modal_stride *s, int k, double p[MODAL_NODES + 2]);

@@ -1,0 +1,110 @@
+#include <string.h>
+
+#include "src/solve/modal_parts.h"
+
+enum { COLUMNS = 2 * MODAL_NODES };
+
+static size_t table_size(int n)
+{
+    return (size_t)n * (MODAL_POWERS + 2);
+}
+
+static size_t kept_size(int n)
+{
+    size_t doubles = 0;
+    for (int i = 1; i < MODAL_NODES; i++) {
+        doubles += (size_t)n * (size_t)(modal_kept_powers(i) + 2);
+    }
+    return doubles;
+}
+
+size_t modal_stride_size(const arm *a)
+{
+    const size_t n = (size_t)a->dof;
+
+    // bases and their scratch, tables, vectors
+    size_t doubles =
+        MODAL_CONTACT_STATES * (modal_basis_size(a->dof) + modal_vibrations_size(a->dof)) +
+        modal_basis_scratch(a->dof);
+    doubles += 2 * table_size(a->dof);
+    doubles += (1 + MODAL_CONTACT_STATES * MODAL_KEPT_LEVELS) * kept_size(a->dof);
+    doubles += n * (8 + 8 * MODAL_NODES + 3 * COLUMNS + 3);
+    return sizeof(modal_stride) + doubles * sizeof(double);
+}
+
+static double *take(double **storage, size_t count)
+{
+    double *taken = *storage;
+    *storage += count;
+    return taken;
+}
+
+static void place_table(modal_table *at, double **storage, size_t n, int powers)
+{
+    at->impulse = take(storage, n);
+    at->impulse_rate = take(storage, n);
+    for (int j = 0; j < powers; j++) {
+        at->power[j] = take(storage, n);
+    }
+}
+
+static void place_kept(modal_kept *keep, double **storage, size_t n)
+{
+    for (int i = 1; i < MODAL_NODES; i++) {
+        place_table(&keep->at[i], storage, n, modal_kept_powers(i));
+    }
+}
+
+void modal_stride_place(modal_stride *s, const arm *a)
+{
+    const size_t n = (size_t)a->dof;
+    double *storage = (double *)(s + 1);
+    memset(s, 0, sizeof *s);
+    s->dof = a->dof;
+
+    // bases
+    for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
+        modal_basis_place(&s->basis[i], a->dof, take(&storage, modal_basis_size(a->dof)));
+        modal_vibrations_place(&s->vibrations[i], a->dof,
+                               take(&storage, modal_vibrations_size(a->dof)));
+    }
+    s->scratch = take(&storage, modal_basis_scratch(a->dof));
+
+    // what there is once a point of collocation
+    for (int i = 0; i < MODAL_NODES; i++) {
+        s->point_angles[i] = take(&storage, n);
+        s->point_velocities[i] = take(&storage, n);
+        s->walk.force[i] = take(&storage, n);
+        s->walk.drift[i] = take(&storage, n);
+        s->drift[i] = take(&storage, n);
+        s->force[i] = take(&storage, n);
+        s->drifts[i] = take(&storage, n);
+        s->forces[i] = take(&storage, n);
+    }
+
+    // what there is once a stride
+    s->damping = take(&storage, n);
+    s->viscous = take(&storage, n);
+    s->start = take(&storage, n);
+    s->momentum = take(&storage, n);
+    s->columns = take(&storage, n * COLUMNS);
+    s->more_columns = take(&storage, n * COLUMNS);
+    s->modal = take(&storage, n * COLUMNS);
+
+    // what there is once an instant
+    s->angles = take(&storage, n);
+    s->velocities = take(&storage, n);
+    s->rates = take(&storage, n);
+    s->place = take(&storage, n);
+    s->momenta = take(&storage, n);
+    s->walk.x = take(&storage, n);
+    s->walk.y = take(&storage, n);
+    place_table(&s->walk.at, &storage, n, MODAL_POWERS);
+    place_table(&s->at[0], &storage, n, MODAL_POWERS);
+    for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
+        for (int j = 0; j < MODAL_KEPT_LEVELS; j++) {
+            place_kept(&s->kept[i][j], &storage, n);
+        }
+    }
+    place_kept(&s->passing, &storage, n);
+}

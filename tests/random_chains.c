@@ -1,0 +1,216 @@
+// Random arms of many links that hit a wall, by the straight chain's modes and by the explicit
+// formula at strides so short that it is exact: none may be wrong with a ledger that closes.
+//
+//     random_chains [COUNT [FIRST [LEAST [MOST]]]]     default: 200 0 6 20, LEAST to MOST links
+//
+// Run i is made of its own number. Compared are first contact (1 us), its impulse (1e-4), the
+// momentum after 1 and up to 50 ms (1e-3) and what a 1 ms sensor reads (5e-3, root mean square).
+// Where the explicit formula does not agree with itself at other strides, the motion is chaotic and
+// nothing is said.
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include "src/base/random.h"
+#include "src/solve/contact_machine.h"
+#include "tests/arm_fixture.h"
+
+#define INTERVAL      1e-4 // between looks at the momentum [s]
+#define SENSOR        1e-3 // time constant [s]
+#define AFTER_CONTACT 0.0501
+#define DURATION      0.1
+#define SUBSTEPS      20  // of the explicit formula: its fastest rate times its time step
+#define MODES_STEP    1   // so long that only the modes can [s]
+#define FASTEST       3e6 // beyond which the explicit formula takes too long [1/s]
+
+enum { SAMPLES = 501, FIRST_MS = 10, MOST_SETTINGS = 12 };
+
+// What is compared.
+typedef struct outcome {
+    status status;
+    double first_contact, first_impulse, residual, put_in;
+    int samples;
+    double momentum[SAMPLES];
+} outcome;
+
+// A random arm in front of its wall.
+typedef struct random_chain {
+    parameters parameters;
+    double angle, velocity;
+    char settings[MOST_SETTINGS][64];
+    int count;
+} random_chain;
+
+static outcome simulate(const random_chain *c, double step)
+{
+    parameters p = c->parameters;
+    p.method.step = step;
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    assert_non_null(m);
+    motion_start(&a, m, c->angle, c->velocity);
+    outcome o = {.first_contact = (double)NAN};
+    double impulses = 0, end = DURATION;
+    while (m->state[SLOT_TIME] < end) {
+        motion_report r;
+        const double before = m->state[SLOT_TIME], work = m->state[SLOT_MOTOR_WORK];
+        o.status = motion_step(&a, m, end, step, &r);
+        if (o.status != STATUS_OK) {
+            break;
+        }
+
+        // looks at the momentum
+        while (!isnan(o.first_contact) && o.samples < SAMPLES) {
+            double time = o.first_contact + o.samples * INTERVAL;
+            if (time > m->state[SLOT_TIME]) {
+                break;
+            }
+            double *state = time > before ? motion_between(&a, m, time) : m->state;
+            o.momentum[o.samples++] = impulses + state_quadratures(m, state)[QUADRATURE_FORCE];
+        }
+
+        // the ledger, then the event
+        o.put_in += fabs(m->state[SLOT_MOTOR_WORK] - work);
+        o.residual = fmax(o.residual, fabs(motion_energy_residual(&a, m, m->state)));
+        if (r.event != MOTION_REACHED) {
+            motion_apply(&a, m, &r);
+        }
+        if (r.event == MOTION_IMPACT) {
+            impulses += r.impulse;
+            if (isnan(o.first_contact)) {
+                o.first_contact = m->state[SLOT_TIME];
+                o.first_impulse = r.impulse;
+                o.momentum[o.samples++] = impulses;
+                end = fmin(end, o.first_contact + AFTER_CONTACT);
+            }
+        }
+    }
+    o.put_in += m->start_energy;
+    motion_destroy(m);
+    return o;
+}
+
+// Root mean square of the difference of what two sensors with a lag read, of the first one's.
+static double sensor_difference(const outcome *a, const outcome *b)
+{
+    const double keep = exp(-INTERVAL / SENSOR);
+    const int samples = a->samples < b->samples ? a->samples : b->samples;
+    double read[2] = {a->momentum[0] / SENSOR, b->momentum[0] / SENSOR}, square = 0, apart = 0;
+    for (int k = 1; k < samples; k++) {
+        for (int i = 0; i < 2; i++) {
+            const outcome *o = i == 0 ? a : b;
+            double mean = (o->momentum[k] - o->momentum[k - 1]) / INTERVAL;
+            read[i] = keep * read[i] + (1 - keep) * mean;
+        }
+        square += read[0] * read[0];
+        apart += (read[0] - read[1]) * (read[0] - read[1]);
+    }
+    return square > 0 ? sqrt(apart / square) : 0;
+}
+
+// Largest difference of two outcomes, as a multiple of what may be.
+static double distance(const outcome *truth, const outcome *o)
+{
+    const int samples = truth->samples < o->samples ? truth->samples : o->samples;
+    const int last = samples - 1, early = last < FIRST_MS ? last : FIRST_MS;
+    double worst = fabs(o->first_contact - truth->first_contact) / 1e-6;
+    worst = fmax(worst, fabs(o->first_impulse / truth->first_impulse - 1) / 1e-4);
+    worst = fmax(worst, fabs(o->momentum[early] / truth->momentum[early] - 1) / 1e-3);
+    worst = fmax(worst, fabs(o->momentum[last] / truth->momentum[last] - 1) / 1e-3);
+    return fmax(worst, sensor_difference(truth, o) / 5e-3);
+}
+
+static double between(random_generator *g, double from, double to)
+{
+    return from * exp(random_uniform(g) * log(to / from));
+}
+
+static __attribute__((format(printf, 2, 3))) void set(random_chain *c, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    vsnprintf(c->settings[c->count], sizeof c->settings[0], format, values);
+    va_end(values);
+    c->count++;
+}
+
+static void make_chain(random_chain *c, int number, int least, int most)
+{
+    random_generator g;
+    random_seed(&g, (uint64_t)number * 7919 + 13);
+    c->count = 0;
+
+    // kinds
+    set(c, "arm.links=%d", least + (int)random_below(&g, (uint64_t)(most - least + 1)));
+    set(c, "arm.hub_joint=%s",
+        random_uniform(&g) < 0.5   ? "rigid"
+        : random_uniform(&g) < 0.7 ? "beam"
+                                   : "spring");
+    set(c, "wall.kind=%s", random_uniform(&g) < 0.5 ? "plane" : "point");
+    set(c, "wall.restitution=%.17g", random_uniform(&g) < 0.5 ? 0 : random_uniform(&g) * 0.9);
+    set(c, "arm.damping_ratio=%.17g", random_uniform(&g) < 0.5 ? 0 : between(&g, 1e-4, 0.05));
+
+    // numbers
+    set(c, "motor.voltage=%.17g", between(&g, 0.3, 10));
+    set(c, "arm.k2=%.17g", between(&g, 1, 50));
+    set(c, "arm.mass=%.17g", between(&g, 0.1, 2));
+    set(c, "arm.hub_inertia=%.17g", between(&g, 1e-3, 5e-2));
+    set(c, "motor.stiction=%.17g", random_uniform(&g) < 0.5 ? 0.045 : between(&g, 1e-3, 0.5));
+    c->velocity = between(&g, 0.05, 5);
+    c->angle = 0.1 - c->velocity * between(&g, 2e-3, 2e-2);
+    const char *list[MOST_SETTINGS + 1] = {NULL};
+    for (int i = 0; i < c->count; i++) {
+        list[i] = c->settings[i];
+    }
+    c->parameters = fixture_parameters(list);
+}
+
+static void describe(const random_chain *c, int number, const char *what, double worst)
+{
+    printf("%d: %s (%.2g times what may be), %g rad, %g rad/s:", number, what, worst, c->angle,
+           c->velocity);
+    for (int i = 0; i < c->count; i++) {
+        printf(" %s", c->settings[i]);
+    }
+    printf("\n");
+    fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+    const int count = argc > 1 ? atoi(argv[1]) : 200, first = argc > 2 ? atoi(argv[2]) : 0;
+    const int least = argc > 3 ? atoi(argv[3]) : 6, most = argc > 4 ? atoi(argv[4]) : 20;
+    int compared = 0, wrong = 0, said = 0, chaotic = 0;
+    for (int i = first; i < first + count; i++) {
+        random_chain c;
+        arm a;
+        make_chain(&c, i, least, most);
+        arm_init(&a, &c.parameters);
+        const double step = fmin(1e-4, SUBSTEPS / a.fastest_rate);
+        const outcome truth = simulate(&c, step);
+        if (a.fastest_rate > FASTEST || truth.status != STATUS_OK || truth.samples < 2) {
+            continue;
+        }
+
+        // wrong: said to be, or not
+        const outcome o = simulate(&c, MODES_STEP);
+        const double bound = c.parameters.method.residual_bound;
+        const bool closed = o.residual <= bound * o.put_in, ok = o.status == STATUS_OK && closed;
+        const double worst = o.samples > 0 ? distance(&truth, &o) : HUGE_VAL;
+        compared++;
+        said += !ok;
+        if (!ok) {
+            describe(&c, i, status_text(o.status), worst);
+        } else if (!(worst <= 1)) {
+            const outcome again = simulate(&c, 0.61 * step);
+            const bool sure = distance(&truth, &again) < 0.1;
+            wrong += sure;
+            chaotic += !sure;
+            describe(&c, i, sure ? "WRONG" : "chaotic", worst);
+        }
+    }
+    printf(
+        "%d compared, %d wrong with a closed ledger, %d with an open one or failed, %d chaotic\n",
+        compared, wrong, said, chaotic);
+    return wrong > 0;
+}
