@@ -1,6 +1,6 @@
 // Runs that take long: computed beside the session, stopped, gone on with, resumed from another
 // run's rows, which are then kept once.
-#include "tests/check.h"
+#include "tests/trace_check.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -85,7 +85,7 @@ static void assert_as_from_the_start(const session *s)
     assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
     assert_memory_equal(a->angles, b->angles,
                         a->row_count * (size_t)a->angle_count * sizeof *a->angles);
-    assert_memory_equal(a->events, b->events, a->event_count * sizeof *a->events);
+    check_same_events(a, b, a->event_count);
     for (int i = 0; i < summary_count; i++) {
         double one, other;
         one = summary_value(&s->run.summary, i);
