@@ -13,7 +13,7 @@
 #include "src/solve/taylor_engine.h"
 
 // Strides stay below this over the fastest rate and the angular velocities.
-#define LONGEST_REACH 2.7
+#define LONGEST_REACH 1.2
 // A decay over a stride: the series of the highest order is stable on the negative axis beyond 7.
 #define LONGEST_DECAY 4.0
 
