@@ -14,13 +14,13 @@
 #include "src/solve/motion.h"
 
 #define LONGEST    4.5e-3 // [s]
-#define SHORTEST   1e-10   // [s]
-#define SETTLED    1e-7    // change of the last sweep that is let pass
-#define OPEN       1e-8    // share of the energy that a stride's ledger may lack
-#define FAINT      1e-8    // share of it that vibrations may have to be left out of the points
-#define GROWTH     16      // from stride to stride
-#define FIRST_TURN 3       // of the fastest vibration in the stride after an event [rad]
-#define TURN       0.05    // of the fastest link in a stride [rad]
+#define SHORTEST   1e-10  // [s]
+#define SETTLED    1e-7   // change of the last sweep that is let pass
+#define OPEN       1e-8   // share of the energy that a stride's ledger may lack
+#define FAINT      1e-8   // share of it that vibrations may have to be left out of the points
+#define GROWTH     16     // from stride to stride
+#define FIRST_TURN 3      // of the fastest vibration in the stride after an event [rad]
+#define TURN       0.05   // of the fastest link in a stride [rad]
 
 // Turn up to which a stride's points show a vibration [rad]: a stride is then exact to 1e-7 of the
 // velocities, with the second one to 1e-10. An arm that bounces passes on what is lost a thousand
