@@ -2,7 +2,7 @@
 // wants.
 //
 //     modal_storage.c      where everything is
-//     modal_stride.c       bases, the start, the modes' own answer, states
+//     modal_parts.c        bases, the start, the modes' own answer, states
 //     modal_collocation.c  r and s by Picard's sweeps
 //     modal_losses.c       walks along the stride, energy lost in it
 #pragma once

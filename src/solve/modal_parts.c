@@ -1,9 +1,7 @@
-#include "src/solve/modal_stride.h"
+#include "src/solve/modal_parts.h"
 
 #include <math.h>
 #include <string.h>
-
-#include "src/solve/modal_parts.h"
 
 // --- the linear part --------------------------------------------------------------------------
 
