@@ -112,7 +112,8 @@ static void orders_agree_and_the_ledger_closes(void **state)
         double *q = state_angles(m, m->state);
         m->start_energy = chain_kinetic_energy(&moving.arm, q, state_velocities(m, m->state)) +
                           chain_strain_energy(&moving.arm, q);
-        double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3), whole[SLOT_COUNT + 16];
+        double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3),
+               whole[SLOT_COUNT + 4 * 3 + QUADRATURE_COUNT];
         assert_int_equal(motion_try_step(&moving.arm, m, h), STATUS_OK);
         check_below(fabs(motion_energy_residual(&moving.arm, m, m->trial)), 1e-12);
         memcpy(whole, m->trial, (size_t)m->size * sizeof(double));
