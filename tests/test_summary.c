@@ -27,8 +27,11 @@ static void keys_are_names_with_units(void **state)
     for (int i = 0; i < summary_count; i++) {
         const summary_info *info = &summary_table[i];
         char key[64], label[64], unit[16] = "";
+        size_t length = 0;
         for (const char *c = info->unit; *c != '\0'; c++) {
-            strncat(unit, *c == ' ' ? "" : *c == '/' ? "_" : c, 1);
+            if (*c != ' ') {
+                unit[length++] = *c == '/' ? '_' : *c;
+            }
         }
         snprintf(key, sizeof key, "%s%s%s", info->name, unit[0] != '\0' ? "_" : "",
                  strcmp(unit, "%") == 0 ? "percent" : unit);
