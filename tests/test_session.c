@@ -179,8 +179,11 @@ static void test_what_is_before_a_change_stays_to_the_last_bit(void **state)
                 session_step(&s, 1);
             }
             assert_int_equal(session_branch(&s, &f), STATUS_OK);
+            // the cursor may go on to a touch that rounding puts right behind the change
+            double instant = s.now;
             change(&s, "arm.k2", k % 2 ? "7.5" : "6.5");
-            assert_same_before(&s.other.trace, &s.run.trace, s.now);
+            check_close(s.now, instant, 1e-12);
+            assert_same_before(&s.other.trace, &s.run.trace, instant);
             assert_int_equal(session_undo(&s, &f), STATUS_OK);
         }
         session_finish(&s);

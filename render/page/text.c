@@ -437,5 +437,4 @@ void text_when_giving_up(void (*end)(const char *reason))
 void text_release(void)
 {
     pango_cairo_font_map_set_default(NULL);
-    cairo_debug_reset_static_data();
 }

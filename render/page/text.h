@@ -84,6 +84,6 @@ void text_when_giving_up(void (*end)(const char *reason));
 // is not the program's first while these are in use. For a handler of signals.
 bool text_in_fonts(void);
 
-// Gives back what Pango and cairo keep for later figures (for leak checkers). No figure may be in
-// work.
+// Gives back what Pango keeps for later figures (for leak checkers). No figure may be in work. What
+// cairo keeps stays: Pango's own threads may still hold fonts, which cairo takes for a mistake.
 void text_release(void);

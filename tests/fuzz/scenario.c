@@ -22,15 +22,29 @@ static void check_sentence(void *context, const char *sentence)
     ++*count;
 }
 
+static void check_value(const parameters *p, int index)
+{
+    const parameter_info *info = &parameter_table[index];
+    double numbers[PARAMETER_LIST_MOST];
+    int count = 1;
+    if (info->type == PARAMETER_LIST) {
+        count = parameter_list_numbers((const char *)p + info->offset, numbers);
+    } else {
+        numbers[0] = parameter_get(p, index);
+    }
+
+    for (int i = 0; i < count; i++) {
+        FUZZ_CHECK(isfinite(numbers[i]));
+        FUZZ_CHECK(!p->set[index] || (numbers[i] >= info->minimum && numbers[i] <= info->maximum));
+    }
+}
+
 static void check_accepted(const scenario *s)
 {
     FUZZ_CHECK(s->name && s->file && s->title && s->description);
     FUZZ_CHECK(strchr(s->title, '\n') == NULL);
     for (int i = 0; i < parameter_count; i++) {
-        double value = parameter_get(&s->parameters, i);
-        FUZZ_CHECK(isfinite(value));
-        FUZZ_CHECK(!s->parameters.set[i] ||
-                   (value >= parameter_table[i].minimum && value <= parameter_table[i].maximum));
+        check_value(&s->parameters, i);
     }
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
