@@ -11,26 +11,16 @@
 #include <stdlib.h>
 
 #include "src/base/random.h"
-#include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
+#include "tests/chain_outcome.h"
 
-#define INTERVAL      1e-4 // between looks at the momentum [s]
-#define SENSOR        1e-3 // time constant [s]
 #define AFTER_CONTACT 0.0501
 #define DURATION      0.1
 #define SUBSTEPS      20  // of the explicit formula: its fastest rate times its time step
 #define MODES_STEP    1   // so long that only the modes can [s]
 #define FASTEST       3e6 // beyond which the explicit formula takes too long [1/s]
 
-enum { SAMPLES = 501, FIRST_MS = 10, MOST_SETTINGS = 12 };
-
-// What is compared.
-typedef struct outcome {
-    status status;
-    double first_contact, first_impulse, residual, put_in;
-    int samples;
-    double momentum[SAMPLES];
-} outcome;
+enum { MOST_SETTINGS = 12 };
 
 // A random arm in front of its wall.
 typedef struct random_chain {
@@ -40,84 +30,23 @@ typedef struct random_chain {
     int count;
 } random_chain;
 
-static outcome simulate(const random_chain *c, double step)
+static chain_outcome simulate(const random_chain *c, double step)
 {
     parameters p = c->parameters;
     p.method.step = step;
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
-    assert_non_null(m);
-    motion_start(&a, m, c->angle, c->velocity);
-    outcome o = {.first_contact = (double)NAN};
-    double impulses = 0, end = DURATION;
-    while (m->state[SLOT_TIME] < end) {
-        motion_report r;
-        const double before = m->state[SLOT_TIME], work = m->state[SLOT_MOTOR_WORK];
-        o.status = motion_step(&a, m, end, step, &r);
-        if (o.status != STATUS_OK) {
-            break;
-        }
-
-        // looks at the momentum
-        while (!isnan(o.first_contact) && o.samples < SAMPLES) {
-            double time = o.first_contact + o.samples * INTERVAL;
-            if (time > m->state[SLOT_TIME]) {
-                break;
-            }
-            double *state = time > before ? motion_between(&a, m, time) : m->state;
-            o.momentum[o.samples++] = impulses + state_quadratures(m, state)[QUADRATURE_FORCE];
-        }
-
-        // the ledger, then the event
-        o.put_in += fabs(m->state[SLOT_MOTOR_WORK] - work);
-        o.residual = fmax(o.residual, fabs(motion_energy_residual(&a, m, m->state)));
-        if (r.event != MOTION_REACHED) {
-            motion_apply(&a, m, &r);
-        }
-        if (r.event == MOTION_IMPACT) {
-            impulses += r.impulse;
-            if (isnan(o.first_contact)) {
-                o.first_contact = m->state[SLOT_TIME];
-                o.first_impulse = r.impulse;
-                o.momentum[o.samples++] = impulses;
-                end = fmin(end, o.first_contact + AFTER_CONTACT);
-            }
-        }
-    }
-    o.put_in += m->start_energy;
-    motion_destroy(m);
-    return o;
-}
-
-// Root mean square of the difference of what two sensors with a lag read, of the first one's.
-static double sensor_difference(const outcome *a, const outcome *b)
-{
-    const double keep = exp(-INTERVAL / SENSOR);
-    const int samples = a->samples < b->samples ? a->samples : b->samples;
-    double read[2] = {a->momentum[0] / SENSOR, b->momentum[0] / SENSOR}, square = 0, apart = 0;
-    for (int k = 1; k < samples; k++) {
-        for (int i = 0; i < 2; i++) {
-            const outcome *o = i == 0 ? a : b;
-            double mean = (o->momentum[k] - o->momentum[k - 1]) / INTERVAL;
-            read[i] = keep * read[i] + (1 - keep) * mean;
-        }
-        square += read[0] * read[0];
-        apart += (read[0] - read[1]) * (read[0] - read[1]);
-    }
-    return square > 0 ? sqrt(apart / square) : 0;
+    return chain_outcome_of(&p, c->angle, c->velocity, DURATION, AFTER_CONTACT);
 }
 
 // Largest difference of two outcomes, as a multiple of what may be.
-static double distance(const outcome *truth, const outcome *o)
+static double distance(const chain_outcome *truth, const chain_outcome *o)
 {
     const int samples = truth->samples < o->samples ? truth->samples : o->samples;
-    const int last = samples - 1, early = last < FIRST_MS ? last : FIRST_MS;
+    const int last = samples - 1, early = last < OUTCOME_FIRST_MS ? last : OUTCOME_FIRST_MS;
     double worst = fabs(o->first_contact - truth->first_contact) / 1e-6;
     worst = fmax(worst, fabs(o->first_impulse / truth->first_impulse - 1) / 1e-4);
     worst = fmax(worst, fabs(o->momentum[early] / truth->momentum[early] - 1) / 1e-3);
     worst = fmax(worst, fabs(o->momentum[last] / truth->momentum[last] - 1) / 1e-3);
-    return fmax(worst, sensor_difference(truth, o) / 5e-3);
+    return fmax(worst, chain_outcome_sensor_difference(truth, o) / 5e-3);
 }
 
 static double between(random_generator *g, double from, double to)
@@ -187,13 +116,13 @@ int main(int argc, char **argv)
         make_chain(&c, i, least, most);
         arm_init(&a, &c.parameters);
         const double step = fmin(1e-4, SUBSTEPS / a.fastest_rate);
-        const outcome truth = simulate(&c, step);
+        const chain_outcome truth = simulate(&c, step);
         if (a.fastest_rate > FASTEST || truth.status != STATUS_OK || truth.samples < 2) {
             continue;
         }
 
         // wrong: said to be, or not
-        const outcome o = simulate(&c, MODES_STEP);
+        const chain_outcome o = simulate(&c, MODES_STEP);
         const double bound = c.parameters.method.residual_bound;
         const bool closed = o.residual <= bound * o.put_in, ok = o.status == STATUS_OK && closed;
         const double worst = o.samples > 0 ? distance(&truth, &o) : HUGE_VAL;
@@ -202,7 +131,7 @@ int main(int argc, char **argv)
         if (!ok) {
             describe(&c, i, status_text(o.status), worst);
         } else if (!(worst <= 1)) {
-            const outcome again = simulate(&c, 0.61 * step);
+            const chain_outcome again = simulate(&c, 0.61 * step);
             const bool sure = distance(&truth, &again) < 0.1;
             wrong += sure;
             chaotic += !sure;

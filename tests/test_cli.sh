@@ -2,32 +2,9 @@
 # The command line as a person or a script meets it.
 # $1: the program
 set -u
-lab=$(readlink -f "$1")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-export LC_ALL=C.UTF-8
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    echo "  stdout: $(head -c 400 out)"
-    echo "  stderr: $(head -c 400 err)"
-    failures=$((failures + 1))
-}
-
-# expect STATUS ARGUMENT...: runs the program, its output lands in the files out and err
-expect() {
-    local wanted=$1 status=0
-    shift
-    "$lab" "$@" >out 2>err </dev/null || status=$?
-    [ $status = "$wanted" ] || fail "impactlab $*: exit status $status, expected $wanted"
-}
-
-# says FILE TEXT: the text occurs in out or err
-says() {
-    grep -qF -e "$2" "$1" || fail "'$2' is not in $1"
-}
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/expect.sh"
+lab=$program
 
 silent() {
     [ ! -s "$1" ] || fail "$1 is not empty"
@@ -433,5 +410,4 @@ says out "beam"
 expect 2 study sense
 says err "expected methods or sensor"
 
-[ $failures = 0 ] && echo "all well"
-[ $failures = 0 ]
+nothing_failed

@@ -3,26 +3,8 @@
 # only ask that they run.
 # $1: the program
 set -u
-program=$(readlink -f "$1")
-export LC_ALL=C.UTF-8
-folder=$(mktemp -d /tmp/impactlab-commands-XXXXXX)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-# expect STATUS ARGUMENT...
-expect() {
-    local wanted=$1 status
-    shift
-    "$program" "$@" >out 2>err </dev/null
-    status=$?
-    [ "$status" = "$wanted" ] || fail "impactlab $*: status $status, expected $wanted: $(head -c 300 err)"
-}
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/expect.sh"
 
 # number FILE KEY [N]: what follows the N-th "KEY": in a JSON file
 number() {
@@ -91,5 +73,4 @@ if command -v script >/dev/null; then
     [ "$(wc -l <bar.csv)" = 401 ] || fail "the sweep under the bar has not its rows"
 fi
 
-[ $failures = 0 ] && echo "all well"
-[ $failures = 0 ]
+nothing_failed

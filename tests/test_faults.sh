@@ -5,25 +5,17 @@
 # before stands unchanged (or the whole new one), and nothing is left beside it.
 # $1: the program, $2: fail_kth.so, $3: how many allocations at most fail for each command (default 60)
 set -u
-program=$(readlink -f "$1")
 preload=$(readlink -f "$2")
 most=${3:-60}
 note_count=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/note_count
-export LC_ALL=C.UTF-8
-folder=$(mktemp -d /tmp/impactlab-faults-XXXXXX)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0 injected=0
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/expect.sh"
+injected=0
 
 if ldd "$program" | grep -q 'lib[atu]*san'; then
     echo "a sanitizer's allocator takes no other's place"
     exit 77
 fi
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
 
 cat >hit.yaml <<'END'
 title: An impact
@@ -179,4 +171,4 @@ echo "$injected faults injected, $failures broken promises"
 times >times
 "$note_count" faults "$injected" \
     "$(awk 'NR == 2 { gsub(/[ms]/, " "); printf "%.0f", 60 * $1 + $2 + 60 * $3 + $4 }' times)" "$failures"
-[ $failures = 0 ]
+nothing_failed

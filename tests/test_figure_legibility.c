@@ -15,6 +15,7 @@
 #include "render/figures/figures.h"
 #include "render/page/text.h"
 #include "render/plot/drawing.h"
+#include "tests/rect_check.h"
 
 // fontconfig keeps its cache until the process ends
 const char *__lsan_default_suppressions(void);
@@ -333,21 +334,6 @@ static void check_texts(const artwork *a, const char *id, double width)
     cairo_surface_destroy(surface);
 }
 
-static bool is_within(const figure_rect *r, const figure_rect *outer, double slack)
-{
-    return r->x >= outer->x - slack && r->y >= outer->y - slack &&
-           r->x + r->width <= outer->x + outer->width + slack &&
-           r->y + r->height <= outer->y + outer->height + slack;
-}
-
-static bool overlap(const figure_rect *a, const figure_rect *b)
-{
-    // line boxes are taller than letters
-    double down = fmin(a->y + a->height, b->y + b->height) - fmax(a->y, b->y);
-    double across = fmin(a->x + a->width, b->x + b->width) - fmax(a->x, b->x);
-    return across > 0.5 && down > 0.3 * fmin(a->height, b->height);
-}
-
 // Nothing leaves the page, no text covers another, none is smaller than can be read.
 static void check_page(const artwork *a, const figure_report *r, const char *id, double width)
 {
@@ -360,13 +346,13 @@ static void check_page(const artwork *a, const figure_report *r, const char *id,
     cairo_destroy(cr);
     cairo_surface_destroy(surface);
     check_close(a->width, width / 25.4 * 72, 1e-6);
-    if (!is_within(&ink, &page, 1)) {
+    if (!rect_is_within(&ink, &page, 1)) {
         complain_of("%s at %g mm: its ink leaves the page", id, width);
     }
 
     for (int i = 0; i < r->text_count; i++) {
         const figure_text *t = &r->texts[i];
-        if (!is_within(&t->place, &page, 0.5)) {
+        if (!rect_is_within(&t->place, &page, 0.5)) {
             complain_of("%s at %g mm: '%s' leaves the page", id, width, t->text);
         }
         if (t->size < LETTERS_LEAST - 1e-9 || t->size > 12) {
@@ -377,7 +363,7 @@ static void check_page(const artwork *a, const figure_report *r, const char *id,
             figure_rect wider = t->place;
             wider.x -= 1.5;
             wider.width += 3;
-            if (overlap(&wider, &r->texts[k].place)) {
+            if (rects_overlap(&wider, &r->texts[k].place)) {
                 complain_of("%s at %g mm: '%s' covers '%s'", id, width, t->text, r->texts[k].text);
             }
         }
@@ -436,8 +422,8 @@ static bool may_have_ink(const figure *fig, const figure_report *r, double x, do
         bool ends = fig->panels[i].legend == LEGEND_ENDS &&
                     x > r->panels[i].x + r->panels[i].width && y > r->panels[i].y - 8 &&
                     y < r->panels[i].y + r->panels[i].height + 8;
-        if (ends || is_within(&point, &r->panels[i], room) ||
-            is_within(&point, &r->legends[i], 1)) {
+        if (ends || rect_is_within(&point, &r->panels[i], room) ||
+            rect_is_within(&point, &r->legends[i], 1)) {
             return true;
         }
     }

@@ -12,6 +12,7 @@
 #include "render/figures/report.h"
 #include "render/page/text.h"
 #include "src/base/csv.h"
+#include "tests/rect_check.h"
 
 // fontconfig keeps its cache until the process ends
 const char *__lsan_default_suppressions(void);
@@ -77,39 +78,23 @@ static figure_rect record(const artwork *a, figure_report *report)
     return ink;
 }
 
-static bool is_within(const figure_rect *r, const figure_rect *outer)
-{
-    const double slack = 0.5;
-    return r->x >= outer->x - slack && r->y >= outer->y - slack &&
-           r->x + r->width <= outer->x + outer->width + slack &&
-           r->y + r->height <= outer->y + outer->height + slack;
-}
-
-static bool overlap(const figure_rect *a, const figure_rect *b)
-{
-    // line boxes are taller than letters
-    double down = fmin(a->y + a->height, b->y + b->height) - fmax(a->y, b->y);
-    double across = fmin(a->x + a->width, b->x + b->width) - fmax(a->x, b->x);
-    return across > 0.5 && down > 0.3 * fmin(a->height, b->height);
-}
-
 // Nothing leaves the page and no text covers another.
 static void expect_tidy(const char *id, figure_options o)
 {
     static figure_report r;
     artwork drawn = open_figure(id, o);
     figure_rect ink = record(&drawn, &r), page = {0, 0, ceil(drawn.width), ceil(drawn.height)};
-    if (!is_within(&ink, &page)) {
+    if (!rect_is_within(&ink, &page, 0.5)) {
         fail_msg("%s: ink at %g, %g of %g x %g leaves the page of %g x %g", id, ink.x, ink.y,
                  ink.width, ink.height, page.width, page.height);
     }
     assert_true(r.text_count >= 3);
     for (int i = 0; i < r.text_count; i++) {
-        if (!is_within(&r.texts[i].place, &page)) {
+        if (!rect_is_within(&r.texts[i].place, &page, 0.5)) {
             fail_msg("%s: '%s' is not within the page", id, r.texts[i].text);
         }
         for (int k = 0; k < i; k++) {
-            if (overlap(&r.texts[i].place, &r.texts[k].place)) {
+            if (rects_overlap(&r.texts[i].place, &r.texts[k].place)) {
                 fail_msg("%s: '%s' covers '%s'", id, r.texts[i].text, r.texts[k].text);
             }
         }

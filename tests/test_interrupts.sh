@@ -3,17 +3,8 @@
 # keeps what was computed, and never leaves half a file. On a terminal it tells how far it is.
 # $1: the program
 set -u
-program=$(readlink -f "$1")
-export LC_ALL=C.UTF-8
-folder=$(mktemp -d /tmp/impactlab-interrupts-XXXXXX)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-    echo "FAILED: $*: $(head -c 400 err)"
-    failures=$((failures + 1))
-}
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/expect.sh"
 
 # runs that would take hours: nothing but the interrupt ends them
 cat >endless.yaml <<'END'
@@ -45,10 +36,6 @@ interrupted() {
     [ $status = 130 ] || fail "impactlab $*: status $status after an interrupt"
     [ -s err ] || fail "impactlab $*: no sentence after an interrupt"
     [ -z "$(find . -name '*.part')" ] || fail "impactlab $*: a temporary stays"
-}
-
-says() {
-    grep -qF -- "$2" "$1" || fail "no '$2' in $1"
 }
 
 # the rows before it are kept
@@ -106,5 +93,4 @@ if command -v script >/dev/null; then
     grep -q '(^C stops)' seen && fail "a note in spite of --quiet"
 fi
 
-[ $failures = 0 ] && echo "all well"
-[ $failures = 0 ]
+nothing_failed

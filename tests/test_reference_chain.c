@@ -9,40 +9,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
+#include "tests/chain_outcome.h"
 #include "tests/reference/reference_arm.h"
 
 #define START_ANGLE    0.095 // a little in front of the wall at 0.1 rad
 #define START_VELOCITY 0.7   // [rad/s]
 #define DURATION       0.06
-#define MODES_STEP     "1"  // so long that only the modes can [s]
-#define SENSOR         1e-3 // time constant [s]
+#define MODES_STEP     1 // so long that only the modes can [s]
 
-enum { FIRST_MS = 10, MOST_EVENTS = 20000 };
-
-// What is compared, of either simulation.
-typedef struct outcome {
-    double first_contact, first_impulse, motor_work, residual, put_in;
-    int impacts, samples;
-    double momentum[REFERENCE_SAMPLES];
-} outcome;
-
-// Looks of a run at the momentum, one an interval from first contact on.
-static void take_samples(const arm *a, motion *m, double before, double impulses, outcome *o)
-{
-    while (!isnan(o->first_contact) && o->samples < REFERENCE_SAMPLES) {
-        double time = o->first_contact + o->samples * REFERENCE_INTERVAL;
-        if (time > m->state[SLOT_TIME]) {
-            return;
-        }
-        double *state = time > before ? motion_between(a, m, time) : m->state;
-        assert_non_null(state);
-        o->momentum[o->samples++] = impulses + state_quadratures(m, state)[QUADRATURE_FORCE];
-    }
-}
-
-static outcome library_outcome(const reference_case *c, bool modes)
+static chain_outcome library_outcome(const reference_case *c, bool modes)
 {
     char links[32], damping[48], restitution[48];
     snprintf(links, sizeof links, "arm.links=%d", c->links);
@@ -52,80 +28,31 @@ static outcome library_outcome(const reference_case *c, bool modes)
         links, damping, restitution, c->beam_root ? "arm.hub_joint=beam" : "arm.hub_joint=rigid",
         c->plane_wall ? "wall.kind=plane" : "wall.kind=point", "motor.voltage=1"));
     if (modes) {
-        p.method.step = 1;
+        p.method.step = MODES_STEP;
     }
 
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
-    assert_non_null(m);
-    motion_start(&a, m, c->angle, c->velocity);
-    outcome o = {.first_contact = (double)NAN};
-    double impulses = 0;
-    for (int events = 0; m->state[SLOT_TIME] < c->duration;) {
-        motion_report report;
-        double before = m->state[SLOT_TIME], work = m->state[SLOT_MOTOR_WORK];
-        status s = motion_step(&a, m, c->duration, p.method.step, &report);
-        if (s != STATUS_OK || ++events > MOST_EVENTS * 10) {
-            fail_msg("%s, %s: %s at %.9g s", c->name, m->engine->name, status_text(s),
-                     m->state[SLOT_TIME]);
-        }
-        take_samples(&a, m, before, impulses, &o);
-        o.put_in += fabs(m->state[SLOT_MOTOR_WORK] - work);
-        o.residual = fmax(o.residual, fabs(motion_energy_residual(&a, m, m->state)));
-        if (report.event != MOTION_REACHED) {
-            motion_apply(&a, m, &report);
-        }
-        if (report.event == MOTION_IMPACT) {
-            impulses += report.impulse;
-            o.impacts++;
-            if (isnan(o.first_contact)) {
-                o.first_contact = m->state[SLOT_TIME];
-                o.first_impulse = report.impulse;
-                o.momentum[o.samples++] = impulses;
-            }
-        }
+    chain_outcome o = chain_outcome_of(&p, c->angle, c->velocity, c->duration, c->duration);
+    if (o.status != STATUS_OK) {
+        fail_msg("%s, %s: %s", c->name, modes ? "modes" : "default", status_text(o.status));
     }
-    o.motor_work = m->state[SLOT_MOTOR_WORK];
-    o.put_in += m->start_energy;
-    motion_destroy(m);
     return o;
 }
 
-static outcome reference_outcome(const reference_case *c)
+static chain_outcome reference_outcome(const reference_case *c)
 {
     static reference_answer r;
     char message[256];
     if (!reference_simulate(c, &r, message, sizeof message)) {
         fail_msg("the reference failed: %s", message);
     }
-    outcome o = {.first_contact = r.first_contact,
-                 .first_impulse = r.first_impulse,
-                 .motor_work = r.motor_work,
-                 .residual = r.energy_residual,
-                 .impacts = r.impacts,
-                 .samples = r.samples};
+    chain_outcome o = {.first_contact = r.first_contact,
+                       .first_impulse = r.first_impulse,
+                       .motor_work = r.motor_work,
+                       .residual = r.energy_residual,
+                       .impacts = r.impacts,
+                       .samples = r.samples};
     memcpy(o.momentum, r.momentum, sizeof o.momentum);
     return o;
-}
-
-// Largest difference of what two sensors with a lag read, and the largest reading's root mean
-// square, from momentum given at intervals.
-static double sensor_difference(const outcome *a, const outcome *b)
-{
-    double keep = exp(-REFERENCE_INTERVAL / SENSOR), square = 0, square_of_difference = 0;
-    double read[2] = {a->momentum[0] / SENSOR, b->momentum[0] / SENSOR};
-    int samples = a->samples < b->samples ? a->samples : b->samples;
-    for (int k = 1; k < samples; k++) {
-        for (int i = 0; i < 2; i++) {
-            const outcome *o = i == 0 ? a : b;
-            double mean = (o->momentum[k] - o->momentum[k - 1]) / REFERENCE_INTERVAL;
-            read[i] = keep * read[i] + (1 - keep) * mean;
-        }
-        square += read[0] * read[0];
-        square_of_difference += (read[0] - read[1]) * (read[0] - read[1]);
-    }
-    return sqrt(square_of_difference / square);
 }
 
 static bool within(const char *what, double difference, double bound)
@@ -135,16 +62,16 @@ static bool within(const char *what, double difference, double bound)
     return close;
 }
 
-static bool compare(const reference_case *c, const outcome *r, bool modes)
+static bool compare(const reference_case *c, const chain_outcome *r, bool modes)
 {
-    outcome l = library_outcome(c, modes);
+    chain_outcome l = library_outcome(c, modes);
     const int last = REFERENCE_SAMPLES - 1;
     printf("    %s:", modes ? "modes" : "default");
     bool same = within("contact", l.first_contact - r->first_contact, 1e-6);
     same &= within("impulse", l.first_impulse / r->first_impulse - 1, 1e-4);
-    same &= within("1 ms", l.momentum[FIRST_MS] / r->momentum[FIRST_MS] - 1, 1e-3);
+    same &= within("1 ms", l.momentum[OUTCOME_FIRST_MS] / r->momentum[OUTCOME_FIRST_MS] - 1, 1e-3);
     same &= within("50 ms", l.momentum[last] / r->momentum[last] - 1, 1e-3);
-    same &= within("sensor", sensor_difference(r, &l), 5e-3);
+    same &= within("sensor", chain_outcome_sensor_difference(r, &l), 5e-3);
     same &= within("work", l.motor_work / r->motor_work - 1, 1e-4);
     same &= within("residual", l.residual / l.put_in, 1e-6);
     same &= within("impacts", l.impacts - r->impacts, c->links <= 16 ? 0 : 0.1 * r->impacts + 2);
@@ -155,7 +82,7 @@ static bool compare(const reference_case *c, const outcome *r, bool modes)
 static void library_agrees(void **state)
 {
     const reference_case *c = *state;
-    outcome r = reference_outcome(c);
+    chain_outcome r = reference_outcome(c);
     printf("%s: contact %.9g s, impulse %.9g N s, %d impacts, after 50 ms %.9g N s, reference's "
            "residual %.2g J\n",
            c->name, r.first_contact, r.first_impulse, r.impacts, r.momentum[REFERENCE_SAMPLES - 1],

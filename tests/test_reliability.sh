@@ -5,30 +5,8 @@
 #
 # Each case was found in a program that did it; the test fails there.
 set -u
-program=$(readlink -f "$1")
-export LC_ALL=C.UTF-8
-folder=$(mktemp -d /tmp/impactlab-reliability-XXXXXX)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-# expect STATUS ARGUMENT...: runs the program; output goes to out and err
-expect() {
-    local wanted=$1 status
-    shift
-    "$program" "$@" >out 2>err </dev/null
-    status=$?
-    [ "$status" = "$wanted" ] || fail "impactlab $*: status $status, expected $wanted: $(head -c 300 err)"
-}
-
-says() {
-    grep -qF -- "$2" "$1" || fail "no '$2' in $1: $(head -c 300 "$1")"
-}
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/expect.sh"
 
 # true if a file holds characters that a terminal obeys (C0 but line feeds, C1) or that turn the
 # direction of text
@@ -163,5 +141,4 @@ if [ "$(id -u)" = 0 ]; then
 fi
 
 [ -z "$(find . -name '*.part')" ] || fail "a temporary file stayed behind"
-[ $failures = 0 ] && echo "all well"
-[ $failures = 0 ]
+nothing_failed

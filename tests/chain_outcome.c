@@ -1,0 +1,87 @@
+#include "tests/chain_outcome.h"
+
+#include <math.h>
+
+#include "src/solve/contact_machine.h"
+#include "tests/check.h"
+
+#define SENSOR 1e-3 // time constant [s]
+
+enum { MOST_EVENTS = 200000 };
+
+// Looks at the momentum, one an interval from first contact on.
+static void take_samples(const arm *a, motion *m, double before, double impulses, chain_outcome *o)
+{
+    while (!isnan(o->first_contact) && o->samples < REFERENCE_SAMPLES) {
+        double time = o->first_contact + o->samples * REFERENCE_INTERVAL;
+        if (time > m->state[SLOT_TIME]) {
+            return;
+        }
+        double *state = time > before ? motion_between(a, m, time) : m->state;
+        assert_non_null(state);
+        o->momentum[o->samples++] = impulses + state_quadratures(m, state)[QUADRATURE_FORCE];
+    }
+}
+
+chain_outcome chain_outcome_of(const parameters *p, double angle, double velocity, double duration,
+                               double after_contact)
+{
+    arm a;
+    arm_init(&a, p);
+    motion *m = motion_create(&a, &p->method);
+    assert_non_null(m);
+    motion_start(&a, m, angle, velocity);
+    chain_outcome o = {.first_contact = (double)NAN};
+    double impulses = 0, end = duration;
+    for (int events = 0; m->state[SLOT_TIME] < end; events++) {
+        motion_report r;
+        const double before = m->state[SLOT_TIME], work = m->state[SLOT_MOTOR_WORK];
+        o.status =
+            events < MOST_EVENTS ? motion_step(&a, m, end, p->method.step, &r) : STATUS_NO_PROGRESS;
+        if (o.status != STATUS_OK) {
+            break;
+        }
+
+        // momentum and ledger, then the event
+        take_samples(&a, m, before, impulses, &o);
+        o.put_in += fabs(m->state[SLOT_MOTOR_WORK] - work);
+        o.residual = fmax(o.residual, fabs(motion_energy_residual(&a, m, m->state)));
+        if (r.event != MOTION_REACHED) {
+            motion_apply(&a, m, &r);
+        }
+        if (r.event != MOTION_IMPACT) {
+            continue;
+        }
+
+        // an impact, the first one perhaps
+        impulses += r.impulse;
+        o.impacts++;
+        if (isnan(o.first_contact)) {
+            o.first_contact = m->state[SLOT_TIME];
+            o.first_impulse = r.impulse;
+            o.momentum[o.samples++] = impulses;
+            end = fmin(end, o.first_contact + after_contact);
+        }
+    }
+    o.motor_work = m->state[SLOT_MOTOR_WORK];
+    o.put_in += m->start_energy;
+    motion_destroy(m);
+    return o;
+}
+
+double chain_outcome_sensor_difference(const chain_outcome *a, const chain_outcome *b)
+{
+    const double keep = exp(-REFERENCE_INTERVAL / SENSOR);
+    const int samples = a->samples < b->samples ? a->samples : b->samples;
+    double read[2] = {a->momentum[0] / SENSOR, b->momentum[0] / SENSOR}, square = 0, apart = 0;
+    for (int k = 1; k < samples; k++) {
+        for (int i = 0; i < 2; i++) {
+            const chain_outcome *o = i == 0 ? a : b;
+            double mean = (o->momentum[k] - o->momentum[k - 1]) / REFERENCE_INTERVAL;
+            read[i] = keep * read[i] + (1 - keep) * mean;
+        }
+        square += read[0] * read[0];
+        apart += (read[0] - read[1]) * (read[0] - read[1]);
+    }
+    return sqrt(apart / square);
+}

@@ -1,0 +1,30 @@
+// What an arm does at its wall, as it is compared between engines, step lengths and the independent
+// simulation.
+#pragma once
+
+#include "src/base/status.h"
+#include "src/quantities/parameters.h"
+#include "tests/reference/reference_arm.h"
+
+#define OUTCOME_FIRST_MS 10 // the sample 1 ms after first contact
+
+typedef struct chain_outcome {
+    status status;           // of the last step; else as far as it came
+    double first_contact;    // [s], NaN without one
+    double first_impulse;    // [N s]
+    double motor_work;       // [J]
+    double residual, put_in; // the ledger's largest; energy and work that went in [J]
+    int impacts, samples;    // samples: of momentum
+    // that the wall took until instants REFERENCE_INTERVAL apart, from first contact on [N s]
+    double momentum[REFERENCE_SAMPLES];
+} chain_outcome;
+
+// Moves an arm from an angle [rad] and an angular velocity [rad/s] of all links by its own method
+// with the time step p->method.step. Ends after `duration`, or `after_contact` behind first contact
+// if that is earlier [s]; a step that fails, or events without end, end it with that status.
+chain_outcome chain_outcome_of(const parameters *p, double angle, double velocity, double duration,
+                               double after_contact);
+
+// Root mean square of the difference of what two sensors with a lag of 1 ms read, as a share of the
+// first one's; NaN where that reads nothing.
+double chain_outcome_sensor_difference(const chain_outcome *a, const chain_outcome *b);
