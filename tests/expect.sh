@@ -29,6 +29,11 @@ says() {
     grep -qF -e "$2" "$1" || fail "'$2' is not in $1"
 }
 
+# on_terminal COMMAND ARGUMENT...: runs it on a terminal of its own; what that shows lands in seen
+on_terminal() {
+    timeout -s INT 120 script -qec "$(printf '%q ' "$@")" seen >out 2>err </dev/null
+}
+
 # true only if nothing failed; a test ends with it
 nothing_failed() {
     [ "$failures" = 0 ] || echo "$failures failed"

@@ -68,7 +68,7 @@ awk '/"peak_N"/ { gsub(/,/, ""); p[++n % 4] = $2 } /"time_to_peak_s"/ { k++ } n 
 
 # --- on a terminal a sweep shows a bar, and takes it away
 if command -v script >/dev/null; then
-    script -qec "$program sweep hit.yaml --set run.duration=2 --vary motor.voltage=1:2:400 --jobs 1 --csv bar.csv" seen >out 2>err </dev/null
+    on_terminal "$program" sweep hit.yaml --set run.duration=2 --vary motor.voltage=1:2:400 --jobs 1 --csv bar.csv
     tr '\r' '\n' <seen | grep -q '400 of 400 runs' || fail "a sweep on a terminal shows no bar"
     [ "$(wc -l <bar.csv)" = 401 ] || fail "the sweep under the bar has not its rows"
 fi

@@ -87,9 +87,9 @@ says out "brief.yaml"
 
 # --- on a terminal: notes how far it is, which are gone at the end
 if command -v script >/dev/null; then
-    timeout -s INT 60 script -qec "timeout -s INT 2.5 $program compare brief.yaml endless.yaml" seen >out 2>err </dev/null
+    on_terminal timeout -s INT 2.5 "$program" compare brief.yaml endless.yaml
     tr '\r' '\n' <seen | grep -q '^impactlab: 1 of 2 runs (^C stops)' || fail "no note on a terminal"
-    timeout -s INT 60 script -qec "timeout -s INT 2.5 $program compare brief.yaml endless.yaml --quiet" seen >out 2>err </dev/null
+    on_terminal timeout -s INT 2.5 "$program" compare brief.yaml endless.yaml --quiet
     grep -q '(^C stops)' seen && fail "a note in spite of --quiet"
 fi
 
