@@ -15,9 +15,9 @@ cc=("${@:3}")
 # how everything is compiled and linked, one argument an element: folders may have blanks
 flags=(-std=c17 -D_GNU_SOURCE -ffp-contract=off -Wno-psabi -I. "-I$2/..")
 # shellcheck disable=SC2207
-flags+=($(pkg-config --cflags yaml-0.1 jansson lapack))
+flags+=($(pkg-config --cflags yaml-0.1 jansson))
 # shellcheck disable=SC2207
-libraries=($(pkg-config --libs yaml-0.1 jansson lapack sqlite3) -ldl -lm -lpthread)
+libraries=($(pkg-config --libs yaml-0.1 jansson sqlite3) -ldl -lm -lpthread)
 
 # what a run needs: the library below the studies, which make many runs or time them, and its own
 # interface above

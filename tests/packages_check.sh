@@ -18,18 +18,6 @@ wanted=$(cd "$root" && find . -name meson.build -not -path './build*/*' -exec ca
     sed 's/#.*//' | grep -o "dependency('[^']*'" | sed "s/.*('//; s/'//" | sort -u)
 [ -n "$wanted" ] || { echo "no dependency found in the meson files"; exit 1; }
 
-# true if the pkg-config name is one that several packages offer and one of ours is among them
-# (lapack.pc is an alternative that lapack-netlib.pc provides)
-is_alternative() {
-    local file provider
-    for file in $(grep -l "/$1\.pc$" /var/lib/dpkg/alternatives/* 2>/dev/null); do
-        for provider in $(sed -n 's|.*/\([^/]*\)\.pc$|\1|p' "$file"); do
-            grep -qx -- "$provider" <<<"$offered" && return 0
-        done
-    done
-    return 1
-}
-
 failed=0
 for name in $wanted; do
     # what meson knows by itself comes with the compiler
@@ -38,7 +26,7 @@ for name in $wanted; do
     # what is left out where it is missing
     mpi) continue ;;
     esac
-    if ! grep -qx -- "$name" <<<"$offered" && ! is_alternative "$name"; then
+    if ! grep -qx -- "$name" <<<"$offered"; then
         echo "dependency('$name') comes from no package of the lab script"
         failed=1
     fi

@@ -77,6 +77,39 @@ static void equal_values_and_zero_matrices_are_fine(void **state)
     check_close(values[1], 0, 0);
 }
 
+// Pairs of matrices: A x = value B x, and the vectors make both diagonal.
+static void vectors_of_a_pair_make_both_diagonal(void **state)
+{
+    (void)state;
+    for (int n = 1; n <= LARGEST; n++) {
+        double matrix[LARGEST * LARGEST], mass[LARGEST * LARGEST], vectors[LARGEST * LARGEST];
+        double lost[LARGEST * LARGEST], values[LARGEST], scratch[2 * LARGEST];
+        fill(n, 0, matrix);
+        fill(n, n, mass);
+        mass[0] += 0.5;
+        memcpy(vectors, matrix, sizeof vectors);
+        memcpy(lost, mass, sizeof lost);
+        assert_true(symmetric_eigen_pair(n, vectors, lost, values, scratch));
+
+        for (int i = 0; i < n; i++) {
+            assert_true(i == 0 || values[i - 1] <= values[i]);
+            for (int j = 0; j < n; j++) {
+                double pulled = 0, length = 0;
+                for (int k = 0; k < n * n; k++) {
+                    double both = vectors[i * n + k / n] * vectors[j * n + k % n];
+                    pulled += both * matrix[k];
+                    length += both * mass[k];
+                }
+                check_close(pulled, i == j ? values[i] : 0, 1e-13);
+                check_close(length, i == j, 1e-13);
+            }
+        }
+    }
+
+    double matrix[4] = {1, 0, 0, 1}, indefinite[4] = {1, 2, 2, 1}, values[2], scratch[4];
+    assert_false(symmetric_eigen_pair(2, matrix, indefinite, values, scratch));
+}
+
 static void a_factor_solves_its_system(void **state)
 {
     (void)state;
@@ -115,6 +148,7 @@ int main(void)
         cmocka_unit_test(vectors_and_values_make_the_matrix_again),
         cmocka_unit_test(the_second_difference_has_its_closed_form),
         cmocka_unit_test(equal_values_and_zero_matrices_are_fine),
+        cmocka_unit_test(vectors_of_a_pair_make_both_diagonal),
         cmocka_unit_test(a_factor_solves_its_system),
         cmocka_unit_test(what_is_not_positive_definite_has_no_factor),
     };

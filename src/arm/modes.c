@@ -5,10 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// LAPACK: generalised symmetric eigenproblem A x = lambda B x.
-extern void dsygv_(const int *itype, const char *jobz, const char *uplo, const int *n, double *a,
-                   const int *lda, double *b, const int *ldb, double *w, double *work,
-                   const int *lwork, int *info);
+#include "src/base/symmetric.h"
 
 void modes_matrices(const arm *a, double *mass, double *stiffness)
 {
@@ -86,31 +83,28 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
                      double *shapes)
 {
     assert(a != NULL && a->dof > 0 && count != NULL && frequencies != NULL && shapes != NULL);
-    const int n = a->dof, itype = 1, work_size = 8 * n + 64;
+    const int n = a->dof;
 
     // one block for all matrices and vectors
     size_t square = (size_t)n * (size_t)n;
-    double *block = calloc(5 * square + (size_t)(2 * n + work_size), sizeof *block);
+    double *block = calloc(5 * square + (size_t)(4 * n), sizeof *block);
     if (block == NULL) {
         return STATUS_NO_MEMORY;
     }
     double *mass = block, *stiffness = mass + square, *basis = stiffness + square;
     double *k = basis + square, *m = k + square, *product = m + square;
-    double *values = product + n, *work = values + n;
+    double *values = product + n, *scratch = values + n;
 
     // K x = omega^2 M x on the angles that hub and tip allow
     modes_matrices(a, mass, stiffness);
-    int columns = allowed_basis(a, hub, tip, basis), info = 0;
+    const int columns = allowed_basis(a, hub, tip, basis);
     reduce(stiffness, basis, n, columns, product, k);
     reduce(mass, basis, n, columns, product, m);
     *count = columns;
-    if (columns > 0) {
-        dsygv_(&itype, "V", "U", &columns, k, &columns, m, &columns, values, work, &work_size,
-               &info);
-    }
+    const bool found = columns == 0 || symmetric_eigen_pair(columns, k, m, values, scratch);
 
     // frequencies, and shapes scaled to a largest angle of one
-    for (int i = 0; i < columns && info == 0; i++) {
+    for (int i = 0; found && i < columns; i++) {
         // a rigid mode's zero comes out as rounding of the stiffest mode's square
         double value = values[i] > 1e-13 * values[columns - 1] ? values[i] : 0;
         frequencies[i] = sqrt(value);
@@ -129,5 +123,5 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
         }
     }
     free(block);
-    return info == 0 ? STATUS_OK : STATUS_SINGULAR;
+    return found ? STATUS_OK : STATUS_SINGULAR;
 }

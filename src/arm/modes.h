@@ -11,10 +11,10 @@ typedef enum tip_end { TIP_FREE, TIP_PINNED } tip_end; // in the air, or touchin
 //
 //     K x = w^2 M x,
 //
-// solved by LAPACK's dsygv on dense matrices (analysis, not simulation: cost N^3). A pinned tip
-// leaves the angles with sum l x_k = 0. count: how many modes there are (at most a->dof), in rising
-// order. frequencies[dof]: w [rad/s]. shapes[dof * dof]: row i holds the angles of mode i at all
-// degrees of freedom, scaled to a largest angle of 1. STATUS_SINGULAR if LAPACK fails,
+// solved on dense matrices (analysis, not simulation: cost N^3). A pinned tip leaves the angles
+// with sum l x_k = 0. count: how many modes there are (at most a->dof), in rising order.
+// frequencies[dof]: w [rad/s]. shapes[dof * dof]: row i holds the angles of mode i at all degrees
+// of freedom, scaled to a largest angle of 1. STATUS_SINGULAR if M is not positive definite,
 // STATUS_NO_MEMORY.
 status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double *frequencies,
                      double *shapes);

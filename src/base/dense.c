@@ -4,21 +4,17 @@
 #include <math.h>
 #include <stddef.h>
 
-static void swap_rows(int n, double *matrix, double *vector, int i, int j)
+static void swap_rows(int length, double *matrix, int i, int j)
 {
-    for (int k = 0; k < n; k++) {
-        double entry = matrix[i * n + k];
-        matrix[i * n + k] = matrix[j * n + k];
-        matrix[j * n + k] = entry;
+    for (int k = 0; k < length; k++) {
+        double entry = matrix[i * length + k];
+        matrix[i * length + k] = matrix[j * length + k];
+        matrix[j * length + k] = entry;
     }
-    double entry = vector[i];
-    vector[i] = vector[j];
-    vector[j] = entry;
 }
 
-bool dense_solve(int n, double *matrix, double *vector)
+static inline bool solve(int n, int columns, double *matrix, double *right)
 {
-    assert(n > 0 && matrix != NULL && vector != NULL);
 
     // elimination
     for (int column = 0; column < n; column++) {
@@ -34,7 +30,8 @@ bool dense_solve(int n, double *matrix, double *vector)
             return false;
         }
         if (pivot != column) {
-            swap_rows(n, matrix, vector, pivot, column);
+            swap_rows(n, matrix, pivot, column);
+            swap_rows(columns, right, pivot, column);
         }
 
         // the column vanishes in the rows below
@@ -43,16 +40,33 @@ bool dense_solve(int n, double *matrix, double *vector)
             for (int k = column; k < n; k++) {
                 matrix[row * n + k] -= factor * matrix[column * n + k];
             }
-            vector[row] -= factor * vector[column];
+            for (int k = 0; k < columns; k++) {
+                right[row * columns + k] -= factor * right[column * columns + k];
+            }
         }
     }
 
     // back substitution
     for (int row = n - 1; row >= 0; row--) {
-        for (int k = row + 1; k < n; k++) {
-            vector[row] -= matrix[row * n + k] * vector[k];
+        for (int c = 0; c < columns; c++) {
+            double *x = right + row * columns + c;
+            for (int k = row + 1; k < n; k++) {
+                *x -= matrix[row * n + k] * right[k * columns + c];
+            }
+            *x /= matrix[row * n + row];
         }
-        vector[row] /= matrix[row * n + row];
     }
     return true;
+}
+
+bool dense_solve(int n, double *matrix, double *vector)
+{
+    assert(n > 0 && matrix != NULL && vector != NULL);
+    return solve(n, 1, matrix, vector);
+}
+
+bool dense_solve_columns(int n, int columns, double *matrix, double *right)
+{
+    assert(n > 0 && columns > 0 && matrix != NULL && right != NULL);
+    return solve(n, columns, matrix, right);
 }

@@ -1,5 +1,6 @@
 #include "src/base/symmetric.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -151,6 +152,8 @@ static void sort_rows(int n, double *values, double *rows, double *spare)
 
 bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
 {
+    assert(n > 0 && n <= SYMMETRIC_MOST && matrix != NULL && values != NULL && scratch != NULL);
+
     // tridiagonal form, and the rotation that leads there
     double *e = scratch, *norms = scratch + n;
     tridiagonalise(n, matrix, values, e, norms);
@@ -158,7 +161,7 @@ bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
         e[i - 1] = e[i];
     }
     e[n - 1] = 0;
-    double first[1024 + 8];
+    double first[SYMMETRIC_MOST];
     accumulate(n, matrix, norms, first);
 
     // eigenvalue by eigenvalue: sweeps over the block that still couples with it
@@ -225,4 +228,41 @@ void symmetric_backward(int n, const double *factor, double *vector)
             vector[k] -= row[k] * vector[i];
         }
     }
+}
+
+bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values, double *scratch)
+{
+    assert(n > 0 && matrix != NULL && mass != NULL);
+    const size_t side = (size_t)n;
+    if (!symmetric_factor(n, mass)) {
+        return false;
+    }
+
+    // L^-1 A L^-T with mass = L L': symmetric, so that rows may stand for columns
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < side; i++) {
+            symmetric_forward(n, mass, matrix + i * side);
+        }
+        for (size_t i = 0; i < side; i++) {
+            for (size_t j = 0; j < i; j++) {
+                double entry = matrix[i * side + j];
+                matrix[i * side + j] = matrix[j * side + i];
+                matrix[j * side + i] = entry;
+            }
+        }
+    }
+    for (size_t i = 0; i < side; i++) {
+        for (size_t j = 0; j < i; j++) {
+            matrix[i * side + j] = matrix[j * side + i];
+        }
+    }
+    if (!symmetric_eigen(n, matrix, values, scratch)) {
+        return false;
+    }
+
+    // back to the coordinates of both matrices
+    for (size_t k = 0; k < side; k++) {
+        symmetric_backward(n, mass, matrix + k * side);
+    }
+    return true;
 }

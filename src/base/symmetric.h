@@ -1,8 +1,11 @@
 // Eigenvalues and eigenvectors of symmetric matrices, from nothing but IEEE operations in a fixed
-// order: the same bits whatever libraries are installed. Dense, cost n^3.
+// order: the same bits whatever libraries are installed. Dense, cost n^3. n is at most
+// SYMMETRIC_MOST.
 #pragma once
 
 #include <stdbool.h>
+
+enum { SYMMETRIC_MOST = 1032 };
 
 // Decomposes the symmetric matrix[n * n] (row-major, both triangles given). On return row k of it
 // is the unit eigenvector of values[k], values in rising order. scratch: 2 n doubles. False if the
@@ -11,6 +14,10 @@
 // Householder's reduction to tridiagonal form, then the QL method with implicit shifts (Bowdler,
 // Martin, Reinsch, Wilkinson, Numerische Mathematik 11 (1968), 293-306).
 bool symmetric_eigen(int n, double *matrix, double *values, double *scratch);
+
+// The same for matrix x = value mass x, mass positive definite; row k of `matrix` is then scaled to
+// x' mass x = 1. Overwrites `mass`. False also if mass is not positive definite.
+bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values, double *scratch);
 
 // Cholesky's factor of the positive definite matrix[n * n] into its lower triangle; the upper one
 // is left as it was. False if it is not positive definite.

@@ -28,11 +28,3 @@ void estimator_predict(estimator *e, const sampled_model *m, double u, const dou
 // Takes in one reading of row z + offset with the given variance.
 void estimator_correct(estimator *e, int n, const double *row, double offset, double reading,
                        double variance);
-
-// Gain k[2] of the feedback u = -k z that makes the sum over samples of
-// ((output z + direct u)^2 + effort u^2) growth^2k least on a sampled model of two states, k
-// counting samples: growth = 1 is the plain optimum, with growth > 1 errors die faster than
-// growth^-k. The stabilising solution of the discrete Riccati equation, from LAPACK's ordered Schur
-// form of the symplectic matrix. False if there is none.
-bool optimal_gain(const sampled_model *m, const double output[2], double direct, double effort,
-                  double growth, double k[2]);

@@ -4,46 +4,52 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/dense.h"
+
 enum { N = ESTIMATOR_STATES, DOUBLINGS = 60 };
 
-// LAPACK: solves a x = b for several right-hand sides.
-extern void dgesv_(const int *n, const int *columns, double *a, const int *lda, int *pivots,
-                   double *b, const int *ldb, int *info);
-
-// A square matrix of the states in use; entry (i, j) is [j][i], columns as LAPACK wants them.
+// A square matrix of the states in use.
 typedef double matrix[N][N];
 
 static void multiply(int n, matrix out, matrix a, bool transpose_a, matrix b, bool transpose_b)
 {
     matrix product;
-    for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++) {
-            product[j][i] = 0;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            product[i][j] = 0;
             for (int k = 0; k < n; k++) {
-                product[j][i] +=
-                    (transpose_a ? a[i][k] : a[k][i]) * (transpose_b ? b[k][j] : b[j][k]);
+                product[i][j] +=
+                    (transpose_a ? a[k][i] : a[i][k]) * (transpose_b ? b[j][k] : b[k][j]);
             }
         }
     }
 
     // `out` may be one of the factors
-    for (int j = 0; j < n; j++) {
-        memcpy(out[j], product[j], (size_t)n * sizeof(double));
+    for (int i = 0; i < n; i++) {
+        memcpy(out[i], product[i], (size_t)n * sizeof(double));
     }
 }
 
 // x = (I + g h)^-1 b. False if that is singular.
 static bool solve(int n, matrix x, matrix g, matrix h, matrix b)
 {
-    matrix left;
-    int pivots[N], info = 0, stride = N;
-    multiply(n, left, g, false, h, false);
+    matrix product;
+    double left[N * N], right[N * N];
+    multiply(n, product, g, false, h, false);
     for (int i = 0; i < n; i++) {
-        left[i][i] += 1;
+        for (int j = 0; j < n; j++) {
+            left[i * n + j] = product[i][j] + (i == j);
+            right[i * n + j] = b[i][j];
+        }
     }
-    memcpy(x, b, sizeof(matrix));
-    dgesv_(&n, &n, &left[0][0], &stride, pivots, &x[0][0], &stride, &info);
-    return info == 0;
+
+    if (!dense_solve_columns(n, n, left, right)) {
+        return false;
+    }
+    for (int i = 0; i < n; i++) {
+        memcpy(x[i], right + i * n, (size_t)n * sizeof(double));
+    }
+    return true;
 }
 
 // The solution x of x = a'x (I + g x)^-1 a + q by doubling.
@@ -63,12 +69,12 @@ static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
         multiply(n, fg, fg, false, a, true);
         multiply(n, a, a, false, fa, false);
         double change = 0, size = 0;
-        for (int j = 0; j < n; j++) {
-            for (int i = 0; i < n; i++) {
-                x[j][i] += step[j][i];
-                g[j][i] += fg[j][i];
-                change = fmax(change, fabs(step[j][i]));
-                size = fmax(size, fabs(x[j][i]));
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) {
+                x[i][j] += step[i][j];
+                g[i][j] += fg[i][j];
+                change = fmax(change, fabs(step[i][j]));
+                size = fmax(size, fabs(x[i][j]));
             }
         }
         if (!isfinite(size)) {
@@ -108,9 +114,9 @@ bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gai
     }
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            a[j][i] = c->growth * m->a[i][j] - b[i] * c->cross[j] / c->effort;
-            g[j][i] = b[i] * b[j] / c->effort;
-            q[j][i] = c->state[i][j] - c->cross[i] * c->cross[j] / c->effort;
+            a[i][j] = c->growth * m->a[i][j] - b[i] * c->cross[j] / c->effort;
+            g[i][j] = b[i] * b[j] / c->effort;
+            q[i][j] = c->state[i][j] - c->cross[i] * c->cross[j] / c->effort;
         }
     }
     if (!riccati(n, a, g, q, x)) {
@@ -122,7 +128,7 @@ bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gai
     for (int j = 0; j < n; j++) {
         bx[j] = 0;
         for (int i = 0; i < n; i++) {
-            bx[j] += b[i] * x[j][i];
+            bx[j] += b[i] * x[i][j];
         }
         weight += bx[j] * b[j];
     }

@@ -147,30 +147,10 @@ status modal_basis_compute(modal_basis *b, const arm *a, bool contact, bool stuc
     double *mass = scratch, *matrix = scratch + size, *x = scratch + 3 * size, *y = x + n;
     double *more = y + n; // 3 n
 
-    // L^-1 K L^-T with M0 = L L': symmetric, so that rows may stand for columns
+    // K x = omega^2 M0 x on the angles allowed
     reduce(&w, modal_mass_times, mass, x, y);
     reduce(&w, modal_stiffness_times, matrix, x, y);
-    if (!symmetric_factor(columns, mass)) {
-        return STATUS_SINGULAR;
-    }
-    for (size_t pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; i < side; i++) {
-            symmetric_forward(columns, mass, matrix + i * side);
-        }
-        for (size_t i = 0; i < side; i++) {
-            for (size_t j = 0; j < i; j++) {
-                double entry = matrix[i * side + j];
-                matrix[i * side + j] = matrix[j * side + i];
-                matrix[j * side + i] = entry;
-            }
-        }
-    }
-    for (size_t i = 0; i < side; i++) {
-        for (size_t j = 0; j < i; j++) {
-            matrix[i * side + j] = matrix[j * side + i];
-        }
-    }
-    if (columns > 0 && !symmetric_eigen(columns, matrix, b->rate, more)) {
+    if (columns > 0 && !symmetric_eigen_pair(columns, matrix, mass, b->rate, more)) {
         return STATUS_SINGULAR;
     }
 
@@ -180,7 +160,6 @@ status modal_basis_compute(modal_basis *b, const arm *a, bool contact, bool stuc
     memset(b->pull, 0, (size_t)n * sizeof *b->pull);
     for (int k = 0; k < columns; k++) {
         double *row = b->by_mode + (size_t)k * (size_t)n, *z = matrix + (size_t)k * side;
-        symmetric_backward(columns, mass, z);
         memset(row, 0, (size_t)n * sizeof *row);
         for (int c = 0; c < columns; c++) {
             row[w.start + c] += z[c];

@@ -20,7 +20,7 @@ command -v valgrind >/dev/null || {
     exit 1
 }
 
-libraries=$(pkg-config --libs yaml-0.1 jansson lapack sqlite3)
+libraries=$(pkg-config --libs yaml-0.1 jansson sqlite3)
 # shellcheck disable=SC2086
 ${CC:-cc} -std=c17 -O2 -D_GNU_SOURCE "-I$root" -o "$work/hot_step" "$root/tests/bench/hot_step.c" \
     "$build/src/libimpactlab.a" $libraries -ldl -lm -lpthread

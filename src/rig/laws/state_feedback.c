@@ -1,5 +1,6 @@
 #include "src/rig/laws/state_feedback.h"
 #include "src/base/plain_math.h"
+#include "src/rig/riccati.h"
 
 #include <assert.h>
 #include <math.h>
@@ -91,8 +92,9 @@ const char *state_feedback_start(void *memory, const controller_setup *setup)
     double per_torque = m->mass_force / m->inertia;
     double output[2] = {m->spring_force + per_torque * m->stiffness,
                         per_torque * setup->hub_damping};
-    if (!optimal_gain(&plant, output, -per_torque * setup->torque_per_volt, EFFORT,
-                      plain_exp(URGENCY * setup->period), m->gain)) {
+    quadratic_cost cost = {.effort = EFFORT, .growth = plain_exp(URGENCY * setup->period)};
+    quadratic_cost_add(&cost, 2, output, -per_torque * setup->torque_per_volt, 1);
+    if (!quadratic_gain(&plant, &cost, m->gain)) {
         return "the Riccati equation of its gains has no stabilising solution";
     }
     return NULL;

@@ -43,7 +43,7 @@ quietly ninja -C "$build" src/libimpactlab.a || give_up "impactlab's library cou
 version=$(sed -n "s/^ *version: '\([^']*\)',.*/\1/p" "$root/meson.build" | head -n 1)
 flags=(-O3 -D_GNU_SOURCE -ffp-contract=off -Wall -Wextra "-I$root"
     "-DIMPACTLAB_VERSION=\"$version\"")
-read -r -a libraries <<<"$(pkg-config --libs yaml-0.1 jansson lapack) -lm"
+read -r -a libraries <<<"$(pkg-config --libs yaml-0.1 jansson) -lm"
 used=()
 linker=$cc
 
