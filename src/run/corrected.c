@@ -285,18 +285,3 @@ void corrected_close(corrected_run *c, status failed)
         motion_destroy(c->motion);
     }
 }
-
-status run_corrected(recording *r, fault *f)
-{
-    corrected_run c;
-    bool ended = false;
-    status failed = corrected_open(&c, r, f);
-    while (failed == STATUS_OK && !ended) {
-        failed = corrected_approach_stride(&c, &ended, f);
-        if (failed == STATUS_OK && !ended) {
-            failed = corrected_stride(&c, f);
-        }
-    }
-    corrected_close(&c, failed);
-    return failed;
-}

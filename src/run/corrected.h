@@ -1,14 +1,11 @@
-// A run of the corrected arm.
+// A run of the corrected arm, stride by stride:
+//
+//     open -> (approach_stride -> stride) until it has ended or fails -> close
+//
+// so that several can go side by side (src/run/run.c), and programs step them (src/run/loop.h).
 #pragma once
 
 #include "src/run/corrected_rows.h"
-
-// Runs to the end, or as far as possible; f says why it ended early.
-status run_corrected(recording *r, fault *f);
-
-// The same stride by stride, so that several runs can go side by side (src/run/together.h):
-//
-//     open -> (approach_stride -> stride) until it has ended or fails -> close
 
 // Begins a run, or takes one up. Whatever it returns, corrected_close is due.
 status corrected_open(corrected_run *c, recording *r, fault *f);

@@ -7,8 +7,7 @@
 
 #include "src/base/instant.h"
 #include "src/base/version.h"
-#include "src/run/corrected.h"
-#include "src/run/corrected_events.h"
+#include "src/run/loop_parts.h"
 #include "src/run/recording_frame.h"
 
 #define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near is the present one
@@ -17,21 +16,6 @@
 typedef struct commanded_memory {
     const double *volts;
 } commanded_memory;
-
-struct run_loop {
-    scenario scenario; // a copy of one's own
-    run_options options;
-    given_law law;
-    process_tape *tape; // NULL unless control.law is a process
-    run_result result;
-    recording recording;
-    corrected_run run;
-    double volts; // commanded [V]
-    bool ended;
-    status failed; // what stopped it
-    fault fault;
-    uint64_t fingerprint; // of what a saved state must agree with
-};
 
 // --- the controller of a commanded loop -------------------------------------------------------
 
@@ -90,11 +74,6 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
 {
     assert(created != NULL && s != NULL && options != NULL);
     *created = NULL;
-    if (s->parameters.arm.model == ARM_PRINTED) {
-        return fault_set_at(f, STATUS_BAD_ARGUMENT, "arm.model",
-                            "the printed model does not stop between its steps, expected "
-                            "arm.model = corrected");
-    }
     run_loop *l = calloc(1, sizeof *l);
     if (l == NULL || scenario_copy(&l->scenario, s) != STATUS_OK) {
         free(l);
@@ -112,9 +91,11 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
 
     // the run at its start
     fault why;
+    l->run.model = stepped_model_of(&s->parameters);
     status code = recording_begin(&l->recording, &l->scenario, &l->options, &l->result, &why);
     if (code == STATUS_OK) {
-        code = corrected_open(&l->run, &l->recording, &why);
+        l->opened = true;
+        code = l->run.model->open(&l->run, &l->recording, &why);
     }
     if (code != STATUS_OK) {
         if (f != NULL) {
@@ -131,8 +112,8 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
 void loop_destroy(run_loop *l)
 {
     if (l != NULL) {
-        if (l->run.motion != NULL) {
-            corrected_close(&l->run, STATUS_STOPPED);
+        if (l->opened) {
+            l->run.model->close(&l->run, STATUS_STOPPED);
         }
         recording_end(&l->recording, STATUS_STOPPED, &l->fault, (time_used){0});
         process_tape_destroy(l->tape);
@@ -147,7 +128,7 @@ void loop_destroy(run_loop *l)
 double loop_time(const run_loop *l)
 {
     assert(l != NULL);
-    return l->run.motion->state[SLOT_TIME];
+    return l->run.model->time(&l->run);
 }
 
 bool loop_ended(const run_loop *l)
@@ -168,31 +149,33 @@ static status stay_failed(run_loop *l, fault *f)
     return l->failed;
 }
 
-// Strides up to an instant that lies ahead, what is due now first.
+// Whether an instant is still to be gone to; the end is, until it is known to be one.
+static bool lies_ahead(const run_loop *l, double time)
+{
+    return instant_after(time, loop_time(l)) || time >= l->scenario.parameters.run.duration;
+}
+
+// Strides up to an instant, if it lies ahead, what is due now first.
 static void stride_to(run_loop *l, double time)
 {
-    corrected_run *c = &l->run;
-    while (l->failed == STATUS_OK && !l->ended && loop_time(l) < time) {
-        l->failed = corrected_approach_stride(c, &l->ended, &l->fault);
+    const stepped_model *model = l->run.model;
+    while (l->failed == STATUS_OK && !l->ended && lies_ahead(l, time)) {
+        l->failed = model->approach(&l->run, &l->ended, &l->fault);
         if (l->failed == STATUS_OK && !l->ended) {
-            c->motion->cut = fmin(c->motion->cut, time);
-            l->failed = corrected_stride(c, &l->fault);
+            l->failed = model->stride(&l->run, time, &l->fault);
         }
     }
 
     // the end is known as soon as it is reached
-    if (l->failed == STATUS_OK && !l->ended &&
-        !(loop_time(l) < l->scenario.parameters.run.duration)) {
-        l->failed = corrected_approach_stride(c, &l->ended, &l->fault);
+    if (l->failed == STATUS_OK && !l->ended && model->at_end(&l->run)) {
+        l->failed = model->approach(&l->run, &l->ended, &l->fault);
     }
 }
 
 status loop_until(run_loop *l, double time, fault *f)
 {
     assert(l != NULL && isfinite(time));
-    if (instant_after(time, loop_time(l))) {
-        stride_to(l, time);
-    }
+    stride_to(l, time);
     return stay_failed(l, f);
 }
 
@@ -205,8 +188,8 @@ status loop_step(run_loop *l, fault *f)
     // the next multiple of the step, or what the rig does now and then its next sample
     double next = (floor(loop_time(l) / interval + GRID_TOLERANCE) + 1) * interval;
     if (on != NULL && l->failed == STATUS_OK && !l->ended) {
-        l->failed = corrected_approach_stride(&l->run, &l->ended, &l->fault);
-        next = on->sample_time;
+        l->failed = l->run.model->approach(&l->run, &l->ended, &l->fault);
+        next = l->run.model->stops_anywhere ? on->sample_time : fmax(next, on->sample_time);
     }
     stride_to(l, next);
     return stay_failed(l, f);
@@ -227,6 +210,9 @@ static status act(run_loop *l, const action *todo, fault *f)
     if (l->failed != STATUS_OK) {
         return stay_failed(l, f);
     }
+    if (todo->kind == ACTION_PUSH && !l->run.model->takes_pushes) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the printed model takes no pushes");
+    }
     if (todo->kind == ACTION_SET && !rig_can_change(&l->recording.now, todo->parameter)) {
         const char *path = parameter_table[todo->parameter].path;
         return fault_set_at(f, STATUS_BAD_ARGUMENT, path,
@@ -238,7 +224,7 @@ static status act(run_loop *l, const action *todo, fault *f)
         todo->kind == ACTION_SET ? parameter_may_change(&tried, todo->parameter, &why) : STATUS_OK;
     code = code == STATUS_OK ? action_apply(todo, &tried, &why) : code;
     if (code == STATUS_OK) {
-        code = l->failed = corrected_act(&l->run, todo, -1, &l->fault);
+        code = l->failed = l->run.model->act(&l->run, todo, &l->fault);
         return stay_failed(l, f);
     }
     if (f != NULL) {
@@ -294,7 +280,7 @@ bool loop_sense(run_loop *l, sensor_reading *reading)
         return false;
     }
     if (!l->ended) {
-        const sensed_motion now = corrected_sensed_motion(&l->run, l->run.motion->state);
+        const sensed_motion now = l->run.model->sensed(&l->run);
         rig_read(on, loop_time(l), &now);
     }
     *reading = on->reading;
@@ -304,14 +290,13 @@ bool loop_sense(run_loop *l, sensor_reading *reading)
 sample loop_row(run_loop *l)
 {
     assert(l != NULL);
-    return corrected_row(&l->run, l->run.motion->state, 0);
+    return l->run.model->row(&l->run);
 }
 
 const double *loop_state(const run_loop *l, int *angle_count)
 {
     assert(l != NULL && angle_count != NULL);
-    *angle_count = l->run.motion->dof;
-    return state_angles(l->run.motion, l->run.motion->state);
+    return l->run.model->state(&l->run, angle_count);
 }
 
 summary loop_summary(run_loop *l)
@@ -326,7 +311,7 @@ summary loop_summary(run_loop *l)
     const summary kept = l->result.summary;
     const recording_state state = l->recording.state;
     const recorded_command command = l->recording.command;
-    corrected_sum_up(&l->run, code);
+    l->run.model->sum_up(&l->run, code);
     recording_tell_fault(&l->result.summary, code, &l->fault);
     const summary all = l->result.summary;
     l->result.summary = kept;
@@ -345,174 +330,4 @@ const scenario *loop_scenario(const run_loop *l)
 {
     assert(l != NULL);
     return &l->scenario;
-}
-
-// --- states as bytes --------------------------------------------------------------------------
-
-// The head of a saved state; the motion's state, the rig's memory and its values follow.
-typedef struct saved_head {
-    uint64_t fingerprint;
-    size_t size;
-    bool ended;
-    double volts;
-    size_t rows, events, force_steps;
-    recording_state recording;
-    recorded_command command;
-    summary summary;
-    parameters now;
-    double stop, last_event;
-    int at_once;
-    long steps;
-    double start_energy, cut, pulse_peak, pulse_peak_time, largest_penetration;
-    rig rig;
-} saved_head;
-
-static size_t memory_size(const rig *r)
-{
-    return r != NULL ? r->law->memory_size : 0;
-}
-
-static size_t values_size(const rig *r)
-{
-    return r != NULL ? (size_t)r->law->parameter_count * sizeof *r->values : 0;
-}
-
-size_t loop_saved_size(const run_loop *l)
-{
-    assert(l != NULL);
-    const rig *r = l->recording.rig;
-    return sizeof(saved_head) + (size_t)l->run.motion->size * sizeof(double) + memory_size(r) +
-           values_size(r);
-}
-
-void loop_save(const run_loop *l, void *bytes)
-{
-    assert(l != NULL && bytes != NULL);
-    const recording *r = &l->recording;
-    const motion *m = l->run.motion;
-    saved_head head;
-    memset(&head, 0, sizeof head);
-    head.fingerprint = l->fingerprint;
-    head.size = loop_saved_size(l);
-    head.ended = l->ended;
-    head.volts = l->volts;
-
-    // what was recorded
-    head.rows = l->result.trace.row_count;
-    head.events = l->result.trace.event_count;
-    head.force_steps = l->result.history.forces.count;
-    head.recording = r->state;
-    head.command = r->command;
-    head.summary = l->result.summary;
-    head.now = r->now;
-
-    // the motion
-    head.stop = l->run.stop;
-    head.last_event = l->run.last_event;
-    head.at_once = l->run.at_once;
-    head.steps = m->steps;
-    head.start_energy = m->start_energy;
-    head.cut = m->cut;
-    head.pulse_peak = m->pulse_peak;
-    head.pulse_peak_time = m->pulse_peak_time;
-    head.largest_penetration = m->largest_penetration;
-
-    // and the rig, whose addresses are its loop's own
-    char *at = bytes;
-    if (r->rig != NULL) {
-        head.rig = *r->rig;
-    }
-    memcpy(at, &head, sizeof head);
-    at += sizeof head;
-    memcpy(at, m->state, (size_t)m->size * sizeof(double));
-    at += (size_t)m->size * sizeof(double);
-    if (r->rig != NULL) {
-        memcpy(at, r->rig->memory, memory_size(r->rig));
-        memcpy(at + memory_size(r->rig), r->rig->values, values_size(r->rig));
-    }
-}
-
-// Puts the rig back; where its law, memory and values lie stays. The memory of a law that a program
-// gave begins with that program's address.
-static void restore_rig(run_loop *l, const rig *saved, const char *at)
-{
-    rig *r = l->recording.rig;
-    const rig own = *r;
-
-    // all but where things lie
-    *r = *saved;
-    r->law = own.law;
-    r->plugin = own.plugin;
-    r->process = own.process;
-    r->memory = own.memory;
-    r->values = own.values;
-
-    // the contents, which were saved one after the other
-    memcpy(r->memory, at, memory_size(r));
-    memcpy(r->values, at + memory_size(r), values_size(r));
-
-    // the program's address is the present one
-    if (l->law.law != NULL) {
-        memcpy(r->memory, &l->law.context, sizeof l->law.context);
-    }
-}
-
-status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
-{
-    assert(l != NULL && bytes != NULL);
-    saved_head head;
-    if (size != loop_saved_size(l)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "a state of this loop has %zu bytes, but %zu were given",
-                         loop_saved_size(l), size);
-    }
-    memcpy(&head, bytes, sizeof head);
-    if (head.fingerprint != l->fingerprint || head.size != size) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "the state is of another scenario, another controller or another version");
-    }
-
-    // what was recorded, as far as this loop has it
-    recording *r = &l->recording;
-    run_result *result = &l->result;
-    result->trace.row_count =
-        head.rows < result->trace.row_count ? head.rows : result->trace.row_count;
-    result->trace.event_count =
-        head.events < result->trace.event_count ? head.events : result->trace.event_count;
-    result->history.forces.count = head.force_steps < result->history.forces.count
-                                       ? head.force_steps
-                                       : result->history.forces.count;
-    r->state = head.recording;
-    r->command = head.command;
-    result->summary = head.summary;
-    result->summary.path = "";
-    if (isnan(head.summary.first_contact_s)) {
-        free(result->before_impact); // of a contact that is yet to come
-        result->before_impact = NULL;
-        result->before_impact_size = 0;
-    }
-    r->now = head.now;
-    l->volts = head.volts;
-    l->ended = head.ended;
-    l->failed = STATUS_OK;
-    l->fault = (fault){.text = "", .path = ""};
-
-    // the rig, before the arm is bound to its voltage, and the motion
-    motion *m = l->run.motion;
-    const char *at = (const char *)bytes + sizeof head;
-    if (r->rig != NULL) {
-        restore_rig(l, &head.rig, at + (size_t)m->size * sizeof(double));
-    }
-    corrected_bind_arm(&l->run);
-    memcpy(m->state, at, (size_t)m->size * sizeof(double));
-    l->run.stop = head.stop;
-    l->run.last_event = head.last_event;
-    l->run.at_once = head.at_once;
-    m->steps = head.steps;
-    m->start_energy = head.start_energy;
-    m->cut = head.cut;
-    m->pulse_peak = head.pulse_peak;
-    m->pulse_peak_time = head.pulse_peak_time;
-    m->largest_penetration = head.largest_penetration;
-    return STATUS_OK;
 }

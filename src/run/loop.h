@@ -1,8 +1,9 @@
 // A run that a program steps: to an instant, with inputs in between, and back to a state it kept.
 //
-// It is a run of the corrected arm like any other, cut at the instants asked for. No step is chosen
-// for such an instant, one that goes beyond it is cut. What is due at an instant (a sample of the
-// rig, an action of the script) happens when the loop goes on from it.
+// It is a run like any other, cut at the instants asked for. No step is chosen for such an instant,
+// one that goes beyond it is cut; the printed model, which knows nothing between its steps, stops
+// at the end of the first one that reaches it. What is due at an instant (a sample of the rig, an
+// action of the script) happens when the loop goes on from it.
 #pragma once
 
 #include "src/rig/rig.h"
@@ -17,8 +18,8 @@ typedef struct loop_options {
     struct given_law law; // in the place of control.law, if law.law is not NULL
 } loop_options;
 
-// Begins at the start. STATUS_BAD_ARGUMENT for the printed model, which does not stop between its
-// steps. On failure f says why and there is nothing to be destroyed. The scenario is copied.
+// Begins at the start. On failure f says why and there is nothing to be destroyed. The scenario is
+// copied.
 status loop_create(run_loop **created, const scenario *s, const loop_options *options, fault *f);
 void loop_destroy(run_loop *l); // l may be NULL
 
@@ -37,7 +38,8 @@ void loop_command(run_loop *l, double volts);
 // Gives a parameter that may change during a run another value, now.
 status loop_set_number(run_loop *l, int parameter, double value, fault *f);
 status loop_set_text(run_loop *l, int parameter, const char *text, fault *f);
-// An impulse at the tip, across the last link, now [N s].
+// An impulse at the tip, across the last link, now [N s]. STATUS_BAD_ARGUMENT for the printed
+// model, which takes none.
 status loop_push(run_loop *l, double impulse, fault *f);
 
 // What the sensors read: of the sample due now, which the controller will be given, else of the

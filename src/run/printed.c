@@ -3,15 +3,9 @@
 #include <assert.h>
 #include <math.h>
 
-#include "src/run/rig_recording.h"
-#include "src/solve/printed_algorithm.h"
+#include <string.h>
 
-// A run of the printed arm in progress.
-typedef struct printed_run_state {
-    recording *recording;
-    printed_motion motion; // with the command in force
-    sensed_motion sensed;  // what the sensors were fixed to at the last row
-} printed_run_state;
+#include "src/run/rig_recording.h"
 
 // --- what a step is recorded as ---------------------------------------------------------------
 
@@ -29,24 +23,46 @@ static void begin_first_pulse(recording *r, const printed_row *row)
     s->first_pulse_s = (double)NAN;
 }
 
-// The largest forces so far, of the run and of its first pulse.
-static void note_peaks(recording *r, const printed_row *row)
+// Keeps what lies beside a peak: the row is one (`larger`), comes right after it, or neither.
+static void note_neighbours(const printed_run *p, const printed_row *row, bool larger,
+                            sampled_peak *peak)
 {
-    summary *s = &r->result->summary;
-    double since = row->time - s->first_contact_s;
-    if (row->force > s->peak_force_N) {
+    if (peak->is_last_row) {
+        peak->after = row->force;
+        peak->is_last_row = false;
+    }
+    if (larger) {
+        *peak = (sampled_peak){.before = p->begun ? p->last.last : (double)NAN,
+                               .after = (double)NAN,
+                               .interval = row->time - p->last.end,
+                               .is_last_row = true};
+    }
+}
+
+// The largest forces so far, of the run and of its first pulse.
+static void note_peaks(printed_run *p, const printed_row *row)
+{
+    summary *s = &p->recording->result->summary;
+    const double since = row->time - s->first_contact_s;
+    const bool largest = row->force > s->peak_force_N;
+    const bool largest_of_first = isnan(s->first_pulse_s) && row->force > s->first_pulse_peak_N;
+
+    note_neighbours(p, row, largest, &p->peak);
+    if (largest) {
         s->peak_force_N = row->force;
         s->time_to_peak_s = since;
     }
-    if (isnan(s->first_pulse_s) && row->force > s->first_pulse_peak_N) {
+    note_neighbours(p, row, largest_of_first, &p->first);
+    if (largest_of_first) {
         s->first_pulse_peak_N = row->force;
         s->first_pulse_time_to_peak_s = since;
     }
 }
 
 // Takes note of contact that begins or ends with the row.
-static status note_contact(recording *r, const printed_row *row)
+static status note_contact(printed_run *p, const printed_row *row)
 {
+    recording *r = p->recording;
     summary *s = &r->result->summary;
     recording_state *state = &r->state;
     const bool was_in_contact = state->pulse_open;
@@ -62,7 +78,7 @@ static status note_contact(recording *r, const printed_row *row)
     }
 
     // contact begins anew, or ends
-    note_peaks(r, row);
+    note_peaks(p, row);
     if (row->contact && !was_in_contact) {
         s->impacts++;
         s->separations += state->separated;
@@ -80,13 +96,11 @@ static status note_contact(recording *r, const printed_row *row)
     return failed;
 }
 
-static status add_row(const printed_run_state *run, const printed_row *row)
+sample printed_sample(const printed_run *p)
 {
-    recording *r = run->recording;
-    const motor_model *motor = &run->motion.arm.motor;
-    if (!r->options->keep_trace) {
-        return STATUS_OK;
-    }
+    assert(p != NULL);
+    const printed_row *row = &p->motion.row;
+    const motor_model *motor = &p->motion.arm.motor;
 
     // the printed equations keep no energies, and their listing no rate of the gap
     sample sampled = {
@@ -120,8 +134,17 @@ static status add_row(const printed_run_state *run, const printed_row *row)
         .energy_residual = (double)NAN,
     };
 
-    recording_add_rig_signals(r, &sampled);
-    return recording_add_row(r, &sampled, row->angle, row->velocity);
+    recording_add_rig_signals(p->recording, &sampled);
+    return sampled;
+}
+
+static status add_row(const printed_run *p)
+{
+    if (!p->recording->options->keep_trace) {
+        return STATUS_OK;
+    }
+    const sample sampled = printed_sample(p);
+    return recording_add_row(p->recording, &sampled, p->motion.row.angle, p->motion.row.velocity);
 }
 
 static sensed_motion sensed_at(const printed_row *row)
@@ -134,33 +157,44 @@ static sensed_motion sensed_at(const printed_row *row)
                            .force = row->force};
 }
 
-// Records a row: contact, what the sensors feel, force, signals.
-static status record_row(printed_run_state *run, fault *f)
+// Records the row that the motion stands at: contact, what the sensors feel, force, signals.
+static status record_row(printed_run *p, fault *f)
 {
-    recording *r = run->recording;
-    const printed_row *row = &run->motion.row;
-    const force_history *forces = &r->result->history.forces;
-    status failed = note_contact(r, row);
+    recording *r = p->recording;
+    const printed_row *row = &p->motion.row;
+    status failed = note_contact(p, row);
 
     // the force over the step, which the row of time 0 has none of
-    bool first = forces->count == 0;
-    const force_step *last = first ? NULL : &force_steps(forces)[forces->count - 1];
-    double before = first ? 0 : last->last, start = first ? row->time : last->end;
-    force_step step = {start, row->time, before, row->force, (before + row->force) / 2};
+    const double before = p->begun ? p->last.last : 0, start = p->begun ? p->last.end : row->time;
+    const force_step step = {start, row->time, before, row->force, (before + row->force) / 2};
 
     // what the sensors felt of it
+    const sensed_motion now = sensed_at(row);
     if (r->rig != NULL) {
-        sensed_motion now = sensed_at(row);
-        sensors_follow(&r->rig->sensors, row->time - start, first ? &now : &run->sensed, &now,
+        sensors_follow(&r->rig->sensors, row->time - start, p->begun ? &p->sensed : &now, &now,
                        step.mean);
-        run->sensed = now;
     }
 
+    // the mean force of the end
+    if (p->begun && row->time > r->scenario->parameters.run.duration - STEADY_WINDOW) {
+        p->steady_sum += row->force;
+        p->steady_rows++;
+    }
+
+    // the row is the last one now
+    p->sensed = now;
+    p->last = step;
+    p->begun = true;
+    p->ready = false;
+    memcpy(p->state, row->angle, sizeof row->angle);
+    memcpy(p->state + 3, row->velocity, sizeof row->velocity);
+
+    // and is kept
     if (failed == STATUS_OK) {
         failed = recording_add_step(r, step);
     }
     if (failed == STATUS_OK) {
-        failed = add_row(run, row);
+        failed = add_row(p);
     }
     if (failed == STATUS_OK && recording_asked_to_stop(r)) {
         failed = fault_set(f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
@@ -171,130 +205,132 @@ static status record_row(printed_run_state *run, fault *f)
 
 // --- between steps ----------------------------------------------------------------------------
 
-// Carries out the script's actions that are due; they take effect at the coming step.
-static status run_script(printed_run_state *run, fault *f)
+status printed_act(printed_run *p, const action *todo, int index, fault *f)
 {
-    recording *r = run->recording;
-    const scenario *s = r->scenario;
-    const double time = run->motion.row.time;
-    bool changed = false;
+    assert(p != NULL && todo != NULL && todo->kind == ACTION_SET);
+    recording *r = p->recording;
+    const double time = p->motion.row.time;
 
-    // all that is due by now
-    for (; r->state.next_action < s->action_count; r->state.next_action++) {
-        const action *todo = &s->actions[r->state.next_action];
-        if (todo->time > time) {
-            break;
-        }
-
-        status failed = action_apply(todo, &r->now, f);
-        if (failed == STATUS_OK && r->rig != NULL) {
-            failed = rig_lock(r->rig, r->now.control.lock, f);
-        }
-        if (failed == STATUS_OK && r->rig != NULL) {
-            failed = rig_retune(r->rig, &r->now, time, f);
-        }
-        if (failed == STATUS_OK) {
-            failed = record_event(r, time, EVENT_CHANGE, r->state.next_action);
-        }
-        if (failed != STATUS_OK) {
-            return failed;
-        }
-        changed = true;
+    // the rig has its own view of the parameters
+    status failed = action_apply(todo, &r->now, f);
+    if (failed == STATUS_OK && r->rig != NULL) {
+        failed = rig_lock(r->rig, r->now.control.lock, f);
+    }
+    if (failed == STATUS_OK && r->rig != NULL) {
+        failed = rig_retune(r->rig, &r->now, time, f);
+    }
+    if (failed == STATUS_OK) {
+        failed = record_event(r, time, EVENT_CHANGE, index);
     }
 
-    // the arm takes new parameters once
-    if (changed) {
-        printed_motion_rebind(&run->motion, &r->now);
+    // the arm takes it, and the command in force stays
+    printed_motion_rebind(&p->motion, &r->now);
+    if (r->rig != NULL) {
+        printed_motion_set_voltage(&p->motion, r->rig->voltage);
     }
-    return STATUS_OK;
+    return failed;
+}
+
+// Carries out the script's actions that are due.
+static status run_script(printed_run *p, fault *f)
+{
+    const scenario *s = p->recording->scenario;
+    int *next = &p->recording->state.next_action;
+    status failed = STATUS_OK;
+    while (failed == STATUS_OK && *next < s->action_count &&
+           s->actions[*next].time <= p->motion.row.time) {
+        failed = printed_act(p, &s->actions[*next], *next, f);
+        *next += failed == STATUS_OK;
+    }
+    return failed;
 }
 
 // Samples the sensors and changes the command where the time for it has come.
-static status run_rig(printed_run_state *run, fault *f)
+static status run_rig(printed_run *p, fault *f)
 {
-    recording *r = run->recording;
+    recording *r = p->recording;
     if (r->rig == NULL) {
         return STATUS_OK;
     }
 
     // a new command begins at once
     bool changed;
-    const double time = run->motion.row.time;
-    status failed = rig_act(r->rig, time, &run->sensed, &changed, f);
+    const double time = p->motion.row.time;
+    status failed = rig_act(r->rig, time, &p->sensed, &changed, f);
     if (failed == STATUS_OK && changed) {
-        recording_change_command(r, time, run->sensed.angle);
+        recording_change_command(r, time, p->sensed.angle);
     }
 
     // the controller's command, not motor.voltage
-    printed_motion_set_voltage(&run->motion, r->rig->voltage);
+    printed_motion_set_voltage(&p->motion, r->rig->voltage);
     return failed;
+}
+
+status printed_approach_step(printed_run *p, bool *ended, fault *f)
+{
+    assert(p != NULL && ended != NULL);
+    *ended = printed_motion_ended(&p->motion);
+    if (*ended || p->ready) {
+        return STATUS_OK;
+    }
+    status failed = run_script(p, f);
+    if (failed == STATUS_OK) {
+        failed = run_rig(p, f);
+    }
+    p->ready = failed == STATUS_OK;
+    return failed;
+}
+
+status printed_step(printed_run *p, fault *f)
+{
+    assert(p != NULL);
+    status failed = printed_motion_step(&p->motion, f);
+    return failed == STATUS_OK ? record_row(p, f) : failed;
 }
 
 // --- the summary ------------------------------------------------------------------------------
 
 // The printed algorithm knows its force at its rows only: moves a peak that lies at one of them,
 // `*since` after first contact, to the top of the parabola through it and its neighbours.
-static void refine_sampled_peak(const recording *r, double *force, double *since)
+static void refine_sampled_peak(const sampled_peak *peak, double *force, double *since)
 {
-    const force_history *forces = &r->result->history.forces;
-    const force_step *steps = force_steps(forces);
-    double at = r->result->summary.first_contact_s + *since;
-    for (size_t i = 1; i + 1 < forces->count; i++) {
-        if (steps[i].end != at) {
-            continue;
-        }
+    const double before = peak->before, after = peak->after;
+    const double second = before - 2 * *force + after, slope = (after - before) / 2;
 
-        // the top lies between the neighbours where the parabola opens downwards
-        double before = steps[i - 1].last, after = steps[i + 1].last;
-        double h = steps[i].end - steps[i - 1].end;
-        double second = before - 2 * *force + after, slope = (after - before) / 2;
-        bool inside = before > 0 && after > 0 && second < 0; // not at the edge of a pulse
-        if (inside && fabs(slope) <= -second) {
-            *since += -slope / second * h;
-            *force -= slope * slope / (2 * second);
-        }
-        return;
+    // the top lies between the neighbours where the parabola opens downwards
+    const bool inside = before > 0 && after > 0 && second < 0; // not at the edge of a pulse
+    if (inside && fabs(slope) <= -second) {
+        *since += -slope / second * peak->interval;
+        *force -= slope * slope / (2 * second);
     }
 }
 
-// The integral of the force over the window of the steady force [N s], from the mean of its rows.
-static double steady_integral(const recording *r)
+void printed_sum_up(printed_run *p, status failed)
 {
-    const force_history *forces = &r->result->history.forces;
-    const force_step *steps = force_steps(forces);
-    double duration = r->scenario->parameters.run.duration, window = duration - STEADY_WINDOW;
-    double total = 0, weight = 0;
-    for (size_t i = 1; i < forces->count; i++) {
-        if (steps[i].end > window) {
-            total += steps[i].last;
-            weight++;
-        }
-    }
-    return weight > 0 ? total / weight * fmin(STEADY_WINDOW, duration) : 0;
-}
-
-// Sums up what is known of a run, also of one that failed.
-static void sum_up(const printed_run_state *run, status failed)
-{
-    recording *r = run->recording;
+    assert(p != NULL && p->begun);
+    recording *r = p->recording;
     summary *s = &r->result->summary;
     snprintf(s->method, sizeof s->method, "Newmark, as printed");
-    s->steps = (double)run->motion.steps;
+    s->steps = (double)p->motion.steps;
     s->motor_work_J = s->energy_residual_J = (double)NAN; // (2.16) as printed conserves no energy
     s->separations += r->state.separated;
 
     // peaks between rows
     if (!isnan(s->first_contact_s)) {
-        refine_sampled_peak(r, &s->first_pulse_peak_N, &s->first_pulse_time_to_peak_s);
-        refine_sampled_peak(r, &s->peak_force_N, &s->time_to_peak_s);
+        refine_sampled_peak(&p->first, &s->first_pulse_peak_N, &s->first_pulse_time_to_peak_s);
+        refine_sampled_peak(&p->peak, &s->peak_force_N, &s->time_to_peak_s);
     }
 
     // what only a whole run has
     if (failed == STATUS_OK) {
-        recording_finish_summary(r, steady_integral(r));
-        recording_finish_rig_summary(r, run->sensed.angle);
+        const double mean = p->steady_rows > 0 ? p->steady_sum / p->steady_rows : 0;
+        recording_finish_summary(r,
+                                 mean * fmin(STEADY_WINDOW, r->scenario->parameters.run.duration));
+        recording_finish_rig_summary(r, p->sensed.angle);
     }
 }
+
+// --- the beginning ----------------------------------------------------------------------------
 
 // The printed model knows no pushes.
 static status refuse_pushes(const scenario *s, fault *f)
@@ -310,12 +346,10 @@ static status refuse_pushes(const scenario *s, fault *f)
     return STATUS_OK;
 }
 
-status run_printed(recording *r, fault *f)
+status printed_open(printed_run *p, recording *r, fault *f)
 {
-    assert(r != NULL && r->scenario->parameters.arm.model == ARM_PRINTED);
-
-    // what the printed model does not know is refused
-    printed_run_state run = {.recording = r};
+    assert(p != NULL && r != NULL && r->scenario->parameters.arm.model == ARM_PRINTED);
+    *p = (printed_run){.recording = r};
     status failed = recording_open_trace(r, 3, f);
     if (failed == STATUS_OK) {
         failed = refuse_pushes(r->scenario, f);
@@ -326,26 +360,9 @@ status run_printed(recording *r, fault *f)
 
     // the row of time 0, with the command that the rig starts with
     force_history_init(&r->result->history.forces);
-    printed_motion_start(&run.motion, &r->now);
+    printed_motion_start(&p->motion, &r->now);
     if (r->rig != NULL) {
-        printed_motion_set_voltage(&run.motion, r->rig->voltage);
+        printed_motion_set_voltage(&p->motion, r->rig->voltage);
     }
-    failed = record_row(&run, f);
-
-    // between two rows: script, rig, a step
-    while (failed == STATUS_OK && !printed_motion_ended(&run.motion)) {
-        failed = run_script(&run, f);
-        if (failed == STATUS_OK) {
-            failed = run_rig(&run, f);
-        }
-        if (failed == STATUS_OK) {
-            failed = printed_motion_step(&run.motion, f);
-        }
-        if (failed == STATUS_OK) {
-            failed = record_row(&run, f);
-        }
-    }
-
-    sum_up(&run, failed);
-    return failed;
+    return record_row(p, f);
 }

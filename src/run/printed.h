@@ -1,7 +1,53 @@
-// A run of the printed arm.
+// A run of the printed arm, whose rows are the ends of its steps.
 #pragma once
 
 #include "src/run/recording.h"
+#include "src/solve/printed_algorithm.h"
 
-// Runs to the end, or as far as possible; f says why it ended early.
-status run_printed(recording *r, fault *f);
+// The forces at the rows beside a peak, for the parabola through the three.
+typedef struct sampled_peak {
+    double before, after; // [N], NaN where there is no such row
+    double interval;      // since the row before [s]
+    bool is_last_row;     // the row after it is still to come
+} sampled_peak;
+
+// A run of the printed arm in progress.
+typedef struct printed_run {
+    recording *recording;
+    printed_motion motion; // with the command in force
+    sensed_motion sensed;  // what the sensors were fixed to at the last row
+    double state[6];       // of the last row: angles [rad], then velocities [rad/s]
+    bool begun;            // there is a row
+    bool ready;            // script and rig have acted at the last row
+    force_step last;       // the force over the step to the last row
+    sampled_peak peak;     // of the run
+    sampled_peak first;    // of the first pulse
+    double steady_sum;     // of the forces in the window of the steady force [N]
+    double steady_rows;    // that these are of
+} printed_run;
+
+// Step by step:
+//
+//     open -> (approach_step -> step) until it has ended or fails -> sum_up
+
+// Begins a run and records its row of time 0. STATUS_NO_MEMORY, or STATUS_BAD_SCENARIO where the
+// script pushes the arm, which the printed model does not know; f says why.
+status printed_open(printed_run *p, recording *r, fault *f);
+
+// Lets script and rig act where they are due, once for each row; *ended if the run is through
+// instead.
+status printed_approach_step(printed_run *p, bool *ended, fault *f);
+
+// One step, recorded.
+status printed_step(printed_run *p, fault *f);
+
+// Sets a parameter now and records that as the action of a number of the script (-1: of nobody's);
+// it takes effect with the coming step.
+status printed_act(printed_run *p, const action *todo, int index, fault *f);
+
+// The present state as a row.
+sample printed_sample(const printed_run *p);
+
+// Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
+// then says so). What it has recorded is then that of a run that ended here.
+void printed_sum_up(printed_run *p, status failed);

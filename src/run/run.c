@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
-#include "src/run/corrected.h"
-#include "src/run/printed.h"
 #include "src/run/recording_frame.h"
+#include "src/run/stepped.h"
 #include "src/solve/taylor_engine.h"
 
 status run_scenario(const scenario *s, bool keep_trace, run_result *result)
@@ -25,7 +24,7 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
     fault f;
     status code = recording_begin(&r, s, options, result, &f);
     if (code == STATUS_OK) {
-        code = s->parameters.arm.model == ARM_PRINTED ? run_printed(&r, &f) : run_corrected(&r, &f);
+        code = stepped_run_whole(&r, &f);
     }
     recording_end(&r, code, &f, time_since(start));
     return code;

@@ -173,9 +173,8 @@ static void mistakes_are_told(void **state)
     impactlab_scenario_destroy(NULL);
     impactlab_loop_destroy(NULL);
 
-    // the printed model is not stepped
-    set(scenario, "arm.model", "printed");
-    assert_int_equal(impactlab_loop_create(&loop, scenario, 0, &error), IMPACTLAB_BAD_ARGUMENT);
+    // a loop knows its flags
+    assert_int_equal(impactlab_loop_create(&loop, scenario, 1000, &error), IMPACTLAB_BAD_ARGUMENT);
     assert_null(loop);
     impactlab_scenario_destroy(scenario);
 }
@@ -194,19 +193,71 @@ static void files_with_faults_are_refused(void **state)
 
 // --- loops ------------------------------------------------------------------------------------
 
+// The corrected arm and the printed one, with a rig and bare.
 static void a_stepped_run_is_the_run(void **state)
 {
     (void)state;
+    static const char *const names[] = {"compare/hybrid", "compare/hybrid-printed-arm",
+                                        "thesis/fig-3-4"};
+    static const char *const keys[] = {"peak_force_N", "first_pulse_peak_N", "time_to_peak_s",
+                                       "steady_force_N", "settling_time_s"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        impactlab_error error;
+        impactlab_scenario *scenario = opened(names[i]);
+        impactlab_run *run, *stepped;
+        impactlab_loop *loop;
+        check_done(impactlab_run_create(&run, scenario, 0, &error), &error);
+        check_done(impactlab_loop_create(&loop, scenario, 0, &error), &error);
+        while (!impactlab_loop_ended(loop)) {
+            check_done(impactlab_loop_step(loop, &error), &error);
+        }
+        check_done(impactlab_loop_run(loop, &stepped, &error), &error);
+        for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+            check_same(quantity(stepped, keys[k]), quantity(run, keys[k]));
+        }
+        impactlab_run_destroy(stepped);
+        impactlab_loop_destroy(loop);
+        impactlab_run_destroy(run);
+        impactlab_scenario_destroy(scenario);
+    }
+}
+
+// The printed model knows nothing between its rows: a loop ends at the first one that is due. An
+// input there is what the script does at that instant.
+static void the_printed_arm_stops_at_its_rows(void **state)
+{
+    (void)state;
     impactlab_error error;
-    impactlab_scenario *scenario = opened("compare/hybrid");
+    impactlab_scenario *scenario = opened("thesis/fig-3-4");
     impactlab_run *run;
     impactlab_loop *loop;
-    check_done(impactlab_run_create(&run, scenario, 0, &error), &error);
+    impactlab_table angles;
+    double step, angle;
+    check_done(impactlab_scenario_number(scenario, "method.step", &step, &error), &error);
     check_done(impactlab_loop_create(&loop, scenario, 0, &error), &error);
-    while (!impactlab_loop_ended(loop)) {
-        check_done(impactlab_loop_step(loop, &error), &error);
-    }
+    check_done(impactlab_loop_step_until(loop, 9.5 * step, &error), &error);
+    check_same(impactlab_loop_time(loop), 10 * step);
+    check_done(impactlab_loop_step_until(loop, 10 * step, &error), &error);
+    check_same(impactlab_loop_time(loop), 10 * step);
+
+    // its state in place
+    check_done(impactlab_loop_state(loop, &angles, &error), &error);
+    check_done(impactlab_loop_signal(loop, "hub_angle", &angle, &error), &error);
+    assert_true(angles.rows == 2 && angles.columns == 3);
+    check_same(angles.values[0], angle);
+
+    // half the voltage from there on, as a script has it
+    check_done(impactlab_scenario_add_change(scenario, 10 * step, "motor.voltage", "0.5", &error),
+               &error);
+    check_done(impactlab_run_create(&run, scenario, 0, &error), &error);
+    check_done(impactlab_loop_set_input(loop, "motor.voltage", 0.5, &error), &error);
+    check_done(impactlab_loop_step_until(loop, 1000, &error), &error);
+    assert_int_equal(impactlab_loop_ended(loop), 1);
     check_same(peak_of_loop(loop), quantity(run, "peak_force_N"));
+
+    // pushes it does not know, which is no end of it
+    assert_int_equal(impactlab_loop_push(loop, 1e-3, &error), IMPACTLAB_BAD_ARGUMENT);
+    check_done(impactlab_loop_step(loop, &error), &error);
     impactlab_loop_destroy(loop);
     impactlab_run_destroy(run);
     impactlab_scenario_destroy(scenario);
@@ -278,7 +329,8 @@ static void states_come_back(void **state)
 {
     (void)state;
     static const char *const names[] = {"corrected/first-impact", "compare/hybrid",
-                                        "compare/optimal", "corrected/twenty-links"};
+                                        "compare/optimal", "corrected/twenty-links",
+                                        "compare/hybrid-printed-arm"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         impactlab_error error;
         impactlab_scenario *scenario = opened(names[i]);
@@ -483,6 +535,7 @@ int main(void)
         cmocka_unit_test(mistakes_are_told),
         cmocka_unit_test(files_with_faults_are_refused),
         cmocka_unit_test(a_stepped_run_is_the_run),
+        cmocka_unit_test(the_printed_arm_stops_at_its_rows),
         cmocka_unit_test(commands_come_from_outside),
         cmocka_unit_test(states_come_back),
         cmocka_unit_test(a_process_goes_on_from_a_state),

@@ -257,7 +257,7 @@ typedef struct impactlab_reading {
     double accelerometer; // hub acceleration [rad/s2]
 } impactlab_reading;
 
-// A run of the corrected model that stands at its start. With IMPACTLAB_COMMAND the caller is the
+// A run that stands at its start. With IMPACTLAB_COMMAND the caller is the
 // controller on the rig; else control.law is, or, where it is none, the bare arm moves under
 // motor.voltage.
 IMPACTLAB_EXPORT int impactlab_loop_create(impactlab_loop **loop,
@@ -266,7 +266,9 @@ IMPACTLAB_EXPORT int impactlab_loop_create(impactlab_loop **loop,
 IMPACTLAB_EXPORT void impactlab_loop_destroy(impactlab_loop *loop);
 
 // Goes on: to the next sample of the rig (without a rig by method.step), or to an instant [s]; at
-// most to run.duration. What stopped a run stays, every further step returns it again.
+// most to run.duration. The printed model knows nothing between its steps and ends each call with
+// the first one that reaches the instant. What stopped a run stays, every further step returns it
+// again.
 IMPACTLAB_EXPORT int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_loop_step_until(impactlab_loop *loop, double time,
                                                impactlab_error *error);
@@ -279,7 +281,8 @@ IMPACTLAB_EXPORT int impactlab_loop_ended(const impactlab_loop *loop);
 // given. IMPACTLAB_BAD_ARGUMENT without IMPACTLAB_COMMAND.
 IMPACTLAB_EXPORT int impactlab_loop_command(impactlab_loop *loop, double volts,
                                             impactlab_error *error);
-// Gives a parameter that may change during a run another value now; pushes the tip now [N s].
+// Gives a parameter that may change during a run another value now; pushes the tip now [N s], which
+// the printed model does not take (IMPACTLAB_BAD_ARGUMENT).
 IMPACTLAB_EXPORT int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double value,
                                               impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_loop_push(impactlab_loop *loop, double impulse,

@@ -1,0 +1,256 @@
+#include "src/run/stepped.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/run/corrected_events.h"
+
+// --- the corrected arm ------------------------------------------------------------------------
+
+static status corrected_begin(stepped_run *run, recording *r, fault *f)
+{
+    return corrected_open(&run->corrected, r, f);
+}
+
+static void corrected_end(stepped_run *run, status failed)
+{
+    corrected_close(&run->corrected, failed);
+}
+
+static void corrected_summary(stepped_run *run, status failed)
+{
+    corrected_sum_up(&run->corrected, failed);
+}
+
+static double corrected_time(const stepped_run *run)
+{
+    return run->corrected.motion->state[SLOT_TIME];
+}
+
+static bool corrected_at_end(const stepped_run *run)
+{
+    return !(corrected_time(run) < run->corrected.recording->scenario->parameters.run.duration);
+}
+
+static status corrected_approach(stepped_run *run, bool *ended, fault *f)
+{
+    return corrected_approach_stride(&run->corrected, ended, f);
+}
+
+static status corrected_stride_until(stepped_run *run, double until, fault *f)
+{
+    // where it stops by itself it is the stride of a run that nobody steps, to the last bit
+    corrected_run *c = &run->corrected;
+    if (until < c->stop) {
+        c->motion->cut = fmin(c->motion->cut, until);
+    }
+    return corrected_stride(c, f);
+}
+
+static status corrected_act_now(stepped_run *run, const action *todo, fault *f)
+{
+    return corrected_act(&run->corrected, todo, -1, f);
+}
+
+static sensed_motion corrected_sensed(stepped_run *run)
+{
+    return corrected_sensed_motion(&run->corrected, run->corrected.motion->state);
+}
+
+static sample corrected_row_now(stepped_run *run)
+{
+    return corrected_row(&run->corrected, run->corrected.motion->state, 0);
+}
+
+static const double *corrected_state(const stepped_run *run, int *angle_count)
+{
+    const motion *m = run->corrected.motion;
+    *angle_count = m->dof;
+    return state_angles(m, m->state);
+}
+
+// What the stretch and the motion remember; the motion's state follows.
+typedef struct saved_motion {
+    double stop, last_event;
+    int at_once;
+    long steps;
+    double start_energy, cut, pulse_peak, pulse_peak_time, largest_penetration;
+} saved_motion;
+
+static size_t corrected_saved_size(const stepped_run *run)
+{
+    return sizeof(saved_motion) + (size_t)run->corrected.motion->size * sizeof(double);
+}
+
+static void corrected_save(const stepped_run *run, void *bytes)
+{
+    const corrected_run *c = &run->corrected;
+    const motion *m = c->motion;
+    saved_motion saved;
+    memset(&saved, 0, sizeof saved);
+    saved.stop = c->stop;
+    saved.last_event = c->last_event;
+    saved.at_once = c->at_once;
+    saved.steps = m->steps;
+    saved.start_energy = m->start_energy;
+    saved.cut = m->cut;
+    saved.pulse_peak = m->pulse_peak;
+    saved.pulse_peak_time = m->pulse_peak_time;
+    saved.largest_penetration = m->largest_penetration;
+    memcpy(bytes, &saved, sizeof saved);
+    memcpy((char *)bytes + sizeof saved, m->state, (size_t)m->size * sizeof(double));
+}
+
+static void corrected_restore(stepped_run *run, const void *bytes)
+{
+    corrected_run *c = &run->corrected;
+    motion *m = c->motion;
+    saved_motion saved;
+    corrected_bind_arm(c); // to parameters and voltage of then
+    memcpy(&saved, bytes, sizeof saved);
+    memcpy(m->state, (const char *)bytes + sizeof saved, (size_t)m->size * sizeof(double));
+    c->stop = saved.stop;
+    c->last_event = saved.last_event;
+    c->at_once = saved.at_once;
+    m->steps = saved.steps;
+    m->start_energy = saved.start_energy;
+    m->cut = saved.cut;
+    m->pulse_peak = saved.pulse_peak;
+    m->pulse_peak_time = saved.pulse_peak_time;
+    m->largest_penetration = saved.largest_penetration;
+}
+
+const stepped_model stepped_corrected = {.stops_anywhere = true,
+                                         .takes_pushes = true,
+                                         .open = corrected_begin,
+                                         .close = corrected_end,
+                                         .sum_up = corrected_summary,
+                                         .time = corrected_time,
+                                         .at_end = corrected_at_end,
+                                         .approach = corrected_approach,
+                                         .stride = corrected_stride_until,
+                                         .act = corrected_act_now,
+                                         .sensed = corrected_sensed,
+                                         .row = corrected_row_now,
+                                         .state = corrected_state,
+                                         .saved_size = corrected_saved_size,
+                                         .save = corrected_save,
+                                         .restore = corrected_restore};
+
+// --- the printed arm --------------------------------------------------------------------------
+
+static status printed_begin(stepped_run *run, recording *r, fault *f)
+{
+    return printed_open(&run->printed, r, f);
+}
+
+static void printed_end(stepped_run *run, status failed)
+{
+    if (run->printed.begun) {
+        printed_sum_up(&run->printed, failed);
+    }
+}
+
+static void printed_summary(stepped_run *run, status failed)
+{
+    printed_sum_up(&run->printed, failed);
+}
+
+static double printed_time(const stepped_run *run)
+{
+    return run->printed.motion.row.time;
+}
+
+static bool printed_at_end(const stepped_run *run)
+{
+    return printed_motion_ended(&run->printed.motion);
+}
+
+static status printed_approach(stepped_run *run, bool *ended, fault *f)
+{
+    return printed_approach_step(&run->printed, ended, f);
+}
+
+static status printed_stride(stepped_run *run, double until, fault *f)
+{
+    (void)until; // its rows are where they are
+    return printed_step(&run->printed, f);
+}
+
+static status printed_act_now(stepped_run *run, const action *todo, fault *f)
+{
+    return printed_act(&run->printed, todo, -1, f);
+}
+
+static sensed_motion printed_sensed(stepped_run *run)
+{
+    return run->printed.sensed;
+}
+
+static sample printed_row_now(stepped_run *run)
+{
+    return printed_sample(&run->printed);
+}
+
+static const double *printed_state(const stepped_run *run, int *angle_count)
+{
+    *angle_count = 3;
+    return run->printed.state;
+}
+
+static size_t printed_saved_size(const stepped_run *run)
+{
+    return sizeof run->printed;
+}
+
+static void printed_save(const stepped_run *run, void *bytes)
+{
+    memcpy(bytes, &run->printed, sizeof run->printed);
+}
+
+static void printed_restore(stepped_run *run, const void *bytes)
+{
+    recording *own = run->printed.recording;
+    memcpy(&run->printed, bytes, sizeof run->printed);
+    run->printed.recording = own;
+}
+
+const stepped_model stepped_printed = {.open = printed_begin,
+                                       .close = printed_end,
+                                       .sum_up = printed_summary,
+                                       .time = printed_time,
+                                       .at_end = printed_at_end,
+                                       .approach = printed_approach,
+                                       .stride = printed_stride,
+                                       .act = printed_act_now,
+                                       .sensed = printed_sensed,
+                                       .row = printed_row_now,
+                                       .state = printed_state,
+                                       .saved_size = printed_saved_size,
+                                       .save = printed_save,
+                                       .restore = printed_restore};
+
+// --- either -----------------------------------------------------------------------------------
+
+const stepped_model *stepped_model_of(const parameters *p)
+{
+    assert(p != NULL);
+    return p->arm.model == ARM_PRINTED ? &stepped_printed : &stepped_corrected;
+}
+
+status stepped_run_whole(recording *r, fault *f)
+{
+    assert(r != NULL && f != NULL);
+    stepped_run run = {.model = stepped_model_of(&r->scenario->parameters)};
+    bool ended = false;
+    status failed = run.model->open(&run, r, f);
+    while (failed == STATUS_OK && !ended) {
+        failed = run.model->approach(&run, &ended, f);
+        if (failed == STATUS_OK && !ended) {
+            failed = run.model->stride(&run, HUGE_VAL, f);
+        }
+    }
+    run.model->close(&run, failed);
+    return failed;
+}
