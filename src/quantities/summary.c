@@ -7,10 +7,11 @@
 #include "src/base/words.h"
 
 #define NUMBER(field, ...) [SUMMARY_INDEX(field)] = {#field, __VA_ARGS__}
-#define TIMING             true
+#define TIMING             .timing = true
+#define SPECIAL            .special = true
 
 const summary_info summary_table[] = {
-    // number, name, label, unit, description, whether it depends on the machine
+    // number, name, label, unit, description, what is special about it
     NUMBER(first_contact_s, "first_contact", "first contact", "s",
            "the arm touches the wall for the first time"),
     NUMBER(contact_impulse_Ns, "contact_impulse", "contact impulse", "N s",
@@ -35,24 +36,25 @@ const summary_info summary_table[] = {
     NUMBER(motor_work_J, "motor_work", "motor work", "J", "work done by the motor torque"),
     NUMBER(energy_residual_J, "energy_residual", "energy residual", "J",
            "largest energy that the ledger does not account for"),
-    NUMBER(wall_loss_J, "wall_loss", "wall loss", "J", "energy lost in a wall that gives"),
+    NUMBER(wall_loss_J, "wall_loss", "wall loss", "J", "energy lost in a wall that gives", SPECIAL),
     NUMBER(force_command_N, "force_command", "force command", "N",
-           "force that the controller is to hold"),
+           "force that the controller is to hold", SPECIAL),
     NUMBER(force_over_command_N, "force_over_command", "force over command", "N",
-           "largest force minus the commanded one"),
+           "largest force minus the commanded one", SPECIAL),
     NUMBER(smoothed_over_command_N, "smoothed_over_command", "smoothed over command", "N",
            "largest mean of the force over 5 ms, impulses included, from 20 ms after first contact "
-           "on, minus the commanded force"),
+           "on, minus the commanded force",
+           SPECIAL),
     NUMBER(steady_error_N, "steady_error", "steady error", "N",
-           "steady force minus the commanded one"),
+           "steady force minus the commanded one", SPECIAL),
     NUMBER(largest_command_V, "largest_command", "largest command", "V",
-           "largest command to the amplifier either way"),
+           "largest command to the amplifier either way", SPECIAL),
     NUMBER(electrical_energy_J, "electrical_energy", "electrical energy", "J",
-           "energy that the amplifier fed into the motor"),
+           "energy that the amplifier fed into the motor", SPECIAL),
     NUMBER(approach_speed_m_s, "approach_speed", "approach speed", "m/s",
-           "largest speed of the tip towards the wall before first contact"),
+           "largest speed of the tip towards the wall before first contact", SPECIAL),
     NUMBER(return_speed_m_s, "return_speed", "return speed", "m/s",
-           "largest speed of the tip towards the wall without contact, after the first"),
+           "largest speed of the tip towards the wall without contact, after the first", SPECIAL),
     NUMBER(steps, "steps", "steps", "", "time steps taken"),
     NUMBER(cpu_time_s, "cpu_time", "cpu time", "s", "processor time of the run", TIMING),
     NUMBER(wall_time_s, "wall_time", "wall time", "s", "time that passed during the run", TIMING),

@@ -52,6 +52,7 @@ typedef struct summary_info {
     const char *unit;        // "s", "" for a count
     const char *description; // one sentence without a full stop
     bool timing;             // depends on the machine, not on the scenario
+    bool special;            // there only with a control law, or with a wall that gives
 } summary_info;
 
 // The table, in the order of the numbers of struct summary and of `run --json`.

@@ -38,6 +38,9 @@ static void print_quantities(const summary *m)
     for (int i = 0; i < summary_count; i++) {
         const char *label = summary_table[i].label, *unit = summary_table[i].unit;
         double value = summary_value(m, i);
+        if (isnan(value) && summary_table[i].special) {
+            continue;
+        }
         if (isnan(value)) {
             printf("  %-28s           -\n", label);
         } else if (unit[0] == '\0') {
