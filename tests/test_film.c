@@ -193,9 +193,9 @@ static void test_film(void **state)
         forget(&r);
         skip();
     }
-    const char *const names[] = {"film.mp4", "film.webm", "film.gif"};
-    const char *const marks[] = {"ftypisom", "webm", "GIF89a"};
-    for (int i = 0; i < 3; i++) {
+    const char *const names[] = {"film.mp4", "film.webm", "film.gif", "film.webp"};
+    const char *const marks[] = {"ftypisom", "webm", "GIF89a", "WEBPVP8X"};
+    for (int i = 0; i < 4; i++) {
         if (film_of(&r, &options, in_folder(names[i]), &f) != STATUS_OK) {
             fail_msg("%s", f.text);
         }

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { NOTES_MOST = 8, COMPRESSION = 4 };
+enum { NOTES_MOST = 8, COMPRESSION = 3 };
 
 static void fail(png_structp png, png_const_charp message)
 {

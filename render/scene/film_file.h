@@ -2,27 +2,19 @@
 #pragma once
 
 #include <cairo.h>
-#include <signal.h>
 #include <stdbool.h>
 
-#include "render/page/png_file.h"
+#include "render/scene/film_encoder.h"
 
 typedef struct film_file film_file;
-
-typedef struct film_facts {
-    int width, height; // of each frame [pixels]
-    int frames_per_second;
-    const png_note *notes; // for the metadata
-    int note_count;
-    const volatile sig_atomic_t *stop; // not 0: nothing is waited for any longer; may be NULL
-} film_facts;
 
 // Tells early whether a film could be written: STATUS_BAD_ARGUMENT for an extension that is not
 // known, STATUS_CANNOT_WRITE if the path cannot be written, if the ffmpeg program is missing, or if
 // a folder of frames is not empty.
 status film_file_check(const char *path, fault *f);
 
-// Opens a film: path ends in .mp4, .webm or .gif, or names a folder to be made for PNG frames.
+// Opens a film: path ends in .mp4, .webm, .gif or .webp, or names a folder to be made for PNG
+// frames.
 status film_file_open(film_file **out, const char *path, const film_facts *facts, fault *f);
 
 // True if the first frame added is not shown, but gives the colours of all others: it should show

@@ -42,8 +42,8 @@ static double threshold_at(int column, int row)
 
 static uint32_t rgb_of(colour c, double threshold)
 {
-    return (uint32_t)(255 * c.red + threshold) << 16 | (uint32_t)(255 * c.green + threshold) << 8 |
-           (uint32_t)(255 * c.blue + threshold);
+    return 0xFF000000U | (uint32_t)(255 * c.red + threshold) << 16 |
+           (uint32_t)(255 * c.green + threshold) << 8 | (uint32_t)(255 * c.blue + threshold);
 }
 
 // Colour of the floor at (x, y) within its reach, a pixel being `wide` by `deep` there.
@@ -115,6 +115,7 @@ status scene_floor_init(scene_floor *floor, const camera *c, fault *f)
     assert(floor != NULL && c != NULL && floor->reach > 0);
     floor->width = (int)c->width;
     floor->height = (int)c->height;
+    floor->camera = *c;
 
     size_t pixels = (size_t)floor->width * (size_t)floor->height;
     floor->ground = malloc(pixels * sizeof *floor->ground);
@@ -145,29 +146,41 @@ void scene_floor_finish(scene_floor *floor)
     *floor = (scene_floor){0};
 }
 
-// One smoothing pass along rows; the result is stored turned round, so that two passes do both
-// directions.
-static void blur_turned(const unsigned char *from, unsigned char *to)
+// Cells of the map: [left, right) and [low, high).
+typedef struct map_box {
+    int left, right, low, high;
+} map_box;
+
+// One smoothing pass along rows of the box, outside which all is empty; the result is stored turned
+// round, so that two passes do both directions.
+static void blur_turned(const unsigned char *from, unsigned char *to, map_box cells)
 {
-    for (int row = 0; row < MAP; row++) {
+    for (int row = cells.low; row < cells.high; row++) {
         const unsigned char *line_from = from + (ptrdiff_t)row * MAP;
         int sum = 0;
-        for (int i = 0; i < BLUR; i++) {
+        for (int i = cells.left; i < cells.left + BLUR && i < cells.right; i++) {
             sum += line_from[i];
         }
 
         // the sum runs along: a cell enters ahead, another leaves behind
-        for (int i = 0; i < MAP; i++) {
-            sum += i + BLUR < MAP ? line_from[i + BLUR] : 0;
+        for (int i = cells.left; i < cells.right; i++) {
+            sum += i + BLUR < cells.right ? line_from[i + BLUR] : 0;
             to[(ptrdiff_t)i * MAP + row] = (unsigned char)(sum / (2 * BLUR + 1));
-            sum -= i >= BLUR ? line_from[i - BLUR] : 0;
+            sum -= i >= cells.left + BLUR ? line_from[i - BLUR] : 0;
         }
     }
 }
 
-// Draws the mesh's triangles, thrown onto the floor along the light, into the map.
-static void cast_shadow(scene_floor *floor, const mesh *m)
+static int within_map(double cell)
 {
+    return cell < 0 ? 0 : cell > MAP ? MAP : (int)cell;
+}
+
+// Draws the mesh's triangles, thrown onto the floor along the light, into the map. Returns what
+// they and their soft edge may cover.
+static map_box cast_shadow(scene_floor *floor, const mesh *m)
+{
+    double left = MAP, right = 0, low = MAP, high = 0;
     memset(floor->mask, 0, (size_t)MAP * MAP);
     cairo_surface_t *map =
         cairo_image_surface_create_for_data(floor->mask, CAIRO_FORMAT_A8, MAP, MAP, MAP);
@@ -185,8 +198,13 @@ static void cast_shadow(scene_floor *floor, const mesh *m)
             vector p = m->vertices[m->corners[i + k]].place;
             double along = fmax(0, p.z - floor->level) / floor->light.z;
             double x = p.x - along * floor->light.x, y = p.y - along * floor->light.y;
-            cairo_line_to(cr, (x - floor->map_left) / floor->map_cell,
-                          (y - floor->map_low) / floor->map_cell);
+            double across = (x - floor->map_left) / floor->map_cell;
+            double up = (y - floor->map_low) / floor->map_cell;
+            cairo_line_to(cr, across, up);
+            left = fmin(left, across);
+            right = fmax(right, across);
+            low = fmin(low, up);
+            high = fmax(high, up);
         }
         cairo_close_path(cr);
         cairo_fill(cr);
@@ -196,10 +214,15 @@ static void cast_shadow(scene_floor *floor, const mesh *m)
     cairo_surface_destroy(map);
 
     // a soft edge, as of a wide lamp
+    const int edge = BLUR * BLUR_PASSES + 1;
+    const map_box cells = {within_map(left - edge), within_map(right + edge + 1),
+                           within_map(low - edge), within_map(high + edge + 1)};
+    const map_box turned = {cells.low, cells.high, cells.left, cells.right};
     for (int pass = 0; pass < BLUR_PASSES; pass++) {
-        blur_turned(floor->mask, floor->spare);
-        blur_turned(floor->spare, floor->mask);
+        blur_turned(floor->mask, floor->spare, cells);
+        blur_turned(floor->spare, floor->mask, turned);
     }
+    return cells;
 }
 
 // The shadow at a place of the floor, 0 to 255, between the map's cells.
@@ -217,30 +240,32 @@ static float shadow_at(const scene_floor *floor, float x, float y)
     return (1 - b) * ((1 - a) * at[0] + a * at[1]) + b * ((1 - a) * at[MAP] + a * at[MAP + 1]);
 }
 
-// A rectangle of the floor [m].
-typedef struct floor_box {
-    float left, right, low, high;
-} floor_box;
+// The pixels [left, right) and [top, bottom) that show a box of the map, some to spare.
+typedef struct pixel_box {
+    int left, right, top, bottom;
+} pixel_box;
 
-// What the shadow covers, a cell to spare; right < left where there is none.
-static floor_box shadow_box(const scene_floor *floor)
+static pixel_box seen_box(const scene_floor *floor, map_box cells)
 {
-    int left = MAP, right = -1, low = MAP, high = -1;
-    for (int row = 0; row < MAP; row++) {
-        const unsigned char *line = floor->mask + (ptrdiff_t)row * MAP;
-        for (int i = 0; i < MAP; i++) {
-            if (line[i] != 0) {
-                left = i < left ? i : left;
-                right = i > right ? i : right;
-                low = row < low ? row : low;
-                high = row;
-            }
+    double left = floor->width, right = 0, top = floor->height, bottom = 0;
+    for (int i = 0; i < 4; i++) {
+        const vector corner = {
+            floor->map_left + (i & 1 ? cells.left : cells.right) * floor->map_cell,
+            floor->map_low + (i & 2 ? cells.low : cells.high) * floor->map_cell, floor->level};
+        const vector at = camera_project(&floor->camera, corner);
+        if (at.z < floor->camera.nearest) {
+            // it reaches behind the eye
+            return (pixel_box){0, floor->width, 0, floor->height};
         }
+        left = fmin(left, at.x);
+        right = fmax(right, at.x);
+        top = fmin(top, at.y);
+        bottom = fmax(bottom, at.y);
     }
-    const double cell = floor->map_cell;
-    return (floor_box){
-        (float)(floor->map_left + (left - 1) * cell), (float)(floor->map_left + (right + 2) * cell),
-        (float)(floor->map_low + (low - 1) * cell), (float)(floor->map_low + (high + 2) * cell)};
+
+    // one pixel more on each side
+    return (pixel_box){(int)fmax(0, left - 1), (int)fmin(floor->width, right + 2),
+                       (int)fmax(0, top - 1), (int)fmin(floor->height, bottom + 2)};
 }
 
 // A colour under a shadow of 0 to 255; threshold [1/65536] as of threshold_at.
@@ -255,27 +280,32 @@ static uint32_t darkened(uint32_t rgb, float shadow, uint32_t threshold)
 void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
 {
     assert(floor != NULL && m != NULL && onto != NULL);
-    cast_shadow(floor, m);
+    const map_box shade = cast_shadow(floor, m);
+    const pixel_box seen = seen_box(floor, shade);
 
     cairo_surface_flush(onto);
     unsigned char *data = cairo_image_surface_get_data(onto);
     ptrdiff_t stride = cairo_image_surface_get_stride(onto);
 
-    const floor_box shade = shadow_box(floor);
     for (int row = 0; row < floor->height; row++) {
-        uint32_t *to = (uint32_t *)(void *)(data + row * stride);
+        // as it is without shadows
+        uint32_t *to = (uint32_t *)(void *)(data + row * stride), thresholds[8];
         size_t at = (size_t)row * (size_t)floor->width;
-        uint32_t thresholds[8];
+        memcpy(to, floor->ground + at, (size_t)floor->width * sizeof *to);
+        if (row < seen.top || row >= seen.bottom) {
+            continue;
+        }
+
+        // and darker where they fall
         for (int i = 0; i < 8; i++) {
             thresholds[i] = (uint32_t)(65536 * threshold_at(i, row));
         }
-
-        for (int column = 0; column < floor->width; column++, at++) {
-            float x = floor->x[at], y = floor->y[at];
-            bool covered = x > shade.left && x < shade.right && y > shade.low && y < shade.high;
-            float shadow = covered ? shadow_at(floor, x, y) : 0;
-            to[column] = shadow > 0 ? darkened(floor->ground[at], shadow, thresholds[column & 7])
-                                    : 0xFF000000U | floor->ground[at];
+        for (int column = seen.left; column < seen.right; column++) {
+            size_t pixel = at + (size_t)column;
+            float shadow = shadow_at(floor, floor->x[pixel], floor->y[pixel]);
+            if (shadow > 0) {
+                to[column] = darkened(floor->ground[pixel], shadow, thresholds[column & 7]);
+            }
         }
     }
     cairo_surface_mark_dirty(onto);

@@ -12,7 +12,8 @@ typedef struct scene_floor {
     colour page, ground_colour, line; // beyond the floor, of it, and of its grid
     vector light;                     // unit vector towards the light
     int width, height;                // of the picture [pixels]
-    unsigned *ground;                 // the floor without shadows, 0x00RRGGBB
+    camera camera;                    // that sees it
+    unsigned *ground;                 // the floor without shadows, 0xFFRRGGBB
     float *x, *y;                     // place of every pixel on the floor [m]
     unsigned char *mask;              // shadow on a map of the floor, and room for smoothing
     unsigned char *spare;

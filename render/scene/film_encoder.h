@@ -1,0 +1,60 @@
+// The ffmpeg program at work: frames go in, a film comes out.
+#pragma once
+
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <sys/types.h>
+
+#include "render/page/png_file.h"
+
+enum { FILM_MARKS = 2 }; // most marks of a kind of film
+
+// A kind of film.
+typedef struct film_format {
+    const char *ending; // of its files' names
+    const char *codec;  // ffmpeg's arguments for it
+    bool palette;       // the first frame gives the colours of all others, and is not shown
+    // what a whole file has at these places, from its beginning or (negative) from its end
+    struct {
+        long offset;
+        const char *bytes; // NULL: no more of them
+    } marks[FILM_MARKS];
+} film_format;
+
+// The format that a path's ending names, or NULL.
+const film_format *film_format_of(const char *path);
+
+typedef struct film_facts {
+    int width, height; // of each frame [pixels]
+    int frames_per_second;
+    const png_note *notes; // for the metadata
+    int note_count;
+    const volatile sig_atomic_t *stop; // not 0: nothing is waited for any longer; may be NULL
+} film_facts;
+
+typedef struct film_encoder {
+    pid_t process; // 0: none runs
+    int pipe;      // to it, -1 if closed
+    FILE *words;   // what it says
+    const volatile sig_atomic_t *stop;
+} film_encoder;
+
+// Whether the program is installed.
+bool film_encoder_is_there(void);
+
+// Starts it: raw frames (0xAARRGGBB without the alpha) become the file `target`.
+// STATUS_CANNOT_WRITE or STATUS_NO_MEMORY if that fails; film_encoder_finish in either case.
+status film_encoder_start(film_encoder *e, const film_format *format, const film_facts *facts,
+                          const char *target, fault *f);
+
+// Sends bytes of a frame. STATUS_CANNOT_WRITE if it takes no more, STATUS_STOPPED when stop became
+// true while it took nothing; no fault is set.
+status film_encoder_send(film_encoder *e, const unsigned char *bytes, size_t length);
+
+// Ends the frames, waits for the program and takes its first complaint. True if it succeeded
+// without any.
+bool film_encoder_end(film_encoder *e, char *said, size_t size);
+
+// Ends it at once, if it runs, and frees what it holds.
+void film_encoder_finish(film_encoder *e);
