@@ -24,12 +24,21 @@ static void begin_field(csv_writer *w)
 // What stands between quotes, inner ones doubled; what may not leave the program becomes '?'.
 static void write_quoted(FILE *stream, const char *text)
 {
+    const char *begin = text; // of what is written as it stands
     while (*text != '\0') {
         const int length = *text == '\n' ? 1 : printable_length(text);
-        fputs(*text == '"' ? "\"" : "", stream);
-        fprintf(stream, "%.*s", length > 0 ? length : 1, length > 0 ? text : "?");
-        text += length > 0 ? length : 1;
+        if (length > 0 && *text != '"') {
+            text += length;
+            continue;
+        }
+
+        // a quote ends the piece and begins the next one, too
+        fwrite(begin, 1, (size_t)(text - begin), stream);
+        fputc(length > 0 ? '"' : '?', stream);
+        begin = length > 0 ? text : text + 1;
+        text++;
     }
+    fwrite(begin, 1, (size_t)(text - begin), stream);
 }
 
 static bool needs_quotes(const char *text)
