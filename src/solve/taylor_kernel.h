@@ -2,26 +2,27 @@
 // includes this; vectors are those of the compiler).
 //
 // Let d = q2 - q1 be the bend, s and c its sine and cosine, and S, C those of an angle from the
-// wall times a length. The equations of chain.h for two links are
+// wall times a length. The equations of chain.h for two links are those of the momenta
 //
-//     m11 a1 + m12 c a2 = b1,     b1 = drive - kv w1 + spring + m12 s w2^2 - J1 f
-//     m12 c a1 + m22 a2 = b2,     b2 =               - spring - m12 s w1^2 - J2 f
-//     spring = k d + kd d'
+//     p1 = m11 w1 + m12 c w2,     p1' = drive - kv w1 + pull - J1 f
+//     p2 = m12 c w1 + m22 w2,     p2' =               - pull - J2 f
+//     pull = m12 s w1 w2 + k d + kd d'
 //
-// with a hub on a spring taking drive and kv away from b1 into I1 a0 = drive - kv w0 - hub spring.
-// In contact J1 a1 + J2 a2 + convection = 0 gives f:
+// with a hub on a spring taking drive and kv away from p1' into I1 w0' = drive - kv w0 - hub
+// spring. In contact f keeps the gap's derivative, gap' = -(J1 w1 + J2 w2), at zero:
 //
-//     point: gap = l s - S2,      J1 = l c,  J2 = C2 - l c,  convection = l s (w1^2 - 2 w1 w2)
-//     plane: gap = -(S1 + S2),    J1 = C1,   J2 = C2,        convection = -(S1 w1^2 + S2 w2^2)
+//     point: gap = l s - S2,      J1 = l c,  J2 = C2 - l c,  gap' = l c d' - C2 w2
+//     plane: gap = -(S1 + S2),    J1 = C1,   J2 = C2,        gap' = -(C1 w1 + C2 w2)
 //
-// (the gap itself, which is zero, left out). Put x = sum x_n t^n. Sums and springs go by
-// coefficient, products are Cauchy's, (x y)_n = sum x_j y_(n-j), and sine and cosine of an angle
-// with the velocity v follow from s' = v c, c' = -v s:
+// Put x = sum x_n t^n. Sums and springs go by coefficient, products are Cauchy's,
+// (x y)_n = sum x_j y_(n-j), and sine and cosine of an angle with the velocity v follow from
+// s' = v c, c' = -v s:
 //
-//     n s_n = sum v_j c_(n-1-j),     n c_n = -sum v_j s_(n-1-j),     j = 0 ... n - 1 .
+//     n s_n = (v c)_(n-1),     n c_n = -(v s)_(n-1)
 //
-// Of the n-th coefficient of each equation all is known but a1_n, a2_n and f_n, which the matrix of
-// the stride's start, inverted once, gives; w_(n+1) = a_n/(n + 1) and q_(n+1) = w_n/(n + 1) follow.
+// which are the products that gap' is made of, and p2's as c w1 = c w2 - c d'. Of the n-th
+// coefficient of p1', p2' and the (n+1)-th of gap' all is known but w1_(n+1), w2_(n+1) and f_n,
+// which the matrix of the stride's start, inverted once, gives; q_(n+1) = w_n/(n + 1) follows.
 //
 // Every operation is written out in its order, without a branch on what a lane holds but where all
 // take the same value from both ways. So all widths give the same bits.
@@ -49,18 +50,17 @@ typedef int64_t mask __attribute__((vector_size(8 * LANES)));
 #endif
 
 // Sums of products go four, or two, side by side. Those of a single arm fill a vector so; with
-// several arms each is a vector of its own. In the factors on the left two numbers stand for four:
-// `halves` are low, low, high, high, and `turns` are odd, even, odd, even.
+// several arms each is a vector of its own. In a factor on the left two numbers may stand for four:
+// `halves` are low, low, high, high; and one for two.
 #if LANES == 1
 typedef double two __attribute__((vector_size(16)));
 typedef double four __attribute__((vector_size(32)));
 typedef two both;
-typedef four halves, turns;
+typedef four halves;
 #define TWO(a, b)         ((two){a, b})
 #define FOUR(a, b, c, d)  ((four){a, b, c, d})
 #define BOTH(x)           ((both){x, x})
 #define HALVES(low, high) ((halves){low, low, high, high})
-#define TURNS(odd, even)  ((turns){odd, even, odd, even})
 #define PART(x, i)        ((x)[i])
 #else
 typedef struct two {
@@ -70,12 +70,11 @@ typedef struct four {
     real part[4];
 } four;
 typedef real both;
-typedef two halves, turns;
+typedef two halves;
 #define TWO(a, b)         ((two){{a, b}})
 #define FOUR(a, b, c, d)  ((four){{a, b, c, d}})
 #define BOTH(x)           (x)
 #define HALVES(low, high) ((halves){{low, high}})
-#define TURNS(odd, even)  ((turns){{odd, even}})
 #define PART(x, i)        ((x).part[i])
 #endif
 
@@ -181,92 +180,99 @@ KERNEL void sine_cosine(real x, real *sine, real *cosine)
 
 // --- sums of products -------------------------------------------------------------------------
 //
-// All run from the last term of the left factor to its first: what the coefficient before has
-// given comes last, so that all else is summed up while that is still being computed.
+// The products of a coefficient are summed up in two turns, even and odd, and those of the newest
+// factors added at last: so additions wait neither for each other nor for what is being computed.
 
 #if LANES == 1
+#define ADD_FOUR(sum, x, y)   ((sum) += (x) * (y))
 #define ADD_HALVES(sum, x, y) ((sum) += (x) * (y))
-#define ADD_TURNS(sum, x, y)  ((sum) += (x) * (y))
 #define ADD_BOTH(sum, x, y)   ((sum) += (x) * (y))
-#define ADD_TWO(sum, x, y)    ((sum) += (x) * (y))
 #else
+#define ADD_FOUR(sum, x, y)                                                                        \
+    ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[1] * (y).part[1],       \
+     (sum).part[2] += (x).part[2] * (y).part[2], (sum).part[3] += (x).part[3] * (y).part[3])
 #define ADD_HALVES(sum, x, y)                                                                      \
     ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[0] * (y).part[1],       \
      (sum).part[2] += (x).part[1] * (y).part[2], (sum).part[3] += (x).part[1] * (y).part[3])
-#define ADD_TURNS(sum, x, y)                                                                       \
-    ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[1] * (y).part[1],       \
-     (sum).part[2] += (x).part[0] * (y).part[2], (sum).part[3] += (x).part[1] * (y).part[3])
 #define ADD_BOTH(sum, x, y) ((sum).part[0] += (x) * (y).part[0], (sum).part[1] += (x) * (y).part[1])
-#define ADD_TWO(sum, x, y)                                                                         \
-    ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[1] * (y).part[1])
 #endif
 
-// (x y)_n without the first product, whose coefficient of y is not known yet.
-KERNEL void halves_beyond(const halves *x, const four *y, int n, four *result)
-{
-    four sum = FOUR((real){0}, (real){0}, (real){0}, (real){0});
-    for (int j = n; j >= 1; j--) {
-        ADD_HALVES(sum, x[j], y[n - j]);
-    }
-    *result = sum;
-}
+// Factors of the products, by coefficient.
+typedef struct factors {
+    halves rates[TAYLOR_MOST + 2];    // v, w2
+    four directions[TAYLOR_MOST + 2]; // c, s of the bend; C2, S2
+    four left[TAYLOR_MOST + 2];       // c_(n+1), w1_n, s_(n+1), the hub's velocity
+    four right[TAYLOR_MOST + 2];      // w2_n, w2_n, (w1 w2)_(n-1), the hub's velocity
+    both forces[TAYLOR_MOST + 2];     // in contact: f
+    two levers[TAYLOR_MOST + 2];      // in contact: c, C2; plane: C1, C2
+    both rate1[TAYLOR_MOST + 2];      // plane: w1
+    two direction1[TAYLOR_MOST + 2];  // plane: C1, S1
+} factors;
 
-KERNEL void turns_beyond(const turns *x, const four *y, int n, four *result)
-{
-    four sum = FOUR((real){0}, (real){0}, (real){0}, (real){0});
-    for (int j = n; j >= 1; j--) {
-        ADD_TURNS(sum, x[j], y[n - j]);
-    }
-    *result = sum;
-}
+typedef struct sums {
+    four turning;  // v c, v s, w2 C2, w2 S2; of the next coefficient
+    four products; // of left and right
+    two levered;   // of forces and levers
+    two turning1;  // w1 C1, w1 S1; of the next coefficient
+} sums;
 
-// (x y)_n, all of it.
-KERNEL void halves_product(const halves *x, const four *y, int n, four *result)
-{
-    four sum;
-    halves_beyond(x, y, n, &sum);
-    ADD_HALVES(sum, x[0], y[n]);
-    *result = sum;
-}
+static const sums no_sums;
 
-// The terms of (x y)_n from the middle's left neighbour to the first.
-KERNEL void turns_squares(const turns *x, const four *y, int n, four *result)
-{
-    four sum = FOUR((real){0}, (real){0}, (real){0}, (real){0});
-    const int terms = (n + 1) / 2;
-    const turns *last = x + terms - 1;
-    const four *first = y + (n - terms + 1);
-    for (int i = 0; i < terms; i++) {
-        ADD_TURNS(sum, last[-i], first[i]);
-    }
-    *result = sum;
-}
+#define ADD_TURNING(s, x, j, n)                                                                    \
+    ADD_HALVES((s).turning, (x)->rates[j], (x)->directions[(n) + 1 - (j)])
+#define ADD_PRODUCTS(s, x, j, n) ADD_FOUR((s).products, (x)->left[j], (x)->right[(n) - (j)])
+#define ADD_LEVERED(s, x, j, n)  ADD_BOTH((s).levered, (x)->forces[j], (x)->levers[(n) - (j)])
+#define ADD_TURNING1(s, x, j, n)                                                                   \
+    ADD_BOTH((s).turning1, (x)->rate1[j], (x)->direction1[(n) + 1 - (j)])
 
-KERNEL two both_product(const both *x, const two *y, int n)
-{
-    two sum = TWO((real){0}, (real){0});
-    for (int j = n; j >= 0; j--) {
-        ADD_BOTH(sum, x[j], y[n - j]);
-    }
-    return sum;
-}
+// Sums for the n-th coefficient from j = 1 to n - 1: the first and the last are left to be added.
+#define IN_TURNS(ADD)                                                                              \
+    do {                                                                                           \
+        int j = 1;                                                                                 \
+        for (; j + 1 < n; j += 2) {                                                                \
+            ADD(even, x, j, n);                                                                    \
+            ADD(odd, x, j + 1, n);                                                                 \
+        }                                                                                          \
+        if (j < n) {                                                                               \
+            ADD(even, x, j, n);                                                                    \
+        }                                                                                          \
+    } while (0)
 
-KERNEL two two_product(const two *x, const two *y, int n)
+KERNEL void inner_sums(const factors *x, int n, const int contact, const int point, sums *result)
 {
-    two sum = TWO((real){0}, (real){0});
-    for (int j = n; j >= 0; j--) {
-        ADD_TWO(sum, x[j], y[n - j]);
+    sums even = no_sums, odd = no_sums;
+#if LANES == 1
+    // all together, as a processor has registers enough
+#define ADD_ALL(s, x, j, n)                                                                        \
+    do {                                                                                           \
+        ADD_TURNING(s, x, j, n);                                                                   \
+        ADD_PRODUCTS(s, x, j, n);                                                                  \
+        if (contact) {                                                                             \
+            ADD_LEVERED(s, x, j, n);                                                               \
+        }                                                                                          \
+        if (!point) {                                                                              \
+            ADD_TURNING1(s, x, j, n);                                                              \
+        }                                                                                          \
+    } while (0)
+    IN_TURNS(ADD_ALL);
+#else
+    IN_TURNS(ADD_TURNING);
+    IN_TURNS(ADD_PRODUCTS);
+    if (contact) {
+        IN_TURNS(ADD_LEVERED);
     }
-    return sum;
-}
-
-KERNEL real product(const real *x, const real *y, int n)
-{
-    real sum = (real){0};
-    for (int j = n; j >= 0; j--) {
-        sum += x[j] * y[n - j];
+    if (!point) {
+        IN_TURNS(ADD_TURNING1);
     }
-    return sum;
+#endif
+    for (int i = 0; i < 4; i++) {
+        PART(result->turning, i) = PART(even.turning, i) + PART(odd.turning, i);
+        PART(result->products, i) = PART(even.products, i) + PART(odd.products, i);
+    }
+    for (int i = 0; i < 2; i++) {
+        PART(result->levered, i) = PART(even.levered, i) + PART(odd.levered, i);
+        PART(result->turning1, i) = PART(even.turning1, i) + PART(odd.turning1, i);
+    }
 }
 
 // (x^2)_n: twice the half of the sum.
@@ -282,20 +288,30 @@ KERNEL real square(const real *x, int n)
 
 // --- series -----------------------------------------------------------------------------------
 
-// The n-th coefficients of cosine and sine of two angles, and of one.
-KERNEL void turn(const halves *rates, four *directions, int n)
+// Cosines and sines of two angles, and of one, from the sums of the order before, v c and v s.
+#if LANES == 1
+KERNEL void turn(const four *sum, double share, four *direction)
 {
-    four sum;
-    halves_product(rates, directions, n - 1, &sum);
-    directions[n] = FOUR(-(PART(sum, 1) * inverse[n]), PART(sum, 0) * inverse[n],
-                         -(PART(sum, 3) * inverse[n]), PART(sum, 2) * inverse[n]);
+    *direction =
+        __builtin_shufflevector(*sum, *sum, 1, 0, 3, 2) * FOUR(-share, share, -share, share);
 }
 
-KERNEL void turn_one(const both *rate, two *direction, int n)
+KERNEL void turn_one(const two *sum, double share, two *direction)
 {
-    const two sum = both_product(rate, direction, n - 1);
-    direction[n] = TWO(-(PART(sum, 1) * inverse[n]), PART(sum, 0) * inverse[n]);
+    *direction = __builtin_shufflevector(*sum, *sum, 1, 0) * TWO(-share, share);
 }
+#else
+KERNEL void turn(const four *sum, double share, four *direction)
+{
+    *direction = FOUR(PART(*sum, 1) * -share, PART(*sum, 0) * share, PART(*sum, 3) * -share,
+                      PART(*sum, 2) * share);
+}
+
+KERNEL void turn_one(const two *sum, double share, two *direction)
+{
+    *direction = TWO(PART(*sum, 1) * -share, PART(*sum, 0) * share);
+}
+#endif
 
 // The longest stride, up to `wanted`, whose last terms in velocity are small; terms: magnitudes of
 // the coefficients of the two last orders.
@@ -337,20 +353,9 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     real *w0 = block + AT_RATE_0, *w1 = block + AT_RATE_1, *w2 = block + AT_RATE_2;
     real *f = block + AT_FORCE, *hold = block + AT_HOLD, *gap = block + AT_GAP;
     real *hub_square = block + AT_HUB_SQUARE, *dissipation = block + AT_DISSIPATION;
-    real v[TAYLOR_MOST + 2];                                  // of the bend
-    halves rates[TAYLOR_MOST + 2];                            // v, w2
-    four directions[TAYLOR_MOST + 2];                         // c, s of the bend; C2, S2
-    both rate1[TAYLOR_MOST + 2];                              // plane: w1
-    two direction1[TAYLOR_MOST + 2];                          // plane: C1, S1
-    halves bend[TAYLOR_MOST + 1];                             // s, c
-    four pulls[TAYLOR_MOST + 1];                              // w2^2, w1^2; a2, a1
-    turns levers[TAYLOR_MOST + 1];                            // J
-    four answers[TAYLOR_MOST + 1];                            // f, f; a1, a2
-    turns left[TAYLOR_MOST + 1];                              // w1, w2
-    four right[TAYLOR_MOST + 1];                              // w1, w2; w2, w1
-    real sines[TAYLOR_MOST + 1], mixed[TAYLOR_MOST + 1];      // point: s, w1^2 - 2 w1 w2
-    two sines12[TAYLOR_MOST + 1], squares12[TAYLOR_MOST + 1]; // plane: S1, S2; w1^2, w2^2
-    real hub_rate[TAYLOR_MOST + 1];
+    factors x;
+    sums sum = no_sums;
+    real v[TAYLOR_MOST + 2], hub_rate[TAYLOR_MOST + 1]; // of the bend and the hub spring
 
     // the state at the start, and the angles' sines and cosines there
     q1[0] = block[AT_START_ANGLE + 1];
@@ -366,9 +371,9 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     sine_cosine(q2[0], &sine, &cosine);
     const real S20 = reach_x * sine - reach_y * cosine;
     const real C20 = reach_x * cosine + reach_y * sine;
-    directions[0] = FOUR(c0, s0, C20, S20);
+    x.directions[0] = FOUR(c0, s0, C20, S20);
     if (!point) {
-        direction1[0] = TWO(C20 * c0 + S20 * s0, S20 * c0 - C20 * s0);
+        x.direction1[0] = TWO(C20 * c0 + S20 * s0, S20 * c0 - C20 * s0);
     }
 
     // the matrix of the start, inverted; a stuck rigid hub takes the first row away
@@ -381,7 +386,7 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
         i22 = choose(stuck, 1 / m22, i22);
     }
     real y1 = zero, y2 = zero, per_force = zero; // M^-1 J, 1/(J M^-1 J)
-    const real j1 = point ? l * c0 : PART(direction1[0], 0);
+    const real j1 = point ? l * c0 : PART(x.direction1[0], 0);
     const real j2 = point ? C20 - l * c0 : C20;
     if (contact) {
         y1 = i11 * j1 + i12 * j2;
@@ -390,91 +395,89 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     }
     const real inverse_hub = hub_spring ? choose(stuck, zero, 1 / block[AT_HUB_INERTIA]) : zero;
 
+    real product = zero; // (w1 w2)_(n-1)
     for (int n = 0; n < order; n++) {
-        // directions
+        // directions of the next order end what the last pass has left open
         v[n] = w2[n] - w1[n];
-        rates[n] = HALVES(v[n], w2[n]);
-        left[n] = TURNS(w1[n], w2[n]);
-        right[n] = FOUR(w1[n], w2[n], w2[n], w1[n]);
+        x.rates[n] = HALVES(v[n], w2[n]);
+        ADD_TURNING(sum, &x, n, n - 1);
+        turn(&sum.turning, inverse[n + 1], &x.directions[n + 1]);
         if (!point) {
-            rate1[n] = BOTH(w1[n]);
+            x.rate1[n] = BOTH(w1[n]);
+            ADD_TURNING1(sum, &x, n, n - 1);
+            turn_one(&sum.turning1, inverse[n + 1], &x.direction1[n + 1]);
+        }
+
+        // products: what is known of (c w2)_(n+1), (w1 w2)_n, (s w1 w2)_n, the hub's square; of the
+        // turning of the order after next
+        const real hub_turn = hub_spring ? w0[n] : w1[n];
+        const four next = x.directions[n + 1], now = x.directions[n];
+        x.left[n] = FOUR(PART(next, 0), w1[n], PART(next, 1), hub_turn);
+        x.right[n] = FOUR(w2[n], w2[n], product, hub_turn);
+        if (contact) {
+            x.levers[n] = TWO(point ? PART(now, 0) : PART(x.direction1[n], 0), PART(now, 2));
+        }
+        inner_sums(&x, n, contact, point, &sum);
+        ADD_PRODUCTS(sum, &x, 0, n);
+        ADD_TURNING(sum, &x, 0, n);
+        if (!point) {
+            ADD_TURNING1(sum, &x, 0, n);
         }
         if (n > 0) {
-            turn(rates, directions, n);
+            ADD_PRODUCTS(sum, &x, n, n);
+            ADD_TURNING(sum, &x, n, n);
             if (!point) {
-                turn_one(rate1, direction1, n);
+                ADD_TURNING1(sum, &x, n, n);
             }
         }
-        const real c = PART(directions[n], 0), s = PART(directions[n], 1);
-        const real C2 = PART(directions[n], 2), S2 = PART(directions[n], 3);
-        bend[n] = HALVES(s, c);
-        if (contact) {
-            levers[n] = point ? TURNS(l * c, C2 - l * c) : TURNS(PART(direction1[n], 0), C2);
-        }
+        const real swung = PART(sum.products, 0), bent = PART(sum.turning, 0);
+        product = PART(sum.products, 1);
+        hub_square[n] = PART(sum.products, 3);
 
-        // squares of the velocities, and in contact with a point their product
-        four squares;
-        turns_squares(left, right, n, &squares);
-        real square1 = PART(squares, 0) + PART(squares, 0);
-        real square2 = PART(squares, 1) + PART(squares, 1);
-        real both_rates = PART(squares, 2) + PART(squares, 3);
-        if (n % 2 == 0) {
-            square1 += w1[n / 2] * w1[n / 2];
-            square2 += w2[n / 2] * w2[n / 2];
-            both_rates += w1[n / 2] * w2[n / 2];
-        }
-
-        // right sides, without what a1_n, a2_n and f_n give
-        four pulled;
-        halves_beyond(bend, pulls, n, &pulled);
-        const real spring = k * (q2[n] - q1[n]) + kd * v[n];
+        // derivatives of the momenta, without what f_n gives
+        const real pull =
+            m12 * (s0 * product + PART(sum.products, 2)) + k * (q2[n] - q1[n]) + kd * v[n];
         const real drive = n == 0 ? block[AT_DRIVE] : zero;
-        real b1 = spring - m12 * PART(pulled, 2) + m12 * (PART(pulled, 0) + s0 * square2);
-        real b2 = -spring - m12 * PART(pulled, 3) - m12 * (PART(pulled, 1) + s0 * square1);
+        real push1 = pull, push2 = -pull;
         if (hub_spring) {
             hub_rate[n] = w1[n] - w0[n];
-            const real pull = kh * (q1[n] - q0[n]) + khd * hub_rate[n];
-            const real moment = drive - viscous * w0[n] + pull;
-            b1 -= pull;
+            const real hub_pull = kh * (q1[n] - q0[n]) + khd * hub_rate[n];
+            const real moment = drive - viscous * w0[n] + hub_pull;
+            push1 -= hub_pull;
             hold[n] = -moment;
             w0[n + 1] = moment * inverse_hub * inverse[n + 1];
             q0[n + 1] = w0[n] * inverse[n + 1];
-            hub_square[n] = square(w0, n);
         } else {
-            b1 += drive - viscous * w1[n];
-            hub_square[n] = square1;
+            push1 += drive - viscous * w1[n];
+        }
+        if (contact && n > 0) {
+            ADD_LEVERED(sum, &x, 0, n);
+            const real first = point ? l * PART(sum.levered, 0) : PART(sum.levered, 0);
+            push1 -= first;
+            push2 -= point ? PART(sum.levered, 1) - first : PART(sum.levered, 1);
         }
 
-        // accelerations, and in contact the force that keeps the gap's second derivative zero
-        real a1, a2;
+        // velocities, and in contact the force that keeps the gap from changing
+        const real b1 = push1 * inverse[n + 1] - m12 * swung;
+        const real b2 = push2 * inverse[n + 1] - m12 * (swung - bent);
+        real x1 = i11 * b1 + i12 * b2, x2 = i12 * b1 + i22 * b2;
         if (contact) {
-            real convection;
-            four answered;
-            turns_beyond(levers, answers, n, &answered);
-            if (point) {
-                sines[n] = s;
-                mixed[n] = square1 - (both_rates + both_rates);
-                convection = l * product(sines, mixed, n);
-            } else {
-                sines12[n] = TWO(PART(direction1[n], 1), S2);
-                squares12[n] = TWO(square1, square2);
-                const two turning = two_product(sines12, squares12, n);
-                convection = -(PART(turning, 0) + PART(turning, 1));
-            }
-            b1 -= PART(answered, 0);
-            b2 -= PART(answered, 1);
-            const real beyond = PART(answered, 2) + PART(answered, 3);
-            f[n] = (y1 * b1 + y2 * b2 + (convection + beyond)) * per_force;
-            a1 = i11 * b1 + i12 * b2 - y1 * f[n];
-            a2 = i12 * b1 + i22 * b2 - y2 * f[n];
-            answers[n] = FOUR(f[n], f[n], a1, a2);
-        } else {
-            a1 = i11 * b1 + i12 * b2;
-            a2 = i12 * b1 + i22 * b2;
+            const real closing = point ? PART(sum.turning, 2) - l * bent
+                                       : PART(sum.turning1, 0) + PART(sum.turning, 2);
+            const real share = (y1 * b1 + y2 * b2 + closing) * per_force;
+            f[n] = share * (n + 1);
+            x.forces[n] = BOTH(f[n]);
+            x1 -= y1 * share;
+            x2 -= y2 * share;
         }
-        pulls[n] = FOUR(square2, square1, a2, a1);
+        w1[n + 1] = x1;
+        w2[n + 1] = x2;
+        q1[n + 1] = w1[n] * inverse[n + 1];
+        q2[n + 1] = w2[n] * inverse[n + 1];
+
+        // what holds a stuck hub, and what springs lose
         if (!hub_spring) {
-            hold[n] = coupling * a2 - b1;
+            hold[n] = (coupling * x2 + m12 * swung) * (n + 1) - push1;
             if (contact) {
                 hold[n] += j1 * f[n];
             }
@@ -485,11 +488,6 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
                 dissipation[n] += khd * square(hub_rate, n);
             }
         }
-
-        w1[n + 1] = a1 * inverse[n + 1];
-        w2[n + 1] = a2 * inverse[n + 1];
-        q1[n + 1] = w1[n] * inverse[n + 1];
-        q2[n + 1] = w2[n] * inverse[n + 1];
     }
     q1[order + 1] = w1[order] * inverse[order + 1];
     q2[order + 1] = w2[order] * inverse[order + 1];
@@ -503,17 +501,17 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
 
     // the gap, as far as the angles are known
     if (!contact) {
-        rates[order] = HALVES(w2[order] - w1[order], w2[order]);
-        rate1[order] = BOTH(w1[order]);
-        for (int n = order; n <= order + 1; n++) {
-            turn(rates, directions, n);
-            if (!point) {
-                turn_one(rate1, direction1, n);
-            }
+        x.rates[order] = HALVES(w2[order] - w1[order], w2[order]);
+        ADD_TURNING(sum, &x, order, order - 1);
+        turn(&sum.turning, inverse[order + 1], &x.directions[order + 1]);
+        if (!point) {
+            x.rate1[order] = BOTH(w1[order]);
+            ADD_TURNING1(sum, &x, order, order - 1);
+            turn_one(&sum.turning1, inverse[order + 1], &x.direction1[order + 1]);
         }
         for (int n = 0; n <= order + 1; n++) {
-            const real S2 = PART(directions[n], 3);
-            gap[n] = point ? l * PART(directions[n], 1) - S2 : -(PART(direction1[n], 1) + S2);
+            const real S2 = PART(x.directions[n], 3);
+            gap[n] = point ? l * PART(x.directions[n], 1) - S2 : -(PART(x.direction1[n], 1) + S2);
         }
     }
 
