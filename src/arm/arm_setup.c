@@ -123,9 +123,22 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     return value;
 }
 
+// The same of two links on a rigid hub, whose one spring has K = k b b' with b = (-1, 1): k b' M^-1
+// b.
+static double one_spring_eigenvalue(const arm *a)
+{
+    const double l = a->link_length, mass = a->link_mass;
+    const double m22 = a->link_inertia + mass * l * l / 4, m12 = mass * l * l / 2;
+    const double m11 = m22 + mass * l * l + a->hub_inertia;
+    return a->joint_stiffness * (m11 + 2 * m12 + m22) / (m11 * m22 - m12 * m12);
+}
+
 // Upper estimate of the highest frequency of the straight, free chain.
 static double highest_frequency(const arm *a)
 {
+    if (a->links == 2 && !a->hub_spring && arm_is_plain(a)) {
+        return 1.05 * sqrt(one_spring_eigenvalue(a));
+    }
     return 1.05 * sqrt(largest_eigenvalue(a, false));
 }
 

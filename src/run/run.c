@@ -110,7 +110,7 @@ static void begin_next(side_by_side *group, int place)
         }
 
         // the next corrected run, up to its first wait
-        *one = (side_run){0};
+        one->run.motion = NULL;
         status failed = recording_begin(&one->recording, s, &summary_only, result, &one->fault);
         if (failed == STATUS_OK) {
             failed = corrected_open(&one->run, &one->recording, &one->fault);

@@ -66,6 +66,44 @@ static void compute_block(double *block, int width, taylor_form form)
     }
 }
 
+// Copies `count` places of the blocks' lanes from the one after `place` on to the arms' own blocks.
+static inline __attribute__((always_inline)) void
+spread_places(double *const *to, const double *block, int width, int place, int count)
+{
+    for (int n = place; n < place + count; n++) {
+        for (int lane = 0; lane < width; lane++) {
+            to[lane][n] = block[n * width + lane];
+        }
+    }
+}
+
+// What the series of a form have come to, as far as their order goes.
+static inline __attribute__((always_inline)) void
+spread_results(double *const *to, const double *block, int width, taylor_form form)
+{
+    const int links[] = {AT_ANGLE_1, AT_ANGLE_2};
+    spread_places(to, block, width, AT_ALLOWED, 1);
+    for (int i = 0; i < 2; i++) {
+        spread_places(to, block, width, links[i], form.order + 2);
+    }
+    if (form.hub_spring) {
+        spread_places(to, block, width, AT_ANGLE_0, form.order + 2);
+    }
+    spread_places(to, block, width, form.hub_spring ? AT_RATE_0 : AT_RATE_1, form.order + 1);
+
+    // reactions and losses
+    if (form.contact) {
+        spread_places(to, block, width, AT_FORCE, form.order);
+    } else {
+        spread_places(to, block, width, AT_GAP, form.order + 2);
+    }
+    spread_places(to, block, width, AT_HOLD, form.order);
+    spread_places(to, block, width, AT_HUB_SQUARE, form.order);
+    if (form.damped) {
+        spread_places(to, block, width, AT_DISSIPATION, form.order);
+    }
+}
+
 void taylor_compute(const taylor_request *requests, int count)
 {
     const int width = count == 1 ? 1 : taylor_width();
@@ -78,37 +116,24 @@ void taylor_compute(const taylor_request *requests, int count)
         return;
     }
 
-    // arms into lanes; those left over repeat the first
-    _Alignas(64) double block[TAYLOR_PLACES * TAYLOR_WIDEST];
+    // arms into lanes; those left over repeat the first, and nobody reads what comes of them
+    _Alignas(64) double block[TAYLOR_PLACES * TAYLOR_WIDEST], unread[TAYLOR_PLACES];
+    double *to[TAYLOR_WIDEST];
     for (int lane = 0; lane < width; lane++) {
         const double *from = requests[lane < count ? lane : 0].block;
+        to[lane] = lane < count ? requests[lane].block : unread;
         for (int place = 0; place < AT_INPUTS; place++) {
             block[place * width + lane] = from[place];
         }
     }
     compute_block(block, width, form);
 
-    // and back, as far as the order goes
-    const struct {
-        int place, count;
-        bool wanted;
-    } results[] = {{AT_ALLOWED, 1, true},
-                   {AT_ANGLE_0, form.order + 2, form.hub_spring},
-                   {AT_ANGLE_1, form.order + 2, true},
-                   {AT_ANGLE_2, form.order + 2, true},
-                   {AT_RATE_0, form.order + 1, form.hub_spring},
-                   {AT_RATE_1, form.order + 1, !form.hub_spring},
-                   {AT_GAP, form.order + 2, !form.contact},
-                   {AT_FORCE, form.order, form.contact},
-                   {AT_HOLD, form.order, true},
-                   {AT_HUB_SQUARE, form.order, true},
-                   {AT_DISSIPATION, form.order, form.damped}};
-    for (size_t i = 0; i < sizeof results / sizeof results[0]; i++) {
-        for (int n = 0; results[i].wanted && n < results[i].count; n++) {
-            const double *row = block + (results[i].place + n) * width;
-            for (int lane = 0; lane < count; lane++) {
-                requests[lane].block[results[i].place + n] = row[lane];
-            }
-        }
+    // and back
+    if (width == 8) {
+        spread_results(to, block, 8, form);
+    } else if (width == 4) {
+        spread_results(to, block, 4, form);
+    } else {
+        spread_results(to, block, 2, form);
     }
 }
