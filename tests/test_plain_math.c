@@ -1,4 +1,4 @@
-// Exponential, logarithm and power of the project against the C library's in extended precision.
+// The functions of the project against the C library's in extended precision.
 #include "src/base/plain_math.h"
 
 #include <float.h>
@@ -61,11 +61,52 @@ static void powers_are_those_of_the_library(void **state)
     check_close(plain_pow(0, 2), 0, 0);
 }
 
+static void hyperbolic_functions_are_right_to_four_units(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 4);
+    for (int i = 0; i < TRIALS; i++) {
+        const double size = i % 3 == 0 ? 1e-6 : i % 3 == 1 ? 1.2 : 700;
+        const double x = size * (2 * random_uniform(&g) - 1), y = tanh(x);
+        assert_true(units_off(plain_sinh(x), sinhl((long double)x)) < 4);
+        assert_true(units_off(plain_cosh(x), coshl((long double)x)) < 4);
+        if (fabs(y) < 1) {
+            assert_true(units_off(plain_atanh(y), atanhl((long double)y)) < 4);
+        }
+    }
+    assert_true(isinf(plain_cosh(-720)) && isinf(plain_sinh(-720)) && plain_sinh(-720) < 0);
+    check_close(plain_sinh(0), 0, 0);
+    check_close(plain_atanh(0), 0, 0);
+}
+
+static void arctangents_are_right_to_two_units(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 5);
+    for (int i = 0; i < TRIALS; i++) {
+        const double size = i % 2 == 0 ? 1 : ldexp(1, i % 400 - 200);
+        const double x = 2 * random_uniform(&g) - 1, y = size * (2 * random_uniform(&g) - 1);
+        assert_true(units_off(plain_atan2(y, x), atan2l((long double)y, (long double)x)) < 2);
+    }
+
+    // both axes, both signs, and the origin
+    for (int quarter = -1; quarter <= 2; quarter++) {
+        const double x = quarter == 0 ? 3 : quarter == 2 ? -3 : 0, y = quarter % 2 * 5;
+        check_close(plain_atan2(y, x), quarter * acos(0), 0);
+    }
+    check_close(plain_atan2(-0.0, -1), -acos(-1), 0);
+    check_close(plain_atan2(0, 0), 0, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exponentials_are_right_to_two_units),
         cmocka_unit_test(logarithms_are_right_to_two_units),
+        cmocka_unit_test(hyperbolic_functions_are_right_to_four_units),
+        cmocka_unit_test(arctangents_are_right_to_two_units),
         cmocka_unit_test(powers_are_those_of_the_library),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

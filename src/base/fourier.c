@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "src/base/sincos.h"
+
 #define PI 3.14159265358979323846
 
 static bool is_power_of_two(size_t n)
@@ -42,7 +44,8 @@ void fourier_transform(double *real, double *imaginary, size_t n)
     for (size_t half = 1; half < n; half *= 2) {
         for (size_t k = 0; k < half; k++) {
             const double turn = -PI * (double)k / (double)half;
-            const double c = cos(turn), s = sin(turn);
+            double c, s;
+            inline_sincos(turn, &s, &c);
             for (size_t i = k; i < n; i += 2 * half) {
                 const size_t j = i + half;
                 const double re = c * real[j] - s * imaginary[j];
@@ -66,13 +69,13 @@ void fourier_amplitudes(const double *series, size_t n, double *scratch, double 
 
     // Hann's window, whose sum is what a sine keeps of its amplitude
     for (size_t i = 0; i < n; i++) {
-        const double window = 0.5 - 0.5 * cos(2 * PI * (double)i / (double)n);
+        const double window = 0.5 - 0.5 * inline_cos(2 * PI * (double)i / (double)n);
         weight += window;
         real[i] = window * (series[i] - mean);
         imaginary[i] = 0;
     }
     fourier_transform(real, imaginary, n);
     for (size_t k = 0; k < n / 2; k++) {
-        amplitude[k] = 2 * hypot(real[k], imaginary[k]) / weight;
+        amplitude[k] = 2 * sqrt(real[k] * real[k] + imaginary[k] * imaginary[k]) / weight;
     }
 }

@@ -1,15 +1,28 @@
-// Exponential, logarithm and power from nothing but IEEE additions, multiplications and divisions.
+// Exponential, logarithm, power, hyperbolic functions and arctangents from nothing but IEEE
+// additions, multiplications, divisions and square roots.
 //
 // The C library picks its code for them (with or without fused multiply-add) by the processor, so
 // that their last bit, and with it that of a run, would depend on the machine. These give the same
-// bits everywhere, within 2 units in the last place; sine and cosine are in sincos.h.
+// bits everywhere, within 2 units in the last place where nothing else is said; sine and cosine are
+// in sincos.h.
 #pragma once
 
 // e^x; 0 and infinity beyond the range of doubles.
 double plain_exp(double x);
 
-// Natural logarithm of a normal number above zero; -infinity at zero.
+// Natural logarithm of a normal number above zero; -infinity at zero, NaN of NaN.
 double plain_log(double x);
 
 // x^y for x above zero or zero; within y log(x) units in the last place.
 double plain_pow(double x, double y);
+
+// Hyperbolic sine and cosine, within 4 units in the last place; infinite beyond exp's range.
+double plain_sinh(double x);
+double plain_cosh(double x);
+
+// Inverse of the hyperbolic tangent for |x| < 1, within 4 units in the last place.
+double plain_atanh(double x);
+
+// The angle of the point (x, y) from the x axis, from -pi to pi [rad], both finite; 0 at the
+// origin.
+double plain_atan2(double y, double x);

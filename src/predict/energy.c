@@ -93,7 +93,7 @@ static double share_undamped(const parameters *p, const two_link *t, const three
     double square = p->arm.k2 * (ratio - 1) * (ratio - 1) / mass, damping = square * seconds / 2;
     double frequency = sqrt(fmax(square - damping * damping, 0));
     double bend = s->angle[2] - s->angle[1], rate = s->velocity[2] - s->velocity[1];
-    double phase = atan2(fabs(rate), frequency * copysign(bend, rate * bend));
+    double phase = plain_atan2(fabs(rate), frequency * copysign(bend, rate * bend));
     return frequency > 0 ? plain_exp(-2 * damping * phase / frequency) : 0;
 }
 

@@ -20,7 +20,9 @@ void matrix_exponential(const double *matrix, int size, double h, double *result
     }
 
     // halved until the series converges fast
-    int squarings = norm > 0.5 ? (int)ceil(log2(norm / 0.5)) : 0;
+    int octave;
+    const double mantissa = frexp(norm, &octave);
+    int squarings = norm > 0.5 ? octave + (mantissa > 0.5) : 0;
     double scale = h / ldexp(1, squarings);
     memset(result, 0, bytes);
     memset(power, 0, bytes);

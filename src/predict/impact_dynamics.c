@@ -190,6 +190,11 @@ static void force_free_terms(const integrated_motion *g, double c[3])
     c[2] = -springs * g->k2 * (g->w3 - g->w2) / 4;
 }
 
+static double length_of(const double x[3])
+{
+    return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
+
 // Newton's method (3.8) on E1..E3 from a guess. The step is halved while it makes the residual
 // worse. False if that does not lead to a root.
 static bool newton(const integrated_motion *g, double x[3])
@@ -203,7 +208,7 @@ static bool newton(const integrated_motion *g, double x[3])
     // the residual to begin with
     double e[3], jacobian[9], error;
     equations(g, x, e, jacobian);
-    error = hypot(hypot(e[0], e[1]), e[2]);
+    error = length_of(e);
     for (int i = 0; i < ITERATIONS && error > 1e-13 * scale; i++) {
         // the whole step, or as much of it as lowers the residual
         double damping = 1, trial[3], next;
@@ -217,7 +222,7 @@ static bool newton(const integrated_motion *g, double x[3])
                 trial[j] = x[j] - damping * e[j];
             }
             equations(g, trial, trial_e, jacobian);
-            next = hypot(hypot(trial_e[0], trial_e[1]), trial_e[2]);
+            next = length_of(trial_e);
             damping /= 2;
         } while (!(next < error) && damping > 1e-6);
         if (!(next < error)) {

@@ -3,6 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/base/plain_math.h"
+
 enum { MOST_STEPS = 4000, SUBSTEPS = 8, HALVINGS = 60 };
 
 // The arm in flight, q = (theta2, theta3) - theta_imp: M q'' + D e2 q2' + k2 B q = T e2.
@@ -162,9 +164,9 @@ static bool find_edge(const flight *f, const responses *r, int n, double sense, 
 static double time_to_band(double xi, double a, double b, double most, double s)
 {
     if (xi > b) {
-        return xi < most ? log((most - b) / (most - xi)) / s : (double)NAN;
+        return xi < most ? plain_log((most - b) / (most - xi)) / s : (double)NAN;
     }
-    return xi >= a ? 0 : xi > 0 ? log(a / xi) / s : (double)NAN;
+    return xi >= a ? 0 : xi > 0 ? plain_log(a / xi) / s : (double)NAN;
 }
 
 least_time least_time_of(const parameters *p, double force, double band, double peak)

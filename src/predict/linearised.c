@@ -26,6 +26,7 @@
 #include "src/arm/impact.h"
 #include "src/base/sincos.h"
 #include "src/predict/pulse.h"
+#include "src/base/plain_math.h"
 
 enum { PIECES = 3 };
 
@@ -78,12 +79,13 @@ static oscillation oscillation_from(double acceleration, double velocity, double
 
 static void oscillation_at(const oscillation *o, double t, double *y, double *velocity)
 {
-    double c, s, decay = exp(-o->decay * t), turn = o->square >= 0 ? -o->frequency : o->frequency;
+    double c, s, decay = plain_exp(-o->decay * t),
+                 turn = o->square >= 0 ? -o->frequency : o->frequency;
     if (o->square >= 0) {
         inline_sincos(o->frequency * t, &s, &c);
     } else {
-        c = cosh(o->frequency * t);
-        s = sinh(o->frequency * t);
+        c = plain_cosh(o->frequency * t);
+        s = plain_sinh(o->frequency * t);
     }
 
     *y = o->rest + decay * (o->sine * s - o->rest * c);
@@ -101,10 +103,10 @@ static double oscillation_stop(const oscillation *o)
 
     // overdamped it comes to rest once or only in the limit
     if (o->square >= 0) {
-        double angle = atan2(p, -q); // tan(f t) = -p/q
+        double angle = plain_atan2(p, -q); // tan(f t) = -p/q
         return (angle > 0 ? angle : angle + M_PI) / o->frequency;
     }
-    return -p / q > 0 && -p / q < 1 ? atanh(-p / q) / o->frequency : 3 / o->decay;
+    return -p / q > 0 && -p / q < 1 ? plain_atanh(-p / q) / o->frequency : 3 / o->decay;
 }
 
 // One degree of freedom of the arm on the wall.
@@ -128,12 +130,12 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     if (a->wall.kind == WALL_POINT) {
         // the second link points from the joint to the contact point, (3.9)
         double dx = a->wall.x - l * cx, dy = a->wall.y - l * sx, d = sqrt(dx * dx + dy * dy);
-        q[1] = atan2(dy, dx);
+        q[1] = plain_atan2(dy, dx);
         lever = d;
         along = l * (cx * dx + sx * dy) / d;
     } else {
         // both links lean away from the wall alike
-        q[1] = 2 * atan2(a->wall.sine, a->wall.cosine) - x;
+        q[1] = 2 * plain_atan2(a->wall.sine, a->wall.cosine) - x;
         lever = along = l * (cx * a->wall.cosine + sx * a->wall.sine);
     }
     w[0] = v;

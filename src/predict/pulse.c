@@ -439,8 +439,9 @@ status pulse_follow(const arm *a, chain_link *work, const pulse_start *start, pu
     double rate = fmax(a->highest_frequency, 1), compliance;
     if (wall_gives(&a->wall)) {
         chain_contact_response(a, work, start->q, false, f.scratch, &compliance);
-        rate = hypot(rate, wall_rate(&a->wall, compliance, fmax(-f.now.reaction.gap, 0),
-                                     -f.now.reaction.gap_velocity));
+        double wall = wall_rate(&a->wall, compliance, fmax(-f.now.reaction.gap, 0),
+                                -f.now.reaction.gap_velocity);
+        rate = sqrt(rate * rate + wall * wall);
     }
     f.sample = 1 / (SAMPLES_A_RADIAN * rate);
     follow(&f, out);

@@ -1,4 +1,5 @@
 #include "src/rig/arm_observer.h"
+#include "src/base/plain_math.h"
 
 #include <assert.h>
 #include <math.h>
@@ -297,7 +298,7 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
     // the estimate's own variance is left out: a model that claims less of it is no better
     if (o->moves) {
         double miss = (reading - expected) / deviation;
-        o->missed += (TAILS + 1) * log(1 + miss * miss / TAILS);
+        o->missed += (TAILS + 1) * plain_log(1 + miss * miss / TAILS);
     }
     estimator_correct(&o->e, n, row, offset, reading, deviation * deviation * doubt * doubt);
     return 1 / doubt;

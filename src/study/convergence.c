@@ -6,6 +6,7 @@
 
 #include "src/study/bench.h"
 #include "src/run/run.h"
+#include "src/base/plain_math.h"
 
 #define ROUNDING       1e-13 // differences below this share of a value tell nothing
 #define REFERENCE_STEP 2e-5  // [s]
@@ -19,7 +20,7 @@ double observed_order(double coarse, double middle, double fine)
     double rounding = ROUNDING * fmax(fabs(coarse), fabs(fine));
     bool told = fabs(first) > rounding && fabs(second) > rounding && first * second > 0 &&
                 fabs(first) > fabs(second);
-    return told ? log2(first / second) : (double)NAN;
+    return told ? plain_log(first / second) / M_LN2 : (double)NAN;
 }
 
 static const char *const panel_keys[] = {
@@ -129,8 +130,10 @@ static void prepare_points(method_study *study)
     static const double mantissas[] = {10, 5, 2};
     const double none = (double)NAN;
     for (int m = 0; m < STUDY_METHODS; m++) {
+        double unit = 1000; // a second in those of the decade
         for (int i = 0; i < STUDY_STEPS; i++) {
-            study->points[m][i] = (study_point){.step = mantissas[i % 3] / pow(10, 3 + i / 3),
+            unit *= i > 0 && i % 3 == 0 ? 10 : 1;
+            study->points[m][i] = (study_point){.step = mantissas[i % 3] / unit,
                                                 .cost = none,
                                                 .error = {none, none, none}};
         }

@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "src/rig/laws/laws.h"
+#include "src/base/plain_math.h"
 
 enum { APPROACH, CONTACT };
 static const char *const mode_names[] = {"approach", "contact", NULL};
@@ -65,7 +66,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
 
     // the mass, exactly over a period
     double wanted = (m->p[FORCE_WANTED] - in->force) / m->p[DAMPING];
-    double kept = m->p[MASS_TIME] > 0 ? exp(-r->period / m->p[MASS_TIME]) : 0;
+    double kept = m->p[MASS_TIME] > 0 ? plain_exp(-r->period / m->p[MASS_TIME]) : 0;
     m->speed = wanted + kept * (m->speed - wanted);
     m->angle += m->speed * r->period;
 
