@@ -83,6 +83,16 @@ void api_keep_first(void *context, const char *sentence)
     }
 }
 
+int api_finish_first(impactlab_error *error, status code)
+{
+    if (error != NULL) {
+        error->status = (int)code;
+        error->line = error->column = 0;
+        error->parameter[0] = '\0';
+    }
+    return (int)code;
+}
+
 int api_parameter(const char *path, impactlab_error *error)
 {
     fault f = {.code = STATUS_BAD_ARGUMENT, .text = "", .path = ""};

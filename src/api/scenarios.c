@@ -48,12 +48,7 @@ static int finish_reading(impactlab_scenario **handle, status code, impactlab_er
     }
     free(*handle);
     *handle = NULL;
-    if (error != NULL) {
-        error->status = (int)code;
-        error->line = error->column = 0;
-        error->parameter[0] = '\0';
-    }
-    return (int)code;
+    return api_finish_first(error, code);
 }
 
 int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_file,
@@ -235,20 +230,15 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     if (!whole) {
         return api_missing(error, "assignments[i]");
     }
-    if (error != NULL) {
-        error->status = (int)code;
-        error->line = error->column = 0;
-        error->parameter[0] = '\0';
-    }
-    return (int)code;
+    return api_finish_first(error, code);
 }
 
-int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const char *text,
-                           impactlab_error *error)
+// Sets a parameter from a text, or without one from a number.
+static int set_one(impactlab_scenario *handle, const char *path, const char *text, double number,
+                   impactlab_error *error)
 {
     API_NEEDS_CALLED(error, handle, "scenario");
     API_NEEDS(error, path);
-    API_NEEDS(error, text);
 
     // on a copy, so that a refused value changes nothing
     parameters p = handle->scenario.parameters;
@@ -257,31 +247,25 @@ int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const c
     if (index < 0) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
-    if (parameter_set_text(&p, index, text, &f) != STATUS_OK ||
-        scenario_take_parameters(&handle->scenario, &p, &f) != STATUS_OK) {
-        return api_error(error, &f);
+    status code = text != NULL ? parameter_set_text(&p, index, text, &f)
+                               : parameter_set_number(&p, index, number, &f);
+    if (code == STATUS_OK) {
+        code = scenario_take_parameters(&handle->scenario, &p, &f);
     }
-    return api_done(error);
+    return code == STATUS_OK ? api_done(error) : api_error(error, &f);
+}
+
+int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const char *text,
+                           impactlab_error *error)
+{
+    API_NEEDS(error, text);
+    return set_one(handle, path, text, 0, error);
 }
 
 int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, double value,
                                   impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, path);
-
-    // on a copy, as a text is
-    parameters p = handle->scenario.parameters;
-    fault f = {.text = "", .path = ""};
-    int index = api_parameter(path, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
-    }
-    if (parameter_set_number(&p, index, value, &f) != STATUS_OK ||
-        scenario_take_parameters(&handle->scenario, &p, &f) != STATUS_OK) {
-        return api_error(error, &f);
-    }
-    return api_done(error);
+    return set_one(handle, path, NULL, value, error);
 }
 
 // Room for one more action of the script.

@@ -282,31 +282,47 @@ static void make_batch_run(void *context, size_t i, scenario *made)
     made->parameters.motor.voltage = 0.5 + (double)i / BATCH_RUNS;
 }
 
+// What the runs of a batch begin with and come to.
+typedef struct timed_batch {
+    scenario scenario;
+    summary *summaries; // to be freed
+} timed_batch;
+
+static status prepare_batch(timed_batch *b, fault *f)
+{
+    static char name[] = "bench", none[] = "";
+    static const char *const settings[][2] = {{NULL, NULL}};
+    *b =
+        (timed_batch){.scenario = {.name = name, .file = none, .title = none, .description = none}};
+    status code = timed_parameters(&b->scenario.parameters, settings, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    b->summaries = malloc(BATCH_RUNS * sizeof *b->summaries);
+    return b->summaries != NULL ? STATUS_OK : fault_no_memory(f);
+}
+
 // Time steps of all runs together for a second by the clock, on as many threads as processors.
 static status measure_batch(double *value, fault *f)
 {
-    char name[] = "bench", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
-    static const char *const settings[][2] = {{NULL, NULL}};
-    status code = timed_parameters(&s.parameters, settings, f);
-    summary *summaries = malloc(BATCH_RUNS * sizeof *summaries);
-    if (code != STATUS_OK || summaries == NULL) {
-        free(summaries);
-        return code != STATUS_OK ? code : fault_set(f, STATUS_NO_MEMORY, "no memory for a batch");
+    timed_batch b;
+    status code = prepare_batch(&b, f);
+    if (code != STATUS_OK) {
+        return code;
     }
 
     // all of it, by the clock
     double start = clock_seconds(CLOCK_MONOTONIC), steps = 0;
     int threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
-    code = batch_run(make_batch_run, &s, BATCH_RUNS, threads, summaries);
+    code = batch_run(make_batch_run, &b.scenario, BATCH_RUNS, threads, b.summaries);
     double elapsed = clock_seconds(CLOCK_MONOTONIC) - start;
 
     // the steps that were made
     for (int i = 0; i < BATCH_RUNS && code == STATUS_OK; i++) {
-        steps += summaries[i].steps;
-        code = summaries[i].status;
+        steps += b.summaries[i].steps;
+        code = b.summaries[i].status;
     }
-    free(summaries);
+    free(b.summaries);
     *value = steps / elapsed;
     return code == STATUS_OK
                ? code
@@ -316,14 +332,10 @@ static status measure_batch(double *value, fault *f)
 // Computing time of a run of the batch on one thread, in vectors of at most `width` arms [us].
 static status time_batch(int width, double *value, fault *f)
 {
-    char name[] = "bench", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
-    static const char *const settings[][2] = {{NULL, NULL}};
-    status code = timed_parameters(&s.parameters, settings, f);
-    summary *summaries = malloc(BATCH_RUNS * sizeof *summaries);
-    if (code != STATUS_OK || summaries == NULL) {
-        free(summaries);
-        return code != STATUS_OK ? code : fault_no_memory(f);
+    timed_batch b;
+    status code = prepare_batch(&b, f);
+    if (code != STATUS_OK) {
+        return code;
     }
 
     // over and over, as one batch is short
@@ -331,11 +343,11 @@ static status time_batch(int width, double *value, fault *f)
     long batches = 0;
     taylor_limit_width(width);
     for (; code == STATUS_OK && elapsed < bench_window; batches++) {
-        code = batch_run(make_batch_run, &s, BATCH_RUNS, 1, summaries);
+        code = batch_run(make_batch_run, &b.scenario, BATCH_RUNS, 1, b.summaries);
         elapsed = bench_computing_time() - start;
     }
     taylor_limit_width(0);
-    free(summaries);
+    free(b.summaries);
     *value = 1e6 * elapsed / (double)(batches * BATCH_RUNS);
     return code == STATUS_OK ? code : fault_set(f, code, "the batch failed: %s", status_text(code));
 }

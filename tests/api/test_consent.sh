@@ -4,18 +4,12 @@
 #
 #   test_consent.sh PROGRAM SOURCE_ROOT
 set -euo pipefail
-lab=$(readlink -f "$1")
 source=$(readlink -f "$2")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-export XDG_CONFIG_HOME=$work/settings LC_ALL=C.UTF-8
-fails=0
-
-complain() {
-    echo "FAILED: $*"
-    fails=$((fails + 1))
-}
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../expect.sh"
+lab=$program
+work=$folder
+export XDG_CONFIG_HOME=$work/settings
 
 # a law that notes each start and each question
 cat >law.sh <<'END'
@@ -44,30 +38,30 @@ times() {
 }
 
 shows() {
-    grep -qF -- "$1" screen || complain "the screen does not say '$1': $(tail -2 screen)"
+    grep -qF -- "$1" screen || fail "the screen does not say '$1': $(tail -2 screen)"
 }
 
 # asked, nothing starts, and the rest of the lab is there
 visit scenario.yaml ''
 shows "y lets it start 'sh law.sh'"
 shows 'not allowed'
-[ "$(times starts)" = 0 ] || complain "the program started unasked"
+[ "$(times starts)" = 0 ] || fail "the program started unasked"
 visit scenario.yaml ':set wall.angle 0.01<Enter>:set control.law open-loop<Enter>'
 shows 'control.law = open-loop from the start'
-[ "$(times starts)" = 0 ] || complain "the program started unasked"
+[ "$(times starts)" = 0 ] || fail "the program started unasked"
 visit scenario.yaml 'n'
 shows 'not allowed'
-[ ! -e settings/impactlab/allowed ] || complain "remembered without an answer"
+[ ! -e settings/impactlab/allowed ] || fail "remembered without an answer"
 
 # allowed and remembered; the run is that of the command line
 visit scenario.yaml 'y:save run.csv<Enter>'
-[ "$(times starts)" = 1 ] || complain "the program started $(times starts) times"
+[ "$(times starts)" = 1 ] || fail "the program started $(times starts) times"
 grep -q '^[0-9a-f]\{64\} scenario.yaml: sh law.sh$' settings/impactlab/allowed ||
-    complain "remembered: $(cat settings/impactlab/allowed)"
+    fail "remembered: $(cat settings/impactlab/allowed)"
 "$lab" run scenario.yaml --allow-code --quiet --csv plain.csv
-cmp -s run.csv plain.csv || complain "the lab's run is another one"
+cmp -s run.csv plain.csv || fail "the lab's run is another one"
 visit scenario.yaml ''
-[ "$(times starts)" = 1 ] || complain "asked although it was remembered"
+[ "$(times starts)" = 1 ] || fail "asked although it was remembered"
 
 # for this content only
 cp law.sh kept.sh
@@ -79,7 +73,7 @@ sed 's/gain/reach/; s/1 s}/1.1 s}/' scenario.yaml >other.yaml
 visit other.yaml ''
 shows "y lets it start"
 visit scenario.yaml ''
-[ "$(times starts)" = 1 ] || complain "the content is what it was, but it asks"
+[ "$(times starts)" = 1 ] || fail "the content is what it was, but it asks"
 
 # what only a shell can read is allowed for one visit; nor is there a memory without a folder
 sed 's/command: .*/command: "true; sh law.sh"/' scenario.yaml >shell.yaml
@@ -98,17 +92,17 @@ shows "y lets it load './x.so'"
 
 # the same questions are answered from the tape: looking back, changing and undoing
 visit scenario.yaml ':seek 0.3<Enter>:push 0.01<Enter>'
-[ "$(times starts)" = 2 ] || complain "a push: started $(times starts) times, not 2"
+[ "$(times starts)" = 2 ] || fail "a push: started $(times starts) times, not 2"
 shows 'the program was started anew and went through its'
 visit scenario.yaml ':seek 0.3<Enter>:push 0.01<Enter>uU:seek 0<Enter>:seek end<Enter>u'
-[ "$(times starts)" = 2 ] || complain "undo and redo: started $(times starts) times, not 2"
+[ "$(times starts)" = 2 ] || fail "undo and redo: started $(times starts) times, not 2"
 visit scenario.yaml ':seek 0.3<Enter>:set control.force 3<Enter>:save changed.csv<Enter>:save changed.yaml<Enter>'
 shows 'saved'
 "$lab" run changed.yaml --allow-code --quiet --csv again.csv
-cmp -s changed.csv again.csv || complain "a changed run is not that of its file"
+cmp -s changed.csv again.csv || fail "a changed run is not that of its file"
 visit scenario.yaml ':extend 0.5<Enter>:save long.csv<Enter>'
 "$lab" run scenario.yaml --allow-code --quiet --set run.duration=1.5 --csv again.csv
-cmp -s long.csv again.csv || complain "a longer run is another one"
+cmp -s long.csv again.csv || fail "a longer run is another one"
 
 # a program that is not the same twice cannot go on from the past, and that is said
 cat >moody.sh <<'END'
@@ -120,6 +114,6 @@ sed 's/law.sh/moody.sh/' scenario.yaml >moody.yaml
 visit moody.yaml 'y:seek 0.3<Enter>:push 0.01<Enter>'
 shows 'would have to go on from the past: asked once more, it answered sample 1 of'
 visit moody.yaml 'y:seek 0.3<Enter>:push 0.01<Enter>u'
-[ "$(times starts)" = 2 ] || complain "back at the run that is recorded: started $(times starts) times"
+[ "$(times starts)" = 2 ] || fail "back at the run that is recorded: started $(times starts) times"
 
-[ "$fails" = 0 ] && echo "programs run where the user lets them, and replay their past"
+nothing_failed && echo "programs run where the user lets them, and replay their past"

@@ -7,18 +7,13 @@
 #
 # What needs a language or package that is missing is skipped with a sentence.
 set -euo pipefail
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../expect.sh"
 build=$1
-source=$2
 shift 2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+work=$folder
 unset IMPACTLAB_SCENARIOS IMPACTLAB_LIBRARY IMPACTLAB_PROGRAM PYTHONPATH
-fails=0
 
-complain() {
-    echo "FAILED: $*"
-    fails=$((fails + 1))
-}
 skip() {
     echo "skipped: $*"
 }
@@ -39,28 +34,28 @@ for file in include/impactlab/impactlab.h include/impactlab/controller.h \
     share/man/man1/impactlab.1 share/man/man1/impactlab-run.1 \
     share/bash-completion/completions/impactlab.bash share/zsh/site-functions/_impactlab \
     share/fish/vendor_completions.d/impactlab.fish; do
-    [ -e "$prefix/$file" ] || complain "$file is not installed"
+    [ -e "$prefix/$file" ] || fail "$file is not installed"
 done
-[ -e "$library/pkgconfig/impactlab.pc" ] || complain "impactlab.pc is not installed"
+[ -e "$library/pkgconfig/impactlab.pc" ] || fail "impactlab.pc is not installed"
 cp "$prefix"/share/impactlab/examples/* .
 
 # the moved program has its own scenarios, not those of the tree it was built from
 mv "$prefix/share/impactlab/scenarios/corrected/first-impact.yaml" kept.yaml
-"$lab" list | grep -q 'corrected/first-impact' && complain "the installed program reads the source tree"
+"$lab" list | grep -q 'corrected/first-impact' && fail "the installed program reads the source tree"
 mv kept.yaml "$prefix/share/impactlab/scenarios/corrected/first-impact.yaml"
-"$lab" list | grep -q 'corrected/first-impact' || complain "a moved program does not find its scenarios"
+"$lab" list | grep -q 'corrected/first-impact' || fail "a moved program does not find its scenarios"
 mkdir own && sed 's/^title:.*/title: my own/' "$prefix/share/impactlab/scenarios/corrected/first-impact.yaml" >own/mine.yaml
 IMPACTLAB_SCENARIOS=$work/nonesuch-is-skipped:$work/own "$lab" list >/dev/null 2>&1 &&
-    complain "a folder that is not there is not told"
-IMPACTLAB_SCENARIOS=$work/own "$lab" list | grep -q '^mine .*my own' || complain "own scenarios are not added"
+    fail "a folder that is not there is not told"
+IMPACTLAB_SCENARIOS=$work/own "$lab" list | grep -q '^mine .*my own' || fail "own scenarios are not added"
 IMPACTLAB_SCENARIOS=$work/own "$lab" list | grep -q 'corrected/first-impact' ||
-    complain "own scenarios take the place of those that ship"
+    fail "own scenarios take the place of those that ship"
 
 # the peak that all of them have to give
 "$lab" run corrected/first-impact --quiet --json run.json
 expect() {
     local what=$1 given=$2
-    python3 - "$given" run.json <<'EOF' || complain "$what gives $given"
+    python3 - "$given" run.json <<'EOF' || fail "$what gives $given"
 import json, sys
 sys.exit(float(sys.argv[1]) != json.load(open(sys.argv[2]))["peak_force_N"])
 EOF
@@ -74,11 +69,11 @@ flags() {
 }
 if command -v pkg-config >/dev/null; then
     eval "${CC:-cc} -std=c17 -Wall -Werror -o peak_c peak.c $(flags --cflags --libs)" ||
-        complain "peak.c does not compile"
+        fail "peak.c does not compile"
     expect "the program in C" "$(LD_LIBRARY_PATH=$library ./peak_c corrected/first-impact)"
     if command -v "${CXX:-c++}" >/dev/null; then
         eval "${CXX:-c++} -std=c++17 -Wall -Werror -x c++ peak.c -x none -o peak_cpp $(flags --cflags --libs)" ||
-            complain "peak.c does not compile as C++17"
+            fail "peak.c does not compile as C++17"
         expect "the program in C++" "$(LD_LIBRARY_PATH=$library ./peak_cpp corrected/first-impact)"
     else
         skip "no C++ compiler"
@@ -86,7 +81,7 @@ if command -v pkg-config >/dev/null; then
     if [ -e "$library/libimpactlab.a" ]; then
         eval "${CC:-cc} -std=c17 -o peak_static peak.c $(flags --cflags) '$library/libimpactlab.a' \
             $(pkg-config --libs yaml-0.1 jansson sqlite3) -lm -ldl -lpthread" ||
-            complain "peak.c does not link statically"
+            fail "peak.c does not link statically"
         expect "the program linked statically" \
             "$(IMPACTLAB_SCENARIOS=$prefix/share/impactlab/scenarios ./peak_static corrected/first-impact)"
     fi
@@ -117,17 +112,17 @@ peak_of() {
 }
 eval "${CC:-cc} -std=c17 -Wall -Werror -shared -fPIC -o soft_push.so soft_push.c -I'$prefix/include'"
 plugin=$(peak_of --set control.law=plugin --set control.plugin=./soft_push.so) ||
-    complain "the plug-in does not run"
+    fail "the plug-in does not run"
 "$lab" run soft_push.yaml --quiet --set control.law=plugin --set control.plugin=./soft_push.so \
-    >said 2>&1 && complain "a plug-in runs unasked"
-given=$(peak_of) || complain "the process in Python does not run"
-[ "$given" = "$plugin" ] || complain "Python gives $given, the plug-in $plugin"
+    >said 2>&1 && fail "a plug-in runs unasked"
+given=$(peak_of) || fail "the process in Python does not run"
+[ "$given" = "$plugin" ] || fail "Python gives $given, the plug-in $plugin"
 if command -v octave-cli >/dev/null; then
     given=$(peak_of --set 'control.command=octave-cli -q soft_push.m' --set control.answer_time=60) ||
-        complain "the process in Octave does not run"
-    [ "$given" = "$plugin" ] || complain "Octave gives $given, the plug-in $plugin"
+        fail "the process in Octave does not run"
+    [ "$given" = "$plugin" ] || fail "Octave gives $given, the plug-in $plugin"
 else
     skip "octave-cli is missing, no controller in Octave"
 fi
 
-[ "$fails" = 0 ] && echo "the moved installation is whole"
+nothing_failed && echo "the moved installation is whole"

@@ -4,24 +4,18 @@
 #
 #   test_mpi.sh PROGRAM PROGRAM_OF_MPI
 set -euo pipefail
-lab=$(readlink -f "$1")
 lab_mpi=$(readlink -f "$2" 2>/dev/null || :)
 if [ ! -x "$lab_mpi" ] || ! command -v mpirun >/dev/null; then
     echo "skipped: mpirun or impactlab-mpi is missing (Debian: libopenmpi-dev, openmpi-bin)"
     exit 77
 fi
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-fails=0
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../expect.sh"
+lab=$program
+work=$folder
 # whoever runs the tests, and however few processors there are
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_btl=self,vader,tcp TMPDIR=$work
-
-complain() {
-    echo "FAILED: $*"
-    fails=$((fails + 1))
-}
 together() {
     local ranks=$1
     shift
@@ -45,21 +39,21 @@ sweep=(sweep corrected/first-impact --vary motor.voltage=1:5:13 --vary arm.k2=4:
 "$lab" "${sweep[@]}" --db one.sqlite --csv one.csv --quiet
 rows one.sqlite >one.rows
 for ranks in 1 2 3; do
-    together $ranks "${sweep[@]}" --db "$ranks.sqlite" --csv "$ranks.csv" || complain "$ranks ranks: $(cat said)"
-    cmp -s one.csv "$ranks.csv" || complain "$ranks ranks give other rows"
-    rows "$ranks.sqlite" | cmp -s - one.rows || complain "$ranks ranks: another database"
+    together $ranks "${sweep[@]}" --db "$ranks.sqlite" --csv "$ranks.csv" || fail "$ranks ranks: $(cat said)"
+    cmp -s one.csv "$ranks.csv" || fail "$ranks ranks give other rows"
+    rows "$ranks.sqlite" | cmp -s - one.rows || fail "$ranks ranks: another database"
 done
 
 # what was there is not computed again, and a part is as it is for one
 cp one.sqlite half.sqlite
 python3 -c 'import sqlite3; d = sqlite3.connect("half.sqlite"); d.execute("DELETE FROM run WHERE run % 7 = 3"); d.commit()'
-together 3 "${sweep[@]}" --db half.sqlite --csv half.csv || complain "half a sweep: $(cat said)"
-cmp -s one.csv half.csv || complain "a sweep that goes on has other rows"
+together 3 "${sweep[@]}" --db half.sqlite --csv half.csv || fail "half a sweep: $(cat said)"
+cmp -s one.csv half.csv || fail "a sweep that goes on has other rows"
 for part in 1 2; do
-    together 2 "${sweep[@]}" --part $part/2 --db "part$part.sqlite" || complain "a part: $(cat said)"
+    together 2 "${sweep[@]}" --part $part/2 --db "part$part.sqlite" || fail "a part: $(cat said)"
 done
 "$lab" merge part2.sqlite part1.sqlite -o merged.sqlite >/dev/null
-rows merged.sqlite | cmp -s - one.rows || complain "parts make another database"
+rows merged.sqlite | cmp -s - one.rows || fail "parts make another database"
 
 # a rank is killed on the way; the same command goes on
 heavy=(sweep corrected/twenty-links --set run.duration=0.4 --vary motor.voltage=1:3:24)
@@ -93,25 +87,25 @@ while rows() < 1 and time.monotonic() < end:
     time.sleep(0.02)
 os.kill(rank_two(), signal.SIGKILL)
 END
-wait "$mpi" && complain "a killed rank went unnoticed"
+wait "$mpi" && fail "a killed rank went unnoticed"
 there=$(count)
-[ "$there" -gt 0 ] && [ "$there" -lt 24 ] || complain "$there of 24 rows are there after the kill"
-together 3 "${heavy[@]}" --db killed.sqlite --csv killed.csv || complain "it does not go on: $(cat said)"
-grep -q "were there already" said || complain "what was there is computed again: $(cat said)"
+[ "$there" -gt 0 ] && [ "$there" -lt 24 ] || fail "$there of 24 rows are there after the kill"
+together 3 "${heavy[@]}" --db killed.sqlite --csv killed.csv || fail "it does not go on: $(cat said)"
+grep -q "were there already" said || fail "what was there is computed again: $(cat said)"
 "$lab" "${heavy[@]}" --csv whole.csv --quiet
-cmp -s killed.csv whole.csv || complain "after a kill the rows are others"
+cmp -s killed.csv whole.csv || fail "after a kill the rows are others"
 
 # laws over a set
 robust=(robust corrected/first-impact --laws hybrid,force-pd --runs 6)
 "$lab" "${robust[@]}" --csv one-robust.csv --quiet
-together 3 "${robust[@]}" --csv three-robust.csv --quiet || complain "robust: $(cat said)"
-cmp -s one-robust.csv three-robust.csv || complain "robust is another under mpirun"
+together 3 "${robust[@]}" --csv three-robust.csv --quiet || fail "robust: $(cat said)"
+cmp -s one-robust.csv three-robust.csv || fail "robust is another under mpirun"
 
 # what is wrong is said once and ends all ranks; other commands run once
-together 3 sweep corrected/first-impact --vary motor.voltage=1:5 && complain "a bad sweep runs"
-[ "$(grep -c '^impactlab:' said)" = 1 ] || complain "a fault is not said once: $(cat said)"
-together 3 run corrected/first-impact --quiet --json - || complain "run: $(cat said)"
-[ "$(grep -c peak_force_N said)" = 1 ] || complain "another command runs on every rank"
+together 3 sweep corrected/first-impact --vary motor.voltage=1:5 && fail "a bad sweep runs"
+[ "$(grep -c '^impactlab:' said)" = 1 ] || fail "a fault is not said once: $(cat said)"
+together 3 run corrected/first-impact --quiet --json - || fail "run: $(cat said)"
+[ "$(grep -c peak_force_N said)" = 1 ] || fail "another command runs on every rank"
 
 # ranks that have different things in mind are refused
 cat >two.sh <<END
@@ -120,7 +114,7 @@ cd "$work" && mkdir -p "r\$OMPI_COMM_WORLD_RANK" && cd "r\$OMPI_COMM_WORLD_RANK"
 printf 'title: mine\nmotor: {voltage: %s V}\n' "\$((OMPI_COMM_WORLD_RANK + 1))" >mine.yaml
 exec "$lab_mpi" sweep mine.yaml --vary wall.angle=0,0.1 --quiet
 END
-timeout 1000 mpirun -n 2 sh two.sh >said 2>&1 && complain "two different sweeps are one"
-grep -q 'rank 1 has other work than rank 0' said || complain "different work is not told: $(cat said)"
+timeout 1000 mpirun -n 2 sh two.sh >said 2>&1 && fail "two different sweeps are one"
+grep -q 'rank 1 has other work than rank 0' said || fail "different work is not told: $(cat said)"
 
-[ "$fails" = 0 ] && echo "as many ranks as one likes give the same rows"
+nothing_failed && echo "as many ranks as one likes give the same rows"

@@ -4,18 +4,12 @@
 #
 #   test_process.sh PROGRAM SOURCE_ROOT
 set -euo pipefail
-lab=$(readlink -f "$1")
 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../expect.sh"
+lab=$program
+work=$folder
 cp "$source/docs/examples/soft_push.yaml" scenario.yaml
-fails=0
-
-complain() {
-    echo "FAILED: $*"
-    fails=$((fails + 1))
-}
 
 # runs the scenario with a command as its controller; what it says goes to `said`
 run_with() {
@@ -29,20 +23,20 @@ run_with() {
 ends_with() {
     local code=0
     run_with "$1" --set control.answer_time=0.4 || code=$?
-    [ "$code" = 1 ] || complain "'$1' ends with $code"
-    grep -qF "$2" said || complain "'$1' says: $(cat -v said)"
-    ! grep -q $'\033' said || complain "'$1' writes an escape sequence"
+    [ "$code" = 1 ] || fail "'$1' ends with $code"
+    grep -qF "$2" said || fail "'$1' says: $(cat -v said)"
+    ! grep -q $'\033' said || fail "'$1' writes an escape sequence"
 }
 
 # a law in the shell: the same command whatever is read
 always='while read -r line; do echo "{\"command\": 1.5, \"note\": \"ignored\"}"; done'
-run_with "$always" --json answer.json || complain "a process that answers: $(cat said)"
+run_with "$always" --json answer.json || fail "a process that answers: $(cat said)"
 "$lab" run scenario.yaml --quiet --json open.json --set control.law=open-loop \
     --set control.approach_voltage=1.5 --set control.settings=
 peak() {
     grep '"peak_force_N"' "$1"
 }
-[ "$(peak answer.json)" = "$(peak open.json)" ] || complain "the constant command gives another peak"
+[ "$(peak answer.json)" = "$(peak open.json)" ] || fail "the constant command gives another peak"
 
 # what goes wrong
 ends_with 'exit 3' 'ended without an answer (exit status 3)'
@@ -63,37 +57,37 @@ ends_with 'trap "" TERM HUP INT; while :; do setsid sleep 7006 & sleep 0.02; don
 
 # one that floods its standard error and still answers is no trouble
 run_with 'while read -r line; do head -c 20000 /dev/zero | tr "\\0" x >&2; echo "{\"command\": 1}"; done' \
-    --set run.duration=0.2 || complain "a flooded standard error: $(head -c 300 said)"
+    --set run.duration=0.2 || fail "a flooded standard error: $(head -c 300 said)"
 
 # nothing is left of any of them
 left=$(ps -eo args= | grep -E '^sleep 700[0-9]$' || true)
-[ -z "$left" ] || complain "still running: $left"
+[ -z "$left" ] || fail "still running: $left"
 
 # without being allowed nothing starts: no program, no plug-in, by no command that runs a scenario
 touch_it="touch $work/started; $always"
 for command in run animate predict compare; do
     "$lab" $command scenario.yaml --set "control.command=$touch_it" -o "$work/out" >said 2>&1 && :
 done
-"$lab" run scenario.yaml --quiet --set "control.command=$touch_it" >said 2>&1 && complain "it runs"
-grep -q -- --allow-code said || complain "the way to allow it is not said: $(cat said)"
-"$lab" show scenario.yaml >/dev/null || complain "show needs no permission"
-"$lab" check scenario.yaml >/dev/null || complain "check needs no permission"
+"$lab" run scenario.yaml --quiet --set "control.command=$touch_it" >said 2>&1 && fail "it runs"
+grep -q -- --allow-code said || fail "the way to allow it is not said: $(cat said)"
+"$lab" show scenario.yaml >/dev/null || fail "show needs no permission"
+"$lab" check scenario.yaml >/dev/null || fail "check needs no permission"
 "$lab" run scenario.yaml --quiet --set control.law=plugin --set control.plugin=./x.so >said 2>&1 &&
-    complain "a plug-in is loaded"
-grep -q -- --allow-code said || complain "the way to allow a plug-in is not said: $(cat said)"
-[ ! -e started ] || complain "a program was started without permission"
+    fail "a plug-in is loaded"
+grep -q -- --allow-code said || fail "the way to allow a plug-in is not said: $(cat said)"
+[ ! -e started ] || fail "a program was started without permission"
 
 # a scenario cannot allow itself anything
 printf 'title: x\ncode_allowed: true\n' >self.yaml
-"$lab" check self.yaml >/dev/null 2>&1 && complain "a file can allow code"
+"$lab" check self.yaml >/dev/null 2>&1 && fail "a file can allow code"
 printf 'title: x\ncontrol: {code_allowed: true}\n' >self.yaml
-"$lab" check self.yaml >/dev/null 2>&1 && complain "a file can allow code"
+"$lab" check self.yaml >/dev/null 2>&1 && fail "a file can allow code"
 
 # nor make the lab print what a terminal would obey
 printf 'title: "a\\e[31mb"\ndescription: "c\\e]0;d\\a"\n' >hostile.yaml
 for command in run show check predict modes; do
     "$lab" $command hostile.yaml >said 2>&1 || :
-    ! grep -q $'\033' said || complain "$command prints an escape sequence of the file's"
+    ! grep -q $'\033' said || fail "$command prints an escape sequence of the file's"
 done
 
-[ "$fails" = 0 ] && echo "processes end with a sentence, and nothing is left"
+nothing_failed && echo "processes end with a sentence, and nothing is left"

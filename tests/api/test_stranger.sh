@@ -8,17 +8,12 @@
 #
 #   test_stranger.sh PROGRAM SOURCE_ROOT PLUGIN
 set -euo pipefail
-lab=$(readlink -f "$1")
 source=$(readlink -f "$2")
 plugin=$(readlink -f "$3")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-fails=0
-
-complain() {
-    echo "FAILED: $*"
-    fails=$((fails + 1))
-}
+# shellcheck source=tests/expect.sh
+. "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../expect.sh"
+lab=$program
+work=$folder
 
 # whatever a command could write to lies in one folder
 mkdir "$work/sandbox" "$work/out"
@@ -26,7 +21,7 @@ cd "$work/sandbox"
 mkdir home tmp config cache scenarios
 cp "$plugin" evil.so
 export CANARY=$work/sandbox/canary HOME=$PWD/home TMPDIR=$PWD/tmp XDG_CONFIG_HOME=$PWD/config
-export XDG_CACHE_HOME=$work/cache LC_ALL=C.UTF-8 IMPACTLAB_SCENARIOS=$PWD/scenarios:$source/scenarios
+export XDG_CACHE_HOME=$work/cache IMPACTLAB_SCENARIOS=$PWD/scenarios:$source/scenarios
 touch_it="touch $CANARY; while read -r line; do echo '{\\\"command\\\": 1}'; done"
 
 rest() {
@@ -89,25 +84,25 @@ look() {
             >"$work/said" 2>&1 </dev/null || :
         # one program, and nothing written but what was asked for
         [ "$(grep -c 'execve(' "$work/trace")" = 1 ] ||
-            complain "$name starts: $(grep 'execve(' "$work/trace" | tail -n +2 | head -3)"
+            fail "$name starts: $(grep 'execve(' "$work/trace" | tail -n +2 | head -3)"
         local opened
         opened=$(grep -E 'O_WRONLY|O_RDWR|O_CREAT|creat\(' "$work/trace" |
             grep -vE "\"($work/out|$work/cache|/dev/null|/dev/shm/|/proc/self/)|O_TMPFILE" || :)
-        [ -z "$opened" ] || complain "$name opens for writing: $(head -3 <<<"$opened")"
-        ! grep -q 'evil\.so' "$work/trace" || complain "$name opens the plug-in"
-        ! grep 'connect(' "$work/trace" | grep -qv AF_UNIX || complain "$name uses the network"
+        [ -z "$opened" ] || fail "$name opens for writing: $(head -3 <<<"$opened")"
+        ! grep -q 'evil\.so' "$work/trace" || fail "$name opens the plug-in"
+        ! grep 'connect(' "$work/trace" | grep -qv AF_UNIX || fail "$name uses the network"
     else
         timeout 300 "$lab" "$@" >"$work/said" 2>&1 </dev/null || :
     fi
 
     # the canary, files of any kind, and what a terminal would obey
-    [ ! -e canary ] || complain "$name ran the scenario's program or plug-in"
+    [ ! -e canary ] || fail "$name ran the scenario's program or plug-in"
     find . -type f | sort >"$work/after"
     cmp -s "$work/before" "$work/after" ||
-        complain "$name leaves: $(comm -13 "$work/before" "$work/after")"
+        fail "$name leaves: $(comm -13 "$work/before" "$work/after")"
     rm -f canary
     if grep -qP '\x1b|\xc2\x9b|\x07|\x08' "$work/said"; then
-        complain "$name prints: $(grep -P '\x1b|\xc2\x9b|\x07|\x08' "$work/said" | head -1 | cat -v)"
+        fail "$name prints: $(grep -P '\x1b|\xc2\x9b|\x07|\x08' "$work/said" | head -1 | cat -v)"
     fi
 }
 
@@ -135,11 +130,11 @@ arguments() {
 
 # every command that --help lists
 commands=$("$lab" --help | sed -n 's/^  \([a-z]*\)  *[A-Z].*/\1/p')
-[ "$(wc -w <<<"$commands")" -ge 20 ] || complain "only these commands are found: $commands"
+[ "$(wc -w <<<"$commands")" -ge 20 ] || fail "only these commands are found: $commands"
 for command in $commands; do
     for scenario in program plugin lesson faulty; do
         if ! words=$(arguments "$command" "$scenario"); then
-            complain "this test does not know how to call $command"
+            fail "this test does not know how to call $command"
             break
         fi
         # shellcheck disable=SC2086
@@ -167,10 +162,10 @@ look "lab, another opened" lab corrected/first-impact --allow-code --size 120x40
     --keys ':open program<Enter>:open plugin<Enter>'
 
 # the canary sings where it may, so that silence means something
-"$lab" run program --allow-code --quiet || complain "the program does not run where it may"
-[ -e canary ] || complain "the program's canary never sings"
+"$lab" run program --allow-code --quiet || fail "the program does not run where it may"
+[ -e canary ] || fail "the program's canary never sings"
 rm -f canary
 "$lab" run plugin --allow-code --quiet >/dev/null 2>&1 || :
-[ -e canary ] || complain "the plug-in's canary never sings"
+[ -e canary ] || fail "the plug-in's canary never sings"
 
-[ "$fails" = 0 ] && echo "a stranger's scenario does nothing unasked${trace:+ (strace looked on)}"
+nothing_failed && echo "a stranger's scenario does nothing unasked${trace:+ (strace looked on)}"

@@ -303,11 +303,6 @@ static const option_row rows[] = {
      .value = "FILE",
      .help = "compare with what --json wrote before",
      PLACE(baseline)},
-    {.name = "plot",
-     .type = OPTION_PICTURE,
-     .value = "FILE.{png,pdf,svg}",
-     .help = "draw the study; a CSV of what is drawn beside it",
-     PLACE(plot)},
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 
@@ -331,6 +326,6 @@ const command bench_command = {
         "The first four are microseconds of computing per simulated millisecond. --baseline marks "
         "as slower\nwhat takes 15 % longer than before and did so in every measurement. --plot "
         "then draws the time of a\nstep over the number of links, 2 to 1024.\n",
-    .options = {&json_options, &options, &quiet_options, &page_options},
+    .options = {&json_options, &options, &drawn_options, &quiet_options, &page_options},
     .run = bench,
 };

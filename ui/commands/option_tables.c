@@ -34,6 +34,15 @@ static const option_row json_rows[] = {
 };
 const option_table json_options = OPTION_TABLE("Options", json_rows);
 
+static const option_row drawn_rows[] = {
+    {.name = "plot",
+     .type = OPTION_PICTURE,
+     .value = "FILE.{png,pdf,svg}",
+     .help = "draw the study; a CSV of what is drawn beside it",
+     PLACE(plot)},
+};
+const option_table drawn_options = OPTION_TABLE("Options", drawn_rows);
+
 static const option_row quiet_rows[] = {
     {.name = "quiet", .letter = 'q', .type = OPTION_FLAG, .help = "print no summary", PLACE(quiet)},
 };

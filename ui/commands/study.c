@@ -55,15 +55,6 @@ static int study(const arguments *a)
     return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a, t->study);
 }
 
-static const option_row rows[] = {
-    {.name = "plot",
-     .type = OPTION_PICTURE,
-     .value = "FILE.{png,pdf,svg}",
-     .help = "draw the study; a CSV of what is drawn beside it",
-     PLACE(plot)},
-};
-static const option_table options = OPTION_TABLE("Options", rows);
-
 const command study_command = {
     .name = "study",
     .group = GROUP_MANY_RUNS,
@@ -80,6 +71,6 @@ const command study_command = {
     .most = 2,
     .takes_scenarios = true,
     .operand_word = topic_word,
-    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
+    .options = {&set_options, &json_options, &drawn_options, &quiet_options, &page_options},
     .run = study,
 };
