@@ -282,6 +282,17 @@ static action_result read_choice(explorer_state *st, const char *argument, const
     return result_refused("'%s' is none of %s", argument, all);
 }
 
+// Goes on to the next choice, or to the one that is named.
+static action_result next_or_named(explorer_state *st, const char *argument,
+                                   const char *const *words, int count, int *value)
+{
+    if (argument[0] != '\0') {
+        return read_choice(st, argument, words, count, value);
+    }
+    *value = (*value + 1) % count;
+    return result_done();
+}
+
 action_result act_set_glyphs(explorer_state *st, const char *argument)
 {
     int value = (int)st->looks.glyphs;
@@ -332,12 +343,10 @@ action_result act_set_pixels(explorer_state *st, const char *argument)
 
 action_result act_set_close_up(explorer_state *st, const char *argument)
 {
-    int value = (int)(st->looks.close_up + 1) % CLOSE_UP_CHOICES;
-    if (argument[0] != '\0') {
-        action_result read = read_choice(st, argument, close_up_words, CLOSE_UP_CHOICES, &value);
-        if (!result_ok(&read)) {
-            return read;
-        }
+    int value = (int)st->looks.close_up;
+    action_result read = next_or_named(st, argument, close_up_words, CLOSE_UP_CHOICES, &value);
+    if (!result_ok(&read)) {
+        return read;
     }
     st->looks.close_up = (close_up_choice)value;
     return result_news("the contact from near by: %s", close_up_words[value]);
@@ -361,12 +370,10 @@ action_result act_set_bending(explorer_state *st, const char *argument)
 
 action_result act_set_lanes(explorer_state *st, const char *argument)
 {
-    int value = (int)(st->looks.lanes + 1) % LANE_CHOICES;
-    if (argument[0] != '\0') {
-        action_result read = read_choice(st, argument, lane_choice_words, LANE_CHOICES, &value);
-        if (!result_ok(&read)) {
-            return read;
-        }
+    int value = (int)st->looks.lanes;
+    action_result read = next_or_named(st, argument, lane_choice_words, LANE_CHOICES, &value);
+    if (!result_ok(&read)) {
+        return read;
     }
     st->looks.lanes = (lane_choice)value;
     return result_news("lanes: %s", lane_choice_words[value]);

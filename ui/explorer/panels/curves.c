@@ -1,316 +1,15 @@
 // The panes of curves over time.
 #include "ui/explorer/panels/panel.h"
 
-#include <math.h>
 #include <string.h>
 
-#include "render/plot/pane_curve.h"
-#include "src/rig/controller.h"
+#include "ui/explorer/panels/curves_mouse.h"
 #include "ui/explorer/panels/lanes.h"
+#include "ui/explorer/panels/pane_title.h"
 #include "ui/explorer/panels/pane_views.h"
 #include "ui/explorer/panels/plot_axes.h"
+#include "ui/explorer/panels/plot_frame.h"
 #include "ui/explorer/panels/run_lines.h"
-#include "ui/terminal/pictures.h"
-
-enum { LARGE_CELL = 24 }; // height of a cell from which on lines are thicker [pixels]
-
-// A pane's place, time window and range.
-typedef struct plot_frame {
-    canvas canvas;
-    double from, to; // [s]
-    value_range axis;
-    unsigned pattern; // of the curve that is drawn, as in run_lines.h
-    ink colour;
-    cairo_t *picture; // drawn on in the place of dots; NULL: none
-    pane_frame pixels;
-    colour_theme theme;
-} plot_frame;
-
-static double plot_x(const plot_frame *f, double time)
-{
-    return (time - f->from) / (f->to - f->from) * (2.0 * f->canvas.width - 1);
-}
-
-static double plot_y(const plot_frame *f, double value)
-{
-    return (f->axis.high - value) / (f->axis.high - f->axis.low) * (4.0 * f->canvas.height - 1);
-}
-
-// Every row joined to the next one by a line.
-static void draw_rows(const plot_frame *f, const trace *t, int signal, double until)
-{
-    double x0 = (double)NAN, y0 = (double)NAN;
-
-    // joined as long as they are visible and seen
-    for (size_t r = trace_row_at(t, f->from); r < t->row_count; r++) {
-        double x = plot_x(f, t->rows[r].time), y = plot_y(f, signal_value(&t->rows[r], signal));
-        if (t->rows[r].time > until) {
-            break;
-        }
-        if (line_has_dot(f->pattern, lround(x))) {
-            canvas_line(&f->canvas, x0, y0, x, y, f->colour);
-        }
-        x0 = x;
-        y0 = y;
-        if (t->rows[r].time > f->to) {
-            break;
-        }
-    }
-}
-
-// One column of dots.
-static void draw_column(const plot_frame *f, long column, double low, double high)
-{
-    bool drawn = high >= low && (high - low > 4 || line_has_dot(f->pattern, column));
-    if (drawn) {
-        canvas_line(&f->canvas, (double)column, low, (double)column, high, f->colour);
-    }
-}
-
-// The smallest and the largest value of each column of dots, so that no spike is lost. Blocks that
-// lie within one column are taken from `pairs`.
-static void draw_columns(const plot_frame *f, const trace *t, int signal, double until,
-                         const double *pairs)
-{
-    double low = (double)INFINITY, high = (double)-INFINITY, last = (double)NAN;
-    long column = -1;
-
-    // row by row, or block by block where one lies within a column
-    for (size_t r = trace_row_at(t, f->from); r < t->row_count && t->rows[r].time <= until;) {
-        size_t end = r + EXTREMES_BLOCK, take = 1;
-        long here = lround(plot_x(f, t->rows[r].time));
-        if (here != column) {
-            draw_column(f, column, low, high);
-            // from where the last one ended, so that curves hang together
-            column = here;
-            low = isfinite(last) ? last : (double)INFINITY;
-            high = isfinite(last) ? last : (double)-INFINITY;
-        }
-        bool whole = pairs != NULL && r % EXTREMES_BLOCK == 0 && end < t->row_count &&
-                     t->rows[end].time <= until && lround(plot_x(f, t->rows[end].time)) == column;
-        if (whole) {
-            const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
-            take = EXTREMES_BLOCK;
-            if (pair[1] >= pair[0]) {
-                low = fmin(low, plot_y(f, pair[1]));
-                high = fmax(high, plot_y(f, pair[0]));
-            }
-        }
-        last = plot_y(f, signal_value(&t->rows[r + take - 1], signal));
-        if (isfinite(last)) {
-            low = fmin(low, last);
-            high = fmax(high, last);
-        }
-        r += take;
-    }
-    draw_column(f, column, low, high);
-}
-
-static colour pixel_colour(const plot_frame *f, ink i)
-{
-    const rgb c = picture_ink(f->canvas.screen, f->theme, i);
-    return (colour){c.red / 255.0, c.green / 255.0, c.blue / 255.0};
-}
-
-// Draws one signal up to `until`: every row if they are few, else by columns.
-static void draw_signal(const plot_frame *f, const trace *t, int signal, double until,
-                        const double *pairs)
-{
-    if (f->picture != NULL) {
-        const pane_curve c = {.rows = t,
-                              .signal = signal,
-                              .until = until,
-                              .pairs = pairs,
-                              .block = EXTREMES_BLOCK,
-                              .pattern = f->pattern,
-                              .piece = fmax(1, 1.5 * f->pixels.line),
-                              .colour = pixel_colour(f, f->colour)};
-        pane_curve_paint(f->picture, &f->pixels, &c);
-        return;
-    }
-    double shown = (double)(trace_row_at(t, f->to) - trace_row_at(t, f->from));
-    until = fmin(until, f->to);
-    if (shown < 4.0 * f->canvas.width) {
-        draw_rows(f, t, signal, until);
-    } else {
-        draw_columns(f, t, signal, until, pairs);
-    }
-}
-
-static void draw_cursor(const plot_frame *f, screen *s, double time)
-{
-    int column = f->canvas.x + (int)(plot_x(f, time) / 2);
-    if (f->picture != NULL) {
-        pane_instant_paint(f->picture, &f->pixels, time, pixel_colour(f, INK_CURSOR));
-        return;
-    }
-    for (int y = f->canvas.y;
-         time >= f->from && time <= f->to && y < f->canvas.y + f->canvas.height; y++) {
-        if (s->cells[(long)y * s->width + column].glyph == ' ') {
-            screen_put(s, column, y, 0x2506, INK_CURSOR);
-        }
-    }
-}
-
-// How a pane's signals are drawn: as their table says, but no two alike.
-typedef struct pane_look {
-    ink colour[PANE_SIGNALS];
-    line_style style[PANE_SIGNALS];
-} pane_look;
-
-// Whether a slot's colour is that of one of the first curves of a pane, as the terminal shows them.
-static bool colour_is_taken(const explorer_state *st, const pane_look *look, int curves, int slot)
-{
-    const ink wanted = (ink)(INK_SERIES_0 + slot);
-    for (int k = 0; k < curves; k++) {
-        if (inks_look_alike(st->looks.theme, st->looks.shown_depth, look->colour[k], wanted)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static pane_look look_of(const explorer_state *st, const pane *p)
-{
-    enum { COLOURS = 8, STYLES = 4 };
-    static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT};
-    bool style_taken[STYLES] = {false};
-    pane_look look;
-
-    // the table's colour and line unless an earlier signal of the pane has them
-    for (int k = 0; k < p->count; k++) {
-        const signal_info *info = &signal_table[p->signals[k]];
-        int slot = info->colour, style = (int)info->style;
-        for (int i = 0; i < COLOURS && colour_is_taken(st, &look, k, slot); i++) {
-            slot = (info->colour + 1 + i) % COLOURS;
-        }
-        for (int i = 0; i < STYLES && style_taken[style]; i++) {
-            style = (int)plain_first[i];
-        }
-        style_taken[style] = true;
-        look.colour[k] = (ink)(INK_SERIES_0 + slot);
-        look.style[k] = (line_style)style;
-    }
-    return look;
-}
-
-// How a legend says what its curves are, most words first.
-typedef enum legend { LEGEND_NAMES, LEGEND_SYMBOLS, LEGEND_TIGHT, LEGEND_BARE } legend;
-
-// A curve's line in one character.
-static uint32_t line_glyph(line_style style)
-{
-    static const uint32_t glyphs[] = {0x2500, 0x254c, 0x2508, 0x2574};
-    return glyphs[style];
-}
-
-// What a legend says of a signal's value: a mode by its name where the law is one of ours, else a
-// number; short ones have up to three digits.
-static void format_value(const explorer_state *st, int signal, bool briefly, char *text,
-                         size_t size)
-{
-    const trace *t = state_run(st, 0).trace;
-    double value = signal_value(&t->rows[trace_row_at(t, st->session.now)], signal);
-    const controller *law = controller_of(st->session.effective.parameters.control.law);
-    bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
-
-    // fewer digits where room is short
-    draw_number(text, size, value);
-    if (briefly && fabs(value) > 1e-12) {
-        for (int digits = 3, length = 9; digits > 1 && length > 6; digits--) {
-            length = snprintf(text, size, "%.*g", digits, value);
-        }
-    }
-
-    // a mode by its name
-    for (int i = 0; is_mode && law != NULL && law->modes != NULL && law->modes[i] != NULL; i++) {
-        if (value == i) {
-            snprintf(text, size, "%s", law->modes[i]);
-        }
-    }
-}
-
-// The unit of all signals of a pane, "" if they have several.
-static const char *unit_of(const pane *p)
-{
-    const char *unit = signal_table[p->signals[0]].unit;
-    for (int k = 1; k < p->count; k++) {
-        unit = strcmp(signal_table[p->signals[k]].unit, unit) == 0 ? unit : "";
-    }
-    return unit;
-}
-
-// Writes a legend and returns the cells it takes; values are padded so that it stands still.
-static int draw_legend(const explorer_state *st, screen *s, const pane *p, legend how, int x, int y,
-                       int room)
-{
-    int start = x, end = x + room;
-    const pane_look look = look_of(st, p);
-
-    // each signal: its line, its name, its value at the cursor
-    for (int k = 0; k < p->count; k++) {
-        const signal_info *info = &signal_table[p->signals[k]];
-        char value[48], text[128];
-        format_value(st, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
-        if (unit_of(p)[0] == '\0' && info->unit[0] != '\0' && how < LEGEND_TIGHT) {
-            size_t used = strlen(value);
-            snprintf(value + used, sizeof value - used, " %s", info->unit);
-        }
-        int width = how == LEGEND_TIGHT ? 6 : how == LEGEND_BARE ? 0 : 8;
-        int length =
-            snprintf(text, sizeof text, "%s %-*s", how == LEGEND_NAMES ? info->name : info->ascii,
-                     width, how == LEGEND_BARE ? "" : value);
-        if (room > 0) {
-            screen_put(s, x, y, x < end ? line_glyph(look.style[k]) : ' ', look.colour[k]);
-            screen_text(s, x + 2, y, end - x - 2, look.colour[k], text);
-        }
-        x += 2 + length + 1;
-    }
-    return x - start - 1;
-}
-
-// The pane's number, its unit, its signals with their values as far as there is room, and what its
-// axis does.
-static void draw_pane_title(const explorer_state *st, screen *s, int index, area a)
-{
-    const pane *p = &st->panes.pane[index];
-    static const char *const axes[] = {"", "grows", "fixed"};
-    const bool difference = state_run(st, 0).kind == SHOWN_DIFFERENCE;
-    bool focused = index == panes_focused(&st->panes);
-    int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
-
-    // number, unit, and what the axis does
-    screen_print(s, a.x, a.y, 2, focused ? INK_TITLE : INK_DIM, "%s%d", focused ? "\u25b8" : " ",
-                 (index + 1) % 10);
-    screen_print(s, a.x + 2, a.y, LABEL_WIDTH - 2, INK_DIM, "%*s", LABEL_WIDTH - 2, unit_of(p));
-    if (p->scaling != AXIS_AUTO && room > 30) {
-        room -= 6;
-        screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);
-    }
-    if (difference && room > 40) {
-        room -= 15;
-        screen_text(s, x + room + 1, a.y, 14, INK_EVENT, "minus baseline");
-    }
-
-    // what is not over time has no values at the cursor
-    if (p->view == VIEW_PHASE) {
-        screen_print(s, x, a.y, room, INK_SERIES_0, "%s over %s", signal_table[p->signals[0]].name,
-                     signal_table[p->signals[1]].name);
-        return;
-    }
-    if (p->view == VIEW_SPECTRUM) {
-        screen_print(s, x, a.y, room, INK_SERIES_0, "amplitudes of %s",
-                     signal_table[p->signals[0]].name);
-        return;
-    }
-
-    // as many words as fit
-    legend how = LEGEND_NAMES;
-    while (how < LEGEND_BARE && draw_legend(st, s, p, how, x, a.y, 0) > room) {
-        how++;
-    }
-    draw_legend(st, s, p, how, x, a.y, room);
-}
 
 // How a run's curves differ from those of others: the present one has the signals' colours and
 // lines, a single pinned one their lines in one colour, several have their own lines.
@@ -334,7 +33,7 @@ static void set_look(const explorer_state *st, plot_frame *f, const shown_run *r
 static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int number)
 {
     const shown_run run = state_run(st, number);
-    const pane_look look = look_of(st, p);
+    const pane_look look = pane_look_of(st, p);
 
     // of many runs a pane shows what it is about
     const bool first_only =
@@ -347,33 +46,7 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int 
 
         // while a value is adjusted the whole future is shown
         const bool hidden = number == 0 && !st->session.has_ghost;
-        draw_signal(&f, run.trace, p->signals[k], hidden ? st->session.seen : f.to, pairs);
-    }
-}
-
-// A setpoint or a limit across a pane, and what it is called.
-static void draw_level(const plot_frame *f, screen *s, double value, const char *name)
-{
-    const int y = f->canvas.y + (int)(lround(plot_y(f, value)) / 4);
-    if (!(value >= f->axis.low && value <= f->axis.high)) {
-        return;
-    }
-
-    // the name stands at the end
-    const int length = (int)strlen(name), end = f->canvas.x + f->canvas.width;
-    if (f->picture != NULL) {
-        pane_level_paint(f->picture, &f->pixels, value, pixel_colour(f, INK_FRAME));
-        screen_text(s, end - length, y, length, INK_FRAME, name);
-        return;
-    }
-
-    // only where nothing is drawn yet
-    for (int x = f->canvas.x; x < end; x++) {
-        cell *at = &s->cells[(long)y * s->width + x];
-        if (at->glyph == ' ') {
-            const int in_name = x - (end - length);
-            screen_put(s, x, y, in_name >= 0 ? (uint32_t)name[in_name] : 0x2508, INK_FRAME);
-        }
+        plot_frame_signal(&f, run.trace, p->signals[k], hidden ? st->session.seen : f.to, pairs);
     }
 }
 
@@ -401,30 +74,11 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
             continue;
         }
         const double value = parameter_get(&now, parameter);
-        draw_level(f, s, value, name);
+        plot_frame_level(f, s, value, name);
         if (levels[i].both_ways) {
-            draw_level(f, s, -value, name);
+            plot_frame_level(f, s, -value, name);
         }
     }
-}
-
-// Has the pane drawn in pixels where the screen has any.
-static void open_picture(const explorer_state *st, plot_frame *f)
-{
-    const canvas *c = &f->canvas;
-    const picture_layer *pixels = c->screen->pictures;
-    f->picture = picture_begin(c->screen, c->x, c->y, c->width, c->height);
-    if (f->picture == NULL) {
-        return;
-    }
-    f->theme = st->looks.theme;
-    f->pixels = (pane_frame){.from = f->from,
-                             .to = f->to,
-                             .low = f->axis.low,
-                             .high = f->axis.high,
-                             .width = c->width * pixels->cell_width,
-                             .height = c->height * pixels->cell_height,
-                             .line = pixels->cell_height >= LARGE_CELL ? 2 : 1.5};
 }
 
 // Whether panes show differences instead of runs.
@@ -463,7 +117,7 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     draw_value_axis(s, labels, f.axis);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LABELS, index, labels});
 
-    open_picture(st, &f);
+    plot_frame_open(st, &f);
 
     // the present run over those kept beside it, limits and cursors where nothing is drawn
     for (int run = state_run_count(st); run-- > 0;) {
@@ -472,16 +126,14 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     if (!showing_difference(st)) {
         draw_levels(st, &f, s, &st->panes.pane[index]);
     } else if (st->difference.tolerance > 0) {
-        draw_level(&f, s, st->difference.tolerance, "tolerance");
-        draw_level(&f, s, -st->difference.tolerance, "tolerance");
+        plot_frame_level(&f, s, st->difference.tolerance, "tolerance");
+        plot_frame_level(&f, s, -st->difference.tolerance, "tolerance");
     }
     if (st->mark.set) {
-        draw_cursor(&f, s, st->mark.time);
+        plot_frame_cursor(&f, s, st->mark.time);
     }
-    draw_cursor(&f, s, st->session.now);
-    if (f.picture != NULL) {
-        cairo_destroy(f.picture);
-    }
+    plot_frame_cursor(&f, s, st->session.now);
+    plot_frame_close(&f);
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
@@ -526,94 +178,6 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     draw_lanes(st, lay, s, beneath);
 }
 
-// --- the mouse --------------------------------------------------------------------------------
-
-// The instant at a column of the plot, kept within what is visible [s].
-static double time_at(const explorer_state *st, area plot, int x)
-{
-    double from, to;
-    state_window(st, &from, &to);
-    double share = (x - plot.x + 0.5) / (plot.width > 0 ? plot.width : 1);
-    return from + (to - from) * fmax(0, fmin(1, share));
-}
-
-// A turn of the wheel over the plot or the time axis zooms there or pans.
-static void turn_wheel(explorer_state *st, const panel_gesture *g, bool pans)
-{
-    double from, to;
-    int direction = pointer_wheel(g->event);
-    state_window(st, &from, &to);
-    if (pans) {
-        act_pan_by(st, 0.1 * direction * (to - from));
-    } else {
-        act_zoom_at(st, direction < 0 ? 0.8 : 1.25, time_at(st, g->hit.area, g->event.x));
-    }
-}
-
-// The cursor goes where the mouse is.
-static bool point_at_plot(explorer_state *st, const panel_gesture *g)
-{
-    switch (g->event.kind) {
-    case POINTER_PRESS:
-    case POINTER_DRAG:
-        act_scrub(st, time_at(st, g->hit.area, g->event.x));
-        return true;
-    case POINTER_RELEASE:
-        return false;
-    default:
-        turn_wheel(st, g, g->event.shift);
-        return true;
-    }
-}
-
-// The axis is dragged; a click without a drag moves the cursor.
-static bool point_at_time_axis(explorer_state *st, const panel_gesture *g)
-{
-    const area a = g->hit.area;
-
-    double from, to;
-    switch (g->event.kind) {
-    case POINTER_PRESS:
-        return true;
-    case POINTER_DRAG:
-        state_window(st, &from, &to);
-        act_pan_by(st, a.width > 0 ? -g->across * (to - from) / a.width : 0);
-        return true;
-    case POINTER_RELEASE:
-        if (!g->dragged) {
-            act_scrub(st, time_at(st, a, g->event.x));
-        }
-        return true;
-    default:
-        turn_wheel(st, g, !g->event.control);
-        return true;
-    }
-}
-
-// A click puts the pane in focus, a drag moves its axis, the wheel zooms it.
-static bool point_at_labels(explorer_state *st, const panel_gesture *g)
-{
-    const hit_area *h = &g->hit;
-    const int rows = h->area.height > 0 ? h->area.height : 1;
-
-    switch (g->event.kind) {
-    case POINTER_PRESS:
-        st->panes.focus = h->index;
-        return true;
-    case POINTER_DRAG:
-        if (g->up != 0) {
-            act_shift_axis(st, h->index, -(double)g->up / rows);
-        }
-        return true;
-    case POINTER_RELEASE:
-        return false;
-    default:
-        act_scale_axis(st, h->index, pointer_wheel(g->event) < 0 ? 0.8 : 1.25,
-                       (g->event.y - h->area.y + 0.5) / rows);
-        return true;
-    }
-}
-
 static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
 {
     *result = result_done();
@@ -621,16 +185,16 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
     // each part takes the mouse in its own way
     switch (g->hit.part) {
     case PART_BODY:
-        return point_at_plot(st, g);
+        return curves_point_at_plot(st, g);
     case PART_TIME_AXIS:
-        return point_at_time_axis(st, g);
+        return curves_point_at_time_axis(st, g);
     case PART_VIEW:
         return true;
     case PART_LANES:
     case PART_MAP:
         return lanes_point(st, g);
     default:
-        return point_at_labels(st, g);
+        return curves_point_at_labels(st, g);
     }
 }
 
