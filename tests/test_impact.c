@@ -60,7 +60,7 @@ static void impulse_is_the_change_of_momentum(void **state)
             double change[LARGEST];
             chain_link work[LARGEST];
             approaching_state(&a, kind, q, w);
-            impact_result r = impact_velocity_increments(&a, work, q, w, e, dw);
+            impact_result r = impact_velocity_increments(&a, work, q, w, 0, e, dw);
             momentum(&a, q, dw, change);
             for (int i = 0; i < a.dof; i++) {
                 check_close(change[i], -r.impulse * jacobian(&a, q, i), 1e-12);
@@ -84,7 +84,7 @@ static void increments_of_the_two_links_have_opposite_signs(void **state)
             double q[3], w[3], dw[3];
             chain_link work[2];
             approaching_state(&a, seed, q, w);
-            impact_velocity_increments(&a, work, q, w, 0, dw);
+            impact_velocity_increments(&a, work, q, w, 0, 0, dw);
             assert_true(dw[a.first] * dw[a.first + 1] < 0);
         }
     }
@@ -97,14 +97,14 @@ static void hub_jumps_only_with_a_rigid_joint(void **state)
     chain_link work[2];
     arm spring = make_arm(SETTINGS("arm.hub_joint=spring"));
     approaching_state(&spring, 1, q, w);
-    impact_velocity_increments(&spring, work, q, w, 0, dw);
+    impact_velocity_increments(&spring, work, q, w, 0, 0, dw);
     check_close(dw[0], 0, 0); // (4.10)
     assert_true(fabs(dw[1]) > 1e-3);
 
     // the rigid hub is the first link's: its jump is that of the limit of a heavier first link
     arm rigid = make_arm(SETTINGS("arm.hub_joint=rigid"));
     double q2[2] = {q[1], q[2]}, w2[2] = {w[1], w[2]}, dw2[2];
-    impact_velocity_increments(&rigid, work, q2, w2, 0, dw2);
+    impact_velocity_increments(&rigid, work, q2, w2, 0, 0, dw2);
     assert_true(fabs(dw2[0]) > 0 && fabs(dw2[0]) < fabs(dw[1]));
 }
 
@@ -116,7 +116,7 @@ static void agrees_with_the_closed_form(void **state)
     double q[3], w[3], dw[3];
     chain_link work[2];
     approaching_state(&a, 3, q, w);
-    impact_result r = impact_velocity_increments(&a, work, q, w, 0, dw);
+    impact_result r = impact_velocity_increments(&a, work, q, w, 0, 0, dw);
     double m = 0.20054, l = 0.5, e = 0.25, I = m * l * l / 12, c = cos(q[2] - q[1]);
     double x = cos(0.1), y = sin(0.1), s = x * cos(q[2]) + y * sin(q[2]) - l * c;
     double m22 = m * e * e + m * l * l + I, m33 = m * e * e + I, m23 = m * l * e * c;

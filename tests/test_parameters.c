@@ -337,6 +337,8 @@ static void impossible_combinations_are_refused(void **state)
     check_conflict("arm.model", "printed", "wall.kind", "plane", "point or none");
     check_conflict("arm.model", "printed", "arm.tip_mass", "0.02", "carries nothing");
     check_conflict("wall.contact", "hunt-crossley", "wall.restitution", "0.5", "rigid");
+    check_conflict("wall.contact", "hunt-crossley", "wall.mass", "0.5", "kelvin-voigt");
+    check_conflict("wall.contact", "kelvin-voigt", "wall.mass", "1e-12", "at least");
     check_conflict("wall.contact", "kelvin-voigt", "method.name", "newmark", "event only");
 }
 

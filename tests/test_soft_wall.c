@@ -38,6 +38,18 @@ static double kinetic(double v)
     return 0.5 * mass * v * v;
 }
 
+// Rows of a wall with a face: the arm never pulls, is never behind the face, the ledger closes.
+static void check_face_rows(const run_result *r)
+{
+    for (size_t i = 0; i < r->trace.row_count; i++) {
+        const sample *row = &r->trace.rows[i];
+        assert_true(row->force >= 0);
+        assert_true(row->gap + row->face_depth > -1e-12);
+        assert_true(i == 0 || row->wall_loss >= row[-1].wall_loss - 1e-15);
+    }
+    check_below(r->summary.energy_residual_J, 1e-12);
+}
+
 // The rows never pull, and the ledger closes.
 static void check_rows(const run_result *r)
 {
@@ -73,6 +85,148 @@ static void a_mass_on_kelvin_voigt_has_the_closed_form(void **state)
         check_close(r.summary.impacts, 0, 0);
         check_rows(&r);
         run_finish(&r);
+    }
+}
+
+// Arm and face strike each other plastically and swing as one mass on spring and damper; the arm
+// leaves where they no longer slow down, and the face swings on alone.
+static void a_face_with_a_mass_has_the_closed_form(void **state)
+{
+    (void)state;
+    const double k = 1e6, face = 0.05, both = mass + face, damping[] = {0, 20, 200};
+    const double v = SPEED * mass / both; // common speed after the impact
+    for (int i = 0; i < 3; i++) {
+        char c[40];
+        snprintf(c, sizeof c, "wall.damping=%g", damping[i]);
+        parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", c);
+        p.wall.mass = face;
+        run_result r = run_of(&p, true);
+
+        // the impact, and the swing of the joined masses until x'' = 0
+        double w = sqrt(k / both), zeta = damping[i] / (2 * sqrt(k * both));
+        double root = sqrt(1 - zeta * zeta), length = atan2(2 * zeta * root, 2 * zeta * zeta - 1);
+        length = (zeta > 0 ? length : M_PI) / (w * root);
+        double back = v * exp(-zeta * w * length);
+        check_relative(r.summary.contact_impulse_Ns, SPEED * mass * face / both, 1e-8);
+        check_relative(r.trace.rows[r.trace.row_count - 1].impact_loss,
+                       0.5 * SPEED * SPEED * mass * face / both, 1e-8);
+        check_relative(r.summary.first_pulse_s, length, 1e-8);
+        check_relative(r.summary.max_penetration_m, v / w * exp(-zeta / root * acos(zeta)), 1e-8);
+        check_relative(r.trace.rows[r.trace.row_count - 1].hub_velocity, -back, 1e-8);
+        if (zeta == 0) {
+            check_relative(r.summary.first_pulse_peak_N, v * w * mass, 1e-8);
+        }
+
+        // the face alone, from the place at which it was left
+        const double left = zeta > 0 ? 2 * zeta * back / w : 0; // x'' = 0: k x = -c x'
+        const double start = r.summary.first_contact_s + r.summary.first_pulse_s;
+        const double d = damping[i] / (2 * face), turn = sqrt(k / face - d * d);
+        for (size_t j = 0; j < r.trace.row_count; j++) {
+            const double t = r.trace.rows[j].time - start;
+            if (t > 1e-9) {
+                double x =
+                    exp(-d * t) * (left * cos(turn * t) + (d * left - back) * sin(turn * t) / turn);
+                check_close(r.trace.rows[j].face_depth, x, 1e-8 * v / w);
+            }
+        }
+        check_close(r.summary.impacts, 1, 0);
+        check_face_rows(&r);
+        run_finish(&r);
+    }
+}
+
+// An elastic impact: both go on with the velocities of two free masses.
+static void a_face_bounces_the_arm_like_two_masses(void **state)
+{
+    (void)state;
+    const double face = 0.03, e = 0.6, both = mass + face;
+    parameters p =
+        single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e4", "wall.damping=10");
+    p.wall.mass = face;
+    p.wall.restitution = e;
+    arm a;
+    motion_report report;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    motion_start(&a, m, p.initial.angle, SPEED);
+    assert_int_equal(motion_advance(&a, m, 1, p.method.step, &report), STATUS_OK);
+    assert_int_equal(report.event, MOTION_IMPACT);
+    motion_apply(&a, m, &report);
+    check_relative(report.impulse, (1 + e) * SPEED * mass * face / both, 1e-8);
+    check_relative(report.loss, 0.5 * (1 - e * e) * SPEED * SPEED * mass * face / both, 1e-8);
+    check_close(state_velocities(m, m->state)[0], SPEED * (mass - e * face) / both, 1e-9);
+    check_relative(m->state[SLOT_FACE_VELOCITY], SPEED * (1 + e) * mass / both, 1e-8);
+    assert_false(report.holds);
+    motion_destroy(m);
+}
+
+// First pulse of two links at a face of the given mass; impulse counted in.
+static run_result face_run(const char *contact, const char *mass_text)
+{
+    parameters p = fixture_parameters(SETTINGS(contact, mass_text, "wall.stiffness=75e3",
+                                               "motor.voltage=2", "run.duration=0.25"));
+    return run_of(&p, false);
+}
+
+// Without bound on either side the face is the wall without a mass, or the rigid one; what it is
+// off by goes with the mass, or with one over it.
+static void a_face_lies_between_the_two_walls(void **state)
+{
+    (void)state;
+    const char *const light[] = {"wall.mass=1e-5", "wall.mass=1e-6"};
+    const char *const heavy[] = {"wall.mass=1e3", "wall.mass=1e4"};
+    run_result none = face_run("wall.contact=kelvin-voigt", "wall.mass=0");
+    run_result rigid = face_run("wall.contact=rigid", "wall.mass=0");
+    double off[2], impulse[2];
+    for (int i = 0; i < 2; i++) {
+        run_result l = face_run("wall.contact=kelvin-voigt", light[i]);
+        run_result h = face_run("wall.contact=kelvin-voigt", heavy[i]);
+        off[i] = fabs(l.summary.first_pulse_peak_N - none.summary.first_pulse_peak_N);
+        impulse[i] = fabs(h.summary.contact_impulse_Ns - rigid.summary.contact_impulse_Ns);
+        check_relative(l.summary.first_pulse_s, none.summary.first_pulse_s, 1e-4);
+        run_finish(&l);
+        run_finish(&h);
+    }
+    print_message("peak off by %.3g, %.3g N; impulse by %.3g, %.3g N s\n", off[0], off[1],
+                  impulse[0], impulse[1]);
+    check_close(log10(off[0] / off[1]), 1, 0.02);
+    check_close(log10(impulse[0] / impulse[1]), 1, 0.02);
+    run_finish(&none);
+    run_finish(&rigid);
+}
+
+// Left alone a face swings as its equation says, whatever its damping: halves of a time make up the
+// whole, and the energy falls at the rate c x'^2.
+static void a_face_left_alone_obeys_its_equation(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 7; i++) {
+        // from none over critical damping, 2 sqrt(k M) = 20, to far beyond
+        const double damping[] = {0, 1, 19.999, 20, 20.001, 200, 1e6};
+        const wall_model w = {.law = WALL_KELVIN_VOIGT,
+                              .stiffness = 1e3,
+                              .damping = damping[i],
+                              .exponent = 1,
+                              .face_mass = 0.1};
+        const wall_face from = {2e-3, -0.4};
+        const double h = 1e-5, times[] = {1e-4, 3e-3, 0.05};
+        for (int j = 0; j < 3; j++) {
+            const wall_face whole = wall_face_after(&w, from, times[j]);
+            const wall_face half = wall_face_after(&w, from, times[j] / 2);
+            const wall_face again = wall_face_after(&w, half, times[j] / 2);
+            check_close(again.position, whole.position, 1e-15);
+            check_close(again.velocity, whole.velocity, 1e-13);
+        }
+        const wall_face later = wall_face_after(&w, from, h);
+        const double fastest = fmax(wall_face_rate(&w, from), 100);
+        if (fastest * h < 0.1) {
+            const double bend = wall_face_acceleration(&w, from);
+            check_close(later.velocity, from.velocity + h * bend, pow(fastest * h, 2));
+            const double squares = from.velocity * from.velocity + later.velocity * later.velocity;
+            const double lost = damping[i] * h * squares / 2;
+            check_close(wall_face_energy(&w, from) - wall_face_energy(&w, later), lost,
+                        lost * pow(fastest * h, 2) + 1e-15);
+        }
     }
 }
 
@@ -266,6 +420,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mass_on_kelvin_voigt_has_the_closed_form),
         cmocka_unit_test(a_mass_on_hunt_crossley_has_the_closed_form),
+        cmocka_unit_test(a_face_with_a_mass_has_the_closed_form),
+        cmocka_unit_test(a_face_bounces_the_arm_like_two_masses),
+        cmocka_unit_test(a_face_lies_between_the_two_walls),
+        cmocka_unit_test(a_face_left_alone_obeys_its_equation),
         cmocka_unit_test(a_step_from_the_touch_is_of_order_n_plus_1),
         cmocka_unit_test(a_stiff_wall_bounces_like_a_rigid_one),
         cmocka_unit_test(a_stiff_wall_holds_like_a_rigid_one),

@@ -50,7 +50,8 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     const int first = hub_spring ? 1 : 0;
     const double *theta = q + first, *omega = w + first;
     const bool gives = loaded && wall_gives(&a->wall) && wall_stands(&a->wall);
-    const bool constrained = contact && !gives;
+    const bool face = gives && wall_has_face(&a->wall);
+    const bool constrained = contact && (!gives || face);
     const bool wanted = contact || gap || gives || drags; // the last link's base and its velocity
 
     // directions of the links, and place and velocity of the last one's base
@@ -73,17 +74,22 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     }
 
     // a single link on a rigid hub is held by the wall alone; friction then has no say
-    const bool held = constrained && N == 1 && !hub_spring;
+    const bool held = constrained && !face && N == 1 && !hub_spring;
     const bool stuck = mode.friction == HUB_STICK && !held;
 
-    // a wall that gives answers to place and velocity alone
-    double pressed = 0, wall_power = 0;
+    // a wall that gives answers to place and velocity alone, one with a mass also to accelerations
+    double pressed = 0, held_back = 0, wall_power = 0;
     if (gives && (mode.contact || mode.parted)) {
         double lever = wall_last_lever(&wall, l_last, link[N - 1].c, link[N - 1].s);
         double depth = wall.penetration;
         double rate = wall_penetration_rate(&wall, vx, vy, lever, omega[N - 1]);
-        pressed = mode.contact ? wall_force(&a->wall, depth, rate) : 0;
-        wall_power = (pressed - wall_spring_force(&a->wall, depth)) * rate;
+        if (face) {
+            held_back = wall_force(&a->wall, depth, rate);
+            wall_power = a->wall.damping * rate * rate;
+        } else {
+            pressed = mode.contact ? wall_force(&a->wall, depth, rate) : 0;
+            wall_power = (pressed - wall_spring_force(&a->wall, depth)) * rate;
+        }
     }
 
     // motor, damping and sliding friction at the hub
@@ -231,18 +237,23 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
         }
     }
 
-    // d2g/dt2 = 0 gives the force
+    // d2g/dt2 = 0 gives the force, or what a face with a mass needs to go along
     double last = 0, rate2 = 0, force = pressed; // J_N, d2g/dt2
     if (wanted) {
         last = wall_last_lever(&wall, l_last, link[N - 1].c, link[N - 1].s);
         rate2 = wall.ex * ax + wall.ey * ay + last * out[N - 1] + wall.convective;
     }
     if (constrained) {
-        force = -rate2 / (wall.ex * bx + wall.ey * by + last * link[N - 1].unit);
+        const double yields = wall.ex * bx + wall.ey * by + last * link[N - 1].unit;
+        force = -rate2 / yields;
+        if (face) {
+            const double mass = a->wall.face_mass;
+            force = (mass * rate2 + held_back) / (1 - mass * yields);
+        }
         for (int k = 0; k < N; k++) {
             out[k] += force * link[k].unit;
         }
-        rate2 = 0;
+        rate2 = face ? rate2 + force * yields : 0;
     }
     reaction->force = force;
     if (gap) {

@@ -1,12 +1,14 @@
 #include "src/arm/impact.h"
 
 impact_result impact_velocity_increments(const arm *a, chain_link *work, const double *q,
-                                         const double *w, double restitution, double *increment)
+                                         const double *w, double face, double restitution,
+                                         double *increment)
 {
     impact_result result;
     double compliance;
     chain_contact_response(a, work, q, false, increment, &compliance);
-    result.speed = chain_penetration_rate(a, q, w);
+    compliance += wall_has_face(&a->wall) ? 1 / a->wall.face_mass : 0;
+    result.speed = chain_penetration_rate(a, q, w) - face;
     result.impulse = (1 + restitution) * result.speed / compliance;
     result.loss = 0.5 * result.impulse * (1 - restitution) * result.speed;
     for (int i = 0; i < a->dof; i++) {

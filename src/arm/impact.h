@@ -4,7 +4,7 @@
 #include "src/arm/chain.h"
 
 typedef struct impact_result {
-    double speed;   // approach speed of the contact point, J w [m/s]
+    double speed;   // approach speed of the contact point to the wall's face, J w [m/s]
     double impulse; // p of the wall [N s]
     double loss;    // kinetic energy lost [J]
 } impact_result;
@@ -16,7 +16,10 @@ typedef struct impact_result {
 //
 // which gives p = (1 + e) J w / (J M^-1 J^T). A hub behind a spring keeps its velocity, (4.10); a
 // rigid one jumps with the first link, sticking or not (errata B6). The energy lost is
-// p (1 - e) J w / 2, never negative.
-// q[dof], w[dof]: the state before; work: links elements of scratch; increment[dof]: dw [rad/s].
+// p (1 - e) J w / 2, never negative. A wall's face of mass M gives way by p/M: then Jw less the
+// face's velocity is the speed, and 1/M stands beside J M^-1 J^T.
+// q[dof], w[dof]: the state before; face: velocity of the wall's face [m/s], 0 without a mass;
+// work: links elements of scratch; increment[dof]: dw [rad/s].
 impact_result impact_velocity_increments(const arm *a, chain_link *work, const double *q,
-                                         const double *w, double restitution, double *increment);
+                                         const double *w, double face, double restitution,
+                                         double *increment);

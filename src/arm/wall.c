@@ -5,6 +5,11 @@
 #include <assert.h>
 #include <math.h>
 
+// A face that swings less than this is at rest [m].
+#define FACE_AT_REST 1e-15
+// Below this square of a phase or decay sine and its kin are their series, to the last bit.
+#define SMALL_SQUARE 1e-4
+
 void wall_init(wall_model *w, const parameters *p)
 {
     assert(w != NULL && p != NULL);
@@ -16,7 +21,8 @@ void wall_init(wall_model *w, const parameters *p)
                       .law = (wall_law)p->wall.contact,
                       .stiffness = p->wall.stiffness,
                       .damping = p->wall.damping,
-                      .exponent = p->wall.contact == WALL_HUNT_CROSSLEY ? p->wall.exponent : 1};
+                      .exponent = p->wall.contact == WALL_HUNT_CROSSLEY ? p->wall.exponent : 1,
+                      .face_mass = p->wall.mass};
     w->x = p->arm.length * w->cosine;
     w->y = p->arm.length * w->sine;
 }
@@ -57,4 +63,69 @@ double wall_rate(const wall_model *w, double compliance, double depth, double ra
     double stiffness = n == 1 ? w->stiffness : n * w->stiffness * plain_pow(deepest, n - 1);
     double damping = w->law == WALL_KELVIN_VOIGT ? w->damping : w->damping * plain_pow(deepest, n);
     return fmax(sqrt(stiffness * compliance), damping * compliance);
+}
+
+// --- a face with a mass, left alone -----------------------------------------------------------
+
+double wall_face_acceleration(const wall_model *w, wall_face face)
+{
+    assert(w != NULL && wall_has_face(w));
+    return -(w->stiffness * face.position + w->damping * face.velocity) / w->face_mass;
+}
+
+double wall_face_energy(const wall_model *w, wall_face face)
+{
+    assert(w != NULL);
+    return 0.5 * (w->face_mass * face.velocity * face.velocity +
+                  w->stiffness * face.position * face.position);
+}
+
+// x'' + 2 d x' + w0^2 x = 0 has x(h) = x0 C + (x0' + d x0) S and x'(h) = x0' C - (d x0' + w0^2 x0)
+// S with C = e^-dh cos(sh), S = e^-dh sin(sh)/s, s^2 = w0^2 - d^2; hyperbolic where that is
+// negative.
+wall_face wall_face_after(const wall_model *w, wall_face face, double h)
+{
+    assert(w != NULL && wall_has_face(w) && h >= 0);
+    const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
+    const double turn = square - d * d, s = sqrt(fabs(turn)), phase = turn * h * h;
+    double c, sine;
+
+    // cosine and sine over s with their decay; hyperbolic ones by the slower of their two decays
+    if (fabs(phase) < SMALL_SQUARE) {
+        const double decay = plain_exp(-d * h);
+        c = decay * (1 - phase / 2 * (1 - phase / 12 * (1 - phase / 30)));
+        sine = decay * h * (1 - phase / 6 * (1 - phase / 20 * (1 - phase / 42)));
+    } else if (turn > 0) {
+        const double decay = plain_exp(-d * h);
+        inline_sincos(s * h, &sine, &c);
+        c *= decay;
+        sine *= decay / s;
+    } else {
+        const double slow = plain_exp(-square / (d + s) * h), fast = plain_exp(-(d + s) * h);
+        c = (slow + fast) / 2;
+        sine = (slow - fast) / (2 * s);
+    }
+
+    // what is left when it has died away is rounding
+    wall_face after = {face.position * c + (face.velocity + d * face.position) * sine,
+                       face.velocity * c - (d * face.velocity + square * face.position) * sine};
+    const double least = 0.5 * w->stiffness * FACE_AT_REST * FACE_AT_REST;
+    return wall_face_energy(w, after) > least ? after : (wall_face){0};
+}
+
+double wall_face_rate(const wall_model *w, wall_face face)
+{
+    assert(w != NULL && wall_has_face(w));
+    const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
+    if (face.position == 0 && face.velocity == 0) {
+        return 0;
+    }
+    if (d * d <= square) {
+        return sqrt(square);
+    }
+
+    // creeping back at the slow decay, once what belongs to the fast one has died away
+    const double root = sqrt(d * d - square), fast = d + root, slow = square / fast;
+    const double share = fabs(face.velocity + slow * face.position);
+    return share > FACE_AT_REST * 2 * root ? fast : slow;
 }

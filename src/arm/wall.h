@@ -20,6 +20,20 @@
 //
 // as long as that pushes, and with nothing where it would pull: its face then comes back on its
 // own. It stores k x^(n+1)/(n+1) (n = 1 for Kelvin-Voigt) and turns the rest of f v into heat.
+//
+// Face. A Kelvin-Voigt wall may have a face of mass M in front of its spring and damper. Arm and
+// face meet as two rigid bodies: an impact returns the share e of their relative speed, and in
+// contact both move as one, x = g. With the force f on the face
+//
+//   M x'' + c x' + k x = f
+//
+// f is the constraint's once more: were the tip let go, it would move into the wall with g'' = a_f,
+// and a force holds it back by C = J M^-1 J^T for each newton, so that
+//
+//   f = (M a_f + k x + c x') / (1 + M C),
+//
+// which is the law above for M = 0 and the rigid wall's a_f / C for M without bound. Contact ends
+// where f falls to zero; the face then swings on its own, f = 0, until the arm meets it again.
 #pragma once
 
 #include <math.h>
@@ -38,7 +52,14 @@ typedef struct wall_model {
     double stiffness; // k [N/m^n]
     double damping;   // c [N s/m], Hunt-Crossley [N s/m^(n+1)]
     double exponent;  // n, 1 for Kelvin-Voigt [-]
+    double face_mass; // M, 0: the face has none [kg]
 } wall_model;
+
+// How a face with a mass moves.
+typedef struct wall_face {
+    double position; // x, into the wall [m]
+    double velocity; // [m/s]
+} wall_face;
 
 // Where and how the wall acts on the last link.
 typedef struct wall_contact {
@@ -65,6 +86,12 @@ static inline bool wall_stands(const wall_model *w)
 static inline bool wall_gives(const wall_model *w)
 {
     return w->law != WALL_RIGID;
+}
+
+// Whether its face has a mass: a wall that gives, but meets the arm with an impact.
+static inline bool wall_has_face(const wall_model *w)
+{
+    return w->face_mass > 0;
 }
 
 // depth^n for a depth [m], zero in front of the wall; Hertz's exponent needs no logarithm.
@@ -101,6 +128,16 @@ double wall_stored_energy(const wall_model *w, double depth);
 // How fast the wall and a mass of 1/compliance [kg] behind it can move, until they part, from a
 // depth [m] and its rate [m/s] on: frequency or decay [1/s].
 double wall_rate(const wall_model *w, double compliance, double depth, double rate);
+
+// A face with a mass on its spring and damper alone, h [s] later.
+wall_face wall_face_after(const wall_model *w, wall_face face, double h);
+
+// Its acceleration there [m/s2]; the energy of face and spring [J].
+double wall_face_acceleration(const wall_model *w, wall_face face);
+double wall_face_energy(const wall_model *w, wall_face face);
+
+// How fast the motion of a face left alone changes: frequency or decay [1/s], 0 for one at rest.
+double wall_face_rate(const wall_model *w, wall_face face);
 
 // Place of the contact point in a frame with direction (c, s) through the hub's axis: along it, and
 // how far it lies to its right [m].

@@ -272,7 +272,7 @@ static bool touch_holds(const arm *touched, chain_link *links, const double *q, 
     const int n = touched->dof;
     const bool gives = wall_gives(&touched->wall);
     chain_reaction r;
-    impact_result jump = impact_velocity_increments(touched, links, q, w, 0, after);
+    impact_result jump = impact_velocity_increments(touched, links, q, w, 0, 0, after);
     *impulse = gives ? 0 : fmax(jump.impulse, 0);
     for (int i = 0; i < n; i++) {
         after[i] = w[i] + (*impulse > 0 ? after[i] : 0);

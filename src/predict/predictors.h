@@ -27,6 +27,7 @@ typedef enum predictor {
     X(PREDICTION_DOUBTFUL, "it cannot be told")                                                    \
     X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                                   \
     X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                                         \
+    X(PREDICTION_NO_FACE_ONLY, "for a wall whose face has no mass only")                           \
     X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                             \
     X(PREDICTION_EQUAL_LINKS_ONLY, "for equal links with equal linear joints only")                \
     X(PREDICTION_CURRENT_AT_ONCE_ONLY, "for a motor whose current follows at once only")           \

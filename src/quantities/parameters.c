@@ -109,7 +109,8 @@ const parameter_info parameter_table[] = {
     {PATH(wall.angle), REAL("rad", -3, 3), DEFAULT(0.1),
      MEANING("direction of contact point or flat wall as seen from the hub axis")},
     {PATH(wall.restitution), REAL("", 0, 1), DEFAULT(0), TIMED,
-     MEANING("coefficient of restitution e of an impact on a rigid wall (0: plastic)")},
+     MEANING("coefficient of restitution e of an impact on a rigid wall or a face with a mass (0: "
+             "plastic)")},
     {PATH(wall.contact), CHOICE(2, "rigid|kelvin-voigt|hunt-crossley"), DEFAULT(WALL_RIGID),
      MEANING(
          "how the wall answers: it does not give, or it is a spring and a damper with the force "
@@ -120,6 +121,9 @@ const parameter_info parameter_table[] = {
      MEANING("damping c of a wall that gives, in N s/m^(n+1) for hunt-crossley")},
     {PATH(wall.exponent), REAL("", 1, 5), DEFAULT(1.5),
      MEANING("exponent n of hunt-crossley; 1.5 is Hertz's for a ball on a plane")},
+    {PATH(wall.mass), REAL("kg", 0, 1e6), DEFAULT(0),
+     MEANING("mass of the face in front of the spring and damper of kelvin-voigt, which the arm "
+             "strikes as a rigid body; 0: none")},
 
     {PATH(method.name), CHOICE(2, "event|newmark|generalized-alpha"),
      DEFAULTS(METHOD_EVENT, METHOD_NEWMARK), MEANING("time integration")},

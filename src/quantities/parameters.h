@@ -69,11 +69,12 @@ typedef struct motor_parameters {
 typedef struct wall_parameters {
     int kind;           // wall_kind
     double angle;       // direction of the contact point (or the flat wall) from the hub [rad]
-    double restitution; // coefficient of restitution e, rigid wall only [-]
+    double restitution; // coefficient of restitution e of rigid wall or face [-]
     int contact;        // wall_law
     double stiffness;   // k of the wall that gives [N/m], Hunt-Crossley [N/m^n]
     double damping;     // its c [N s/m], Hunt-Crossley [N s/m^(n+1)]
     double exponent;    // n, Hunt-Crossley [-]
+    double mass;        // of the face of a Kelvin-Voigt wall, 0: none [kg]
 } wall_parameters;
 
 typedef struct method_parameters {

@@ -284,6 +284,8 @@ static status resolve_motor(parameters *p, fault *f)
     return STATUS_OK;
 }
 
+#define LEAST_FACE 1e-9 // mass of a wall's face that is not none [kg]
+
 // Walls nobody has measured: docs/physics.md says where these come from.
 #define SOFT_STIFFNESS  75e3 // Kelvin-Voigt [N/m]
 #define SOFT_DAMPING    20.0 // [N s/m]
@@ -304,14 +306,27 @@ static status resolve_wall(parameters *p, fault *f)
         w->damping = hertz ? 1.5 * RESTITUTION_LOSS * w->stiffness : SOFT_DAMPING;
     }
 
+    // a mass stands on a linear spring, which also holds it back
+    if (w->mass > 0 && w->contact != WALL_KELVIN_VOIGT) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.mass, wall.contact),
+                            "wall.mass is for wall.contact = kelvin-voigt, on whose spring and "
+                            "damper the face stands, not %s",
+                            hertz ? "hunt-crossley" : "rigid");
+    }
+    if (w->mass > 0 && w->mass < LEAST_FACE) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.mass),
+                            "wall.mass = %g kg, expected 0 (none) or at least %g kg", w->mass,
+                            LEAST_FACE);
+    }
+
     // what a wall that gives cannot be combined with
     if (w->contact == WALL_RIGID) {
         return STATUS_OK;
     }
-    if (IS_SET(p, wall.restitution)) {
+    if (IS_SET(p, wall.restitution) && w->mass == 0) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.restitution),
-                            "wall.restitution is for wall.contact = rigid; a wall that gives takes "
-                            "its share by wall.damping");
+                            "wall.restitution is for wall.contact = rigid or a face with a mass; a "
+                            "wall that gives takes its share by wall.damping");
     }
     if (p->method.name != METHOD_EVENT) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.contact, method.name),

@@ -95,6 +95,8 @@ const signal_info signal_table[] = {
      "Strain energy", 5, LINE_DASHED, AT(wall_energy), OPTIONAL},
     {"wall_loss", "D<sub>w</sub>", "Dw", "J", "lost in a wall that gives", BODY_NONE, "Energy lost",
      5, LINE_DASH_DOT, AT(wall_loss), OPTIONAL},
+    {"face_depth", "x<sub>w</sub>", "xw", "m", "how far a wall's face with a mass is pushed in",
+     BODY_NONE, "Depth of the wall's face", 2, LINE_DASHED, AT(face_depth), OPTIONAL},
 };
 
 const int signal_count = (int)(sizeof signal_table / sizeof signal_table[0]);

@@ -17,7 +17,7 @@ typedef struct sample {
     double hub_acceleration;   // [rad/s2]
     double first_acceleration; // [rad/s2]
     double last_acceleration;  // [rad/s2]
-    double gap;                // distance of the contact point from the arm [m]
+    double gap;                // distance of the contact point, at rest, from the arm [m]
     double gap_velocity;       // [m/s]
     double force;              // contact force, impulses excluded [N]
     double impulse;            // of the impact at this very instant [N s]
@@ -48,8 +48,9 @@ typedef struct sample {
     double desired_velocity; // of the hub [rad/s]
     double calculated_force; // what the controller takes the contact force to be [N]
     // of a wall that gives; NaN at a rigid one
-    double wall_energy; // that its spring holds [J]
+    double wall_energy; // that its spring and the motion of its face hold [J]
     double wall_loss;   // lost in it [J]
+    double face_depth;  // how far its face is pushed in, NaN where it has no mass [m]
 } sample;
 
 typedef enum line_style { LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT } line_style;

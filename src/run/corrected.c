@@ -232,7 +232,7 @@ void corrected_sum_up(corrected_run *c, status failed)
     s->steps = (double)m->steps;
     s->max_penetration_m = fmax(0, m->largest_penetration);
     s->motor_work_J = motion_motor_work(m, m->state);
-    if (m->wall_gives) {
+    if (!motion_wall_is_rigid(m)) {
         s->wall_loss_J = state_quadratures(m, m->state)[QUADRATURE_WALL];
     }
     s->separations += r->state.separated;

@@ -40,8 +40,8 @@ sample corrected_row(const corrected_run *c, double *state, double impulse)
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
     const double kinetic = chain_kinetic_energy(a, q, w), strain = chain_strain_energy(a, q);
-    const double held =
-        m->wall_gives ? wall_stored_energy(&a->wall, -state[SLOT_GAP]) : (double)NAN;
+    const bool rigid = motion_wall_is_rigid(m);
+    const double held = motion_wall_energy(a, m, state);
     int first = a->first, last = a->dof - 1;
     sample row = {
         // every signal of the table that the corrected model has
@@ -55,8 +55,8 @@ sample corrected_row(const corrected_run *c, double *state, double impulse)
         .hub_acceleration = al[0],
         .first_acceleration = al[first],
         .last_acceleration = al[last],
-        .gap = state[SLOT_GAP],
-        .gap_velocity = state[SLOT_GAP_VELOCITY],
+        .gap = state_rest_gap(state),
+        .gap_velocity = state_rest_gap_velocity(state),
         .force = state[SLOT_FORCE],
         .impulse = impulse,
         .contact = state[SLOT_CONTACT],
@@ -72,10 +72,10 @@ sample corrected_row(const corrected_run *c, double *state, double impulse)
         .friction_loss = state[SLOT_FRICTION_LOSS],
         .damping_loss = quadrature[QUADRATURE_DAMPING],
         .impact_loss = state[SLOT_IMPACT_LOSS],
-        .energy_residual =
-            motion_unaccounted(m, state, kinetic + strain + (m->wall_gives ? held : 0)),
-        .wall_energy = held,
-        .wall_loss = m->wall_gives ? quadrature[QUADRATURE_WALL] : (double)NAN,
+        .energy_residual = motion_unaccounted(m, state, kinetic + strain + held),
+        .wall_energy = rigid ? (double)NAN : held,
+        .wall_loss = rigid ? (double)NAN : quadrature[QUADRATURE_WALL],
+        .face_depth = m->wall_has_face ? state[SLOT_FACE] : (double)NAN,
     };
 
     recording_add_rig_signals(c->recording, &row);

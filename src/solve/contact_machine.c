@@ -38,6 +38,10 @@
 //        ^       depth falls to zero: release()   law's force rises         | gap opens
 //        +------------------------------------------------------------------+
 //
+// A face with a mass is met as a rigid wall is, by impact() and release(), but gap and speed are
+// those to the face, which swings on its own while the arm is free (motion_try_step) and goes with
+// it in contact.
+//
 // After every transition hold:
 //
 //   1  contact is 0 or 1; friction is one of stuck, forwards, backwards
@@ -193,15 +197,17 @@ static bool face_follows(const arm *a, motion *m)
 
 // --- the transitions -----------------------------------------------------------------------------
 
-// Counts flights that are too short for the arm to change in them. Whether the chatter rule says
-// that they are over: where more than MOTION_MOST_SHORT_FLIGHTS come in a row, the arm presses on
-// the wall.
+// Counts flights that are too short for arm or face to change in them. Whether the chatter rule
+// says that they are over: where more than MOTION_MOST_SHORT_FLIGHTS come in a row, the arm presses
+// on the wall.
 static bool chatters(const arm *a, motion *m)
 {
     double *state = m->state;
     double flight = state[SLOT_TIME] - state[SLOT_LAST_IMPACT];
-    bool is_short =
-        state[SLOT_LAST_IMPACT] >= 0 && flight * a->highest_frequency < SHORT_FLIGHT * 2 * M_PI;
+    double fastest = m->wall_has_face
+                         ? fmax(a->highest_frequency, sqrt(a->wall.stiffness / a->wall.face_mass))
+                         : a->highest_frequency;
+    bool is_short = state[SLOT_LAST_IMPACT] >= 0 && flight * fastest < SHORT_FLIGHT * 2 * M_PI;
     state[SLOT_SHORT_FLIGHTS] = is_short ? state[SLOT_SHORT_FLIGHTS] + 1 : 0;
     state[SLOT_LAST_IMPACT] = state[SLOT_TIME];
     return state[SLOT_SHORT_FLIGHTS] > MOTION_MOST_SHORT_FLIGHTS;
@@ -213,9 +219,10 @@ static void impact(const arm *a, motion *m, motion_report *report)
 {
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     double *increment = m->scratch;
+    const double face = m->state[SLOT_FACE_VELOCITY];
 
     // what the wall gives
-    double e = wall_restitution(&a->wall, chain_penetration_rate(a, q, w));
+    double e = wall_restitution(&a->wall, chain_penetration_rate(a, q, w) - face);
     if (chatters(a, m)) {
         m->state[SLOT_SHORT_FLIGHTS] = 0;
         report->chatter = e > 0;
@@ -223,7 +230,7 @@ static void impact(const arm *a, motion *m, motion_report *report)
     }
 
     // the jump it would be in an instant
-    impact_result result = impact_velocity_increments(a, m->links, q, w, e, increment);
+    impact_result result = impact_velocity_increments(a, m->links, q, w, face, e, increment);
     report->speed = result.speed;
     report->impulse = result.impulse;
     report->loss = result.loss;
@@ -241,6 +248,9 @@ static void impact(const arm *a, motion *m, motion_report *report)
     m->state[SLOT_IMPACT_LOSS] += result.loss;
     for (int i = 0; i < m->dof; i++) {
         w[i] += increment[i];
+    }
+    if (m->wall_has_face) {
+        m->state[SLOT_FACE_VELOCITY] += result.impulse / a->wall.face_mass;
     }
     resolve(a, m, e == 0, MOTION_IMPACT);
 }
@@ -333,8 +343,8 @@ static void accept(motion *m, double step)
     m->trial = previous;
     double passed = m->state[SLOT_TIME] - previous[SLOT_TIME];
     m->steps += (long)fmax(1, ceil(passed / step - 1e-6));
-    m->largest_penetration = fmax(m->largest_penetration, -m->state[SLOT_GAP]);
-    if (m->wall_gives) {
+    m->largest_penetration = fmax(m->largest_penetration, -state_rest_gap(m->state));
+    if (!motion_wall_is_rigid(m)) {
         m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
     }
 }
@@ -435,7 +445,7 @@ static status tried_step(const arm *a, motion *m, double step, double wanted, do
 // Whether a rigid wall holds the arm where it cannot: folded over the hub's axis.
 static bool held_folded(const arm *a, motion *m)
 {
-    return m->state[SLOT_CONTACT] != 0 && !m->wall_gives &&
+    return m->state[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
            chain_is_folded(a, state_angles(m, m->state));
 }
 
@@ -464,7 +474,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
 
     accept(m, step);
-    if (any && first == WATCH_GAP && !m->wall_gives &&
+    if (any && first == WATCH_GAP && motion_wall_is_rigid(m) &&
         chain_is_folded(a, state_angles(m, m->state))) {
         m->failure_time = m->state[SLOT_TIME];
         return STATUS_FOLDED;
@@ -531,6 +541,7 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
     double g, rate;
     chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
     resolve(a, m, g >= 0 && rate >= 0, MOTION_REACHED);
+    m->start_energy += motion_wall_energy(a, m, m->state); // of a face that starts with the arm
     check_invariants(a, m);
 }
 
@@ -551,11 +562,14 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
     // in contact the wall answers what goes into it
     if (m->wall_gives) {
         resolve(a, m, face_follows(a, m), MOTION_REACHED);
-    } else if (contact && chain_penetration_rate(a, q, w) > 0) {
-        report->event = MOTION_IMPACT;
-        impact(a, m, report);
     } else {
-        resolve(a, m, contact && chain_penetration_rate(a, q, w) == 0, MOTION_REACHED);
+        const double speed = chain_penetration_rate(a, q, w) - m->state[SLOT_FACE_VELOCITY];
+        if (contact && speed > 0) {
+            report->event = MOTION_IMPACT;
+            impact(a, m, report);
+        } else {
+            resolve(a, m, contact && speed == 0, MOTION_REACHED);
+        }
     }
     report->holds = m->state[SLOT_CONTACT] != 0;
     check_invariants(a, m);

@@ -187,7 +187,7 @@ static status step(const arm *a, motion *m, double h)
         *current = fmax(-a->motor.current_limit, fmin(*current, a->motor.current_limit));
     }
     motion_evaluate(a, m, m->trial);
-    if (m->trial[SLOT_CONTACT] != 0 && !m->wall_gives) {
+    if (m->trial[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m)) {
         motion_project(a, m, m->trial);
     }
     return STATUS_OK;
@@ -231,6 +231,7 @@ static double rate_within_wall(const arm *a, motion *m, double own)
     double compliance, depth = fmax(-m->state[SLOT_GAP], 0), rate = -m->state[SLOT_GAP_VELOCITY];
     const bool locked = contact_state_of(m->state).friction == HUB_STICK && m->dof > 1;
     chain_contact_response(a, m->links, state_angles(m, m->state), locked, m->scratch, &compliance);
+    compliance /= 1 + a->wall.face_mass * compliance; // both masses on the spring
     double wall = wall_rate(&a->wall, compliance, depth, rate);
     return sqrt(own * own + wall * wall);
 }
@@ -243,6 +244,14 @@ static double graded(const arm *a, const motion *m, double rate, double longest)
     }
     double to_touch = fabs(m->state[SLOT_GAP] / m->state[SLOT_GAP_VELOCITY]);
     return fmin(longest, fmax(GRADING * to_touch, SHORTEST_RESOLUTION / rate));
+}
+
+// How long a step may be for the arm to meet a face that swings on its own where the ends of the
+// step tell of it.
+static double graded_face(const arm *a, const motion *m, double longest)
+{
+    const double rate = wall_face_rate(&a->wall, state_face(m->state));
+    return rate > 0 ? fmin(longest, EXPLICIT_RESOLUTION / rate) : longest;
 }
 
 // How long a step may be for the sake of the current's limit, on either side of which the equations
@@ -270,13 +279,14 @@ static double graded_current(const arm *a, const motion *m, double rate, double 
 // How long the next step may be, and by which form of the method.
 static double begin(const arm *a, motion *m, double remaining, double step_length)
 {
-    const bool pressed = m->wall_gives && m->state[SLOT_CONTACT] != 0;
+    const bool pressed = !motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0;
     double rate = rate_of_change(a, m);
     rate = pressed ? rate_within_wall(a, m, rate) : rate;
     double steps = floor(LONG_RESOLUTION / (step_length * rate));
     double longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step_length
                                 : step_length / ceil(step_length * rate / EXPLICIT_RESOLUTION);
     longest = pressed ? graded(a, m, rate, longest) : longest;
+    longest = m->wall_has_face && !pressed ? graded_face(a, m, longest) : longest;
     longest = m->electric ? graded_current(a, m, rate, longest) : longest;
 
     // a step that something cuts to half or less, such as the next sample of a controller

@@ -61,7 +61,7 @@ bool watch_active(const arm *a, const motion *m, watch w)
 {
     bool contact = m->state[SLOT_CONTACT] != 0;
     bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
-    bool held = m->dof == 1 && contact && !m->wall_gives;
+    bool held = m->dof == 1 && contact && motion_wall_is_rigid(m);
 
     // a watch is of use only where its event could end the present state
     switch (w) {
@@ -308,7 +308,7 @@ static status locate_depth(const arm *a, motion *m, double h)
 {
     enum { MOST_LOOKS = 40 };
     double v0 = -m->state[SLOT_GAP_VELOCITY], v1 = -m->trial[SLOT_GAP_VELOCITY], lo = 0, hi = h;
-    if (!(m->wall_gives && v0 > 0 && v1 < 0)) {
+    if (motion_wall_is_rigid(m) || !(v0 > 0 && v1 < 0)) {
         return STATUS_OK;
     }
 
@@ -321,7 +321,7 @@ static status locate_depth(const arm *a, motion *m, double h)
             return failed;
         }
         double v = -m->trial[SLOT_GAP_VELOCITY];
-        m->largest_penetration = fmax(m->largest_penetration, -m->trial[SLOT_GAP]);
+        m->largest_penetration = fmax(m->largest_penetration, -state_rest_gap(m->trial));
         if (v > 0) {
             lo = s, v0 = v, v1 /= 2;
         } else {

@@ -21,7 +21,8 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
 {
     double rho = method->spectral_radius;
     m->electric = a->motor.electric;
-    m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall);
+    m->wall_has_face = wall_stands(&a->wall) && wall_has_face(&a->wall);
+    m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall) && !m->wall_has_face;
 
     // how many explicit substeps a step would take
     bool too_stiff = a->fastest_rate * method->step > EXPLICIT_RESOLUTION * MOST_SUBSTEPS;
@@ -33,7 +34,8 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = method->gamma;
     } else if (method->name == METHOD_EVENT && taylor_engine_suits(a)) {
         m->engine = &taylor_engine;
-    } else if (method->name == METHOD_EVENT && too_stiff && !m->wall_gives && arm_is_plain(a)) {
+    } else if (method->name == METHOD_EVENT && too_stiff && motion_wall_is_rigid(m) &&
+               arm_is_plain(a)) {
         m->engine = &modal_engine;
     } else if (method->name == METHOD_GENERALIZED_ALPHA) {
         m->engine = &generalized_alpha_engine;
@@ -124,6 +126,17 @@ void motion_evaluate(const arm *a, motion *m, double *state)
     state[SLOT_VISCOUS_POWER] = r.viscous_power;
     state[SLOT_DAMPING_POWER] = r.damping_power;
     state[SLOT_WALL_POWER] = r.wall_power;
+
+    // a face with a mass goes with the arm in contact, else the gap is that to it
+    if (m->wall_has_face && mode.contact) {
+        state[SLOT_FACE] = -r.gap;
+        state[SLOT_FACE_VELOCITY] = -r.gap_velocity;
+    } else if (m->wall_has_face) {
+        const wall_face face = state_face(state);
+        state[SLOT_GAP] += face.position;
+        state[SLOT_GAP_VELOCITY] += face.velocity;
+        state[SLOT_GAP_ACCELERATION] += wall_face_acceleration(&a->wall, face);
+    }
 }
 
 void motion_watch(motion *m)
@@ -143,14 +156,18 @@ double motion_rounding(const arm *a, const motion *m)
     return 1 + LAST_BITS * (a->highest_frequency * a->highest_frequency * angle + rate * rate);
 }
 
+double motion_wall_energy(const arm *a, const motion *m, const double *state)
+{
+    return m->wall_has_face ? wall_face_energy(&a->wall, state_face(state))
+           : m->wall_gives  ? wall_stored_energy(&a->wall, -state[SLOT_GAP])
+                            : 0;
+}
+
 double motion_energy_residual(const arm *a, const motion *m, double *state)
 {
     const double *q = state_angles(m, state), *w = state_velocities(m, state);
     double energy = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q);
-    if (m->wall_gives) {
-        energy += wall_stored_energy(&a->wall, -state[SLOT_GAP]);
-    }
-    return motion_unaccounted(m, state, energy);
+    return motion_unaccounted(m, state, energy + motion_wall_energy(a, m, state));
 }
 
 double motion_unaccounted(const motion *m, double *state, double energy)
@@ -217,12 +234,25 @@ status motion_try_step(const arm *a, motion *m, double h)
     for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
         state_quadratures(m, trial)[kept[i]] = state_quadratures(m, m->state)[kept[i]];
     }
+
+    // a face that nothing touches swings on its own
+    const bool swings = m->wall_has_face && m->state[SLOT_CONTACT] == 0;
+    if (swings) {
+        const wall_face face = wall_face_after(&a->wall, state_face(m->state), h);
+        trial[SLOT_FACE] = face.position;
+        trial[SLOT_FACE_VELOCITY] = face.velocity;
+    }
+
     status s = m->engine->state_at(a, m, h);
     if (s != STATUS_OK) {
         return s;
     }
 
     // the ledger
+    if (swings) {
+        state_quadratures(m, trial)[QUADRATURE_WALL] +=
+            motion_wall_energy(a, m, m->state) - motion_wall_energy(a, m, trial);
+    }
     double turned = state_angles(m, trial)[0] - state_angles(m, m->state)[0];
     trial[SLOT_MOTOR_WORK] += a->motor.torque * turned;
     trial[SLOT_FRICTION_LOSS] += trial[SLOT_FRICTION] * a->motor.stiction * turned;

@@ -25,7 +25,7 @@ enum motion_slot {
     SLOT_EXTERNAL_WORK,    // [J]
     SLOT_FRICTION_LOSS,    // [J]
     SLOT_IMPACT_LOSS,      // [J]
-    SLOT_GAP,              // [m]
+    SLOT_GAP,              // [m]; to a face with a mass, but in contact minus the depth of both
     SLOT_GAP_VELOCITY,     // [m/s]
     SLOT_VISCOUS_POWER,    // at this state [W]
     SLOT_DAMPING_POWER,    // at this state [W]
@@ -37,6 +37,8 @@ enum motion_slot {
     SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
     SLOT_STRIDE,           // that the engine proposes, 0 if none [s]
+    SLOT_FACE,             // how far a wall's face with a mass is pushed in [m]
+    SLOT_FACE_VELOCITY,    // [m/s]
     SLOT_COUNT
 };
 
@@ -64,6 +66,7 @@ struct motion {
     const engine *engine;
     double nominal_step; // method.step [s]
     bool wall_gives;     // contact is no constraint
+    bool wall_has_face;  // contact ties the arm to a mass on a spring
     bool electric;       // the motor's current is followed
     bool brief;          // explicit: the step takes the method of order 6
     double cut; // an instant at which a step ends without being made for it [s]; HUGE_VAL: none
@@ -114,6 +117,22 @@ static inline contact_state contact_state_of(const double *state)
                            state[SLOT_PARTED] != 0};
 }
 
+// The wall's face of a state, at rest in place where it has no mass.
+static inline wall_face state_face(const double *state)
+{
+    return (wall_face){state[SLOT_FACE], state[SLOT_FACE_VELOCITY]};
+}
+
+// Gap to where the wall's face stands at rest [m], and its rate [m/s].
+static inline double state_rest_gap(const double *state)
+{
+    return state[SLOT_GAP] - (state[SLOT_CONTACT] != 0 ? 0 : state[SLOT_FACE]);
+}
+static inline double state_rest_gap_velocity(const double *state)
+{
+    return state[SLOT_GAP_VELOCITY] - (state[SLOT_CONTACT] != 0 ? 0 : state[SLOT_FACE_VELOCITY]);
+}
+
 // Length of the smooth part of the state: angles, velocities, quadratures.
 static inline int smooth_length(const motion *m)
 {
@@ -131,6 +150,12 @@ void motion_watch(motion *m);
 // Evaluates accelerations, reactions and gap of a state in its own contact state.
 void motion_evaluate(const arm *a, motion *m, double *state);
 
+// Whether contact holds the arm still in the wall's direction.
+static inline bool motion_wall_is_rigid(const motion *m)
+{
+    return !m->wall_gives && !m->wall_has_face;
+}
+
 // Whether contact and friction together leave the arm no way to move, and nothing else can change.
 static inline bool motion_held_still(const motion *m)
 {
@@ -138,8 +163,10 @@ static inline bool motion_held_still(const motion *m)
         return false;
     }
     contact_state now = contact_state_of(m->state);
-    int holds = (now.contact && !m->wall_gives) + (now.friction == HUB_STICK);
-    return m->dof == 1 ? holds > 0 : holds >= m->dof;
+    int holds = (now.contact && motion_wall_is_rigid(m)) + (now.friction == HUB_STICK);
+    bool face_moves =
+        !now.contact && (m->state[SLOT_FACE] != 0 || m->state[SLOT_FACE_VELOCITY] != 0);
+    return !face_moves && (m->dof == 1 ? holds > 0 : holds >= m->dof);
 }
 
 // Begins a stride from m->state that is not to go beyond `remaining` [s]; `step` as engine.begin
@@ -178,6 +205,9 @@ static inline double motion_motor_work(const motion *m, double *state)
 {
     return state[SLOT_MOTOR_WORK] + state_quadratures(m, state)[QUADRATURE_MOTOR];
 }
+
+// Energy that a wall that gives holds, with that of its face's motion; 0 in a rigid one [J].
+double motion_wall_energy(const arm *a, const motion *m, const double *state);
 
 // Energy that the ledger does not account for at a state of this motion [J].
 double motion_energy_residual(const arm *a, const motion *m, double *state);

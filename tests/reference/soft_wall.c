@@ -7,7 +7,8 @@
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_odeiv2.h>
 
-enum { MOST = 9, AFTER = 4, SIZE = 2 * MOST + AFTER }; // then: wall's loss, work, drag, impulse
+// Behind angles and velocities: wall's loss, work, drag, impulse, depth of the face and its rate.
+enum { MOST = 9, AFTER = 6, SIZE = 2 * MOST + AFTER };
 
 #define LOOK       5e-5  // between two looks at the events [s]
 #define RESOLUTION 1e-13 // of an event [s]
@@ -96,10 +97,31 @@ static double stored(const soft_wall_case *c, double depth)
     return depth > 0 ? c->stiffness * pow(depth, n + 1) / (n + 1) : 0;
 }
 
-static double force_at(const soft_arm *arm, const double *y)
+static bool has_face(const soft_arm *arm)
 {
-    double depth, rate = depth_rate(arm, y, &depth);
-    return arm->now == PRESSED ? law(arm->c, depth, rate) : 0;
+    return arm->c->face_mass > 0;
+}
+
+// How fast the rate of the depth grows at constant angular velocities: dG/dt w.
+static double depth_bend(const soft_arm *arm, const double *y)
+{
+    const double phi = 0.1, l = arm->length;
+    const int last = arm->bodies - 1;
+    const double *q = y, *w = y + arm->bodies, c = cos(q[last]), s = sin(q[last]);
+    double sum = 0, dx = cos(phi), dy = sin(phi), along = 0;
+    for (int i = arm->first; arm->c->plane_wall && i <= last; i++) {
+        sum -= l * sin(q[i] - phi) * w[i] * w[i];
+    }
+    if (arm->c->plane_wall) {
+        return sum;
+    }
+    for (int i = arm->first; i < last; i++) {
+        sum -= l * sin(q[last] - q[i]) * (w[last] - w[i]) * w[i];
+        dx -= l * cos(q[i]);
+        dy -= l * sin(q[i]);
+        along += l * (-sin(q[i]) * c + cos(q[i]) * s) * w[i];
+    }
+    return sum + (-along + (dy * c - dx * s) * w[last]) * w[last];
 }
 
 // Velocity of the centre of link k, or of the tip for k = bodies, per unit velocity of body i.
@@ -117,6 +139,25 @@ static double coupling(const soft_arm *arm, int i, int j)
     return sum;
 }
 
+// Solves (mass matrix + face G G') x = right; face is zero unless arm and face move as one.
+static void accelerate(const soft_arm *arm, const double *q, double face, double *right, double *x)
+{
+    const int n = arm->bodies;
+    double m[MOST * MOST], gradient[MOST];
+    depth_at(arm, q, gradient);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            m[i * n + j] = coupling(arm, i, j) * cos(q[i] - q[j]) + (i == j ? arm->inertia[i] : 0) +
+                           face * gradient[i] * gradient[j];
+        }
+    }
+    gsl_matrix_view matrix = gsl_matrix_view_array(m, (size_t)n, (size_t)n);
+    gsl_vector_view b = gsl_vector_view_array(right, (size_t)n);
+    gsl_vector_view solution = gsl_vector_view_array(x, (size_t)n);
+    gsl_linalg_cholesky_decomp1(&matrix.matrix);
+    gsl_linalg_cholesky_solve(&matrix.matrix, &b.vector, &solution.vector);
+}
+
 static double energy_at(const soft_arm *arm, const double *y)
 {
     const int n = arm->bodies;
@@ -130,7 +171,54 @@ static double energy_at(const soft_arm *arm, const double *y)
             sum += arm->root[i] * (y[i + 1] - y[i]) * (y[i + 1] - y[i]) / 2;
         }
     }
+    if (has_face(arm)) {
+        const double *face = y + 2 * n + 4;
+        return sum +
+               (arm->c->face_mass * face[1] * face[1] + arm->c->stiffness * face[0] * face[0]) / 2;
+    }
     return sum + stored(arm->c, depth_at(arm, y, gradient));
+}
+
+// The accelerations x, the face's among them, and the force at a state.
+static double dynamics(const soft_arm *arm, const double *y, double *x, double *face)
+{
+    const int n = arm->bodies;
+    double right[MOST] = {0}, gradient[MOST], depth, force = 0;
+    const double rate = depth_rate(arm, y, &depth), bend = depth_bend(arm, y);
+    const double joined = has_face(arm) && arm->now == PRESSED ? arm->c->face_mass : 0;
+    depth_at(arm, y, gradient);
+    if (arm->now == PRESSED) {
+        force = law(arm->c, depth, rate) + joined * bend;
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            right[i] -= coupling(arm, i, j) * sin(y[i] - y[j]) * y[n + j] * y[n + j];
+        }
+        right[i] -= gradient[i] * force;
+        right[i] += i + 1 < n ? arm->root[i] * (y[i + 1] - y[i]) : 0;
+        right[i] -= i > 0 ? arm->root[i - 1] * (y[i] - y[i - 1]) : 0;
+    }
+    right[0] += arm->torque - arm->drag * y[n];
+    accelerate(arm, y, joined, right, x);
+
+    // the face goes along, or on its own
+    *face = 0;
+    if (joined > 0) {
+        *face = bend;
+        for (int i = 0; i < n; i++) {
+            *face += gradient[i] * x[i];
+        }
+        force = law(arm->c, depth, rate) + arm->c->face_mass * *face;
+    } else if (has_face(arm)) {
+        *face = -law(arm->c, y[2 * n + 4], y[2 * n + 5]) / arm->c->face_mass;
+    }
+    return force;
+}
+
+static double force_at(const soft_arm *arm, const double *y)
+{
+    double x[MOST], face;
+    return arm->now == PRESSED ? dynamics(arm, y, x, &face) : 0;
 }
 
 static int derivative(double t, const double y[], double dydt[], void *context)
@@ -138,26 +226,8 @@ static int derivative(double t, const double y[], double dydt[], void *context)
     (void)t;
     const soft_arm *arm = context;
     const int n = arm->bodies;
-    double m[MOST * MOST], right[MOST] = {0}, x[MOST], gradient[MOST], depth;
-    const double rate = depth_rate(arm, y, &depth), f = force_at(arm, y);
-    depth_at(arm, y, gradient);
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            double a = coupling(arm, i, j);
-            m[i * n + j] = a * cos(y[i] - y[j]) + (i == j ? arm->inertia[i] : 0);
-            right[i] -= a * sin(y[i] - y[j]) * y[n + j] * y[n + j];
-        }
-        right[i] -= gradient[i] * f;
-        right[i] += i + 1 < n ? arm->root[i] * (y[i + 1] - y[i]) : 0;
-        right[i] -= i > 0 ? arm->root[i - 1] * (y[i] - y[i - 1]) : 0;
-    }
-    right[0] += arm->torque - arm->drag * y[n];
-
-    gsl_matrix_view matrix = gsl_matrix_view_array(m, (size_t)n, (size_t)n);
-    gsl_vector_view b = gsl_vector_view_array(right, (size_t)n);
-    gsl_vector_view solution = gsl_vector_view_array(x, (size_t)n);
-    gsl_linalg_cholesky_decomp1(&matrix.matrix);
-    gsl_linalg_cholesky_solve(&matrix.matrix, &b.vector, &solution.vector);
+    double x[MOST], face, depth;
+    const double rate = depth_rate(arm, y, &depth), f = dynamics(arm, y, x, &face);
     for (int i = 0; i < n; i++) {
         dydt[i] = y[n + i];
         dydt[n + i] = x[i];
@@ -170,6 +240,11 @@ static int derivative(double t, const double y[], double dydt[], void *context)
     dydt[2 * n + 1] = arm->torque * y[n];
     dydt[2 * n + 2] = arm->drag * y[n] * y[n];
     dydt[2 * n + 3] = f;
+    dydt[2 * n + 4] = y[2 * n + 5];
+    dydt[2 * n + 5] = face;
+    if (has_face(arm)) {
+        dydt[2 * n] = arm->c->damping * y[2 * n + 5] * y[2 * n + 5];
+    }
     return GSL_SUCCESS;
 }
 
@@ -197,6 +272,10 @@ static double watched(const soft_run *r, const double *y, int which)
 {
     double depth, rate = depth_rate(&r->arm, y, &depth);
     double sign = r->arm.now == FREE ? -1 : 1;
+    if (has_face(&r->arm)) {
+        return r->arm.now == FREE ? (which == 0 ? y[2 * r->arm.bodies + 4] - depth : 1)
+                                  : (which == 1 ? force_at(&r->arm, y) : 1);
+    }
     if (which == 0) {
         return sign * depth;
     }
@@ -253,6 +332,28 @@ static double largest(soft_run *r, double h, bool force, double *at)
     return best;
 }
 
+// Arm and face strike each other and go on as one.
+static void strike(soft_run *r, soft_wall_answer *a)
+{
+    const int n = r->arm.bodies;
+    double gradient[MOST], right[MOST], x[MOST], depth, compliance = 1 / r->arm.c->face_mass;
+    double speed = depth_rate(&r->arm, r->y, &depth) - r->y[2 * n + 5];
+    depth_at(&r->arm, r->y, gradient);
+    memcpy(right, gradient, sizeof right);
+    accelerate(&r->arm, r->y, 0, right, x);
+    for (int i = 0; i < n; i++) {
+        compliance += gradient[i] * x[i];
+    }
+    const double impulse = speed / compliance;
+    for (int i = 0; i < n; i++) {
+        r->y[n + i] -= impulse * x[i];
+    }
+    r->y[2 * n + 4] = depth;
+    r->y[2 * n + 5] += impulse / r->arm.c->face_mass;
+    a->impulse = a->touches == 0 ? impulse : a->impulse;
+    a->impact_loss += impulse * speed / 2;
+}
+
 bool soft_wall_simulate(const soft_wall_case *c, soft_wall_answer *a)
 {
     soft_run r = {.time = 0};
@@ -296,13 +397,16 @@ bool soft_wall_simulate(const soft_wall_case *c, soft_wall_answer *a)
 
         // what the phase gives way to
         if (which >= 0 && r.arm.now == FREE) {
+            if (has_face(&r.arm)) {
+                strike(&r, a);
+            }
             r.arm.now = PRESSED;
             a->touches++;
             a->first_contact = a->first_contact < 0 ? r.time : a->first_contact;
         } else if (which >= 0 && r.arm.now == PRESSED) {
             double depth;
             depth_rate(&r.arm, r.y, &depth);
-            r.arm.now = which == 1 && depth > 1e-12 ? PARTED : FREE;
+            r.arm.now = which == 1 && depth > 1e-12 && !has_face(&r.arm) ? PARTED : FREE;
             a->first_pulse = a->first_pulse < 0 ? r.time - a->first_contact : a->first_pulse;
         } else if (which >= 0) {
             r.arm.now = which == 0 ? FREE : PRESSED;
@@ -313,6 +417,7 @@ bool soft_wall_simulate(const soft_wall_case *c, soft_wall_answer *a)
     a->wall_loss = r.y[2 * n];
     a->steady_force = (r.y[2 * n + 3] - at_window) / 0.1;
     a->final_hub_angle = r.y[0];
-    a->energy_residual = energy_at(&r.arm, r.y) - r.y[2 * n + 1] + r.y[2 * n + 2] + r.y[2 * n];
+    a->energy_residual =
+        energy_at(&r.arm, r.y) - r.y[2 * n + 1] + r.y[2 * n + 2] + r.y[2 * n] + a->impact_loss;
     return !r.failed;
 }

@@ -16,6 +16,7 @@ typedef struct soft_wall_case {
     double damping;     // c [N s/m^n]
     double exponent;    // n, Hunt-Crossley only
     double tip_mass;    // [kg]
+    double face_mass;   // M of the face, which the tip strikes plastically; 0: none [kg]
     double voltage;     // command [V]
     double duration;    // [s]
 } soft_wall_case;
@@ -33,6 +34,8 @@ typedef struct soft_wall_answer {
     double final_hub_angle;
     double energy_residual; // at the end [J]
     int touches;            // times that the force begins
+    double impulse;         // of the first impact on a face [N s]
+    double impact_loss;     // in all of them [J]
 } soft_wall_answer;
 
 // False if GSL's integrator gives up.
