@@ -92,6 +92,8 @@ expect 2 nothing-like-it
 says err "there is no command 'nothing-like-it'"
 expect 2 run hit.yaml --jsn x.json
 says err "did you mean --json?"
+expect 2 run hit.yaml --vary motor.voltage=1:2:3
+says err "that is one of sweep"
 expect 2 run hit.yaml --csv
 says err "needs a value"
 expect 2 run

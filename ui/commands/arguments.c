@@ -229,6 +229,20 @@ static int store_value(arguments *a, const option_row *o, char *text)
 
 // --- getopt ---------------------------------------------------------------------------------
 
+// Another command that has an option of this name, without dashes; NULL if none has.
+static const command *owner_of_option(const char *name)
+{
+    const option_row *o;
+    for (int c = 0; c < command_count; c++) {
+        for (int i = 0; (o = command_option(command_table[c], i)) != NULL; i++) {
+            if (strcmp(o->name, name) == 0) {
+                return command_table[c];
+            }
+        }
+    }
+    return NULL;
+}
+
 // What is said of an option getopt does not take.
 static int complain_option(const command *self, int found, const char *text)
 {
@@ -239,8 +253,15 @@ static int complain_option(const command *self, int found, const char *text)
         return complain("option %s needs a value (see impactlab %s --help)", text, self->name);
     }
 
-    // the nearest option is offered
+    // one that is right elsewhere
     snprintf(shown, sizeof shown, "%.*s", (int)strcspn(text, "="), text);
+    const command *owner = owner_of_option(shown + strspn(shown, "-"));
+    if (owner != NULL) {
+        return complain("%s has no option %s, that is one of %s (see impactlab %s --help)",
+                        self->name, shown, owner->name, self->name);
+    }
+
+    // the nearest option is offered
     nearest_word near = nearest_begin(shown + strspn(shown, "-"));
     for (int i = 0; (o = command_option(self, i)) != NULL; i++) {
         nearest_try(&near, o->name);
