@@ -302,19 +302,22 @@ static void test_file(void **state)
 {
     (void)state;
     recorded r = record("corrected/first-impact");
-    const scene_options options = {.renderer = RENDER_CAIRO, .width = WIDTH, .height = HEIGHT};
-    double time = 0.3;
+    const double time = 0.3;
+    const scene_picture p = {
+        .scenario = &r.scenario,
+        .result = &r.result,
+        .options = {.renderer = RENDER_CAIRO, .width = WIDTH, .height = HEIGHT},
+        .times = &time,
+        .count = 1};
     fault f = {0};
     char command[600], first[256];
     snprintf(first, sizeof first, "%s", in_folder("first.png"));
-    assert_int_equal(scene_write(&r.scenario, &r.result, &options, &time, 1, first, &f), STATUS_OK);
+    assert_int_equal(scene_write(&p, first, &f), STATUS_OK);
     check_contains(first, "Renderer");
     check_contains(first, "cairo ");
     check_contains(first, "scenario=corrected/first-impact");
     check_contains(first, "motor.voltage=1");
-    assert_int_equal(
-        scene_write(&r.scenario, &r.result, &options, &time, 1, in_folder("second.png"), &f),
-        STATUS_OK);
+    assert_int_equal(scene_write(&p, in_folder("second.png"), &f), STATUS_OK);
     snprintf(command, sizeof command, "cmp %s %s", first, in_folder("second.png"));
     assert_int_equal(system(command), 0);
     forget(&r);
@@ -324,22 +327,20 @@ static void test_refused(void **state)
 {
     (void)state;
     recorded r = record("corrected/first-impact");
-    scene_options options = {.renderer = RENDER_CAIRO, .width = WIDTH, .height = HEIGHT};
-    double late = 7, good = 0.1;
+    const double late = 7, good = 0.1;
+    scene_picture p = {.scenario = &r.scenario,
+                       .result = &r.result,
+                       .options = {.renderer = RENDER_CAIRO, .width = WIDTH, .height = HEIGHT},
+                       .times = &late,
+                       .count = 1};
     fault f = {0};
-    assert_int_equal(
-        scene_write(&r.scenario, &r.result, &options, &late, 1, in_folder("x.png"), &f),
-        STATUS_BAD_ARGUMENT);
+    assert_int_equal(scene_write(&p, in_folder("x.png"), &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "7 s"));
-    assert_int_equal(
-        scene_write(&r.scenario, &r.result, &options, &good, 1, in_folder("x.jpg"), &f),
-        STATUS_BAD_ARGUMENT);
-    assert_int_equal(scene_write(&r.scenario, &r.result, &options, &good, 1, "/nowhere/x.png", &f),
-                     STATUS_CANNOT_WRITE);
-    options.width = 3;
-    assert_int_equal(
-        scene_write(&r.scenario, &r.result, &options, &good, 1, in_folder("x.png"), &f),
-        STATUS_BAD_ARGUMENT);
+    p.times = &good;
+    assert_int_equal(scene_write(&p, in_folder("x.jpg"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(scene_write(&p, "/nowhere/x.png", &f), STATUS_CANNOT_WRITE);
+    p.options.width = 3;
+    assert_int_equal(scene_write(&p, in_folder("x.png"), &f), STATUS_BAD_ARGUMENT);
     assert_int_not_equal(access(in_folder("x.png"), F_OK), 0);
     forget(&r);
 }

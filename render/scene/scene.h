@@ -60,10 +60,19 @@ void scene_exaggerate(vector *joints, int links, double factor);
 int scene_curve(const vector *joints, int links, vector *curve);
 int scene_curve_length(int links);
 
-// Writes a picture of the instants as PNG, whole or not at all, with scenario, parameters, version
-// and renderer in its metadata. STATUS_BAD_ARGUMENT for an instant outside the run.
-status scene_write(const scenario *s, const run_result *result, const scene_options *options,
-                   const double *times, int count, const char *path, fault *f);
+// A picture for a file.
+typedef struct scene_picture {
+    const scenario *scenario;
+    const run_result *result; // with its trace
+    scene_options options;
+    const double *times; // instants [s], ascending
+    int count;           // of them, 1 to SCENE_INSTANTS
+} scene_picture;
+
+// Writes it as PNG, whole or not at all, with scenario, parameters, version and renderer in its
+// metadata. STATUS_BAD_ARGUMENT for an instant outside the run, else what scene_create and
+// scene_paint say, or STATUS_CANNOT_WRITE.
+status scene_write(const scene_picture *p, const char *path, fault *f);
 
 // Tells before long work whether scene_write could write to path.
 status scene_check_path(const char *path, fault *f);

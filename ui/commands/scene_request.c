@@ -65,7 +65,6 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
 {
     double times[SCENE_INSTANTS];
     int count = a->instants.count;
-    scene_options view = read_view(a);
     fault f = {0};
     assert(count <= SCENE_INSTANTS);
 
@@ -77,7 +76,9 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
         count = DEFAULT_INSTANTS;
         scene_instants(result, times, count);
     }
-    if (scene_write(s, result, &view, times, count, a->scene, &f) != STATUS_OK) {
+    const scene_picture picture = {
+        .scenario = s, .result = result, .options = read_view(a), .times = times, .count = count};
+    if (scene_write(&picture, a->scene, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     return EXIT_DONE;

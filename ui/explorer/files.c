@@ -214,6 +214,11 @@ action_result act_save_scene(explorer_state *st, const char *argument)
     }
 
     // the cursor's instant
-    status code = scene_write(&s->effective, &s->run, &options, &s->now, 1, argument, &f);
+    const scene_picture picture = {.scenario = &s->effective,
+                                   .result = &s->run,
+                                   .options = options,
+                                   .times = &s->now,
+                                   .count = 1};
+    status code = scene_write(&picture, argument, &f);
     return code == STATUS_OK ? tell_saved(argument) : result_of(code, &f);
 }

@@ -1,0 +1,301 @@
+#include "render/scene/scene.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/page/text.h"
+#include "render/scene/labels.h"
+#include "render/scene/scene_parts.h"
+#include "src/base/numbers.h"
+
+enum {
+    LEAST_PIXELS = 64,
+    MOST_PIXELS = 4096,
+};
+
+#define FLASH_RADIUS 0.075 // [beam lengths]
+#define FLASH_FADE   0.010 // the flash has faded to a third after that [s]
+#define PALEST       0.80  // share of the ground in the palest of several arms
+#define INSET_SHARE  0.30  // of the picture's width, for the inset
+#define INSET_MARGIN 0.02  // of the picture's width
+
+static const surroundings light_surroundings = {.page = {1, 1, 1},
+                                                .ground = {0.953, 0.957, 0.965},
+                                                .line = {0.816, 0.835, 0.859},
+                                                .far = {0.94, 0.945, 0.955},
+                                                .strong = {0.13, 0.14, 0.16},
+                                                .faint = {0.34, 0.36, 0.39}};
+static const surroundings dark_surroundings = {.page = {0.07, 0.075, 0.085},
+                                               .ground = {0.12, 0.13, 0.145},
+                                               .line = {0.23, 0.245, 0.27},
+                                               .far = {0.14, 0.15, 0.165},
+                                               .strong = {0.94, 0.945, 0.955},
+                                               .faint = {0.72, 0.74, 0.77}};
+
+static status check_options(const scene *sc, fault *f)
+{
+    const scene_options *o = &sc->options;
+    if (o->width < LEAST_PIXELS || o->width > MOST_PIXELS || o->height < LEAST_PIXELS ||
+        o->height > MOST_PIXELS) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "a scene of %d x %d pixels, expected %d to %d along each edge", o->width,
+                         o->height, LEAST_PIXELS, MOST_PIXELS);
+    }
+    if (sc->result->trace.row_count == 0) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw");
+    }
+    return text_check_font(f);
+}
+
+// The inset: a scene of its own, from near by.
+static status open_inset(scene *sc, fault *f)
+{
+    scene_options o = sc->options;
+    o.camera = (camera_view){.kind = CAMERA_TIP};
+    o.width = (int)(INSET_SHARE * o.width) / 2 * 2;
+    o.height = (int)(0.72 * o.width) / 2 * 2;
+    o.plain = true;
+    o.inset = o.transparent = false;
+    return scene_create(&sc->tip, sc->scenario, sc->result, &o, f);
+}
+
+static status prepare(scene *sc, fault *f)
+{
+    const trace *t = &sc->result->trace;
+    status code = check_options(sc, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // room for one shape
+    sc->joints = malloc(((size_t)sc->links + 1) * sizeof *sc->joints);
+    sc->curve = malloc((size_t)scene_curve_length(sc->links) * sizeof *sc->curve);
+    if (sc->joints == NULL || sc->curve == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d links", sc->links);
+    }
+
+    // arrows and flashes are drawn relative to the largest force and impulse
+    for (size_t i = 0; i < t->row_count; i++) {
+        sc->largest = fmax(sc->largest, t->rows[i].force);
+    }
+    for (size_t i = 0; i < t->event_count; i++) {
+        sc->impulse = fmax(sc->impulse, t->events[i].impulse);
+    }
+
+    sc->context = text_context_create();
+    code = scene_set_view(sc, f);
+    if (code == STATUS_OK) {
+        int samples = sc->options.samples > 0 ? sc->options.samples : SAMPLES_FINE;
+        code = scene_painter_create(&sc->painter, sc->options.renderer, sc->options.width,
+                                    sc->options.height, samples, f);
+    }
+    return code == STATUS_OK && sc->options.inset ? open_inset(sc, f) : code;
+}
+
+status scene_create(scene **out, const scenario *s, const run_result *result,
+                    const scene_options *options, fault *f)
+{
+    assert(out != NULL && s != NULL && result != NULL);
+    scene *sc = calloc(1, sizeof *sc);
+    *out = NULL;
+    if (sc == NULL) {
+        return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene");
+    }
+
+    sc->scenario = s;
+    sc->result = result;
+    sc->options = *options;
+    sc->around = options->theme == THEME_DARK ? &dark_surroundings : &light_surroundings;
+
+    if (options->width == 0 && options->height == 0) {
+        sc->options.width = 1280;
+        sc->options.height = 720;
+    }
+
+    sc->links = s->parameters.arm.links;
+    sc->length = s->parameters.arm.length;
+    sc->grid = scene_grid_of(sc->length);
+
+    status code = prepare(sc, f);
+    if (code != STATUS_OK) {
+        scene_destroy(sc);
+        return code;
+    }
+    *out = sc;
+    return STATUS_OK;
+}
+
+void scene_destroy(scene *sc)
+{
+    if (sc != NULL) {
+        scene_destroy(sc->tip);
+        scene_painter_destroy(sc->painter);
+        scene_floor_finish(&sc->floor);
+        mesh_finish(&sc->mesh);
+        mesh_finish(&sc->ghost);
+        g_clear_object(&sc->context);
+        free(sc->joints);
+        free(sc->curve);
+        free(sc);
+    }
+}
+
+const char *scene_renderer_name(const scene *sc)
+{
+    assert(sc != NULL);
+    return scene_painter_name(sc->painter);
+}
+
+// ---- the picture
+
+// The flash of every impact shortly before `time`.
+static void draw_flashes(scene *sc, const labels *l, double time)
+{
+    const trace *t = &sc->result->trace;
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= time; i++) {
+        const event *e = &t->events[i];
+        double strength = exp(-(time - e->time) / FLASH_FADE);
+        if (e->kind == EVENT_IMPACT && e->impulse > 0 && strength > 0.03) {
+            double size = FLASH_RADIUS * sqrt(e->impulse / sc->impulse);
+            scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
+            labels_flash(l, scene_contact(sc, sc->joints), size * sc->length, strength);
+        }
+    }
+}
+
+// Of letters and lines: 1 for a picture 720 pixels high.
+static double letter_scale(const scene *sc)
+{
+    return sc->options.letters > 0 ? sc->options.letters
+                                   : fmin(sc->camera.height / 720, sc->camera.width / 800);
+}
+
+static void draw_labels(scene *sc, const double *times, const colour *inks, int count,
+                        cairo_surface_t *onto)
+{
+    labels l = {.cr = cairo_create(onto),
+                .context = sc->context,
+                .camera = &sc->camera,
+                .strong = sc->around->strong,
+                .faint = sc->around->faint,
+                .scale = letter_scale(sc)};
+    double time = times[count - 1];
+    vector start, end;
+    draw_flashes(sc, &l, time);
+
+    // what a plain scene goes without
+    if (!sc->options.plain) {
+        char facts[160], bending[64] = "";
+        sample row = scene_shape(sc, time);
+
+        if (scene_force_arrow(sc, &row, &start, &end)) {
+            bool dark = sc->options.theme == THEME_DARK;
+            labels_force(&l, start, end, row.force,
+                         dark ? (colour){1, 0.62, 0.30} : (colour){0.70, 0.28, 0});
+        }
+
+        // what is not as it is has to be said
+        if (sc->options.exaggerate > 0 && sc->options.exaggerate != 1) {
+            decimal_print(bending, sizeof bending, " \u00b7 bending drawn %g times as large",
+                          sc->options.exaggerate);
+        }
+        decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s",
+                      1e3 * time, sc->grid, bending);
+        labels_caption(&l, sc->scenario->title, facts);
+        if (count > 1 && !sc->options.keyless) {
+            labels_instants(&l, times, inks, count);
+        }
+    }
+    cairo_destroy(l.cr);
+}
+
+// The ground on which all else is painted, with the shadow of what does not hover.
+static void paint_ground(scene *sc, cairo_surface_t *onto)
+{
+    if (!sc->options.transparent) {
+        scene_floor_paint(&sc->floor, &sc->mesh, onto);
+        return;
+    }
+    cairo_t *cr = cairo_create(onto);
+    cairo_set_operator(cr, CAIRO_OPERATOR_CLEAR);
+    cairo_paint(cr);
+    cairo_destroy(cr);
+}
+
+// The contact from near by, framed, in the upper right corner.
+static status paint_inset(scene *sc, const double *times, int count, cairo_surface_t *onto,
+                          fault *f)
+{
+    scene *tip = sc->tip;
+    int width = tip->options.width, height = tip->options.height;
+    cairo_surface_t *view = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    status code = scene_paint(tip, times, count, view, f);
+
+    // its frame and how much larger it is than the picture, at the contact
+    if (code == STATUS_OK) {
+        double margin = INSET_MARGIN * sc->options.width, left = sc->options.width - width - margin;
+        vector at = scene_contact(sc, sc->joints);
+        const double larger =
+            labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
+        labels l = {.cr = cairo_create(onto),
+                    .context = sc->context,
+                    .camera = &sc->camera,
+                    .strong = sc->around->strong,
+                    .faint = sc->around->faint,
+                    .scale = letter_scale(sc)};
+        cairo_set_source_surface(l.cr, view, left, margin);
+        cairo_paint(l.cr);
+        set_colour(l.cr, sc->around->faint);
+        cairo_set_line_width(l.cr, fmax(1, l.scale));
+        cairo_rectangle(l.cr, left, margin, width, height);
+        cairo_stroke(l.cr);
+        if (!sc->options.plain) {
+            labels_inset(&l, left, margin + height, larger);
+        }
+        cairo_destroy(l.cr);
+    }
+    cairo_surface_destroy(view);
+    return code;
+}
+
+status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto, fault *f)
+{
+    assert(sc != NULL && times != NULL && count > 0 && onto != NULL);
+    colour inks[SCENE_INSTANTS];
+    status code = STATUS_OK;
+    double now = times[count - 1];
+    painting full = {.mesh = &sc->mesh, .camera = &sc->camera, .light = sc->light, .opacity = 1};
+
+    // what is there now, and its shadow
+    mesh_clear(&sc->mesh);
+    scene_build_arm(sc, &sc->mesh, now);
+    sample last = scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
+    scene_build_hub(sc, last.hub_angle);
+    scene_build_wall(sc);
+    paint_ground(sc, onto);
+
+    // ghosts of earlier instants behind it
+    for (int i = 0; i < count && code == STATUS_OK; i++) {
+        double pale = count > 1 ? PALEST * (count - 1 - i) / (count - 1) : 0;
+        inks[i] = scene_paler(sc, beam_steel, pale).colour;
+        if (i < count - 1) {
+            painting ghost = full;
+            ghost.mesh = &sc->ghost;
+            ghost.opacity = 1 - pale;
+            mesh_clear(&sc->ghost);
+            scene_build_arm(sc, &sc->ghost, times[i]);
+            code = scene_painter_paint(sc->painter, &ghost, onto, f);
+        }
+    }
+
+    // the trail hovers and throws no shadow
+    scene_build_trail(sc, sc->result->trace.rows[0].time, now);
+    if (code == STATUS_OK) {
+        code = scene_painter_paint(sc->painter, &full, onto, f);
+    }
+    if (code == STATUS_OK) {
+        draw_labels(sc, times, inks, count, onto);
+    }
+    return code == STATUS_OK && sc->tip != NULL ? paint_inset(sc, times, count, onto, f) : code;
+}
