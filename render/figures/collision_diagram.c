@@ -54,7 +54,7 @@ static void write_value(sketch *s, point at, double ax, const char *symbol, doub
     char *number = text_number(value, 3), shown[32];
     text_unit(unit, shown, sizeof shown);
     char *text = g_strdup_printf("%s = %s\u2009%s", symbol, number, shown);
-    sketch_text(s, at.x, at.y, ax, 0.5, text, SKETCH_SMALL);
+    sketch_text(s, at, (anchor){ax, 0.5}, text, SKETCH_SMALL);
     g_free(text);
     g_free(number);
 }
@@ -72,39 +72,39 @@ static void draw_arm(sketch *s, const diagram *d)
     double tip_before = joint_before + l * d->before.velocity[2];
 
     // the wall and the arm
-    sketch_wall(s, contact.x + 34, contact.y - 5, contact.x - 6, contact.y - 5);
-    sketch_dashed(s, hub_page.x, hub_page.y, contact.x, contact.y, SKETCH_FAINT);
-    sketch_bar(s, hub_page.x, hub_page.y, joint_page.x, joint_page.y, 7);
-    sketch_bar(s, joint_page.x, joint_page.y, contact.x, contact.y, 7);
-    sketch_disc(s, hub_page.x, hub_page.y, 14, SKETCH_INK, false);
-    sketch_disc(s, hub_page.x, hub_page.y, 2, SKETCH_INK, true);
-    sketch_disc(s, joint_page.x, joint_page.y, 2.6, SKETCH_INK, true);
-    sketch_text(s, hub_page.x, hub_page.y + 18, 0.5, 0, "hub", SKETCH_SMALL);
-    sketch_text(s, contact.x + 8, contact.y + 4, 0, 0, "(<i>a</i>, <i>b</i>)", SKETCH_SMALL);
+    sketch_wall(s, shifted(contact, 34, -5), shifted(contact, -6, -5));
+    sketch_dashed(s, hub_page, contact, SKETCH_FAINT);
+    sketch_bar(s, hub_page, joint_page, 7);
+    sketch_bar(s, joint_page, contact, 7);
+    sketch_disc(s, hub_page, 14, SKETCH_INK, false);
+    sketch_disc(s, hub_page, 2, SKETCH_INK, true);
+    sketch_disc(s, joint_page, 2.6, SKETCH_INK, true);
+    sketch_text(s, shifted(hub_page, 0, 18), (anchor){0.5, 0}, "hub", SKETCH_SMALL);
+    sketch_text(s, shifted(contact, 8, 4), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)", SKETCH_SMALL);
 
     // velocities of the joint: before to the left of it, after to the right
     double y = joint_page.y - 6;
-    sketch_arrow(s, joint_page.x - 6, y, joint_page.x - 6, y - SPEED_LENGTH * joint_before, 2);
-    sketch_dashed_arrow(s, joint_page.x + 6, y, joint_page.x + 6, y - SPEED_LENGTH * joint_after,
-                        1);
+    sketch_arrow(s, (point){joint_page.x - 6, y},
+                 (point){joint_page.x - 6, y - SPEED_LENGTH * joint_before}, 2);
+    sketch_dashed_arrow(s, (point){joint_page.x + 6, y},
+                        (point){joint_page.x + 6, y - SPEED_LENGTH * joint_after}, 1);
     decimal_print(text, sizeof text, "before\n%.3f\u2009m/s", joint_before);
-    sketch_text(s, joint_page.x - 12, y - 4, 1, 1, text, SKETCH_SMALL);
+    sketch_text(s, (point){joint_page.x - 12, y - 4}, (anchor){1, 1}, text, SKETCH_SMALL);
     decimal_print(text, sizeof text, "after\n%.3f\u2009m/s", joint_after);
-    sketch_text(s, joint_page.x + 12, y - 4, 0, 1, text, SKETCH_SMALL);
+    sketch_text(s, (point){joint_page.x + 12, y - 4}, (anchor){0, 1}, text, SKETCH_SMALL);
 
     // the tip arrives, and is stopped by the wall's impulse
-    sketch_arrow(s, contact.x - 8, contact.y + 6 + SPEED_LENGTH * tip_before, contact.x - 8,
-                 contact.y + 6, 2);
+    sketch_arrow(s, (point){contact.x - 8, contact.y + 6 + SPEED_LENGTH * tip_before},
+                 shifted(contact, -8, 6), 2);
     decimal_print(text, sizeof text, "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
-    sketch_text(s, contact.x - 14, contact.y + 14, 1, 0, text, SKETCH_SMALL);
-    sketch_arrow(s, contact.x, contact.y - 50, contact.x, contact.y - 6, 5);
+    sketch_text(s, shifted(contact, -14, 14), (anchor){1, 0}, text, SKETCH_SMALL);
+    sketch_arrow(s, shifted(contact, 0, -50), shifted(contact, 0, -6), 5);
     decimal_print(text, sizeof text, "impulse %.4f\u2009N·s", d->impulse);
-    sketch_text(s, contact.x, contact.y - 53, 0.5, 1, text, SKETCH_SMALL);
+    sketch_text(s, shifted(contact, 0, -53), (anchor){0.5, 1}, text, SKETCH_SMALL);
 
     // where the last body is cut free
-    sketch_dashed(s, joint_page.x, joint_page.y - 12, joint_page.x, joint_page.y + 34,
-                  SKETCH_FAINT);
-    sketch_text(s, joint_page.x - 4, joint_page.y + 34, 1, 1, "cut", SKETCH_SMALL);
+    sketch_dashed(s, shifted(joint_page, 0, -12), shifted(joint_page, 0, 34), SKETCH_FAINT);
+    sketch_text(s, shifted(joint_page, -4, 34), (anchor){1, 1}, "cut", SKETCH_SMALL);
 }
 
 // The last body on its own, along the page.
@@ -115,38 +115,41 @@ static void draw_cut_body(sketch *s, const diagram *d)
     point centre = {s->left + 74 + BODY_LENGTH / 2, y};
     point hinge = {centre.x - metre * b.half, y}, hit = {centre.x + metre * b.rho, y};
 
-    sketch_bar(s, hinge.x, hinge.y, centre.x + metre * b.half, y, 9);
-    sketch_mass_point(s, centre.x, centre.y);
-    sketch_disc(s, hinge.x, hinge.y, 2.6, SKETCH_INK, true);
-    sketch_text(s, centre.x - 5, y - 7, 1, 1, "<i>C</i>", SKETCH_LABEL);
-    sketch_text(s, hit.x + 8, y + 3, 0, 0, "<i>P</i>", SKETCH_LABEL);
+    sketch_bar(s, hinge, (point){centre.x + metre * b.half, y}, 9);
+    sketch_mass_point(s, centre);
+    sketch_disc(s, hinge, 2.6, SKETCH_INK, true);
+    sketch_text(s, (point){centre.x - 5, y - 7}, (anchor){1, 1}, "<i>C</i>", SKETCH_LABEL);
+    sketch_text(s, (point){hit.x + 8, y + 3}, (anchor){0, 0}, "<i>P</i>", SKETCH_LABEL);
 
     // impulses of wall and hinge: an arrow that points down ends at the body
     double wall = IMPULSE_LENGTH * fabs(b.wall_impulse);
     double pin = IMPULSE_LENGTH * b.hinge_impulse;
-    sketch_arrow(s, hit.x, y - 6 - wall, hit.x, y - 6, 5);
+    sketch_arrow(s, (point){hit.x, y - 6 - wall}, (point){hit.x, y - 6}, 5);
     write_value(s, (point){hit.x, y - 14 - wall}, 0.5, "<i>F̂</i><sup>c</sup>", b.wall_impulse,
                 "N s");
-    sketch_arrow(s, hinge.x, pin > 0 ? y - 6 : y - 6 + pin, hinge.x, pin > 0 ? y - 6 - pin : y - 6,
-                 5);
+    sketch_arrow(s, (point){hinge.x, pin > 0 ? y - 6 : y - 6 + pin},
+                 (point){hinge.x, pin > 0 ? y - 6 - pin : y - 6}, 5);
     write_value(s, (point){hinge.x, y - 14 - fabs(pin)}, 0.5, "<i>X̂</i><sup>c</sup>",
                 b.hinge_impulse, "N s");
 
     // the hinge's torque about C, and how the body's motion jumps
-    sketch_arc(s, hinge.x, hinge.y, 18, b.hinge_torque < 0 ? 3.7 : 2.6,
-               b.hinge_torque < 0 ? 2.6 : 3.7, 0, true);
+    sketch_arc(
+        s, (arc){hinge, 18, b.hinge_torque < 0 ? 3.7 : 2.6, b.hinge_torque < 0 ? 2.6 : 3.7, true},
+        0);
     write_value(s, (point){hinge.x - 4, y + 44}, 0.5, "<i>Ŷ</i><sup>c</sup>", b.hinge_torque,
                 "N m s");
     double jump = SPEED_LENGTH * b.centre_jump, from = b.centre_jump < 0 ? y + 7 : y - 7;
-    sketch_dashed_arrow(s, centre.x, from, centre.x, from - jump, 1);
+    sketch_dashed_arrow(s, (point){centre.x, from}, (point){centre.x, from - jump}, 1);
     write_value(s, (point){centre.x - 8, from - 0.7 * jump}, 1, "Δ<i>v</i><sub>C</sub>",
                 b.centre_jump, "m/s");
-    sketch_arc(s, centre.x, y, 30, b.angular_jump < 0 ? -0.5 : -1.6,
-               b.angular_jump < 0 ? -1.6 : -0.5, 1, true);
+    sketch_arc(s,
+               (arc){(point){centre.x, y}, 30, b.angular_jump < 0 ? -0.5 : -1.6,
+                     b.angular_jump < 0 ? -1.6 : -0.5, true},
+               1);
     write_value(s, (point){centre.x + 30, y + 22}, 0, "Δ<i>ω</i>", b.angular_jump, "rad/s");
 
     // the lever of the wall's impulse
-    sketch_measure(s, centre.x, y + 42, hit.x, y + 42);
+    sketch_measure(s, (point){centre.x, y + 42}, (point){hit.x, y + 42});
     write_value(s, (point){(centre.x + hit.x) / 2, y + 50}, 0.5, "<i>ρ</i>", b.rho, "m");
 }
 

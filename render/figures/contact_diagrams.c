@@ -53,18 +53,18 @@ static double direction_of(point from, point to)
 
 static void draw_dashed_arm(const sketch *s, arm_places a, int slot)
 {
-    sketch_dashed(s, a.hub.x, a.hub.y, a.joint.x, a.joint.y, slot);
-    sketch_dashed(s, a.joint.x, a.joint.y, a.end.x, a.end.y, slot);
-    sketch_disc(s, a.joint.x, a.joint.y, 2, slot, true);
+    sketch_dashed(s, a.hub, a.joint, slot);
+    sketch_dashed(s, a.joint, a.end, slot);
+    sketch_disc(s, a.joint, 2, slot, true);
 }
 
 static void draw_full_arm(const sketch *s, arm_places a)
 {
-    sketch_bar(s, a.hub.x, a.hub.y, a.joint.x, a.joint.y, 5);
-    sketch_bar(s, a.joint.x, a.joint.y, a.end.x, a.end.y, 5);
-    sketch_disc(s, a.joint.x, a.joint.y, 2.4, SKETCH_INK, true);
-    sketch_disc(s, a.hub.x, a.hub.y, 12, SKETCH_INK, false);
-    sketch_disc(s, a.hub.x, a.hub.y, 2, SKETCH_INK, true);
+    sketch_bar(s, a.hub, a.joint, 5);
+    sketch_bar(s, a.joint, a.end, 5);
+    sketch_disc(s, a.joint, 2.4, SKETCH_INK, true);
+    sketch_disc(s, a.hub, 12, SKETCH_INK, false);
+    sketch_disc(s, a.hub, 2, SKETCH_INK, true);
 }
 
 // Wall and contact force at a place, across a link that has the given direction on the page.
@@ -72,17 +72,19 @@ static void draw_wall(sketch *s, point at, double direction, const char *force)
 {
     double ux = cos(direction), uy = -sin(direction), nx = -sin(direction), ny = -cos(direction);
     point wall = {at.x + 4 * nx, at.y + 4 * ny};
-    sketch_wall(s, wall.x + 16 * ux, wall.y + 16 * uy, wall.x - 16 * ux, wall.y - 16 * uy);
+    sketch_wall(s, (point){wall.x + 16 * ux, wall.y + 16 * uy},
+                (point){wall.x - 16 * ux, wall.y - 16 * uy});
 
     point start = {at.x + (FORCE_LENGTH + 4) * nx, at.y + (FORCE_LENGTH + 4) * ny};
-    sketch_arrow(s, start.x, start.y, at.x + 4 * nx, at.y + 4 * ny, 5);
-    sketch_text(s, start.x + 4 * nx, start.y + 4 * ny, 0.5, 1, force, SKETCH_LABEL);
+    sketch_arrow(s, start, (point){at.x + 4 * nx, at.y + 4 * ny}, 5);
+    sketch_text(s, (point){start.x + 4 * nx, start.y + 4 * ny}, (anchor){0.5, 1}, force,
+                SKETCH_LABEL);
 }
 
 // An angle with the dashed line that it is measured from.
 static void draw_angle(sketch *s, point at, double radius, double to, const char *markup)
 {
-    sketch_dashed(s, at.x, at.y, at.x + radius + 14, at.y, SKETCH_FAINT);
+    sketch_dashed(s, at, (point){at.x + radius + 14, at.y}, SKETCH_FAINT);
     diagram_angle(s, at, (angle_arc){radius, 0, to, markup});
 }
 
@@ -106,23 +108,25 @@ static void draw_contact(sketch *s, const diagram *d)
     arm_places one = places_of(&v, d, of->one, 0), other = places_of(&v, d, of->other, 0);
 
     // the reference line and the coordinates of the contact point
-    sketch_dashed(s, one.hub.x, one.hub.y, foot.x + 46, foot.y, SKETCH_FAINT);
-    sketch_dashed(s, contact.x, contact.y, contact.x + 46, contact.y, SKETCH_FAINT);
-    sketch_measure(s, one.hub.x, foot.y + 16, foot.x, foot.y + 16);
-    sketch_text(s, (one.hub.x + foot.x) / 2, foot.y + 18, 0.5, 0, "<i>a</i>", SKETCH_LABEL);
-    sketch_measure(s, contact.x + 38, foot.y, contact.x + 38, contact.y);
-    sketch_text(s, contact.x + 42, (foot.y + contact.y) / 2, 0, 0.5, "<i>b</i>", SKETCH_LABEL);
-    sketch_text(s, contact.x + 8, contact.y + 3, 0, 0, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
+    sketch_dashed(s, one.hub, shifted(foot, 46, 0), SKETCH_FAINT);
+    sketch_dashed(s, contact, shifted(contact, 46, 0), SKETCH_FAINT);
+    sketch_measure(s, (point){one.hub.x, foot.y + 16}, shifted(foot, 0, 16));
+    sketch_text(s, (point){(one.hub.x + foot.x) / 2, foot.y + 18}, (anchor){0.5, 0}, "<i>a</i>",
+                SKETCH_LABEL);
+    sketch_measure(s, (point){contact.x + 38, foot.y}, shifted(contact, 38, 0));
+    sketch_text(s, (point){contact.x + 42, (foot.y + contact.y) / 2}, (anchor){0, 0.5}, "<i>b</i>",
+                SKETCH_LABEL);
+    sketch_text(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
 
     // both configurations, and the angles of the first
     draw_full_arm(s, one);
     draw_dashed_arm(s, other, 0);
     draw_angle(s, one.hub, 84, direction_of(one.hub, one.joint), "<i>θ</i><sub>2</sub>");
     draw_angle(s, one.joint, 62, direction_of(one.joint, one.end), "<i>θ</i><sub>3</sub>");
-    sketch_text(s, (one.hub.x + one.joint.x) / 2 - 10, (one.hub.y + one.joint.y) / 2 - 6, 1, 1,
-                "<i>l</i>", SKETCH_LABEL);
-    sketch_text(s, (one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8, 1, 1,
-                "<i>l</i>", SKETCH_LABEL);
+    sketch_text(s, (point){(one.hub.x + one.joint.x) / 2 - 10, (one.hub.y + one.joint.y) / 2 - 6},
+                (anchor){1, 1}, "<i>l</i>", SKETCH_LABEL);
+    sketch_text(s, (point){(one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8},
+                (anchor){1, 1}, "<i>l</i>", SKETCH_LABEL);
 
     char *force = force_text("<i>f</i>", of->one.force);
     draw_wall(s, contact, direction_of(one.joint, contact), force);
@@ -131,12 +135,12 @@ static void draw_contact(sketch *s, const diagram *d)
     // which is which
     char text[96];
     double key = s->top + 14;
-    sketch_bar(s, s->left + 4, key, s->left + 26, key, 5);
+    sketch_bar(s, (point){s->left + 4, key}, (point){s->left + 26, key}, 5);
     decimal_print(text, sizeof text, "<i>t</i> = %.2f\u2009s", of->one.time);
-    sketch_text(s, s->left + 32, key, 0, 0.5, text, SKETCH_SMALL);
-    sketch_dashed(s, s->left + 4, key + 14, s->left + 26, key + 14, 0);
+    sketch_text(s, (point){s->left + 32, key}, (anchor){0, 0.5}, text, SKETCH_SMALL);
+    sketch_dashed(s, (point){s->left + 4, key + 14}, (point){s->left + 26, key + 14}, 0);
     decimal_print(text, sizeof text, "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
-    sketch_text(s, s->left + 32, key + 14, 0, 0.5, text, SKETCH_SMALL);
+    sketch_text(s, (point){s->left + 32, key + 14}, (anchor){0, 0.5}, text, SKETCH_SMALL);
 }
 
 // The pair of successive rows in contact between which the first link turns most.
@@ -220,12 +224,12 @@ static void draw_deformation(sketch *s, const diagram *d)
     arm_places assumed = places_of(&v, d, of->assumed, wall);
 
     // the line to the contact point, and the three shapes
-    sketch_dashed(s, peak.hub.x, peak.hub.y, contact.x, contact.y, SKETCH_FAINT);
+    sketch_dashed(s, peak.hub, contact, SKETCH_FAINT);
     draw_dashed_arm(s, touch, SKETCH_FAINT);
     draw_dashed_arm(s, assumed, 1);
     draw_full_arm(s, peak);
-    sketch_text(s, contact.x + 8, contact.y + 3, 0, 0, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
-    sketch_text(s, peak.hub.x, peak.hub.y + 15, 0.5, 0, "<i>O</i>", SKETCH_LABEL);
+    sketch_text(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
+    sketch_text(s, shifted(peak.hub, 0, 15), (anchor){0.5, 0}, "<i>O</i>", SKETCH_LABEL);
 
     // angles from that line
     diagram_angle(s, peak.hub,
@@ -239,9 +243,11 @@ static void draw_deformation(sketch *s, const diagram *d)
     g_free(force);
 
     // a name at each joint
-    sketch_text(s, assumed.joint.x, assumed.joint.y - 5, 0.5, 1, "energy principle", SKETCH_SMALL);
-    sketch_text(s, peak.joint.x, peak.joint.y + 14, 0.5, 0, "at the peak", SKETCH_SMALL);
-    sketch_text(s, touch.joint.x, peak.hub.y + 4, 0.5, 0, "at first contact", SKETCH_SMALL);
+    sketch_text(s, shifted(assumed.joint, 0, -5), (anchor){0.5, 1}, "energy principle",
+                SKETCH_SMALL);
+    sketch_text(s, shifted(peak.joint, 0, 14), (anchor){0.5, 0}, "at the peak", SKETCH_SMALL);
+    sketch_text(s, (point){touch.joint.x, peak.hub.y + 4}, (anchor){0.5, 0}, "at first contact",
+                SKETCH_SMALL);
 }
 
 // The row nearest to an instant.

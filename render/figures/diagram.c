@@ -133,9 +133,9 @@ point view_end(point from, double length, double angle)
 void diagram_angle(sketch *s, point at, angle_arc a)
 {
     double middle = (a.from + a.to) / 2, away = a.radius + 3;
-    sketch_arc(s, at.x, at.y, a.radius, a.from, a.to, SKETCH_INK, true);
-    sketch_text(s, at.x + away * cos(middle), at.y - away * sin(middle), 0, 0.5, a.markup,
-                SKETCH_LABEL);
+    sketch_arc(s, (arc){at, a.radius, a.from, a.to, true}, SKETCH_INK);
+    sketch_text(s, (point){at.x + away * cos(middle), at.y - away * sin(middle)}, (anchor){0, 0.5},
+                a.markup, SKETCH_LABEL);
 }
 
 artwork artwork_of_diagram(diagram *d)

@@ -27,11 +27,6 @@ typedef struct diagram {
     void *shapes;              // 3.1, 4.6: owned, what their own file draws
 } diagram;
 
-// A place on the page [pt] or in the model [m].
-typedef struct point {
-    double x, y;
-} point;
-
 // Where the model's metres are on the page; y upwards in the model. `across` enlarges what lies
 // across the line to the right.
 typedef struct view {

@@ -16,16 +16,16 @@
 
 static void draw_ground(const sketch *s, double x, double y)
 {
-    sketch_line(s, x, y, x, y + 5, 0.8, SKETCH_INK);
+    sketch_line(s, (point){x, y}, (point){x, y + 5}, 0.8, SKETCH_INK);
     for (int i = 0; i < 3; i++) {
-        sketch_line(s, x - 6 + 2 * i, y + 5 + 2.4 * i, x + 6 - 2 * i, y + 5 + 2.4 * i, 0.8,
-                    SKETCH_INK);
+        sketch_line(s, (point){x - 6 + 2 * i, y + 5 + 2.4 * i},
+                    (point){x + 6 - 2 * i, y + 5 + 2.4 * i}, 0.8, SKETCH_INK);
     }
 }
 
 static void wire(const sketch *s, double x0, double y0, double x1, double y1)
 {
-    sketch_line(s, x0, y0, x1, y1, 0.8, SKETCH_INK);
+    sketch_line(s, (point){x0, y0}, (point){x1, y1}, 0.8, SKETCH_INK);
 }
 
 // An amplifier whose inputs are at (x, y - 10) and (x, y + 10) and whose output is at (x + 40, y).
@@ -34,8 +34,8 @@ static void draw_amplifier(sketch *s, double x, double y)
     wire(s, x, y - 22, x, y + 22);
     wire(s, x, y - 22, x + 40, y);
     wire(s, x, y + 22, x + 40, y);
-    sketch_text(s, x + 7, y - 10, 0.5, 0.5, "+", SKETCH_LABEL);
-    sketch_text(s, x + 7, y + 10, 0.5, 0.5, "\u2212", SKETCH_LABEL);
+    sketch_text(s, (point){x + 7, y - 10}, (anchor){0.5, 0.5}, "+", SKETCH_LABEL);
+    sketch_text(s, (point){x + 7, y + 10}, (anchor){0.5, 0.5}, "\u2212", SKETCH_LABEL);
 }
 
 static void draw_divider(sketch *s, const sensor_parameters *p, double x, double y)
@@ -44,22 +44,22 @@ static void draw_divider(sketch *s, const sensor_parameters *p, double x, double
 
     // supply
     decimal_print(text, sizeof text, "<i>V</i><sub>+</sub> = %g\u2009V", p->fsr_supply);
-    sketch_text(s, x, y, 0.5, 0, text, SKETCH_SMALL);
-    sketch_disc(s, x, y + 14, 1.8, SKETCH_INK, false);
+    sketch_text(s, (point){x, y}, (anchor){0.5, 0}, text, SKETCH_SMALL);
+    sketch_disc(s, (point){x, y + 14}, 1.8, SKETCH_INK, false);
     wire(s, x, y + 16, x, y + 20);
 
     // sensor, which the force presses
-    sketch_resistor(s, x, y + 18, x, y + 62);
-    sketch_text(s, x + 9, y + 40, 0, 0.5, "FSR", SKETCH_SMALL);
-    sketch_arrow(s, x - 34, y + 40, x - 8, y + 40, 5);
-    sketch_text(s, x - 38, y + 40, 1, 0.5, "<i>f</i>", SKETCH_LABEL);
+    sketch_resistor(s, (point){x, y + 18}, (point){x, y + 62});
+    sketch_text(s, (point){x + 9, y + 40}, (anchor){0, 0.5}, "FSR", SKETCH_SMALL);
+    sketch_arrow(s, (point){x - 34, y + 40}, (point){x - 8, y + 40}, 5);
+    sketch_text(s, (point){x - 38, y + 40}, (anchor){1, 0.5}, "<i>f</i>", SKETCH_LABEL);
 
     // measuring resistor to ground; the divider's output between them
-    sketch_resistor(s, x, y + 62, x, y + 116);
+    sketch_resistor(s, (point){x, y + 62}, (point){x, y + 116});
     decimal_print(text, sizeof text, "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
-    sketch_text(s, x - 9, y + 92, 1, 0.5, text, SKETCH_SMALL);
+    sketch_text(s, (point){x - 9, y + 92}, (anchor){1, 0.5}, text, SKETCH_SMALL);
     draw_ground(s, x, y + 112);
-    sketch_disc(s, x, y + 62, 1.7, SKETCH_INK, true);
+    sketch_disc(s, (point){x, y + 62}, 1.7, SKETCH_INK, true);
 }
 
 // From the divider's node at (x, y) through buffer and gain stage to the output.
@@ -71,37 +71,39 @@ static void draw_stages(sketch *s, double x, double y)
     wire(s, x, y, first, y);
     draw_amplifier(s, first, y + 10);
     wire(s, first + 40, y + 10, second, y + 10);
-    sketch_disc(s, first + 52, y + 10, 1.7, SKETCH_INK, true);
+    sketch_disc(s, (point){first + 52, y + 10}, 1.7, SKETCH_INK, true);
     wire(s, first + 52, y + 10, first + 52, y + 44);
     wire(s, first + 52, y + 44, first - 10, y + 44);
     wire(s, first - 10, y + 44, first - 10, y + 20);
     wire(s, first - 10, y + 20, first, y + 20);
-    sketch_text(s, first + 10, y - 20, 0.5, 1, "buffer", SKETCH_SMALL);
+    sketch_text(s, (point){first + 10, y - 20}, (anchor){0.5, 1}, "buffer", SKETCH_SMALL);
 
     // the amplifier
     draw_amplifier(s, second, y + 20);
-    sketch_text(s, second + 14, y - 10, 0.5, 1,
+    sketch_text(s, (point){second + 14, y - 10}, (anchor){0.5, 1},
                 "gain 1 + <i>R</i><sub>6</sub>/<i>R</i><sub>5</sub> = 2", SKETCH_SMALL);
 
     // its feedback
     wire(s, second, y + 30, node, y + 30);
     wire(s, node, y + 30, node, y + 62);
-    sketch_disc(s, node, y + 62, 1.7, SKETCH_INK, true);
-    sketch_resistor(s, node, y + 62, second + 54, y + 62);
-    sketch_text(s, (node + second + 54) / 2, y + 69, 0.5, 0, "<i>R</i><sub>6</sub> = 10\u2009kΩ",
-                SKETCH_SMALL);
+    sketch_disc(s, (point){node, y + 62}, 1.7, SKETCH_INK, true);
+    sketch_resistor(s, (point){node, y + 62}, (point){second + 54, y + 62});
+    sketch_text(s, (point){(node + second + 54) / 2, y + 69}, (anchor){0.5, 0},
+                "<i>R</i><sub>6</sub> = 10\u2009kΩ", SKETCH_SMALL);
     wire(s, second + 54, y + 62, second + 54, y + 20);
-    sketch_disc(s, second + 54, y + 20, 1.7, SKETCH_INK, true);
+    sketch_disc(s, (point){second + 54, y + 20}, 1.7, SKETCH_INK, true);
 
     // and the divider that sets its gain
-    sketch_resistor(s, node, y + 62, node, y + 106);
-    sketch_text(s, node - 9, y + 86, 1, 0.5, "<i>R</i><sub>5</sub>\n10\u2009kΩ", SKETCH_SMALL);
+    sketch_resistor(s, (point){node, y + 62}, (point){node, y + 106});
+    sketch_text(s, (point){node - 9, y + 86}, (anchor){1, 0.5}, "<i>R</i><sub>5</sub>\n10\u2009kΩ",
+                SKETCH_SMALL);
     draw_ground(s, node, y + 102);
 
     // output
     wire(s, second + 40, y + 20, second + 86, y + 20);
-    sketch_disc(s, second + 88, y + 20, 1.8, SKETCH_INK, false);
-    sketch_text(s, second + 92, y + 12, 1, 1, "<i>V</i><sub>out</sub>", SKETCH_LABEL);
+    sketch_disc(s, (point){second + 88, y + 20}, 1.8, SKETCH_INK, false);
+    sketch_text(s, (point){second + 92, y + 12}, (anchor){1, 1}, "<i>V</i><sub>out</sub>",
+                SKETCH_LABEL);
 }
 
 // A plot as a part of the page, laid out in the page's own points.

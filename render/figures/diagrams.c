@@ -18,23 +18,26 @@
 // An angle from the dashed reference line at a joint to a link.
 static void draw_angle(sketch *s, point at, double radius, double angle, const char *markup)
 {
-    sketch_dashed(s, at.x, at.y, at.x + radius + 14, at.y, SKETCH_FAINT);
-    sketch_arc(s, at.x, at.y, radius, 0, angle, SKETCH_INK, true);
-    sketch_text(s, at.x + (radius + 3) * cos(angle / 2), at.y - (radius + 3) * sin(angle / 2), 0,
-                0.5, markup, SKETCH_LABEL);
+    sketch_dashed(s, at, (point){at.x + radius + 14, at.y}, SKETCH_FAINT);
+    sketch_arc(s, (arc){at, radius, 0, angle, true}, SKETCH_INK);
+    sketch_text(s,
+                (point){at.x + (radius + 3) * cos(angle / 2), at.y - (radius + 3) * sin(angle / 2)},
+                (anchor){0, 0.5}, markup, SKETCH_LABEL);
 }
 
 // A measure beside a link, `away` points from it.
-static void draw_length(sketch *s, point from, point to, double away, double ax, double ay,
+static void draw_length(sketch *s, point from, point to, double away, anchor part,
                         const char *markup)
 {
     double length = hypot(to.x - from.x, to.y - from.y);
     double nx = (to.y - from.y) / length, ny = -(to.x - from.x) / length;
-    double x0 = from.x + away * nx, y0 = from.y + away * ny;
-    double x1 = to.x + away * nx, y1 = to.y + away * ny;
-    sketch_measure(s, x0, y0, x1, y1);
-    sketch_text(s, (x0 + x1) / 2 + 3 * nx * (away < 0 ? -1 : 1),
-                (y0 + y1) / 2 + 3 * ny * (away < 0 ? -1 : 1), ax, ay, markup, SKETCH_LABEL);
+    const point start = shifted(from, away * nx, away * ny);
+    const point end = shifted(to, away * nx, away * ny);
+    double beyond = away < 0 ? -3 : 3;
+    sketch_measure(s, start, end);
+    sketch_text(s,
+                (point){(start.x + end.x) / 2 + beyond * nx, (start.y + end.y) / 2 + beyond * ny},
+                part, markup, SKETCH_LABEL);
 }
 
 static void draw_links(sketch *s, const diagram *d)
@@ -48,35 +51,36 @@ static void draw_links(sketch *s, const diagram *d)
     point c1 = view_end(o, l / 2, first), c2 = view_end(joint, l / 2, second);
     point c1_page = view_place(&v, c1), c2_page = view_place(&v, c2);
 
-    sketch_disc(s, hub_page.x, hub_page.y, v.metre * radius, SKETCH_INK, false);
+    sketch_disc(s, hub_page, v.metre * radius, SKETCH_INK, false);
     draw_angle(s, hub_page, 104, first, "<i>θ</i><sub>2</sub>");
     draw_angle(s, joint_page, 74, second, "<i>θ</i><sub>3</sub>");
-    sketch_bar(s, hub_page.x, hub_page.y, joint_page.x, joint_page.y, 7);
-    sketch_bar(s, joint_page.x, joint_page.y, tip_page.x, tip_page.y, 7);
-    sketch_mass_point(s, c1_page.x, c1_page.y);
-    sketch_mass_point(s, c2_page.x, c2_page.y);
+    sketch_bar(s, hub_page, joint_page, 7);
+    sketch_bar(s, joint_page, tip_page, 7);
+    sketch_mass_point(s, c1_page);
+    sketch_mass_point(s, c2_page);
 
     // the hub's own direction, which the spring k1 parts from the first link
     point rim = view_end(o, radius, hub - 40 * DEGREE), rim_page = view_place(&v, rim);
-    sketch_line(s, hub_page.x, hub_page.y, rim_page.x, rim_page.y, 0.8, SKETCH_INK);
-    sketch_arc(s, hub_page.x, hub_page.y, v.metre * radius + 8, -75 * DEGREE, hub - 40 * DEGREE,
-               SKETCH_INK, true);
-    sketch_text(s, rim_page.x + 12, rim_page.y + 6, 0, 0.5,
+    sketch_line(s, hub_page, rim_page, 0.8, SKETCH_INK);
+    sketch_arc(s, (arc){hub_page, v.metre * radius + 8, -75 * DEGREE, hub - 40 * DEGREE, true},
+               SKETCH_INK);
+    sketch_text(s, shifted(rim_page, 12, 6), (anchor){0, 0.5},
                 "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>", SKETCH_LABEL);
-    sketch_spiral(s, hub_page.x, hub_page.y, 13, 0);
-    sketch_spiral(s, joint_page.x, joint_page.y, 11, 0);
-    sketch_text(s, hub_page.x - v.metre * radius - 4, hub_page.y, 1, 0.5, "<i>k</i><sub>1</sub>",
+    sketch_spiral(s, hub_page, 13, 0);
+    sketch_spiral(s, joint_page, 11, 0);
+    sketch_text(s, (point){hub_page.x - v.metre * radius - 4, hub_page.y}, (anchor){1, 0.5},
+                "<i>k</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_text(s, shifted(joint_page, 0, 14), (anchor){0.5, 0}, "<i>k</i><sub>2</sub>",
                 SKETCH_LABEL);
-    sketch_text(s, joint_page.x, joint_page.y + 14, 0.5, 0, "<i>k</i><sub>2</sub>", SKETCH_LABEL);
-    draw_length(s, hub_page, c1_page, 35, 0.5, 1, "<i>ε</i><sub>2</sub>");
-    draw_length(s, joint_page, c2_page, 17, 1, 1, "<i>ε</i><sub>3</sub>");
-    draw_length(s, hub_page, joint_page, 54, 0.5, 1, "<i>l</i>");
-    draw_length(s, joint_page, tip_page, 36, 1, 1, "<i>l</i>");
-    sketch_text(s, c1_page.x + 30, c1_page.y - 13, 0.5, 1,
+    draw_length(s, hub_page, c1_page, 35, (anchor){0.5, 1}, "<i>ε</i><sub>2</sub>");
+    draw_length(s, joint_page, c2_page, 17, (anchor){1, 1}, "<i>ε</i><sub>3</sub>");
+    draw_length(s, hub_page, joint_page, 54, (anchor){0.5, 1}, "<i>l</i>");
+    draw_length(s, joint_page, tip_page, 36, (anchor){1, 1}, "<i>l</i>");
+    sketch_text(s, shifted(c1_page, 30, -13), (anchor){0.5, 1},
                 "<i>m</i><sub>2</sub>, <i>I</i><sub>2</sub>", SKETCH_LABEL);
-    sketch_text(s, c2_page.x + 64, c2_page.y - 22, 0, 0,
+    sketch_text(s, shifted(c2_page, 64, -22), (anchor){0, 0},
                 "<i>m</i><sub>3</sub>, <i>I</i><sub>3</sub>", SKETCH_LABEL);
-    sketch_text(s, tip_page.x + 7, tip_page.y, 0, 0.5, "tip", SKETCH_LABEL);
+    sketch_text(s, shifted(tip_page, 7, 0), (anchor){0, 0.5}, "tip", SKETCH_LABEL);
 }
 
 static void add_arm_values(diagram *d)
@@ -117,12 +121,10 @@ status diagram_links(const char *title, const figure_options *o, artwork *out, f
 
 // ---- 2.3: free bodies
 
-// A turning arrow about a point, with its label above.
-static void draw_torque(sketch *s, point at, double from, double to, const char *markup, double ax,
-                        double ay, point label)
+// A turning arrow about a joint, between two directions [degrees].
+static void draw_torque(sketch *s, point joint, double from, double to)
 {
-    sketch_arc(s, at.x, at.y, 17, from * DEGREE, to * DEGREE, 0, true);
-    sketch_text(s, label.x, label.y, ax, ay, markup, SKETCH_LABEL);
+    sketch_arc(s, (arc){joint, 17, from * DEGREE, to * DEGREE, true}, 0);
 }
 
 static void draw_free_bodies(sketch *s, const diagram *d)
@@ -137,35 +139,43 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     point c = view_place(&two, (point){0, 0}), g = view_end((point){0, 0}, l, second);
     point t = view_place(&two, g);
 
-    sketch_disc(s, h.x, h.y, 0.9 * metre * HUB_RADIUS, SKETCH_INK, false);
-    sketch_disc(s, h.x, h.y, 2, SKETCH_INK, true);
-    sketch_arc(s, h.x, h.y, 11, 200 * DEGREE, 40 * DEGREE, 0, true);
-    sketch_text(s, h.x + 19, h.y - 14, 0, 1, "\u2212<i>τ</i><sub>1</sub>", SKETCH_LABEL);
-    sketch_arc(s, h.x, h.y, 30, -150 * DEGREE, -40 * DEGREE, 2, true);
-    sketch_text(s, h.x, h.y + 36, 0.5, 0, "motor <i>τ</i><sub>m</sub>, friction", SKETCH_SMALL);
-    sketch_text(s, h.x, h.y - 40, 0.5, 1, "body 1", SKETCH_SMALL);
+    sketch_disc(s, h, 0.9 * metre * HUB_RADIUS, SKETCH_INK, false);
+    sketch_disc(s, h, 2, SKETCH_INK, true);
+    sketch_arc(s, (arc){h, 11, 200 * DEGREE, 40 * DEGREE, true}, 0);
+    sketch_text(s, shifted(h, 19, -14), (anchor){0, 1}, "\u2212<i>τ</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_arc(s, (arc){h, 30, -150 * DEGREE, -40 * DEGREE, true}, 2);
+    sketch_text(s, shifted(h, 0, 36), (anchor){0.5, 0}, "motor <i>τ</i><sub>m</sub>, friction",
+                SKETCH_SMALL);
+    sketch_text(s, shifted(h, 0, -40), (anchor){0.5, 1}, "body 1", SKETCH_SMALL);
 
-    sketch_bar(s, a.x, a.y, b.x, b.y, 7);
-    sketch_mass_point(s, (a.x + b.x) / 2, (a.y + b.y) / 2);
-    draw_torque(s, a, 120, 250, "<i>τ</i><sub>1</sub>", 0.5, 1, (point){a.x - 10, a.y - 21});
-    draw_torque(s, b, -110, 60, "<i>τ</i><sub>2</sub>", 1, 1, (point){b.x + 2, b.y - 16});
-    sketch_arrow(s, a.x, a.y, a.x + 8, a.y + 36, 5);
-    sketch_text(s, a.x + 12, a.y + 37, 0, 0.5, "<i>f</i><sub>1</sub>", SKETCH_LABEL);
-    sketch_arrow(s, b.x, b.y, b.x - 8, b.y + 36, 5);
-    sketch_text(s, b.x - 12, b.y + 37, 1, 0.5, "<i>f</i><sub>2</sub>", SKETCH_LABEL);
-    sketch_text(s, (a.x + b.x) / 2, (a.y + b.y) / 2 + 9, 0.5, 0, "body 2", SKETCH_SMALL);
+    sketch_bar(s, a, b, 7);
+    sketch_mass_point(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2});
+    draw_torque(s, a, 120, 250);
+    sketch_text(s, shifted(a, -10, -21), (anchor){0.5, 1}, "<i>τ</i><sub>1</sub>", SKETCH_LABEL);
+    draw_torque(s, b, -110, 60);
+    sketch_text(s, shifted(b, 2, -16), (anchor){1, 1}, "<i>τ</i><sub>2</sub>", SKETCH_LABEL);
+    sketch_arrow(s, a, shifted(a, 8, 36), 5);
+    sketch_text(s, shifted(a, 12, 37), (anchor){0, 0.5}, "<i>f</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_arrow(s, b, shifted(b, -8, 36), 5);
+    sketch_text(s, shifted(b, -12, 37), (anchor){1, 0.5}, "<i>f</i><sub>2</sub>", SKETCH_LABEL);
+    sketch_text(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2 + 9}, (anchor){0.5, 0}, "body 2",
+                SKETCH_SMALL);
 
-    sketch_bar(s, c.x, c.y, t.x, t.y, 7);
-    sketch_mass_point(s, (c.x + t.x) / 2, (c.y + t.y) / 2);
-    draw_torque(s, c, 230, 110, "\u2212<i>τ</i><sub>2</sub>", 0.5, 0, (point){c.x + 8, c.y + 18});
-    sketch_arrow(s, c.x, c.y, c.x + 8, c.y - 36, 5);
-    sketch_text(s, c.x + 12, c.y - 37, 0, 0.5, "\u2212<i>f</i><sub>2</sub>", SKETCH_LABEL);
+    sketch_bar(s, c, t, 7);
+    sketch_mass_point(s, (point){(c.x + t.x) / 2, (c.y + t.y) / 2});
+    draw_torque(s, c, 230, 110);
+    sketch_text(s, shifted(c, 8, 18), (anchor){0.5, 0}, "\u2212<i>τ</i><sub>2</sub>", SKETCH_LABEL);
+    sketch_arrow(s, c, shifted(c, 8, -36), 5);
+    sketch_text(s, shifted(c, 12, -37), (anchor){0, 0.5}, "\u2212<i>f</i><sub>2</sub>",
+                SKETCH_LABEL);
     // the wall pushes back, across the last link
     double away = 40;
-    sketch_arrow(s, t.x - away * sin(second), t.y - away * cos(second), t.x, t.y - 4, 5);
-    sketch_text(s, t.x - away * sin(second) - 5, t.y - away * cos(second), 1, 0.5, "<i>f</i>",
-                SKETCH_LABEL);
-    sketch_text(s, (c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10, 0, 0, "body 3", SKETCH_SMALL);
+    sketch_arrow(s, (point){t.x - away * sin(second), t.y - away * cos(second)}, shifted(t, 0, -4),
+                 5);
+    sketch_text(s, (point){t.x - away * sin(second) - 5, t.y - away * cos(second)},
+                (anchor){1, 0.5}, "<i>f</i>", SKETCH_LABEL);
+    sketch_text(s, (point){(c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10}, (anchor){0, 0}, "body 3",
+                SKETCH_SMALL);
 }
 
 status diagram_free_bodies(const char *title, const figure_options *o, artwork *out, fault *f)
@@ -195,7 +205,7 @@ static void draw_springs(sketch *s, const diagram *d)
     double y = s->top + 46, wall = s->right - 40, mass = s->left + 74;
 
     // the floor and the mass on it
-    sketch_line(s, s->left + 20, y + 20, wall, y + 20, 0.5, SKETCH_FAINT);
+    sketch_line(s, (point){s->left + 20, y + 20}, (point){wall, y + 20}, 0.5, SKETCH_FAINT);
     set_colour(s->cr, s->colours->shade);
     cairo_rectangle(s->cr, mass - 26, y - 20, 52, 40);
     cairo_fill_preserve(s->cr);
@@ -203,29 +213,30 @@ static void draw_springs(sketch *s, const diagram *d)
     cairo_set_line_width(s->cr, 0.8);
     cairo_stroke(s->cr);
 
-    sketch_text(s, mass, y, 0.5, 0.5, "<i>m</i><sub>c</sub>", SKETCH_LABEL);
-    sketch_arrow(s, mass - 14, y - 30, mass + 34, y - 30, 2);
-    sketch_text(s, mass + 38, y - 30, 0, 0.5, "<i>v</i><sub>0</sub>", SKETCH_LABEL);
+    sketch_text(s, (point){mass, y}, (anchor){0.5, 0.5}, "<i>m</i><sub>c</sub>", SKETCH_LABEL);
+    sketch_arrow(s, (point){mass - 14, y - 30}, (point){mass + 34, y - 30}, 2);
+    sketch_text(s, (point){mass + 38, y - 30}, (anchor){0, 0.5}, "<i>v</i><sub>0</sub>",
+                SKETCH_LABEL);
 
     // both springs in series, to the wall
     double middle = (mass + 26 + wall) / 2;
-    sketch_coil(s, mass + 26, y, middle, y, 5, 0);
-    sketch_coil(s, middle, y, wall, y, 9, 0);
-    sketch_disc(s, middle, y, 2, SKETCH_INK, true);
-    sketch_wall(s, wall, y + 34, wall, y - 34);
+    sketch_coil(s, (point){mass + 26, y}, (point){middle, y}, 5, 0);
+    sketch_coil(s, (point){middle, y}, (point){wall, y}, 9, 0);
+    sketch_disc(s, (point){middle, y}, 2, SKETCH_INK, true);
+    sketch_wall(s, (point){wall, y + 34}, (point){wall, y - 34});
 
     // their stiffnesses
     decimal_print(text, sizeof text, "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", d->p.arm.k1);
-    sketch_text(s, (mass + 26 + middle) / 2, y + 26, 0.5, 0, text, SKETCH_SMALL);
+    sketch_text(s, (point){(mass + 26 + middle) / 2, y + 26}, (anchor){0.5, 0}, text, SKETCH_SMALL);
     decimal_print(text, sizeof text, "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", d->p.arm.k2);
-    sketch_text(s, (middle + wall) / 2, y + 26, 0.5, 0, text, SKETCH_SMALL);
+    sketch_text(s, (point){(middle + wall) / 2, y + 26}, (anchor){0.5, 0}, text, SKETCH_SMALL);
 
     double k1 = d->p.arm.k1, k2 = d->p.arm.k2;
     decimal_print(text, sizeof text,
                   "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + 1/<i>k</i><sub>2</sub>,   "
                   "<i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
                   k1 * k2 / (k1 + k2));
-    sketch_text(s, (s->left + s->right) / 2, y + 50, 0.5, 0, text, SKETCH_LABEL);
+    sketch_text(s, (point){(s->left + s->right) / 2, y + 50}, (anchor){0.5, 0}, text, SKETCH_LABEL);
 }
 
 status diagram_springs(const char *title, const figure_options *o, artwork *out, fault *f)

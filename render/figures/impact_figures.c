@@ -133,10 +133,10 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
         double x1 = plane_x(&p, fig->peak_time);
         char text[64];
         cairo_save(cr);
-        sketch_measure(&s, x0, y, x1, y);
+        sketch_measure(&s, (point){x0, y}, (point){x1, y});
         decimal_print(text, sizeof text, "<i>T</i> = %.1f\u2009ms",
                       1e3 * (fig->peak_time - fig->contact));
-        sketch_text(&s, (x0 + x1) / 2, y - 2, 0.5, 1, text, SKETCH_SMALL);
+        sketch_text(&s, (point){(x0 + x1) / 2, y - 2}, (anchor){0.5, 1}, text, SKETCH_SMALL);
         cairo_restore(cr);
         g_object_unref(s.context);
     }

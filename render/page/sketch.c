@@ -8,9 +8,17 @@
 #define TITLE_SPACE  7.0
 #define CAPTION_SIZE 6.5
 #define LINE_WIDTH   0.8
+#define STRONG_WIDTH 1.1 // of arrows, coils and walls
 #define HEAD_LENGTH  5.0
+#define ARC_HEAD     4.2
+#define SMALL_HEAD   3.6  // of measures
 #define LEAST_SHRINK 0.82 // of letters on a smaller page
 #define MM           (72 / 25.4)
+
+point shifted(point from, double right, double down)
+{
+    return (point){from.x + right, from.y + down};
+}
 
 // ---- the page
 
@@ -84,18 +92,16 @@ void sketch_size(const sketch_frame *frame, double *width, double *height)
     g_object_unref(context);
 }
 
-static void draw_block(sketch *s, text_block t, double x, double y, double ax, double ay, colour c)
+static void draw_block(sketch *s, const text_block *t, point at, anchor part, colour c)
 {
-    double width, height;
-    text_measure(s->context, &t, &width, &height);
-    x -= ax * width;
-    y -= ay * height;
+    double width, height, k = s->scale;
+    text_measure(s->context, t, &width, &height);
+    at = shifted(at, -part.x * width, -part.y * height);
     set_colour(s->cr, c);
-    cairo_move_to(s->cr, x, y);
-    text_draw(s->cr, s->context, &t);
-    double k = s->scale;
-    report_add_text(s->report, t.markup, k * t.size,
-                    (figure_rect){k * x, k * y, k * width, k * height});
+    cairo_move_to(s->cr, at.x, at.y);
+    text_draw(s->cr, s->context, t);
+    report_add_text(s->report, t->markup, k * t->size,
+                    (figure_rect){k * at.x, k * at.y, k * width, k * height});
 }
 
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
@@ -144,10 +150,12 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
 
     // title above, caption below
     char *title = text_escape(frame->title);
-    draw_block(s, title_block(frame, title), s->left, SKETCH_MARGIN, 0, 0, s->colours->text);
+    const text_block heading = title_block(frame, title);
+    draw_block(s, &heading, (point){s->left, SKETCH_MARGIN}, (anchor){0, 0}, s->colours->text);
     g_free(title);
     if (frame->caption != NULL) {
-        draw_block(s, caption_block(frame), s->left, s->bottom + TITLE_SPACE, 0, 0,
+        const text_block caption = caption_block(frame);
+        draw_block(s, &caption, (point){s->left, s->bottom + TITLE_SPACE}, (anchor){0, 0},
                    s->colours->faint_text);
     }
     return STATUS_OK;
@@ -179,14 +187,19 @@ static void set_pen(const sketch *s, double width, int slot)
     cairo_new_path(s->cr);
 }
 
-void sketch_line(const sketch *s, double x0, double y0, double x1, double y1, double width,
-                 int slot)
+// A straight line with the pen as it is.
+static void stroke_line(const sketch *s, point from, point to)
+{
+    cairo_move_to(s->cr, from.x, from.y);
+    cairo_line_to(s->cr, to.x, to.y);
+    cairo_stroke(s->cr);
+}
+
+void sketch_line(const sketch *s, point from, point to, double width, int slot)
 {
     assert(s != NULL && width > 0);
     set_pen(s, width, slot);
-    cairo_move_to(s->cr, x0, y0);
-    cairo_line_to(s->cr, x1, y1);
-    cairo_stroke(s->cr);
+    stroke_line(s, from, to);
 }
 
 static void set_dashes(const sketch *s)
@@ -196,21 +209,19 @@ static void set_dashes(const sketch *s)
     cairo_set_dash(s->cr, pattern, 2, 0);
 }
 
-void sketch_dashed(const sketch *s, double x0, double y0, double x1, double y1, int slot)
+void sketch_dashed(const sketch *s, point from, point to, int slot)
 {
     assert(s != NULL);
     set_pen(s, 0.6, slot);
     set_dashes(s);
-    cairo_move_to(s->cr, x0, y0);
-    cairo_line_to(s->cr, x1, y1);
-    cairo_stroke(s->cr);
+    stroke_line(s, from, to);
 }
 
-// A head whose tip is at (x, y) and that points along `direction` on the page.
-static void draw_head(const sketch *s, double x, double y, double direction, double length)
+// A head whose tip is at a point and that points along `direction` on the page.
+static void draw_head(const sketch *s, point tip, double direction, double length)
 {
     cairo_save(s->cr);
-    cairo_translate(s->cr, x, y);
+    cairo_translate(s->cr, tip.x, tip.y);
     cairo_rotate(s->cr, direction);
     cairo_move_to(s->cr, 0, 0);
     cairo_line_to(s->cr, -length, 0.36 * length);
@@ -220,68 +231,77 @@ static void draw_head(const sketch *s, double x, double y, double direction, dou
     cairo_fill(s->cr);
 }
 
-static void draw_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot,
-                       bool dashed)
+// Length of the way from one point to another, and its direction on the page.
+static double length_of(point from, point to)
 {
-    double length = hypot(x1 - x0, y1 - y0), head = fmin(HEAD_LENGTH, length);
-    double direction = atan2(y1 - y0, x1 - x0), share = length > 0 ? 1 - 0.8 * head / length : 0;
-    set_pen(s, 1.1, slot);
-    if (dashed) {
-        set_dashes(s);
-    }
-    cairo_move_to(s->cr, x0, y0);
-    cairo_line_to(s->cr, x0 + share * (x1 - x0), y0 + share * (y1 - y0));
-    cairo_stroke(s->cr);
-    draw_head(s, x1, y1, direction, head);
+    return hypot(to.x - from.x, to.y - from.y);
 }
 
-void sketch_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot)
+static double direction_of(point from, point to)
 {
-    draw_arrow(s, x0, y0, x1, y1, slot, false);
+    return atan2(to.y - from.y, to.x - from.x);
 }
 
-void sketch_dashed_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot)
+// The shaft ends within the head.
+static void draw_arrow(const sketch *s, point from, point to)
 {
-    draw_arrow(s, x0, y0, x1, y1, slot, true);
+    double length = length_of(from, to), head = fmin(HEAD_LENGTH, length);
+    double share = length > 0 ? 1 - 0.8 * head / length : 0;
+    stroke_line(s, from, shifted(from, share * (to.x - from.x), share * (to.y - from.y)));
+    draw_head(s, to, direction_of(from, to), head);
 }
 
-void sketch_measure(const sketch *s, double x0, double y0, double x1, double y1)
+void sketch_arrow(const sketch *s, point from, point to, int slot)
 {
-    assert(s != NULL && isfinite(x0) && isfinite(y0) && isfinite(x1) && isfinite(y1));
-    double direction = atan2(y1 - y0, x1 - x0);
-    sketch_line(s, x0, y0, x1, y1, 0.5, SKETCH_INK);
-    draw_head(s, x1, y1, direction, 3.6);
-    draw_head(s, x0, y0, direction + G_PI, 3.6);
+    assert(s != NULL);
+    set_pen(s, STRONG_WIDTH, slot);
+    draw_arrow(s, from, to);
 }
 
-void sketch_arc(const sketch *s, double x, double y, double radius, double from, double to,
-                int slot, bool head)
+void sketch_dashed_arrow(const sketch *s, point from, point to, int slot)
 {
-    assert(s != NULL && radius > 0);
-    double turn = to > from ? 1 : -1;
+    assert(s != NULL);
+    set_pen(s, STRONG_WIDTH, slot);
+    set_dashes(s);
+    draw_arrow(s, from, to);
+}
+
+void sketch_measure(const sketch *s, point from, point to)
+{
+    assert(s != NULL && isfinite(length_of(from, to)));
+    sketch_line(s, from, to, 0.5, SKETCH_INK);
+    draw_head(s, to, direction_of(from, to), SMALL_HEAD);
+    draw_head(s, from, direction_of(from, to) + G_PI, SMALL_HEAD);
+}
+
+void sketch_arc(const sketch *s, arc a, int slot)
+{
+    assert(s != NULL && a.radius > 0);
+    const point c = a.centre;
+    double turn = a.to > a.from ? 1 : -1;
     // the head takes the arc's last bit
-    double bit = head ? turn * fmin(0.8 * 4.2 / radius, fabs(to - from)) : 0;
+    double bit = a.head ? turn * fmin(0.8 * ARC_HEAD / a.radius, fabs(a.to - a.from)) : 0;
 
     // cairo's y points down, so that its angles run the other way
     set_pen(s, LINE_WIDTH, slot);
     if (turn > 0) {
-        cairo_arc_negative(s->cr, x, y, radius, -from, -(to - bit));
+        cairo_arc_negative(s->cr, c.x, c.y, a.radius, -a.from, -(a.to - bit));
     } else {
-        cairo_arc(s->cr, x, y, radius, -from, -(to - bit));
+        cairo_arc(s->cr, c.x, c.y, a.radius, -a.from, -(a.to - bit));
     }
     cairo_stroke(s->cr);
 
-    if (head) {
-        double direction = -(to - bit / 2) - turn * G_PI / 2;
-        draw_head(s, x + radius * cos(to), y - radius * sin(to), direction, 4.2);
+    if (a.head) {
+        double direction = -(a.to - bit / 2) - turn * G_PI / 2;
+        draw_head(s, shifted(c, a.radius * cos(a.to), -a.radius * sin(a.to)), direction, ARC_HEAD);
     }
 }
 
-void sketch_disc(const sketch *s, double x, double y, double radius, int slot, bool filled)
+void sketch_disc(const sketch *s, point centre, double radius, int slot, bool filled)
 {
     assert(s != NULL && radius >= 0);
     set_pen(s, LINE_WIDTH, slot);
-    cairo_arc(s->cr, x, y, radius, 0, 2 * G_PI);
+    cairo_arc(s->cr, centre.x, centre.y, radius, 0, 2 * G_PI);
     if (!filled) {
         set_colour(s->cr, s->colours->page);
         cairo_fill_preserve(s->cr);
@@ -294,13 +314,13 @@ void sketch_disc(const sketch *s, double x, double y, double radius, int slot, b
 
 // ---- parts
 
-void sketch_bar(const sketch *s, double x0, double y0, double x1, double y1, double thickness)
+void sketch_bar(const sketch *s, point from, point to, double thickness)
 {
     assert(s != NULL && thickness > 0);
     cairo_set_dash(s->cr, NULL, 0, 0);
     cairo_set_line_cap(s->cr, CAIRO_LINE_CAP_ROUND);
-    cairo_move_to(s->cr, x0, y0);
-    cairo_line_to(s->cr, x1, y1);
+    cairo_move_to(s->cr, from.x, from.y);
+    cairo_line_to(s->cr, to.x, to.y);
     set_colour(s->cr, s->colours->axis);
     cairo_set_line_width(s->cr, thickness);
     cairo_stroke_preserve(s->cr);
@@ -309,20 +329,20 @@ void sketch_bar(const sketch *s, double x0, double y0, double x1, double y1, dou
     cairo_stroke(s->cr);
 }
 
-void sketch_mass_point(const sketch *s, double x, double y)
+void sketch_mass_point(const sketch *s, point at)
 {
     assert(s != NULL);
     const double r = 3;
-    sketch_disc(s, x, y, r, SKETCH_INK, false);
+    sketch_disc(s, at, r, SKETCH_INK, false);
     for (int quarter = 0; quarter < 4; quarter += 2) {
-        cairo_move_to(s->cr, x, y);
-        cairo_arc(s->cr, x, y, r, quarter * G_PI / 2, (quarter + 1) * G_PI / 2);
+        cairo_move_to(s->cr, at.x, at.y);
+        cairo_arc(s->cr, at.x, at.y, r, quarter * G_PI / 2, (quarter + 1) * G_PI / 2);
         cairo_close_path(s->cr);
         cairo_fill(s->cr);
     }
 }
 
-void sketch_spiral(const sketch *s, double x, double y, double radius, int slot)
+void sketch_spiral(const sketch *s, point centre, double radius, int slot)
 {
     enum { POINTS = 90 };
     assert(s != NULL && radius > 0);
@@ -330,97 +350,115 @@ void sketch_spiral(const sketch *s, double x, double y, double radius, int slot)
     for (int i = 0; i <= POINTS; i++) {
         double share = (double)i / POINTS, angle = 2 * G_PI * 2.5 * share;
         double r = radius * (0.2 + 0.8 * share);
-        cairo_line_to(s->cr, x + r * cos(angle), y + r * sin(angle));
+        cairo_line_to(s->cr, centre.x + r * cos(angle), centre.y + r * sin(angle));
     }
     cairo_stroke(s->cr);
+}
+
+// A line from one point to another, in lengths along it and across it to the right on the page.
+typedef struct guide {
+    point from;
+    double length, ux, uy; // [pt], and its unit vector
+} guide;
+
+static guide guide_of(point from, point to)
+{
+    double length = length_of(from, to);
+    return (guide){from, length, (to.x - from.x) / length, (to.y - from.y) / length};
+}
+
+static point guide_at(const guide *g, double along, double across)
+{
+    return shifted(g->from, along * g->ux - across * g->uy, along * g->uy + across * g->ux);
+}
+
+static void line_to_point(const sketch *s, point p)
+{
+    cairo_line_to(s->cr, p.x, p.y);
 }
 
 // A zigzag with straight leads at both ends.
-static void draw_zigzag(const sketch *s, double x0, double y0, double x1, double y1, int turns,
-                        double height, double lead)
+static void draw_zigzag(const sketch *s, const guide *g, int turns, double height, double lead)
 {
-    double length = hypot(x1 - x0, y1 - y0), ux = (x1 - x0) / length, uy = (y1 - y0) / length;
-    double step = (length - 2 * lead) / (2 * turns);
-    cairo_move_to(s->cr, x0, y0);
-    cairo_line_to(s->cr, x0 + lead * ux, y0 + lead * uy);
+    double step = (g->length - 2 * lead) / (2 * turns);
+    line_to_point(s, g->from);
+    line_to_point(s, guide_at(g, lead, 0));
     for (int i = 0; i < 2 * turns; i++) {
-        double along = lead + (i + 0.5) * step, across = i % 2 ? -height : height;
-        cairo_line_to(s->cr, x0 + along * ux - across * uy, y0 + along * uy + across * ux);
+        line_to_point(s, guide_at(g, lead + (i + 0.5) * step, i % 2 ? -height : height));
     }
-    cairo_line_to(s->cr, x1 - lead * ux, y1 - lead * uy);
-    cairo_line_to(s->cr, x1, y1);
+    line_to_point(s, guide_at(g, g->length - lead, 0));
+    line_to_point(s, guide_at(g, g->length, 0));
     cairo_stroke(s->cr);
 }
 
-void sketch_coil(const sketch *s, double x0, double y0, double x1, double y1, int turns, int slot)
+void sketch_coil(const sketch *s, point from, point to, int turns, int slot)
 {
     assert(s != NULL && turns > 0);
-    set_pen(s, 1.1, slot);
-    draw_zigzag(s, x0, y0, x1, y1, turns, 8, 8);
+    const guide g = guide_of(from, to);
+    set_pen(s, STRONG_WIDTH, slot);
+    draw_zigzag(s, &g, turns, 8, 8);
 }
 
-void sketch_resistor(const sketch *s, double x0, double y0, double x1, double y1)
+void sketch_resistor(const sketch *s, point from, point to)
 {
     assert(s != NULL);
-    double length = hypot(x1 - x0, y1 - y0);
+    const guide g = guide_of(from, to);
     set_pen(s, LINE_WIDTH, SKETCH_INK);
-    draw_zigzag(s, x0, y0, x1, y1, 3, 4, (length - 22) / 2);
+    draw_zigzag(s, &g, 3, 4, (g.length - 22) / 2);
 }
 
-void sketch_wall(const sketch *s, double x0, double y0, double x1, double y1)
+void sketch_wall(const sketch *s, point from, point to)
 {
     assert(s != NULL);
     const double spacing = 5, depth = 6;
-    double length = hypot(x1 - x0, y1 - y0), ux = (x1 - x0) / length, uy = (y1 - y0) / length;
-    sketch_line(s, x0, y0, x1, y1, 1.1, SKETCH_INK);
+    const guide g = guide_of(from, to);
+    sketch_line(s, from, to, STRONG_WIDTH, SKETCH_INK);
     set_pen(s, 0.5, SKETCH_INK);
-    for (double at = spacing; at <= length; at += spacing) {
-        double x = x0 + at * ux, y = y0 + at * uy;
-        cairo_move_to(s->cr, x, y);
-        cairo_line_to(s->cr, x - depth * (0.7 * ux + 0.7 * uy), y - depth * (0.7 * uy - 0.7 * ux));
+    for (double at = spacing; at <= g.length; at += spacing) {
+        const point start = guide_at(&g, at, 0);
+        cairo_move_to(s->cr, start.x, start.y);
+        line_to_point(s, guide_at(&g, at - 0.7 * depth, 0.7 * depth));
     }
     cairo_stroke(s->cr);
 }
 
 // ---- text
 
-static text_block block_of(const sketch *s, const char *markup, double size)
+// A drawing over a plotted figure has no frame of its own.
+static text_block framed(const sketch *s, text_block t)
 {
-    // a drawing over a plotted figure has no frame of its own
-    return (text_block){.markup = markup,
-                        .size = s->frame != NULL ? sketch_letters(s->frame, size) : size,
-                        .family = s->frame != NULL ? s->frame->look.font : NULL};
+    if (s->frame != NULL) {
+        t.size = sketch_letters(s->frame, t.size);
+        t.family = s->frame->look.font;
+    }
+    return t;
 }
 
-void sketch_text(sketch *s, double x, double y, double ax, double ay, const char *markup,
-                 double size)
+void sketch_text(sketch *s, point at, anchor part, const char *markup, double size)
 {
     assert(s != NULL && markup != NULL);
-    draw_block(s, block_of(s, markup, size), x, y, ax, ay, s->colours->text);
+    const text_block t = framed(s, (text_block){.markup = markup, .size = size});
+    draw_block(s, &t, at, part, s->colours->text);
 }
 
-void sketch_wrapped(sketch *s, double x, double y, double width, text_align align,
-                    const char *markup, double size, bool bold)
+void sketch_wrapped(sketch *s, point at, const text_block *text)
 {
-    assert(s != NULL && markup != NULL);
-    text_block t = block_of(s, markup, size);
-    t.bold = bold;
-    t.align = align;
-    t.width = width;
+    assert(s != NULL && text != NULL && text->markup != NULL && text->width > 0);
+    text_block t = framed(s, *text);
+    anchor part = {0, 0};
 
-    double ax = 0;
-    if (align != TEXT_LEFT) {
+    if (t.align != TEXT_LEFT) {
         // short lines are placed by their own width
         double natural, height;
         text_block line = t;
         line.width = 0;
         text_measure(s->context, &line, &natural, &height);
-        if (natural <= width) {
+        if (natural <= t.width) {
+            part.x = t.align == TEXT_RIGHT ? 1 : 0.5;
+            at.x += part.x * t.width;
             t.width = 0;
-            ax = align == TEXT_RIGHT ? 1 : 0.5;
-            x += ax * width;
         }
     }
 
-    draw_block(s, t, x, y, ax, 0, s->colours->text);
+    draw_block(s, &t, at, part, s->colours->text);
 }

@@ -48,44 +48,54 @@ void sketch_end(sketch *s);
 enum { SKETCH_INK = -1, SKETCH_FAINT = -2 };
 colour sketch_colour(const sketch *s, int slot);
 
-// Lines of a given width in a slot's colour.
-void sketch_line(const sketch *s, double x0, double y0, double x1, double y1, double width,
-                 int slot);
-void sketch_dashed(const sketch *s, double x0, double y0, double x1, double y1, int slot);
+// A place on the page, or in a model that is drawn [pt, m].
+typedef struct point {
+    double x, y;
+} point;
 
-// An arrow with its head at (x1, y1).
-void sketch_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot);
-void sketch_dashed_arrow(const sketch *s, double x0, double y0, double x1, double y1, int slot);
+// The place that lies `right` and `down` from another.
+point shifted(point from, double right, double down);
+
+// Lines of a given width in a slot's colour.
+void sketch_line(const sketch *s, point from, point to, double width, int slot);
+void sketch_dashed(const sketch *s, point from, point to, int slot);
+
+// An arrow with its head at `to`.
+void sketch_arrow(const sketch *s, point from, point to, int slot);
+void sketch_dashed_arrow(const sketch *s, point from, point to, int slot);
 
 // A line with a head at each end.
-void sketch_measure(const sketch *s, double x0, double y0, double x1, double y1);
+void sketch_measure(const sketch *s, point from, point to);
 
-// An arc about (x, y) from one angle to another, angles counterclockwise from the right [rad];
-// with a head at its end.
-void sketch_arc(const sketch *s, double x, double y, double radius, double from, double to,
-                int slot, bool head);
+// An arc from one angle to another, counterclockwise from the right [rad].
+typedef struct arc {
+    point centre;
+    double radius, from, to;
+    bool head; // at its end
+} arc;
+void sketch_arc(const sketch *s, arc a, int slot);
 
-void sketch_disc(const sketch *s, double x, double y, double radius, int slot, bool filled);
+void sketch_disc(const sketch *s, point centre, double radius, int slot, bool filled);
 
 // A link: a bar with round ends between two points.
-void sketch_bar(const sketch *s, double x0, double y0, double x1, double y1, double thickness);
+void sketch_bar(const sketch *s, point from, point to, double thickness);
 
 // A centre of mass.
-void sketch_mass_point(const sketch *s, double x, double y);
+void sketch_mass_point(const sketch *s, point at);
 
 // A spiral spring round a joint.
-void sketch_spiral(const sketch *s, double x, double y, double radius, int slot);
+void sketch_spiral(const sketch *s, point centre, double radius, int slot);
 
 // A coil spring and a resistor along a line.
-void sketch_coil(const sketch *s, double x0, double y0, double x1, double y1, int turns, int slot);
-void sketch_resistor(const sketch *s, double x0, double y0, double x1, double y1);
+void sketch_coil(const sketch *s, point from, point to, int turns, int slot);
+void sketch_resistor(const sketch *s, point from, point to);
 
 // A fixed surface: a line, hatched on its right-hand side as seen from its start.
-void sketch_wall(const sketch *s, double x0, double y0, double x1, double y1);
+void sketch_wall(const sketch *s, point from, point to);
 
-// A text whose point (ax, ay), as parts of its width and height, lies at (x, y). `width` > 0 wraps
-// it.
-void sketch_text(sketch *s, double x, double y, double ax, double ay, const char *markup,
-                 double size);
-void sketch_wrapped(sketch *s, double x, double y, double width, text_align align,
-                    const char *markup, double size, bool bold);
+// A text with its anchor at a place.
+void sketch_text(sketch *s, point at, anchor part, const char *markup, double size);
+
+// A text from a place on, wrapped at its width; its size is that of a designed page. The frame's
+// family replaces the block's.
+void sketch_wrapped(sketch *s, point at, const text_block *text);

@@ -202,8 +202,12 @@ static void draw_cells(sketch *s, const table_layout *l, const table_page *t, ch
     for (int i = 0; i < t->column_count; i++) {
         const char *text = cells != NULL ? cells[i] : t->columns[i].label;
         if (text[0] != '\0') {
-            sketch_wrapped(s, x + CELL_SPACE, y, l->widths[i] - 2 * CELL_SPACE, t->columns[i].align,
-                           text, CELL_SIZE, bold);
+            sketch_wrapped(s, (point){x + CELL_SPACE, y},
+                           &(text_block){.markup = text,
+                                         .size = CELL_SIZE,
+                                         .bold = bold,
+                                         .align = t->columns[i].align,
+                                         .width = l->widths[i] - 2 * CELL_SPACE});
         }
         x += l->widths[i];
     }
@@ -214,8 +218,11 @@ static void draw_group(sketch *s, const char *heading, double y, double height)
     set_colour(s->cr, s->colours->shade);
     cairo_rectangle(s->cr, s->left, y, s->right - s->left, height);
     cairo_fill(s->cr);
-    sketch_wrapped(s, s->left + CELL_SPACE, y + CELL_SPACE, s->right - s->left - 2 * CELL_SPACE,
-                   TEXT_LEFT, heading, CELL_SIZE, true);
+    sketch_wrapped(s, (point){s->left + CELL_SPACE, y + CELL_SPACE},
+                   &(text_block){.markup = heading,
+                                 .size = CELL_SIZE,
+                                 .bold = true,
+                                 .width = s->right - s->left - 2 * CELL_SPACE});
 }
 
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f)
@@ -232,10 +239,10 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
 
     // a line above and below the heading, then the rows
     double y = s.top;
-    sketch_line(&s, s.left, y, s.right, y, 0.9, SKETCH_INK);
+    sketch_line(&s, (point){s.left, y}, (point){s.right, y}, 0.9, SKETCH_INK);
     draw_cells(&s, &l, t, NULL, y + CELL_SPACE, true);
     y += heading_height(&l, t);
-    sketch_line(&s, s.left, y, s.right, y, 0.5, SKETCH_INK);
+    sketch_line(&s, (point){s.left, y}, (point){s.right, y}, 0.5, SKETCH_INK);
     for (guint row = 0; row < t->rows->len; row++) {
         double height = row_height(&l, t, row);
         if (table_row_is_group(t, row)) {
@@ -245,7 +252,8 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
         }
         y += height;
     }
-    sketch_line(&s, s.left, y + CELL_SPACE, s.right, y + CELL_SPACE, 0.9, SKETCH_INK);
+    sketch_line(&s, (point){s.left, y + CELL_SPACE}, (point){s.right, y + CELL_SPACE}, 0.9,
+                SKETCH_INK);
     sketch_end(&s);
     g_object_unref(l.context);
     return STATUS_OK;

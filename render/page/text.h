@@ -15,6 +15,12 @@
 
 typedef enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT } text_align;
 
+// Which point of a text lies at its place, as parts of its width and height: (0, 0) is its upper
+// left corner.
+typedef struct anchor {
+    double x, y;
+} anchor;
+
 // A text to draw or measure.
 typedef struct text_block {
     const char *markup;

@@ -110,11 +110,6 @@ text_block figure_text_of(const drawing *d, const char *markup, double size);
 double width_of(const drawing *d, const char *markup, double size);
 double height_of(const drawing *d, text_block t);
 
-// Where a text's anchor is, as parts of its width and height.
-typedef struct anchor {
-    double x, y;
-} anchor;
-
 void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c);
 // Draws t upwards; (x, y) is the middle of its upper edge, which is on the left.
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c);

@@ -22,15 +22,15 @@ static json_t *methods_object(const scenario *s, const method_study *study)
 
     for (int m = 0; m < STUDY_METHODS; m++) {
         for (int i = 0; i < STUDY_STEPS; i++) {
-            const study_point *point = &study->points[m][i];
+            const study_point *p = &study->points[m][i];
             json_t *line = json_object(), *errors = json_object();
 
             json_object_set_new(line, "method", json_string(study_methods[m]));
-            json_object_set_new(line, "step_s", json_number(point->step));
-            json_object_set_new(line, "computing_time_s", json_number(point->cost));
+            json_object_set_new(line, "step_s", json_number(p->step));
+            json_object_set_new(line, "computing_time_s", json_number(p->cost));
 
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
-                json_object_set_new(errors, study_keys[k], json_number(point->error[k]));
+                json_object_set_new(errors, study_keys[k], json_number(p->error[k]));
             }
 
             json_object_set_new(line, "errors", errors);
@@ -65,11 +65,11 @@ static void print_methods(const scenario *s, const method_study *study)
                "steady");
         printf("%-18s %10s %12s %12s %12s\n", "step [s]", "[ms]", "[s]", "[N]", "[N]");
         for (int i = 0; i < STUDY_STEPS; i++) {
-            const study_point *point = &study->points[m][i];
-            printf("%-18g", point->step);
-            print_cell(10, 1e3 * point->cost);
+            const study_point *p = &study->points[m][i];
+            printf("%-18g", p->step);
+            print_cell(10, 1e3 * p->cost);
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
-                print_cell(12, point->error[k]);
+                print_cell(12, p->error[k]);
             }
             printf("\n");
         }
