@@ -1,3 +1,4 @@
+#include "src/run/run.h"
 #include "src/study/convergence.h"
 #include "tests/arm_fixture.h"
 
@@ -69,6 +70,31 @@ static void the_event_method_needs_no_shorter_step(void **state)
     }
 }
 
+// Before and after an event are two rows of one instant, which belong side by side: the force jumps
+// by newtons there, and the runs differ by rounding.
+static void rows_at_an_event_are_compared_in_their_order(void **state)
+{
+    (void)state;
+    enum { ROWS = 3000 };
+    static double x[ROWS], y[ROWS];
+    static char name[] = "test";
+    run_result results[2];
+    for (int i = 0; i < 2; i++) {
+        scenario s = {.name = name, .parameters = fixture_parameters(NULL)};
+        s.parameters.method.step = i == 0 ? 1e-3 : 5e-4;
+        assert_int_equal(run_scenario(&s, true, &results[i]), STATUS_OK);
+    }
+    const trace *coarse = &results[0].trace;
+    assert_true(coarse->row_count < ROWS);
+    size_t count = convergence_difference(coarse, &results[1].trace, x, y);
+    assert_true(count >= 1000);
+    for (size_t i = 0; i < count; i++) {
+        check_close(y[i], 0, 1e-7);
+    }
+    run_finish(&results[0]);
+    run_finish(&results[1]);
+}
+
 static void a_run_that_fails_is_told_with_its_step(void **state)
 {
     (void)state;
@@ -106,6 +132,7 @@ int main(void)
         cmocka_unit_test(the_order_of_made_up_errors_is_found),
         cmocka_unit_test(the_implicit_methods_are_of_second_order_through_impacts),
         cmocka_unit_test(the_event_method_needs_no_shorter_step),
+        cmocka_unit_test(rows_at_an_event_are_compared_in_their_order),
         cmocka_unit_test(a_run_that_fails_is_told_with_its_step),
         cmocka_unit_test(the_least_cost_is_read_off_a_study),
     };

@@ -76,6 +76,26 @@ status convergence_compute(const scenario *s, run_monitor *monitor, convergence_
     return code;
 }
 
+size_t convergence_difference(const trace *coarse, const trace *fine, double *x, double *y)
+{
+    assert(coarse != NULL && fine != NULL && x != NULL && y != NULL);
+    size_t count = 0, j = 0;
+
+    // both ascend, so each is gone through once; equal instants are equal to the last bit, since
+    // halving a step is exact
+    for (size_t i = 0; i < coarse->row_count; i++) {
+        double time = coarse->rows[i].time;
+        while (j < fine->row_count && fine->rows[j].time < time) {
+            j++;
+        }
+        if (j < fine->row_count && fine->rows[j].time == time) {
+            x[count] = time;
+            y[count++] = coarse->rows[i].force - fine->rows[j++].force;
+        }
+    }
+    return count;
+}
+
 // --- error against cost ---------------------------------------------------------------------
 
 const char *const study_methods[STUDY_METHODS] = {"newmark", "generalized-alpha", "event"};
@@ -133,9 +153,8 @@ static void prepare_points(method_study *study)
         double unit = 1000; // a second in those of the decade
         for (int i = 0; i < STUDY_STEPS; i++) {
             unit *= i > 0 && i % 3 == 0 ? 10 : 1;
-            study->points[m][i] = (study_point){.step = mantissas[i % 3] / unit,
-                                                .cost = none,
-                                                .error = {none, none, none}};
+            study->points[m][i] = (study_point){
+                .step = mantissas[i % 3] / unit, .cost = none, .error = {none, none, none}};
         }
     }
 }

@@ -108,27 +108,6 @@ static status run_all(const scenario *s, const convergence_panel *panel, run_mon
     return STATUS_OK;
 }
 
-// The force less that of the finest run, at the instants both have: x and y have room for as many
-// values as the coarser trace has rows. Returns their number. Rows of the same instant have the
-// same time to the last bit, since halving a step is exact.
-static size_t difference(const trace *coarse, const trace *fine, double *x, double *y)
-{
-    size_t count = 0, j = 0;
-
-    // both ascend, so each is gone through once
-    for (size_t i = 0; i < coarse->row_count; i++) {
-        double time = coarse->rows[i].time;
-        while (j < fine->row_count && fine->rows[j].time < time) {
-            j++;
-        }
-        if (j < fine->row_count && fine->rows[j].time == time) {
-            x[count] = time;
-            y[count++] = coarse->rows[i].force - fine->rows[j].force;
-        }
-    }
-    return count;
-}
-
 static int draw(const arguments *a, const three_runs *r, double *work[4])
 {
     static const int colours[PANEL_STEPS] = {5, 0, 6};
@@ -151,7 +130,7 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
                                    .colour = colours[i]};
 
         if (i < PANEL_STEPS - 1) {
-            size_t count = difference(t, finest, work[2 * i], work[2 * i + 1]);
+            size_t count = convergence_difference(t, finest, work[2 * i], work[2 * i + 1]);
             less[i] = (figure_series){.name = names[i],
                                       .label = label[i],
                                       .x = work[2 * i],
