@@ -1,7 +1,9 @@
 // What once was wrong in figures and can be told by a program.
 #include "tests/plot_fixture.h"
 
+#include "render/page/palette.h"
 #include "render/plot/curve.h"
+#include "render/plot/sweep_plot.h"
 
 // fontconfig keeps its cache until the process ends
 const char *__lsan_default_suppressions(void);
@@ -235,6 +237,98 @@ static void a_legend_keeps_off_the_heading(void **state)
     }
 }
 
+// Upright lines of the page: columns of pixels that are dark all the way along a third of it, those
+// beside each other taken for one.
+static int count_uprights(cairo_surface_t *surface)
+{
+    int width = cairo_image_surface_get_width(surface), count = 0;
+    int height = cairo_image_surface_get_height(surface);
+    bool before = false;
+    for (int x = 0; x < width; x++) {
+        int run = 0, longest = 0;
+        for (int y = 0; y < height; y++) {
+            pixel p = pixel_at(surface, x, y);
+            run = p.red + p.green + p.blue < 3 * 150 && saturation(p) < 30 ? run + 1 : 0;
+            longest = run > longest ? run : longest;
+        }
+        bool upright = 3 * longest > height;
+        count += upright && !before;
+        before = upright;
+    }
+    return count;
+}
+
+// Paints a sweep of a quantity that grows from run to run.
+static cairo_surface_t *paint_sweep(const char *one, const char *other, figure_report *r)
+{
+    static char name[] = "test";
+    char *vary[] = {(char *)one, (char *)other};
+    scenario base = {.name = name};
+    parameters_defaults(&base.parameters, ARM_CORRECTED);
+    sweep_request request = {.vary = vary, .vary_count = other != NULL ? 2 : 1};
+    sweep s;
+    fault f = {0};
+    if (sweep_init(&s, &base, &request, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    double values[64];
+    assert_true(s.run_count <= 64);
+    for (size_t i = 0; i < s.run_count; i++) {
+        values[i] = 1 + 0.1 * (double)i;
+    }
+    const sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
+    sweep_figure *drawn = sweep_figure_create(&shown);
+    cairo_surface_t *surface = paint_pixels(sweep_figure_of(drawn), 2, r);
+    sweep_figure_destroy(drawn);
+    sweep_finish(&s);
+    return surface;
+}
+
+// Sweeps and errors over costs have two axes and no box round them, as recorded signals do.
+static void all_plots_have_axes_of_one_style(void **state)
+{
+    (void)state;
+    static figure_report r;
+    double x[] = {0.01, 0.1, 1, 10}, y[] = {1, 3, 20, 50};
+    figure_series series = {.x = x, .y = y, .count = 4, .marker = MARKER_CIRCLE};
+    figure_panel panel = {.y = {.scale = SCALE_LOGARITHMIC}, .series = &series, .series_count = 1};
+    figure study = {.panels = &panel,
+                    .panel_count = 1,
+                    .x = {.label = "x", .scale = SCALE_LOGARITHMIC},
+                    .width = 100,
+                    .height = 80};
+    figure signals = {.panels = &panel, .panel_count = 1, .x = {.label = "x"}, .width = 100};
+    cairo_surface_t *pictures[] = {paint_sweep("motor.voltage=1:2:6", NULL, &r),
+                                   paint_pixels(&study, 2, &r), paint_pixels(&signals, 2, &r)};
+    for (size_t i = 0; i < G_N_ELEMENTS(pictures); i++) {
+        assert_int_equal(count_uprights(pictures[i]), 1);
+        cairo_surface_destroy(pictures[i]);
+    }
+}
+
+// A number over a list of words is a line for each word, and no map with colours between them.
+static void words_are_lines_not_colours(void **state)
+{
+    (void)state;
+    static figure_report r;
+    static const char *const names[] = {"event", "newmark", "generalized-alpha"};
+    cairo_surface_t *surface =
+        paint_sweep("motor.voltage=1:2:6", "method.name=event,newmark,generalized-alpha", &r);
+    colour darkest = palette_shade(THEME_COLOUR, 0);
+    for (int y = 0; y < cairo_image_surface_get_height(surface); y++) {
+        for (int x = 0; x < cairo_image_surface_get_width(surface); x++) {
+            pixel p = pixel_at(surface, x, y);
+            double off = fabs(p.red - 255 * darkest.red) + fabs(p.green - 255 * darkest.green) +
+                         fabs(p.blue - 255 * darkest.blue);
+            assert_true(off > 12);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        expect_text(&r, names[i]);
+    }
+    cairo_surface_destroy(surface);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -247,6 +341,8 @@ int main(void)
         cmocka_unit_test(a_map_without_colours_is_grey),
         cmocka_unit_test(numbers_have_names_and_units),
         cmocka_unit_test(a_legend_keeps_off_the_heading),
+        cmocka_unit_test(all_plots_have_axes_of_one_style),
+        cmocka_unit_test(words_are_lines_not_colours),
     };
     return cmocka_run_group_tests_name("figure defects", tests, make_work_folder,
                                        remove_work_folder) != 0;
