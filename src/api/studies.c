@@ -49,7 +49,7 @@ static int count_processors(void)
 // Tells an outcome to the caller. False if that is enough.
 static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker take, void *context)
 {
-    double quantities[64];
+    double quantities[SUMMARY_NUMBERS];
     for (int i = 0; i < summary_count; i++) {
         quantities[i] = summary_value(s, i);
     }

@@ -9,7 +9,7 @@ enum { PARAMETERS_AT_MOST = sizeof((parameters *)0)->set };
 
 static impactlab_parameter parameter_rows[PARAMETERS_AT_MOST];
 static impactlab_signal signal_rows[SIGNALS_AT_MOST];
-static impactlab_quantity quantity_rows[64];
+static impactlab_quantity quantity_rows[SUMMARY_NUMBERS];
 static pthread_once_t filled = PTHREAD_ONCE_INIT;
 
 static impactlab_parameter parameter_row(const parameter_info *info)

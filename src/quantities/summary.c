@@ -63,9 +63,7 @@ const summary_info summary_table[] = {
 const int summary_count = (int)(sizeof summary_table / sizeof summary_table[0]);
 
 // the numbers end with the struct, so that none of them is missing from the table
-_Static_assert(sizeof summary_table / sizeof summary_table[0] * sizeof(double) +
-                       offsetof(summary, first_contact_s) ==
-                   sizeof(summary),
+_Static_assert(sizeof summary_table / sizeof summary_table[0] == SUMMARY_NUMBERS,
                "every number of a summary has its row");
 
 int summary_find(const char *key)

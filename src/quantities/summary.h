@@ -58,6 +58,7 @@ typedef struct summary_info {
 // The table, in the order of the numbers of struct summary and of `run --json`.
 extern const summary_info summary_table[];
 extern const int summary_count;
+enum { SUMMARY_NUMBERS = (sizeof(summary) - offsetof(summary, first_contact_s)) / sizeof(double) };
 
 // Index in the table of a number of struct summary; a constant, and a misspelt one does not
 // compile.
