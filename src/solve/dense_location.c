@@ -83,12 +83,15 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
 
 void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
 {
-    // an engine's own way
     if (m->engine->first_event != NULL) {
         m->engine->first_event(a, m, h, first, any);
-        return;
+    } else {
+        dense_search_event(a, m, h, first, any);
     }
+}
 
+void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
     *any = false;
     *first = WATCH_GAP;
 
@@ -174,12 +177,16 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts)
 
 void dense_peak(const arm *a, motion *m, double h)
 {
-    enum { CUTS = 4 };
     if (m->engine->peak != NULL) {
         m->engine->peak(a, m, h);
-        return;
+    } else {
+        dense_search_peak(a, m, h);
     }
+}
 
+void dense_search_peak(const arm *a, motion *m, double h)
+{
+    enum { CUTS = 4 };
     if (m->engine->bounded != NULL && m->engine->bounded(a, m, h, m->pulse_peak)) {
         return;
     }

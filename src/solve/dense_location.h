@@ -13,3 +13,7 @@ void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *a
 
 // Raises m->pulse_peak to the largest force in [0, h] of a stride in contact.
 void dense_peak(const arm *a, motion *m, double h);
+
+// What these do where the engine has no way of its own, by its look, bend, clear and bounded.
+void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any);
+void dense_search_peak(const arm *a, motion *m, double h);

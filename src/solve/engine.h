@@ -89,6 +89,7 @@ extern const engine explicit_engine; // Runge-Kutta of order 8, of order 6 in br
 extern const engine newmark_engine;  // implicit, stepping
 extern const engine generalized_alpha_engine; // the same step with other coefficients
 
+extern const engine series_engine; // power series of plain chains; dense
 extern const engine modal_engine;  // exponential collocation for chains of many links; dense
 extern const engine taylor_engine; // power series of the two-link arm; dense
 

@@ -1,20 +1,25 @@
 // Chains of many links by exponential collocation on the modes of the straight chain
-// (modal_stride.h): a dense engine. What happens within a stride is found as modal_watch.h says.
+// (modal_stride.h), and, where those have no advantage, by power series (series_engine.h): a dense
+// engine.
 //
-// A stride is LONGEST at most, and so short that its points show all vibrations but those that have
-// next to no energy (modal_stride_shown). It is halved where Picard's sweeps do not converge or its
-// ledger does not close.
+// A stride of the modes is LONGEST at most, and so short that its points show all vibrations but
+// those that have next to no energy (modal_stride_shown). It is halved where Picard's sweeps do not
+// converge or its ledger does not close. Where that leaves it shorter than ADVANTAGE strides of the
+// series, which are exact and cost a fraction, the series go on, and the modes are asked again
+// after PATIENCE of their strides. What happens within a stride is found as modal_watch.h or
+// dense_location.h says.
 #include <math.h>
 #include <string.h>
 
+#include "src/solve/dense_location.h"
 #include "src/solve/locate.h"
 #include "src/solve/modal_state.h"
 #include "src/solve/modal_stride.h"
 #include "src/solve/modal_watch.h"
-#include "src/solve/motion.h"
+#include "src/solve/series_engine.h"
 
 #define LONGEST    4.5e-3 // [s]
-#define SHORTEST   1e-10  // [s]
+#define ADVANTAGE  8.0    // strides of the series that one of the modes has to replace
 #define SETTLED    1e-7   // change of the last sweep that is let pass
 #define OPEN       1e-8   // share of the energy that a stride's ledger may lack
 #define FAINT      1e-8   // share of it that vibrations may have to be left out of the points
@@ -28,21 +33,27 @@
 #define SHOWN          8
 #define SHOWN_BOUNCING 4
 
-#define SEEN_TURN                                                                                  \
-    0.5 // of the fastest vibration or decay in a stride whose points show it well [rad]
-
-enum { MOST_TRIES = 24, FEW_SWEEPS = 5 };
+enum { MOST_TRIES = 24, FEW_SWEEPS = 5, PATIENCE = 16 };
 
 typedef struct modal_memory {
-    modal_stride *stride;
+    bool by_series;              // the stride in hand is one of the series
+    series_stride *series;       // that one
+    modal_stride *stride;        // or that of the modes
     modal_function contact, hub; // gap or force; hub's velocity or friction
     bool fitted;                 // `contact` is that of the stride
 } modal_memory;
 
+// Bytes of the modes' part, to a whole number of doubles.
+static size_t modes_size(const arm *a)
+{
+    const size_t size = sizeof(modal_memory) + modal_stride_size(a) +
+                        2 * modal_function_size(a->dof) * sizeof(double);
+    return (size + sizeof(double) - 1) / sizeof(double) * sizeof(double);
+}
+
 static size_t memory_for(const arm *a)
 {
-    return sizeof(modal_memory) + modal_stride_size(a) +
-           2 * modal_function_size(a->dof) * sizeof(double);
+    return modes_size(a) + series_stride_size(a);
 }
 
 static void open_memory(const arm *a, motion *m)
@@ -54,6 +65,8 @@ static void open_memory(const arm *a, motion *m)
     modal_function_place(&memory->hub, a->dof, arrays + modal_function_size(a->dof));
     memory->stride = (modal_stride *)(arrays + 2 * modal_function_size(a->dof));
     modal_stride_place(memory->stride, a);
+    memory->series = (series_stride *)((char *)m->memory + modes_size(a));
+    series_stride_place(memory->series, a);
 }
 
 static modal_stride *stride_of(const motion *m)
@@ -69,13 +82,11 @@ static double power_of_two(double x)
     return ldexp(1, exponent - 1);
 }
 
-static double begin(const arm *a, motion *m, double remaining, double step)
+// A stride of the modes, or 0 where the series are better: their strides are `series` [s].
+static double begin_modes(const arm *a, motion *m, double remaining, double series)
 {
-    (void)step;
-    modal_memory *memory = m->memory;
-    modal_stride *s = memory->stride;
+    modal_stride *s = stride_of(m);
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
-    memory->fitted = false;
     s->start_energy = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q);
     s->shown_turn = a->wall.restitution > 0 ? SHOWN_BOUNCING : SHOWN;
     if (modal_stride_start(s, a, m->links, contact_state_of(m->state), q, w) != STATUS_OK) {
@@ -87,40 +98,66 @@ static double begin(const arm *a, motion *m, double remaining, double step)
     if (m->state[SLOT_JUMPED] != 0) {
         longest = fmin(longest, FIRST_TURN / modal_stride_fastest(s));
     }
-
     longest = fmin(longest, s->shown_turn / modal_stride_shown(s, FAINT * s->start_energy));
 
     // powers of two, whose responses are kept; beyond what remains the last one is of no interest
     double h = power_of_two(fmin(longest, 2 * remaining));
     const double energy = s->start_energy + fabs(a->motor.torque) * TURN / 10;
-    const double least = SEEN_TURN / modal_stride_quickest(s);
-    for (int i = 0; i < MOST_TRIES && h > SHORTEST; i++) {
+    for (int i = 0; i < MOST_TRIES && h > ADVANTAGE * series; i++) {
         modal_fit fit = modal_stride_fit(s, a, m->links, q, h);
-        double open = HUGE_VAL;
-        bool closed = false;
         if (fit.change < SETTLED) {
             memcpy(m->between, m->state, SLOT_COUNT * sizeof *m->between);
-            open = fabs(modal_state_at(s, a, m, h, m->between));
-            closed = open < OPEN * energy;
-        }
-
-        // shorter, until the ledger closes; one that does not where all is seen is left open
-        if (closed || (open < HUGE_VAL && h < least)) {
-            const double growth = fit.sweeps <= FEW_SWEEPS ? GROWTH : 2;
-            s->next = i == 0 ? fmin(fmax(longest, growth * h), LONGEST) : h;
-            return fmin(h, remaining);
+            const double open = fabs(modal_state_at(s, a, m, h, m->between));
+            if (open < OPEN * energy) {
+                const double growth = fit.sweeps <= FEW_SWEEPS ? GROWTH : 2;
+                s->next = i == 0 ? fmin(fmax(longest, growth * h), LONGEST) : h;
+                return fmin(h, remaining);
+            }
         }
         h /= 2;
     }
     return 0;
 }
 
+static double begin(const arm *a, motion *m, double remaining, double step)
+{
+    (void)step;
+    modal_memory *memory = m->memory;
+    const double series = chain_series_reach(a, state_velocities(m, m->state));
+    memory->fitted = false;
+
+    // strides of the series in a row are counted below zero
+    if (remaining > ADVANTAGE * series && !(m->state[SLOT_STRIDE] < 0)) {
+        const double h = begin_modes(a, m, remaining, series);
+        memory->by_series = false;
+        if (h > 0) {
+            return h;
+        }
+    }
+    memory->by_series = true;
+    return series_stride_begin(memory->series, a, m, remaining);
+}
+
+// What the next stride has to know of this one.
+static double proposal(const motion *m)
+{
+    const modal_memory *memory = m->memory;
+    if (!memory->by_series) {
+        return memory->stride->next;
+    }
+    const double waiting = m->state[SLOT_STRIDE];
+    return waiting < 0 ? waiting + 1 : 1 - PATIENCE;
+}
+
 static status state_at(const arm *a, motion *m, double h)
 {
-    modal_stride *s = stride_of(m);
+    const modal_memory *memory = m->memory;
     double *trial = m->trial;
-    (void)modal_state_at(s, a, m, h, trial);
-    trial[SLOT_STRIDE] = s->next;
+    trial[SLOT_STRIDE] = proposal(m);
+    if (memory->by_series) {
+        return series_stride_state(memory->series, a, m, h);
+    }
+    (void)modal_state_at(memory->stride, a, m, h, trial);
     memcpy(state_algorithmic(m, trial), state_accelerations(m, trial),
            (size_t)m->dof * sizeof(double));
     return STATUS_OK;
@@ -141,6 +178,10 @@ static modal_function *contact_function(const arm *a, motion *m)
 static void first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
 {
     modal_memory *memory = m->memory;
+    if (memory->by_series) {
+        dense_search_event(a, m, h, first, any);
+        return;
+    }
     *any = false;
     *first = WATCH_GAP;
 
@@ -164,18 +205,58 @@ static void first_event(const arm *a, motion *m, double *h, watch *first, bool *
 
 static void peak(const arm *a, motion *m, double h)
 {
-    modal_function_peak(contact_function(a, m), a, m, h);
+    const modal_memory *memory = m->memory;
+    if (memory->by_series) {
+        dense_search_peak(a, m, h);
+    } else {
+        modal_function_peak(contact_function(a, m), a, m, h);
+    }
 }
 
 static glance force_at(const arm *a, const motion *m, double h)
 {
     modal_memory *memory = m->memory;
-    return memory->fitted ? modal_function_at(&memory->contact, a, h) : (glance){0, 0};
+    return memory->by_series ? series_stride_force(memory->series, h)
+           : memory->fitted  ? modal_function_at(&memory->contact, a, h)
+                             : (glance){0, 0};
+}
+
+// Of strides of the series, which alone are asked so.
+static glance look(const arm *a, const motion *m, watch w, double h)
+{
+    const modal_memory *memory = m->memory;
+    (void)a;
+    return series_stride_look(memory->series, w, h);
+}
+
+static double bend(const arm *a, const motion *m, watch w, double from, double to)
+{
+    const modal_memory *memory = m->memory;
+    (void)a, (void)from;
+    return series_stride_bend(memory->series, w, to);
+}
+
+static bool clear(const arm *a, motion *m, watch w, double h)
+{
+    const modal_memory *memory = m->memory;
+    (void)a;
+    return series_stride_clear(memory->series, w, h);
+}
+
+static bool bounded(const arm *a, motion *m, double h, double most)
+{
+    const modal_memory *memory = m->memory;
+    (void)a;
+    return series_stride_bounded(memory->series, h, most);
 }
 
 const engine modal_engine = {.name = "modes of the straight chain",
                              .begin = begin,
                              .state_at = state_at,
+                             .look = look,
+                             .bend = bend,
+                             .clear = clear,
+                             .bounded = bounded,
                              .first_event = first_event,
                              .peak = peak,
                              .force_at = force_at,

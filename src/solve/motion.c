@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The event method takes the modes of the straight chain where the explicit formula would need more
+// The event method takes the modes of the straight chain where an explicit formula would need more
 // substeps a step than this.
 #define MOST_SUBSTEPS   90
 
@@ -17,6 +17,21 @@
 // Some last bits of an acceleration, as a share of 1e-9, which counts as zero in a slow soft arm.
 #define LAST_BITS 4e-4
 
+// The event method's engine: series of the two-link arm, modes of chains so stiff that a time step
+// holds many strides of anything else, series of the other plain chains; Runge-Kutta for arms and
+// walls that those are not for.
+static const engine *event_engine(const arm *a, const motion *m, double step)
+{
+    if (taylor_engine_suits(a)) {
+        return &taylor_engine;
+    }
+    if (!arm_is_plain(a) || !motion_wall_is_rigid(m) || a->links < 2) {
+        return &explicit_engine;
+    }
+    const bool stiff = a->fastest_rate * step > EXPLICIT_RESOLUTION * MOST_SUBSTEPS;
+    return stiff ? &modal_engine : &series_engine;
+}
+
 static void choose_engine(const arm *a, motion *m, const method_parameters *method)
 {
     double rho = method->spectral_radius;
@@ -24,19 +39,11 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     m->wall_has_face = wall_stands(&a->wall) && wall_has_face(&a->wall);
     m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall) && !m->wall_has_face;
 
-    // how many explicit substeps a step would take
-    bool too_stiff = a->fastest_rate * method->step > EXPLICIT_RESOLUTION * MOST_SUBSTEPS;
-
     // the engine, and its coefficients
     if (method->name == METHOD_NEWMARK) {
         m->engine = &newmark_engine;
         m->beta = method->beta;
         m->gamma = method->gamma;
-    } else if (method->name == METHOD_EVENT && taylor_engine_suits(a)) {
-        m->engine = &taylor_engine;
-    } else if (method->name == METHOD_EVENT && too_stiff && motion_wall_is_rigid(m) &&
-               arm_is_plain(a)) {
-        m->engine = &modal_engine;
     } else if (method->name == METHOD_GENERALIZED_ALPHA) {
         m->engine = &generalized_alpha_engine;
         // Chung and Hulbert (1993), equations (17), (18), (25)
@@ -45,7 +52,7 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = 0.5 - m->alpha_m + m->alpha_f;
         m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
     } else {
-        m->engine = &explicit_engine;
+        m->engine = event_engine(a, m, method->step);
     }
 }
 

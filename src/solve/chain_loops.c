@@ -1,0 +1,266 @@
+#include "src/solve/chain_loops.h"
+
+#include "src/solve/taylor_engine.h"
+
+// Blocks are handed to inline functions of this file only.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+// All lanes of a block.
+typedef double block __attribute__((vector_size(8 * SERIES_LANES), may_alias));
+
+// Block b of an array by link; coefficient n of block b.
+#define AT(row, b)      (((block *)(row))[b])
+#define TERM(row, n, b) (((block *)(row))[(b)*SERIES_TERMS + (n)])
+
+#define LOOP            static inline __attribute__((always_inline))
+
+LOOP block all(double x)
+{
+    return (block){x, x, x, x, x, x, x, x};
+}
+
+// Every lane's successor of the first block, and every lane's predecessor of the last one.
+LOOP block next_lane(block first, double beyond)
+{
+    return (block){first[1], first[2], first[3], first[4], first[5], first[6], first[7], beyond};
+}
+LOOP block lane_before(block last, double before)
+{
+    return (block){before, last[0], last[1], last[2], last[3], last[4], last[5], last[6]};
+}
+
+LOOP void loop_join(chain_rows *r)
+{
+    // from a stretch's outer end inwards
+    double **m = r->matrix, **in = r->inwards, **out = r->outwards;
+    block xx = all(1), xy = all(0), yx = all(0), yy = all(1);
+    for (int b = r->blocks - 1; b >= 0; b--) {
+        const block axx = AT(m[0], b), axy = AT(m[1], b), ayx = AT(m[2], b), ayy = AT(m[3], b);
+        const block zxx = axx * xx + axy * yx, zxy = axx * xy + axy * yy;
+        const block zyx = ayx * xx + ayy * yx, zyy = ayx * xy + ayy * yy;
+        AT(in[0], b) = xx = zxx;
+        AT(in[1], b) = xy = zxy;
+        AT(in[2], b) = yx = zyx;
+        AT(in[3], b) = yy = zyy;
+    }
+
+    // the transposed, the other way
+    xx = yy = all(1);
+    xy = yx = all(0);
+    for (int b = 0; b < r->blocks; b++) {
+        const block axx = AT(m[0], b), axy = AT(m[1], b), ayx = AT(m[2], b), ayy = AT(m[3], b);
+        AT(out[0], b) = xx;
+        AT(out[1], b) = xy;
+        AT(out[2], b) = yx;
+        AT(out[3], b) = yy;
+        const block zxx = axx * xx + ayx * yx, zxy = axx * xy + ayx * yy;
+        const block zyx = axy * xx + ayy * yx, zyy = axy * xy + ayy * yy;
+        xx = zxx;
+        xy = zxy;
+        yx = zyx;
+        yy = zyy;
+    }
+    AT(r->whole[0], 0) = xx;
+    AT(r->whole[1], 0) = xy;
+    AT(r->whole[2], 0) = yx;
+    AT(r->whole[3], 0) = yy;
+}
+
+LOOP void loop_products(chain_rows *r, const chain_order *o)
+{
+    const int n = o->n;
+    for (int b = 0; b < r->blocks; b++) {
+        const block *sine = &TERM(r->sine, 0, b), *cosine = &TERM(r->cosine, 0, b);
+        const block *rate = &TERM(r->rate, n + 1, b);
+        const block *gx = &TERM(r->gx, n, b), *gy = &TERM(r->gy, n, b);
+        block of_s = all(0), of_c = all(0), moment = all(0), against = all(0);
+        for (int i = 1; i <= n; i++) {
+            of_s += sine[i] * rate[-i];
+            of_c += cosine[i] * rate[-i];
+            moment += cosine[i] * gy[-i];
+            against += sine[i] * gx[-i];
+        }
+        AT(r->known_s, b) = of_s + sine[n + 1] * rate[-n - 1];
+        AT(r->known_c, b) = of_c + cosine[n + 1] * rate[-n - 1];
+        AT(r->moment, b) = moment - against;
+    }
+}
+
+LOOP void loop_torques(chain_rows *r, const chain_order *o)
+{
+    const int last = r->blocks - 1;
+    const block stiffness = all(o->stiffness), damping = all(o->damping);
+
+    // of the joints beyond
+    for (int b = 0; b <= last; b++) {
+        const block angle = TERM(r->angle, o->n, b), rate = TERM(r->rate, o->n, b);
+        const block angle_beyond =
+            b < last ? TERM(r->angle, o->n, b + 1) : next_lane(TERM(r->angle, o->n, 0), 0);
+        const block rate_beyond =
+            b < last ? TERM(r->rate, o->n, b + 1) : next_lane(TERM(r->rate, o->n, 0), 0);
+        const block turn = AT(r->joint, b) * (rate_beyond - rate);
+        TERM(r->bend_rate, o->n, b) = turn;
+        AT(r->torque, b) = AT(r->joint, b) * (stiffness * (angle_beyond - angle)) + damping * turn;
+    }
+
+    // what each link feels of both of its own
+    block inner = lane_before(AT(r->torque, last), -o->root);
+    for (int b = 0; b <= last; b++) {
+        const block outer = AT(r->torque, b);
+        AT(r->moment, b) = (outer - inner) - AT(r->moment, b);
+        inner = outer;
+    }
+}
+
+LOOP void loop_prepare(chain_rows *r, const chain_order *o)
+{
+    const block turns = all(o->n + 1);
+    for (int b = 0; b < r->blocks; b++) {
+        const block x = -turns * AT(r->known_s, b), y = turns * AT(r->known_c, b);
+        const block moment = AT(r->moment, b) - AT(r->back_x, b) * x - AT(r->back_y, b) * y;
+        const block turn = moment * AT(r->inv_d, b);
+        AT(r->rho_x, b) = x;
+        AT(r->rho_y, b) = y;
+        AT(r->moment, b) = moment;
+        AT(r->add_x, b) = AT(r->rho_xx, b) * x + AT(r->rho_xy, b) * y + AT(r->ux, b) * turn;
+        AT(r->add_y, b) = AT(r->rho_xy, b) * x + AT(r->rho_yy, b) * y + AT(r->uy, b) * turn;
+    }
+}
+
+LOOP void loop_sweep(chain_rows *r, const chain_order *o)
+{
+    double **m = r->matrix, **in = r->inwards, **out = r->outwards;
+    const int last = r->blocks - 1;
+    block x = all(0), y = all(0), begin_x = all(0), begin_y = all(0);
+
+    // Q along the stretches, then what comes from the stretch beyond
+    for (int b = last; b >= 0; b--) {
+        const block zx = AT(m[0], b) * x + AT(m[1], b) * y;
+        const block zy = AT(m[2], b) * x + AT(m[3], b) * y;
+        AT(r->qx, b) = x = zx + AT(r->add_x, b);
+        AT(r->qy, b) = y = zy + AT(r->add_y, b);
+    }
+    for (int j = SERIES_LANES - 2; j >= 0; j--) {
+        const double bx = begin_x[j + 1], by = begin_y[j + 1];
+        begin_x[j] = x[j + 1] + (in[0][j + 1] * bx + in[1][j + 1] * by);
+        begin_y[j] = y[j + 1] + (in[2][j + 1] * bx + in[3][j + 1] * by);
+    }
+
+    // accelerations over a resting base, and what they add to the next base's
+    block beyond_x = begin_x, beyond_y = begin_y;
+    const block length = all(o->length);
+    for (int b = last; b >= 0; b--) {
+        const block vx = AT(r->vx, b), vy = AT(r->vy, b);
+        const block turn = (AT(r->moment, b) - (vx * beyond_x + vy * beyond_y)) * AT(r->inv_d, b);
+        AT(r->free, b) = turn;
+        AT(r->add_x, b) = vx * turn + length * AT(r->rho_x, b);
+        AT(r->add_y, b) = vy * turn + length * AT(r->rho_y, b);
+        AT(r->qx, b) = beyond_x = AT(r->qx, b) + (AT(in[0], b) * begin_x + AT(in[1], b) * begin_y);
+        AT(r->qy, b) = beyond_y = AT(r->qy, b) + (AT(in[2], b) * begin_x + AT(in[3], b) * begin_y);
+    }
+
+    // the bases' along the stretches, then what comes from the stretch before
+    x = y = all(0);
+    for (int b = 0; b <= last; b++) {
+        AT(r->base_x, b) = x;
+        AT(r->base_y, b) = y;
+        const block zx = AT(m[0], b) * x + AT(m[2], b) * y;
+        const block zy = AT(m[1], b) * x + AT(m[3], b) * y;
+        x = zx + AT(r->add_x, b);
+        y = zy + AT(r->add_y, b);
+    }
+    begin_x = begin_y = all(0);
+    for (int j = 0; j + 1 < SERIES_LANES; j++) {
+        const double bx = begin_x[j], by = begin_y[j];
+        begin_x[j + 1] = x[j] + (r->whole[0][j] * bx + r->whole[1][j] * by);
+        begin_y[j + 1] = y[j] + (r->whole[2][j] * bx + r->whole[3][j] * by);
+    }
+    for (int b = 0; b <= last; b++) {
+        AT(r->base_x, b) += AT(out[0], b) * begin_x + AT(out[1], b) * begin_y;
+        AT(r->base_y, b) += AT(out[2], b) * begin_x + AT(out[3], b) * begin_y;
+    }
+}
+
+LOOP void loop_finish(chain_rows *r, const chain_order *o)
+{
+    const int n = o->n;
+    const block per_rate = all(1.0 / (n + 1)), per_angle = all(1.0 / (n + 2)), push = all(o->force);
+    for (int b = 0; b < r->blocks; b++) {
+        const block ax = AT(r->base_x, b), ay = AT(r->base_y, b);
+        const block pull = (AT(r->ux, b) * ax + AT(r->uy, b) * ay) * AT(r->inv_d, b);
+        const block acceleration = AT(r->free, b) - pull + push * AT(r->unit, b);
+        const block rate = acceleration * per_rate;
+        AT(r->acceleration, b) = acceleration;
+        AT(r->qx, b) += AT(r->pxx, b) * ax + AT(r->pxy, b) * ay + push * AT(r->unit_fx, b);
+        AT(r->qy, b) += AT(r->pxy, b) * ax + AT(r->pyy, b) * ay + push * AT(r->unit_fy, b);
+
+        // the next coefficients
+        TERM(r->rate, n + 1, b) = rate;
+        TERM(r->angle, n + 2, b) = rate * per_angle;
+        TERM(r->cosine, n + 2, b) = -(AT(r->known_s, b) + AT(r->start_s, b) * rate) * per_angle;
+        TERM(r->sine, n + 2, b) = (AT(r->known_c, b) + AT(r->start_c, b) * rate) * per_angle;
+    }
+}
+
+LOOP void loop_hand(chain_rows *r, const chain_order *o)
+{
+    const int last = r->blocks - 1;
+    const block half = all(o->length / 2);
+    for (int b = 0; b <= last; b++) {
+        const block x = b < last ? AT(r->qx, b + 1) : next_lane(AT(r->qx, 0), o->tip_x);
+        const block y = b < last ? AT(r->qy, b + 1) : next_lane(AT(r->qy, 0), o->tip_y);
+        TERM(r->gx, o->n, b) = half * (AT(r->qx, b) + x);
+        TERM(r->gy, o->n, b) = half * (AT(r->qy, b) + y);
+    }
+}
+
+// --- for every width ----------------------------------------------------------------------------
+
+#define LOOPS(name, target_)                                                                       \
+    target_ static void join_##name(chain_rows *r)                                                 \
+    {                                                                                              \
+        loop_join(r);                                                                              \
+    }                                                                                              \
+    target_ static void products_##name(chain_rows *r, const chain_order *o)                       \
+    {                                                                                              \
+        loop_products(r, o);                                                                       \
+    }                                                                                              \
+    target_ static void torques_##name(chain_rows *r, const chain_order *o)                        \
+    {                                                                                              \
+        loop_torques(r, o);                                                                        \
+    }                                                                                              \
+    target_ static void prepare_##name(chain_rows *r, const chain_order *o)                        \
+    {                                                                                              \
+        loop_prepare(r, o);                                                                        \
+    }                                                                                              \
+    target_ static void sweep_##name(chain_rows *r, const chain_order *o)                          \
+    {                                                                                              \
+        loop_sweep(r, o);                                                                          \
+    }                                                                                              \
+    target_ static void finish_##name(chain_rows *r, const chain_order *o)                         \
+    {                                                                                              \
+        loop_finish(r, o);                                                                         \
+    }                                                                                              \
+    target_ static void hand_##name(chain_rows *r, const chain_order *o)                           \
+    {                                                                                              \
+        loop_hand(r, o);                                                                           \
+    }                                                                                              \
+    static const chain_loops loops_##name = {join_##name,    products_##name, torques_##name,      \
+                                             prepare_##name, sweep_##name,    finish_##name,       \
+                                             hand_##name}
+
+LOOPS(plain, );
+#if defined(__x86_64__)
+LOOPS(avx2, __attribute__((target("avx2"))));
+LOOPS(avx512, __attribute__((target("avx512f,avx512dq,avx512vl"))));
+#endif
+
+const chain_loops *chain_loops_here(void)
+{
+#if defined(__x86_64__)
+    const int width = taylor_width();
+    return width >= 8 ? &loops_avx512 : width >= 4 ? &loops_avx2 : &loops_plain;
+#else
+    return &loops_plain;
+#endif
+}

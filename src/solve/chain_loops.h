@@ -1,0 +1,85 @@
+// The loops over all links that the series of a chain (chain_series.h) are made with, in the widest
+// vectors of the processor; the same bits in all of them.
+//
+// A chain is cut into SERIES_LANES stretches of as many links, which are taken side by side: link k
+// stands in lane k / blocks of block k % blocks, so that the link beyond stands in the same lane of
+// the next block. What is handed from link to link goes along all stretches at once as if each
+// began with nothing; what it began with is added afterwards, by the products of the matrices on
+// the way. Behind the last link stand links of no length, mass or motion.
+#pragma once
+
+#include <stddef.h>
+
+enum {
+    SERIES_LANES = 8,
+    SERIES_MOST = 32,              // highest order of the velocities' series
+    SERIES_TERMS = SERIES_MOST + 2 // terms of a polynomial
+};
+
+// Arrays by link: [chain_place], and by coefficient and link: [chain_term].
+typedef struct chain_rows {
+    int blocks;
+    double *angle, *rate;      // [rad], [rad]; coefficients to order + 1 and order
+    double *cosine, *sine;     // of the angle; to order + 1
+    double *gx, *gy;           // G, to order - 1 [kg m2]
+    double *bend_rate;         // of the joint beyond each link [rad]; to order - 1
+    double *start_c, *start_s; // c and s at the start
+    double *joint;             // 1 where there is a joint beyond the link, else 0
+    double *torque;            // of that joint, times L^2
+
+    // the stride's matrices
+    double *ux, *uy, *inv_d;          // of chain.h
+    double *vx, *vy;                  // l t [m]
+    double *pxx, *pxy, *pyy;          // P at the link's base [kg]
+    double *back_x, *back_y;          // what rho costs the moment
+    double *rho_xx, *rho_xy, *rho_yy; // what rho adds to Q
+    double *matrix[4];   // xx, xy, yx, yy: Q_k = A Q_(k+1) + ..., A_(k+1) = A' A_k + ...
+    double *inwards[4];  // products of them from the stretch's outer end to here
+    double *outwards[4]; // of the transposed from its inner end to the link before
+    double *whole[4];    // along a whole stretch, [lane]
+    double *unit, *unit_fx, *unit_fy; // acceleration and F of a unit contact force; 0 without
+
+    // of the order in hand
+    double *known_c, *known_s, *moment, *rho_x, *rho_y, *add_x, *add_y;
+    double *free, *acceleration, *qx, *qy, *base_x, *base_y;
+} chain_rows;
+
+// Places of link k, and of its coefficient n.
+static inline size_t chain_place(const chain_rows *r, int k)
+{
+    return (size_t)(k % r->blocks) * SERIES_LANES + (size_t)(k / r->blocks);
+}
+static inline size_t chain_term(int n, size_t place)
+{
+    return (place / SERIES_LANES * SERIES_TERMS + (size_t)n) * SERIES_LANES + place % SERIES_LANES;
+}
+
+// What an order's loops are given.
+typedef struct chain_order {
+    int n;
+    double stiffness, damping; // of the joints, times L^2 and L
+    double length;             // of a link [m]
+    double root;               // torque of the hub on the first link, times L^2
+    double force;              // contact force, times L^2
+    double tip_x, tip_y;       // the same at the tip of the last link
+} chain_order;
+
+typedef struct chain_loops {
+    void (*join)(chain_rows *r); // products of the matrices along the stretches
+
+    // sums over i = 1..n+1 of s_i w_(n+1-i) and c_i w_(n+1-i) into known_s and known_c, over
+    // i = 1..n of c_i Gy_(n-i) - s_i Gx_(n-i) into moment
+    void (*products)(chain_rows *r, const chain_order *o);
+    // moment: torques of joints and hub less those sums
+    void (*torques)(chain_rows *r, const chain_order *o);
+    // rho, the moment less what it costs, what goes into Q
+    void (*prepare)(chain_rows *r, const chain_order *o);
+    // Q of all links, accelerations of links whose base rests, those of the bases
+    void (*sweep)(chain_rows *r, const chain_order *o);
+    // accelerations, forces at the bases in place of Q, and the next coefficients
+    void (*finish)(chain_rows *r, const chain_order *o);
+    void (*hand)(chain_rows *r, const chain_order *o); // G, from the forces at the bases
+} chain_loops;
+
+// Those for this processor, or for vectors as narrow as taylor_limit_width (taylor_engine.h) takes.
+const chain_loops *chain_loops_here(void);

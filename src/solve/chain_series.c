@@ -1,0 +1,551 @@
+#include "src/solve/chain_series.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "src/base/sincos.h"
+
+#define REACH      6.0   // of the fastest mode or decay in a stride
+#define TURNING    1.2   // rotation counts so many times
+#define LAST_TERMS 1e-13 // the last terms of the velocities, as a share of the largest
+#define LEAST_RATE 0.1   // that counts as the largest velocity [rad/s]
+#define SHORTENING 0.92  // of a stride that is too long for that
+#define SMALL_TERM 1e-14 // of the first term that is left out, where the order may be lower
+
+enum { LEAST_ORDER = 8, MOST_SHORTENINGS = 400, CACHE_LINE = 64 };
+
+// --- storage ------------------------------------------------------------------------------------
+
+enum { ROWS_OF_TERMS = 7, SINGLE_ROWS = 51 };
+
+static int blocks_of(const arm *a)
+{
+    return (a->links + SERIES_LANES - 1) / SERIES_LANES;
+}
+
+size_t chain_series_size(const arm *a)
+{
+    const size_t row = (size_t)blocks_of(a) * SERIES_LANES;
+    return sizeof(chain_series) + CACHE_LINE +
+           (ROWS_OF_TERMS * SERIES_TERMS + SINGLE_ROWS) * row * sizeof(double);
+}
+
+void chain_series_place(chain_series *s, const arm *a)
+{
+    const size_t row = (size_t)blocks_of(a) * SERIES_LANES;
+    const uintptr_t behind = (uintptr_t)(s + 1) + CACHE_LINE - 1;
+    double *storage = (double *)(behind - behind % CACHE_LINE);
+    chain_rows *r = &s->rows;
+    memset(s, 0, chain_series_size(a));
+    s->links = a->links;
+    r->blocks = blocks_of(a);
+    s->first_place = chain_place(r, 0);
+    s->last_place = chain_place(r, a->links - 1);
+
+    // by coefficient and link
+    double **const terms[ROWS_OF_TERMS] = {&r->angle, &r->rate, &r->cosine,   &r->sine,
+                                           &r->gx,    &r->gy,   &r->bend_rate};
+    for (int i = 0; i < ROWS_OF_TERMS; i++) {
+        *terms[i] = storage;
+        storage += SERIES_TERMS * row;
+    }
+
+    // by link
+    double **const rows[] = {&r->start_c, &r->start_s, &r->joint,  &r->torque,       &r->ux,
+                             &r->uy,      &r->inv_d,   &r->vx,     &r->vy,           &r->pxx,
+                             &r->pxy,     &r->pyy,     &r->back_x, &r->back_y,       &r->rho_xx,
+                             &r->rho_xy,  &r->rho_yy,  &r->unit,   &r->unit_fx,      &r->unit_fy,
+                             &r->known_c, &r->known_s, &r->moment, &r->rho_x,        &r->rho_y,
+                             &r->add_x,   &r->add_y,   &r->free,   &r->acceleration, &r->qx,
+                             &r->qy,      &r->base_x,  &r->base_y, &s->unit_x,       &s->unit_y};
+    enum { ROWS = sizeof rows / sizeof rows[0] };
+    _Static_assert(ROWS + 16 == SINGLE_ROWS, "rows by link");
+    for (int i = 0; i < ROWS; i++) {
+        *rows[i] = storage;
+        storage += row;
+    }
+    for (int i = 0; i < 4; i++) {
+        r->matrix[i] = storage;
+        r->inwards[i] = storage + row;
+        r->outwards[i] = storage + 2 * row;
+        r->whole[i] = storage + 3 * row;
+        storage += 4 * row;
+    }
+    for (int k = 0; k + 1 < a->links; k++) {
+        r->joint[chain_place(r, k)] = 1;
+    }
+}
+
+// Coefficient n of the last link, of an array by coefficient and link.
+static double last_of(const chain_series *s, const double *terms, int n)
+{
+    return terms[chain_term(n, s->last_place)];
+}
+
+// --- the stride's start -------------------------------------------------------------------------
+
+double chain_series_reach(const arm *a, const double *w)
+{
+    double rate = fmax(a->highest_frequency, a->fastest_decay), last = 0;
+    for (int i = 0; i < a->dof; i++) {
+        rate = fmax(rate, TURNING * fmax(fabs(w[i]), fabs(w[i] - last)));
+        last = w[i];
+    }
+    return REACH / fmax(rate, 1e-3);
+}
+
+// The lowest even order of which the first term left out is small for what turns by `turn`.
+static int order_for(double turn)
+{
+    double term = 1;
+    int order = 0;
+    while (order < SERIES_MOST && (order < LEAST_ORDER || order % 2 != 0 || term > SMALL_TERM)) {
+        order++;
+        term *= turn / (order + 1);
+    }
+    return order;
+}
+
+// P and what follows from it, from the tip to the hub.
+static void prepare_sweep(chain_series *s, const arm *a)
+{
+    chain_rows *r = &s->rows;
+    const double l = a->link_length, m = a->link_mass, own = a->link_inertia + m * l * l / 4;
+    double pxx = 0, pxy = 0, pyy = 0;
+    for (int k = s->links - 1; k >= 0; k--) {
+        const size_t at = chain_place(r, k);
+        const double c = r->start_c[at], sn = r->start_s[at];
+        const double ptx = -pxx * sn + pxy * c, pty = -pxy * sn + pyy * c; // P t
+        const double ux = l * ptx - m * l / 2 * sn, uy = l * pty + m * l / 2 * c;
+        double d = own + l * l * (c * pty - sn * ptx);
+        d += k == 0 && !a->hub_spring ? a->hub_inertia : 0;
+        const bool held = k == 0 && !a->hub_spring && s->mode.friction == HUB_STICK;
+        const double inv_d = held ? 0 : 1 / d, vx = -l * sn, vy = l * c;
+
+        // what rho does here: l^2 P t + m l^2/4 t, and l P + m l/2
+        r->back_x[at] = l * l * ptx - m * l * l / 4 * sn;
+        r->back_y[at] = l * l * pty + m * l * l / 4 * c;
+        r->rho_xx[at] = l * pxx + m * l / 2;
+        r->rho_xy[at] = l * pxy;
+        r->rho_yy[at] = l * pyy + m * l / 2;
+
+        // on to the link before
+        r->ux[at] = ux;
+        r->uy[at] = uy;
+        r->inv_d[at] = inv_d;
+        r->vx[at] = vx;
+        r->vy[at] = vy;
+        r->matrix[0][at] = 1 - inv_d * ux * vx;
+        r->matrix[1][at] = -inv_d * ux * vy;
+        r->matrix[2][at] = -inv_d * uy * vx;
+        r->matrix[3][at] = 1 - inv_d * uy * vy;
+        r->pxx[at] = pxx += m - ux * ux * inv_d;
+        r->pxy[at] = pxy -= ux * uy * inv_d;
+        r->pyy[at] = pyy += m - uy * uy * inv_d;
+    }
+}
+
+// The sweeps' answer to a unit contact force.
+static void prepare_contact(chain_series *s, const arm *a)
+{
+    chain_rows *r = &s->rows;
+    const int last = s->links - 1;
+    const bool point = a->wall.kind == WALL_POINT;
+    const double m = a->link_mass;
+    const double ex = point ? -r->start_s[s->last_place] : -a->wall.sine;
+    const double ey = point ? r->start_c[s->last_place] : a->wall.cosine;
+    double qx = point ? 0 : ex, qy = point ? 0 : ey;
+
+    // tip to hub
+    for (int k = last; k >= 0; k--) {
+        const size_t at = chain_place(r, k);
+        double moment = -(r->vx[at] * qx + r->vy[at] * qy);
+        if (k == last && point) {
+            moment = -s->along.term[0];
+            qx = ex;
+            qy = ey;
+        }
+        r->unit[at] = moment * r->inv_d[at];
+        qx += r->ux[at] * r->unit[at];
+        qy += r->uy[at] * r->unit[at];
+        r->unit_fx[at] = qx;
+        r->unit_fy[at] = qy;
+    }
+
+    // hub to tip
+    double bx = 0, by = 0;
+    for (int k = 0; k <= last; k++) {
+        const size_t at = chain_place(r, k);
+        r->unit[at] -= (r->ux[at] * bx + r->uy[at] * by) * r->inv_d[at];
+        s->unit_x[at] = bx;
+        s->unit_y[at] = by;
+        r->unit_fx[at] += r->pxx[at] * bx + r->pxy[at] * by;
+        r->unit_fy[at] += r->pxy[at] * bx + r->pyy[at] * by;
+        bx += r->vx[at] * r->unit[at];
+        by += r->vy[at] * r->unit[at];
+    }
+
+    // the first link's base rests
+    const size_t first = s->first_place, second = chain_place(r, 1), end = s->last_place;
+    r->unit_fx[first] = r->unit_fx[second] + m / 2 * r->vx[first] * r->unit[first];
+    r->unit_fy[first] = r->unit_fy[second] + m / 2 * r->vy[first] * r->unit[first];
+    s->response = point
+                      ? ex * s->unit_x[end] + ey * s->unit_y[end] + s->along.term[0] * r->unit[end]
+                      : ex * bx + ey * by;
+}
+
+// The first coefficients, from the state.
+static void take_state(chain_series *s, const arm *a, const double *q, const double *w)
+{
+    chain_rows *r = &s->rows;
+    for (int k = 0; k < s->links; k++) {
+        const size_t at = chain_place(r, k), zeroth = chain_term(0, at), first = chain_term(1, at);
+        const double rate = s->length * w[a->first + k];
+        double sn, c;
+        inline_sincos(q[a->first + k], &sn, &c);
+        r->angle[zeroth] = q[a->first + k];
+        r->angle[first] = r->rate[zeroth] = rate;
+        r->cosine[zeroth] = r->start_c[at] = c;
+        r->sine[zeroth] = r->start_s[at] = sn;
+        r->cosine[first] = -sn * rate;
+        r->sine[first] = c * rate;
+    }
+    s->hub_angle.term[0] = q[0];
+    s->hub_angle.term[1] = s->hub_rate.term[0] = s->length * w[0];
+}
+
+// --- one order after the other ------------------------------------------------------------------
+
+// Torque of the hub on the first link, and, where it is a body of its own, on itself into *hub.
+static double root_torque(chain_series *s, const arm *a, int n, double *hub)
+{
+    const double t = s->length, rate = s->rows.rate[chain_term(n, s->first_place)];
+    const double drive =
+        n == 0 ? t * t * (a->motor.torque - s->mode.friction * a->motor.stiction) : 0;
+    if (!a->hub_spring) {
+        return drive - t * a->motor.damping * rate;
+    }
+    const double angle = s->rows.angle[chain_term(n, s->first_place)];
+    const double turn = rate - s->hub_rate.term[n];
+    const double spring =
+        t * t * a->hub_stiffness * (angle - s->hub_angle.term[n]) + t * a->hub_joint_damping * turn;
+    s->root_rate.term[n] = turn;
+    *hub = drive + spring - t * a->motor.damping * s->hub_rate.term[n];
+    return -spring;
+}
+
+// The n-th coefficient of a product of two series, its factors' first `from` terms left out.
+static double product_term(const double *x, const double *y, int n, int from)
+{
+    double sum = 0;
+    for (int i = from; i <= n; i++) {
+        sum += x[i] * y[n - i];
+    }
+    return sum;
+}
+
+// The way from the last link's base to a point wall, to the n-th coefficient.
+static void reach_point(chain_series *s, const arm *a, int n)
+{
+    const chain_rows *r = &s->rows;
+    double x = 0, y = 0, along = 0;
+    for (int b = 0; b < r->blocks; b++) {
+        const double *cosine = r->cosine + chain_term(n, (size_t)b * SERIES_LANES);
+        const double *sine = r->sine + chain_term(n, (size_t)b * SERIES_LANES);
+        x += ((cosine[0] + cosine[1]) + (cosine[2] + cosine[3])) +
+             ((cosine[4] + cosine[5]) + (cosine[6] + cosine[7]));
+        y += ((sine[0] + sine[1]) + (sine[2] + sine[3])) +
+             ((sine[4] + sine[5]) + (sine[6] + sine[7]));
+    }
+    s->tip_x.term[n] = x;
+    s->tip_y.term[n] = y;
+    x -= last_of(s, r->cosine, n);
+    y -= last_of(s, r->sine, n);
+    s->reach_x.term[n] = (n == 0 ? a->wall.x : 0) - a->link_length * x;
+    s->reach_y.term[n] = (n == 0 ? a->wall.y : 0) - a->link_length * y;
+    for (int i = 0; i <= n; i++) {
+        along += last_of(s, r->cosine, i) * s->reach_x.term[n - i] +
+                 last_of(s, r->sine, i) * s->reach_y.term[n - i];
+    }
+    s->along.term[n] = along;
+}
+
+// What the force's earlier coefficients do at a point wall, whose direction turns with the link:
+// on the link's base, and to its moment.
+static double earlier_force(const chain_series *s, const arm *a, int n, double push[2])
+{
+    const chain_rows *r = &s->rows;
+    push[0] = push[1] = 0;
+    for (int i = 1; i <= n; i++) {
+        push[0] -= s->force.term[n - i] * last_of(s, r->sine, i);
+        push[1] += s->force.term[n - i] * last_of(s, r->cosine, i);
+    }
+    const double across = r->start_c[s->last_place] * push[1] - r->start_s[s->last_place] * push[0];
+    return a->link_length / 2 * across + product_term(s->along.term, s->force.term, n, 1);
+}
+
+// The n-th coefficient of the contact force, from the accelerations without it.
+static double force_term(const chain_series *s, const arm *a, int n)
+{
+    const chain_rows *r = &s->rows;
+    const size_t end = s->last_place;
+    const double ax = r->base_x[end], ay = r->base_y[end];
+    const double turn = r->free[end] - (r->ux[end] * ax + r->uy[end] * ay) * r->inv_d[end];
+    if (a->wall.kind != WALL_POINT) {
+        const double l = a->link_length;
+        const double x = ax + r->vx[end] * turn + l * r->rho_x[end];
+        const double y = ay + r->vy[end] * turn + l * r->rho_y[end];
+        return -(a->wall.cosine * y - a->wall.sine * x) / s->response;
+    }
+
+    // d2g/dt2 = t'A + D a and what the products' earlier coefficients give
+    double rest = s->reach_x.term[0] * r->rho_y[end] - s->reach_y.term[0] * r->rho_x[end];
+    for (int i = 1; i <= n + 1; i++) {
+        rest += (n + 1) * (n + 2) *
+                (last_of(s, r->sine, i) * s->reach_x.term[n + 2 - i] -
+                 last_of(s, r->cosine, i) * s->reach_y.term[n + 2 - i]);
+    }
+    const double across = r->start_c[end] * ay - r->start_s[end] * ax;
+    return -(across + s->along.term[0] * turn + rest) / s->response;
+}
+
+// The n-th coefficients of accelerations and forces, and what follows of the next ones.
+static void next_order(chain_series *s, const arm *a, const chain_loops *loops, int n)
+{
+    chain_rows *r = &s->rows;
+    const double t = s->length, l = a->link_length, m = a->link_mass;
+    const bool contact = s->mode.contact, point = contact && a->wall.kind == WALL_POINT;
+    const size_t first = s->first_place, end = s->last_place;
+    double hub = 0, push[2] = {0};
+    chain_order o = {.n = n,
+                     .length = l,
+                     .stiffness = t * t * a->joint_stiffness,
+                     .damping = t * a->joint_damping,
+                     .root = root_torque(s, a, n, &hub)};
+
+    // what is known
+    loops->products(r, &o);
+    loops->torques(r, &o);
+    const double on_first = r->moment[first];
+    if (point) {
+        reach_point(s, a, n + 1);
+        r->moment[end] -= earlier_force(s, a, n, push);
+    }
+    loops->prepare(r, &o);
+    r->add_x[end] += push[0];
+    r->add_y[end] += push[1];
+
+    // the sweeps, and the force
+    loops->sweep(r, &o);
+    if (contact) {
+        o.force = s->force.term[n] = force_term(s, a, n);
+    }
+    loops->finish(r, &o);
+
+    // forces at the bases; the first one rests, and a plane pushes at the tip
+    const size_t second = chain_place(r, 1);
+    r->qx[first] =
+        r->qx[second] + m / 2 * (r->vx[first] * r->acceleration[first] + l * r->rho_x[first]);
+    r->qy[first] =
+        r->qy[second] + m / 2 * (r->vy[first] * r->acceleration[first] + l * r->rho_y[first]);
+    o.tip_x = contact && !point ? -o.force * a->wall.sine : 0;
+    o.tip_y = contact && !point ? o.force * a->wall.cosine : 0;
+    if (s->links < r->blocks * SERIES_LANES) {
+        const size_t beyond = chain_place(r, s->links);
+        r->qx[beyond] = o.tip_x;
+        r->qy[beyond] = o.tip_y;
+    }
+    loops->hand(r, &o);
+
+    // the hub
+    if (a->hub_spring) {
+        s->hold.term[n] = -hub;
+        s->hub_rate.term[n + 1] =
+            s->mode.friction == HUB_STICK ? 0 : hub / a->hub_inertia / (n + 1);
+        s->hub_angle.term[n + 2] = s->hub_rate.term[n + 1] / (n + 2);
+    } else {
+        const size_t now = chain_term(n, first);
+        s->hold.term[n] =
+            r->start_c[first] * r->gy[now] - r->start_s[first] * r->gx[now] - on_first;
+    }
+}
+
+// --- what follows -------------------------------------------------------------------------------
+
+// The gap in free flight, to order + 1.
+static void sum_gap(chain_series *s, const arm *a)
+{
+    const chain_rows *r = &s->rows;
+    for (int n = 0; n <= s->order + 1; n++) {
+        reach_point(s, a, n);
+        double gap =
+            a->link_length * (a->wall.sine * s->tip_x.term[n] - a->wall.cosine * s->tip_y.term[n]);
+        if (a->wall.kind == WALL_POINT) {
+            gap = 0;
+            for (int i = 0; i <= n; i++) {
+                gap += last_of(s, r->cosine, i) * s->reach_y.term[n - i] -
+                       last_of(s, r->sine, i) * s->reach_x.term[n - i];
+            }
+        }
+        s->gap.term[n] = gap;
+    }
+}
+
+// Powers that are lost: the hub's velocity squared, and those of the joints.
+static void sum_losses(chain_series *s, const arm *a)
+{
+    const chain_rows *r = &s->rows;
+    for (int n = 0; n < s->order; n++) {
+        double hub = 0, root = 0, inner = 0;
+        for (int i = 0; i <= n; i++) {
+            const double w =
+                a->hub_spring ? s->hub_rate.term[i] : r->rate[chain_term(i, s->first_place)];
+            const double v = a->hub_spring ? s->hub_rate.term[n - i]
+                                           : r->rate[chain_term(n - i, s->first_place)];
+            hub += w * v;
+            root += s->root_rate.term[i] * s->root_rate.term[n - i];
+        }
+        if (s->damped) {
+            double sum[SERIES_LANES] = {0};
+            for (int b = 0; b < r->blocks; b++) {
+                const double *of = r->bend_rate + chain_term(0, (size_t)b * SERIES_LANES);
+                for (int i = 0; i <= n; i++) {
+                    for (int j = 0; j < SERIES_LANES; j++) {
+                        sum[j] += of[i * SERIES_LANES + j] * of[(n - i) * SERIES_LANES + j];
+                    }
+                }
+            }
+            inner =
+                ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+        }
+        s->hub_square.term[n] = hub;
+        s->dissipation.term[n] = a->joint_damping * inner + a->hub_joint_damping * root;
+    }
+}
+
+// x^n.
+static double power(double x, int n)
+{
+    double result = 1;
+    for (; n > 0; n /= 2) {
+        result *= n % 2 != 0 ? x : 1;
+        x *= x;
+    }
+    return result;
+}
+
+// How far the last terms are small, as a share of the stride; 0 if they are not finite.
+static double small_terms(const chain_series *s)
+{
+    const chain_rows *r = &s->rows;
+    double largest = LEAST_RATE * s->length, last = 0, before = 0, sum = 0;
+    const int order = s->order;
+    for (int i = 0; i < r->blocks * SERIES_LANES; i++) {
+        const size_t at = (size_t)i;
+        const double now = fabs(r->rate[chain_term(0, at)]);
+        const double high = fabs(r->rate[chain_term(order - 1, at)]);
+        const double highest = fabs(r->rate[chain_term(order, at)]);
+        largest = now > largest ? now : largest;
+        before = high > before ? high : before;
+        last = highest > last ? highest : last;
+        sum += highest;
+    }
+    if (!isfinite(sum)) {
+        return 0;
+    }
+    double share = 1;
+    for (int i = 0; i < MOST_SHORTENINGS; i++) {
+        const double high = power(share, order - 1);
+        if (high * (before + share * last) <= LAST_TERMS * largest) {
+            break;
+        }
+        share *= SHORTENING;
+    }
+    return share;
+}
+
+void chain_series_compute(chain_series *s, const arm *a, contact_state mode, const double *q,
+                          const double *w, double length)
+{
+    assert(s != NULL && a != NULL && q != NULL && w != NULL && length > 0);
+    assert(a->links >= 2 && a->links == s->links && arm_is_plain(a));
+    const chain_loops *loops = chain_loops_here();
+    chain_rows *r = &s->rows;
+    const size_t size = (size_t)(r->blocks * SERIES_LANES) * sizeof(double);
+    s->mode = mode;
+    s->length = length;
+    s->order = order_for(REACH * length / chain_series_reach(a, w));
+    s->damped = a->joint_damping > 0 || a->hub_joint_damping > 0;
+
+    // what all orders share
+    take_state(s, a, q, w);
+    prepare_sweep(s, a);
+    loops->join(r);
+    if (mode.contact) {
+        reach_point(s, a, 0);
+        prepare_contact(s, a);
+    } else {
+        memset(r->unit, 0, size);
+        memset(r->unit_fx, 0, size);
+        memset(r->unit_fy, 0, size);
+    }
+
+    // order by order
+    for (int n = 0; n < s->order; n++) {
+        next_order(s, a, loops, n);
+    }
+    if (!mode.contact && wall_stands(&a->wall)) {
+        sum_gap(s, a);
+    }
+    sum_losses(s, a);
+    s->allowed = length * small_terms(s);
+}
+
+double chain_series_first_rate(const chain_series *s, int n)
+{
+    return s->rows.rate[chain_term(n, s->first_place)];
+}
+
+void chain_series_state(const chain_series *s, const arm *a, double t, double *q, double *w)
+{
+    const chain_rows *r = &s->rows;
+    const double x = t / s->length;
+    double *angle = q + a->first, *rate = w + a->first;
+
+    // Horner's rule, a block of links at once
+    for (int b = 0; b < r->blocks; b++) {
+        const size_t begin = chain_term(0, (size_t)b * SERIES_LANES);
+        const double *terms = r->angle + begin, *rates = r->rate + begin;
+        double value[SERIES_LANES], slope[SERIES_LANES] = {0};
+        memcpy(value, terms + (s->order + 1) * SERIES_LANES, sizeof value);
+        for (int n = s->order; n >= 0; n--) {
+            for (int j = 0; j < SERIES_LANES; j++) {
+                value[j] = value[j] * x + terms[n * SERIES_LANES + j];
+                slope[j] = slope[j] * x + rates[n * SERIES_LANES + j];
+            }
+        }
+        for (int j = 0; j < SERIES_LANES; j++) {
+            const int k = j * r->blocks + b;
+            if (k < s->links) {
+                angle[k] = value[j];
+                rate[k] = slope[j] / s->length;
+            }
+        }
+    }
+
+    // the hub
+    if (a->hub_spring) {
+        double value = s->hub_angle.term[s->order + 1], slope = 0;
+        for (int n = s->order; n >= 0; n--) {
+            value = value * x + s->hub_angle.term[n];
+            slope = slope * x + s->hub_rate.term[n];
+        }
+        q[0] = value;
+        w[0] = slope / s->length;
+    }
+    if (s->mode.friction == HUB_STICK) {
+        w[0] = 0;
+    }
+}

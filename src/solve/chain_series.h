@@ -1,0 +1,79 @@
+// The motion of a plain chain of any number of links as power series of the time since a stride's
+// start: the equations of chain.h by coefficient, in a time that grows with N and the square of the
+// order.
+//
+// Time is counted in units of the stride's length L, so that no coefficient grows out of range:
+// x = t/L, velocities w = dq/dx, accelerations a = d2q/dx2, forces times L^2. Of link k, r_k = (c,
+// s) has the series
+//
+//     n c_n = -sum s_i w_(n-1-i),     n s_n = sum c_i w_(n-1-i),
+//
+// whose second derivative is a t + rho, rho known before a is. Its base is accelerated by A_k, and
+// carries the force F_k to the link before:
+//
+//     A_(k+1) = A_k + l (a_k t_k + rho_k),     F_k = F_(k+1) + m (A_k + l/2 (a_k t_k + rho_k)),
+//     I a_k + r_k x G_k = tau_k,               G_k = l/2 (F_k + F_(k+1)).
+//
+// Of the n-th coefficient of each equation all but a, A and F is known from the coefficients
+// before, products being Cauchy's. The rest is linear with the matrix of the stride's start: the
+// two sweeps of chain.h, F_k = P_k A_k + Q_k, with P_k the same for all orders. Since only Q and A
+// are handed from link to link, each by two multiplications, all else is done for many links at
+// once.
+//
+// On a plane the contact force pushes at the tip against a fixed direction e, so F_N = f e; on a
+// point it pushes across the last link at the distance D along it, so that F_(N-1) gains f e and
+// the last link's moment loses f (D - l/2), where e and D have series of their own. f_n follows
+// from the n-th coefficient of d2g/dt2 = 0.
+//
+// Operations have one order whatever the width of vectors: the same bits on every machine.
+#pragma once
+
+#include "src/arm/chain.h"
+#include "src/solve/chain_loops.h"
+
+// A polynomial in x.
+typedef struct series_terms {
+    double term[SERIES_TERMS];
+} series_terms;
+
+typedef struct chain_series {
+    int links, order; // order: of the velocities
+    contact_state mode;
+    double length;                  // L [s]
+    double allowed;                 // how far the series are good [s]
+    bool damped;                    // the springs lose energy
+    chain_rows rows;                // the links
+    size_t first_place, last_place; // of first and last link in an array by link
+    double *unit_x, *unit_y;        // by link: A of a unit contact force
+    double response;                // of d2g/dt2 to it
+
+    // single functions of x
+    series_terms hub_angle, hub_rate;     // of a hub on a spring
+    series_terms root_rate;               // of that spring's bend
+    series_terms gap;                     // in free flight [m]
+    series_terms force;                   // in contact, times L^2 [N s2]
+    series_terms hold;                    // friction torque on a stuck hub, times L^2 [N m s2]
+    series_terms hub_square;              // of the hub's w
+    series_terms dissipation;             // power lost in the springs, times L^2 [J s]
+    series_terms tip_x, tip_y;            // of the tip, in lengths of a link
+    series_terms reach_x, reach_y, along; // from the last link's base to a point wall, and along it
+} chain_series;
+
+// Bytes that the series of an arm want, and its arrays laid into so many behind it.
+size_t chain_series_size(const arm *a);
+void chain_series_place(chain_series *s, const arm *a);
+
+// How far a stride may go by the arm's rates and velocities w[dof] [s].
+double chain_series_reach(const arm *a, const double *w);
+
+// Computes the series of an arm with arm_is_plain and two or more links, from q[dof] and w[dof]
+// [rad/s] in a contact state, for a stride of `length` up to chain_series_reach [s]. s->allowed is
+// then that length, or less where the last terms are not small.
+void chain_series_compute(chain_series *s, const arm *a, contact_state mode, const double *q,
+                          const double *w, double length);
+
+// Coefficient n of w of the first link [rad].
+double chain_series_first_rate(const chain_series *s, int n);
+
+// Angles [rad] and angular velocities [rad/s] of all degrees of freedom at t in the stride.
+void chain_series_state(const chain_series *s, const arm *a, double t, double *q, double *w);

@@ -1,0 +1,314 @@
+#include "src/solve/series_engine.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/solve/locate.h"
+
+// What is nothing but rounding in the first coefficients of a watched function at its edge: of the
+// value and of its derivatives, over which nothing is known but that they are small.
+#define EDGE_VALUE 1e-9
+#define EDGE_RATE  1e-9
+#define EDGE_MORE  1e-7
+#define EDGE_GAP   1e-12 // [m]
+// As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
+#define EDGE_DEPTH 1e-6 // [m]
+
+// --- polynomials --------------------------------------------------------------------------------
+
+static glance glance_at(const series_function *p, double x)
+{
+    double value = 0, slope = 0;
+    for (int n = p->count - 1; n >= 0; n--) {
+        slope = slope * x + value;
+        value = value * x + p->term[n];
+    }
+    return (glance){value, slope};
+}
+
+// The largest second derivative for shares from 0 to x, from the magnitudes of the terms.
+static double bend_of(const series_function *p, double x)
+{
+    double bound = 0;
+    for (int n = p->count - 1; n >= 2; n--) {
+        bound = bound * x + fabs(p->term[n]) * (n * (n - 1));
+    }
+    return bound;
+}
+
+// How far at most the function goes from its first term for shares from 0 to x.
+static double spread_of(const series_function *p, double x)
+{
+    double sum = 0;
+    for (int n = p->count - 1; n >= 1; n--) {
+        sum = (sum + fabs(p->term[n])) * x;
+    }
+    return sum * (1 + 1e-12);
+}
+
+static double integral_to(const double *term, int count, double x)
+{
+    double sum = 0;
+    for (int n = count - 1; n >= 0; n--) {
+        sum = sum * x + term[n] / (n + 1);
+    }
+    return sum * x;
+}
+
+static void set_function(series_function *p, const double *term, int count, double factor)
+{
+    p->count = count;
+    p->divided = false;
+    for (int n = 0; n < count; n++) {
+        p->term[n] = factor * term[n];
+    }
+}
+
+// Divides the function by the time as often as its first coefficients are nothing but rounding,
+// below the limits on value and derivatives by time.
+static void leave_edge(series_function *p, const double limits[3], double length)
+{
+    int edge = 0;
+    double scale = 1;
+    while (edge < 3 && fabs(p->term[edge]) <= limits[edge] * scale) {
+        edge++;
+        scale *= length;
+    }
+
+    // falling to its edge rather than from it, it is left as it is: its root is what matters; nor
+    // is a rate or an acceleration rounding that speaks against falling at once
+    if (edge > 0 && p->term[edge] < 0) {
+        edge = p->term[0] > 0 ? 0 : p->term[edge - 1] > 0 ? edge - 1 : edge;
+    }
+    if (edge > 0) {
+        memmove(p->term, p->term + edge, (size_t)(p->count - edge) * sizeof(double));
+        p->count -= edge;
+        p->divided = true;
+    }
+}
+
+// --- a stride -----------------------------------------------------------------------------------
+
+size_t series_stride_size(const arm *a)
+{
+    return sizeof(series_stride) + chain_series_size(a);
+}
+
+void series_stride_place(series_stride *s, const arm *a)
+{
+    memset(s, 0, sizeof *s);
+    s->series = (chain_series *)(s + 1);
+    chain_series_place(s->series, a);
+}
+
+// The functions that say when this contact state ends.
+static void prepare_watched(series_stride *s, const arm *a, const motion *m)
+{
+    const chain_series *c = s->series;
+    const int order = c->order;
+    const bool jumped = m->state[SLOT_JUMPED] != 0;
+    bool wall_at_edge = jumped;
+    const contact_state now = contact_state_of(m->state);
+    const double stiction = a->motor.stiction, per = 1 / c->length;
+
+    // the wall
+    if (now.contact) {
+        set_function(&s->force, c->force.term, order, per * per);
+        s->watched[WATCH_FORCE] = s->force;
+    } else {
+        series_function *distance = &s->watched[WATCH_GAP];
+        set_function(distance, c->gap.term, order + 2, 1);
+        if (distance->term[0] < 0 && distance->term[0] > -EDGE_DEPTH && distance->term[1] > 0) {
+            distance->term[0] = 0;
+            wall_at_edge = true;
+        }
+    }
+
+    // the hub
+    if (now.friction != HUB_STICK) {
+        double rate[SERIES_TERMS];
+        for (int n = 0; n <= order; n++) {
+            rate[n] = a->hub_spring ? c->hub_rate.term[n] : chain_series_first_rate(c, n);
+        }
+        set_function(&s->watched[WATCH_HUB], rate, order + 1, per * now.friction);
+    } else {
+        const double sign = c->hold.term[0] < 0 ? -1 : 1;
+        set_function(&s->watched[WATCH_STICTION], c->hold.term, order, -sign * per * per);
+        set_function(&s->far_limit, c->hold.term, order, sign * per * per);
+        s->watched[WATCH_STICTION].term[0] += stiction;
+        s->far_limit.term[0] += stiction;
+    }
+
+    // just after an event they may begin at zero, as the gap does after a bounce cut short
+    const double acceleration = EDGE_RATE * (wall_at_edge || jumped ? motion_rounding(a, m) : 0);
+    const double reaction[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
+    const double gap[] = {EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, acceleration)};
+    const double hub_rate[] = {0, acceleration, EDGE_MORE};
+    if (wall_at_edge) {
+        leave_edge(&s->watched[now.contact ? WATCH_FORCE : WATCH_GAP], now.contact ? reaction : gap,
+                   c->length);
+    }
+    if (jumped && now.friction != HUB_STICK) {
+        leave_edge(&s->watched[WATCH_HUB], hub_rate, c->length);
+    } else if (jumped && fabs(s->watched[WATCH_STICTION].term[0]) <= EDGE_VALUE) {
+        s->watched[WATCH_STICTION].term[0] = EDGE_VALUE; // what holds it may hold as much more
+    }
+}
+
+double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining)
+{
+    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    const double length = fmin(remaining, chain_series_reach(a, w));
+    chain_series_compute(s->series, a, contact_state_of(m->state), q, w, length);
+    s->force_until = -1;
+
+    // nothing is to be found in what is not finite: its end says so
+    if (!(s->series->allowed > 0)) {
+        static const double one = 1;
+        for (int i = WATCH_GAP; i <= WATCH_STICTION; i++) {
+            set_function(&s->watched[i], &one, 1, 1);
+        }
+        set_function(&s->far_limit, &one, 1, 1);
+        set_function(&s->force, &one, 1, 1);
+        return length;
+    }
+    prepare_watched(s, a, m);
+    return s->series->allowed;
+}
+
+status series_stride_state(const series_stride *s, const arm *a, motion *m, double h)
+{
+    const chain_series *c = s->series;
+    const double x = h / c->length, per = 1 / c->length;
+    const double *before = state_quadratures(m, m->state);
+    double *state = m->trial, *after = state_quadratures(m, state);
+    chain_series_state(c, a, h, state_angles(m, state), state_velocities(m, state));
+
+    // what it has lost and pressed
+    after[QUADRATURE_VISCOUS] =
+        before[QUADRATURE_VISCOUS] +
+        per * a->motor.damping * integral_to(c->hub_square.term, c->order, x);
+    after[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
+    if (c->damped) {
+        after[QUADRATURE_DAMPING] += per * integral_to(c->dissipation.term, c->order, x);
+    }
+    after[QUADRATURE_FORCE] = before[QUADRATURE_FORCE];
+    if (c->mode.contact) {
+        after[QUADRATURE_FORCE] += per * integral_to(c->force.term, c->order, x);
+    }
+
+    // what follows from the state
+    motion_evaluate(a, m, state);
+    if (c->mode.contact) {
+        motion_project(a, m, state);
+    }
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
+    return STATUS_OK;
+}
+
+// --- what the contact machine asks --------------------------------------------------------------
+
+glance series_stride_look(const series_stride *s, watch w, double h)
+{
+    const double x = h / s->series->length;
+    glance near = glance_at(&s->watched[w], x);
+    if (w == WATCH_STICTION) {
+        const glance far = glance_at(&s->far_limit, x);
+        near = near.value < far.value ? near : far;
+    }
+    return (glance){near.value, near.slope / s->series->length};
+}
+
+double series_stride_bend(const series_stride *s, watch w, double to)
+{
+    const double length = s->series->length, x = to / length;
+    double bend = bend_of(&s->watched[w], x);
+    if (w == WATCH_FORCE && s->watched[w].divided) {
+        bend = fmax(bend, bend_of(&s->force, x)); // the force itself may bend more
+    } else if (w == WATCH_STICTION) {
+        bend = fmax(bend, bend_of(&s->far_limit, x));
+    }
+    return bend / (length * length);
+}
+
+bool series_stride_clear(series_stride *s, watch w, double h)
+{
+    const series_function *p = &s->watched[w]; // of stiction the nearer limit, as far as the other
+    const double spread = spread_of(p, h / s->series->length);
+    if (w == WATCH_FORCE && !p->divided) {
+        s->force_most = p->term[0] + spread;
+        s->force_until = h;
+    }
+    return p->term[0] > spread;
+}
+
+bool series_stride_bounded(const series_stride *s, double h, double most)
+{
+    return h <= s->force_until && s->force_most <= most;
+}
+
+glance series_stride_force(const series_stride *s, double h)
+{
+    const glance g = glance_at(&s->force, h / s->series->length);
+    return (glance){g.value, g.slope / s->series->length};
+}
+
+// --- as an engine of its own --------------------------------------------------------------------
+
+static double begin(const arm *a, motion *m, double remaining, double step)
+{
+    (void)step;
+    return series_stride_begin(m->memory, a, m, remaining);
+}
+
+static status state_at(const arm *a, motion *m, double h)
+{
+    return series_stride_state(m->memory, a, m, h);
+}
+
+static glance look(const arm *a, const motion *m, watch w, double h)
+{
+    (void)a;
+    return series_stride_look(m->memory, w, h);
+}
+
+static double bend(const arm *a, const motion *m, watch w, double from, double to)
+{
+    (void)a, (void)from;
+    return series_stride_bend(m->memory, w, to);
+}
+
+static bool clear(const arm *a, motion *m, watch w, double h)
+{
+    (void)a;
+    return series_stride_clear(m->memory, w, h);
+}
+
+static bool bounded(const arm *a, motion *m, double h, double most)
+{
+    (void)a;
+    return series_stride_bounded(m->memory, h, most);
+}
+
+static glance force_at(const arm *a, const motion *m, double h)
+{
+    (void)a;
+    return series_stride_force(m->memory, h);
+}
+
+static void open_memory(const arm *a, motion *m)
+{
+    series_stride_place(m->memory, a);
+}
+
+const engine series_engine = {.name = "power series",
+                              .begin = begin,
+                              .state_at = state_at,
+                              .look = look,
+                              .bend = bend,
+                              .clear = clear,
+                              .bounded = bounded,
+                              .force_at = force_at,
+                              .memory_for = series_stride_size,
+                              .open = open_memory};

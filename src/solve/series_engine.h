@@ -1,0 +1,35 @@
+// A plain chain of links by power series (chain_series.h): a dense engine, exact to rounding. The
+// two-link arm has its own (taylor_engine.h), which is the same mathematics written out.
+#pragma once
+
+#include "src/solve/chain_series.h"
+#include "src/solve/motion.h"
+
+// A function of a stride as a polynomial in its share x = t/L.
+typedef struct series_function {
+    double term[SERIES_TERMS];
+    int count;
+    bool divided; // by a power of x
+} series_function;
+
+typedef struct series_stride {
+    series_function
+        watched[WATCH_STICTION + 1]; // those of the contact state; stiction: nearer limit
+    series_function far_limit;       // of stiction
+    series_function force;           // never divided
+    double force_most, force_until;  // the force's bound, for times up to the second [N], [s]
+    chain_series *series;
+} series_stride;
+
+// Bytes that a stride wants, and its parts laid into so many behind it.
+size_t series_stride_size(const arm *a);
+void series_stride_place(series_stride *s, const arm *a);
+
+// What engine.h says of these, for a stride in s.
+double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining);
+status series_stride_state(const series_stride *s, const arm *a, motion *m, double h);
+glance series_stride_look(const series_stride *s, watch w, double h);
+double series_stride_bend(const series_stride *s, watch w, double to);
+bool series_stride_clear(series_stride *s, watch w, double h);
+bool series_stride_bounded(const series_stride *s, double h, double most);
+glance series_stride_force(const series_stride *s, double h);

@@ -1,0 +1,124 @@
+// Chains of links by power series: the explicit formula, which knows nothing of them, gives the
+// same motion; energy is accounted for to rounding; strides cut short and vectors of any width make
+// no difference.
+#include <math.h>
+#include <string.h>
+
+#include "src/solve/contact_machine.h"
+#include "src/solve/taylor_engine.h"
+#include "tests/arm_fixture.h"
+#include "tests/chain_outcome.h"
+
+#define EXPLICIT_MASS "arm.tip_mass=1e-12" // next to nothing, but the series are not for it
+#define DURATION      0.05
+#define START_ANGLE   0.095
+
+static chain_outcome outcome_of(const char *const *settings)
+{
+    parameters p = fixture_parameters(settings);
+    return chain_outcome_of(&p, START_ANGLE, 0.7, DURATION, DURATION);
+}
+
+// Chains of all kinds that touch a wall, bounce or stay, slide and stick.
+static const char *const chains[][6] = {
+    {"arm.links=3", "arm.hub_joint=rigid", "wall.kind=plane", "wall.restitution=0",
+     "arm.damping_ratio=0", "motor.voltage=1"},
+    {"arm.links=4", "arm.hub_joint=spring", "wall.kind=point", "wall.restitution=0.6",
+     "arm.damping_ratio=0", "motor.voltage=3"},
+    {"arm.links=8", "arm.hub_joint=beam", "wall.kind=plane", "wall.restitution=0.3",
+     "arm.damping_ratio=0.01", "motor.voltage=1"},
+    {"arm.links=9", "arm.hub_joint=rigid", "wall.kind=point", "wall.restitution=0",
+     "arm.damping_ratio=0.001", "motor.voltage=-1"},
+    {"arm.links=17", "arm.hub_joint=beam", "wall.kind=point", "wall.restitution=0",
+     "arm.damping_ratio=0", "motor.voltage=2"},
+};
+enum { CHAINS = sizeof chains / sizeof chains[0] };
+
+static void the_explicit_formula_gives_the_same(void **state)
+{
+    (void)state;
+    for (int i = 0; i < CHAINS; i++) {
+        const char *const *c = chains[i];
+        const char *stiction = i % 2 == 0 ? "motor.stiction=0.045" : "motor.stiction=0.4";
+        chain_outcome series = outcome_of(SETTINGS(c[0], c[1], c[2], c[3], c[4], c[5], stiction));
+        chain_outcome truth = outcome_of(SETTINGS(c[0], c[1], c[2], c[3], c[4], c[5], stiction,
+                                                  EXPLICIT_MASS, "method.step=1e-5"));
+        assert_int_equal(series.status, STATUS_OK);
+        assert_int_equal(truth.status, STATUS_OK);
+        assert_true(truth.impacts > 0);
+        assert_int_equal(series.impacts, truth.impacts);
+        check_close(series.first_contact, truth.first_contact, 1e-10);
+        check_close(series.first_impulse, truth.first_impulse, 1e-8 * truth.first_impulse);
+        check_close(series.motor_work, truth.motor_work, 1e-7 * fabs(truth.motor_work) + 1e-12);
+        check_below(chain_outcome_sensor_difference(&truth, &series), 1e-5);
+        check_below(series.residual, 1e-11 * series.put_in);
+    }
+}
+
+static void every_width_of_vectors_gives_the_same_bits(void **state)
+{
+    (void)state;
+    for (int i = 0; i < CHAINS; i++) {
+        const char *const *c = chains[i];
+        taylor_limit_width(1);
+        chain_outcome narrow = outcome_of(SETTINGS(c[0], c[1], c[2], c[3], c[4], c[5]));
+        for (int width = 2; width <= TAYLOR_WIDEST; width *= 2) {
+            taylor_limit_width(width);
+            chain_outcome wide = outcome_of(SETTINGS(c[0], c[1], c[2], c[3], c[4], c[5]));
+            assert_int_equal(wide.samples, narrow.samples);
+            assert_memory_equal(wide.momentum, narrow.momentum,
+                                (size_t)narrow.samples * sizeof *narrow.momentum);
+            assert_memory_equal(&wide.motor_work, &narrow.motor_work, sizeof wide.motor_work);
+            assert_memory_equal(&wide.residual, &narrow.residual, sizeof wide.residual);
+        }
+        taylor_limit_width(0);
+    }
+}
+
+// The motion of a free chain for 20 ms, in strides of at most `longest`; the angles into q.
+static void swing(const char *const *settings, double longest, double *q, int dof)
+{
+    parameters p = fixture_parameters(settings);
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    assert_ptr_equal(m->engine, &series_engine);
+    assert_int_equal(m->dof, dof);
+    motion_start(&a, m, 0, 0.7);
+    for (double until = 0; until < 0.02;) {
+        motion_report r;
+        until = fmin(until + longest, 0.02);
+        assert_int_equal(motion_advance(&a, m, until, p.method.step, &r), STATUS_OK);
+        assert_int_equal(r.event, MOTION_REACHED);
+    }
+    memcpy(q, state_angles(m, m->state), (size_t)dof * sizeof *q);
+    motion_destroy(m);
+}
+
+// Of whatever order the length of a stride asks for.
+static void strides_cut_short_make_no_difference(void **state)
+{
+    (void)state;
+    enum { DOF = 7 };
+    static const double lengths[] = {1e-3, 1e-4, 2e-5, 5e-6};
+    const char *const *settings =
+        SETTINGS("arm.links=6", "arm.hub_joint=beam", "arm.damping_ratio=0.02", "motor.voltage=4");
+    double whole[DOF], cut[DOF];
+    swing(settings, 0.02, whole, DOF);
+    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+        swing(settings, lengths[i], cut, DOF);
+        for (int k = 0; k < DOF; k++) {
+            check_close(cut[k], whole[k], 1e-13);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_explicit_formula_gives_the_same),
+        cmocka_unit_test(every_width_of_vectors_gives_the_same_bits),
+        cmocka_unit_test(strides_cut_short_make_no_difference),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
