@@ -5,6 +5,7 @@
 #include "src/base/random.h"
 #include "src/run/run.h"
 #include "src/solve/contact_machine.h"
+#include "src/solve/taylor_engine.h"
 #include "tests/arm_fixture.h"
 
 // An arm in some state of motion, in free flight or on the wall.
@@ -98,6 +99,47 @@ static void the_series_solve_the_equations_all_over_the_stride(void **state)
         }
         motion_destroy(moving.motion);
     }
+}
+
+// Several instants side by side, in vectors of any width, are those that are taken one by one.
+static void instants_together_are_those_one_by_one(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 3);
+    for (int i = 0; i < ARM_COUNT * STATES; i++) {
+        moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
+        const arm *a = &moving.arm;
+        motion *m = moving.motion;
+        taylor_limit_width(1 << i % 4);
+        double h = motion_begin_stride(a, m, 0.1, 1e-3), times[PLACES], *now = m->state;
+        state_energy energies[PLACES];
+        for (int k = 0; k < PLACES; k++) {
+            times[k] = h * (k + 1) / PLACES;
+        }
+
+        // the step is made: m->trial is where it began
+        if (motion_held_still(m)) {
+            motion_destroy(m);
+            continue;
+        }
+        m->state = m->trial;
+        m->trial = now;
+        const int count = 1 + i % PLACES;
+        assert_true(motion_between_all(a, m, times, count, energies));
+        m->trial = m->state;
+        m->state = now;
+        for (int k = 0; k < count; k++) {
+            double *at = m->between + k * m->size;
+            assert_int_equal(motion_try_step(a, m, times[k]), STATUS_OK);
+            m->trial[SLOT_TIME] = times[k];
+            assert_memory_equal(at, m->trial, (size_t)m->size * sizeof *at);
+            const state_energy has = motion_energy(a, m, at);
+            assert_memory_equal(&energies[k], &has, sizeof has);
+        }
+        motion_destroy(m);
+    }
+    taylor_limit_width(0);
 }
 
 // A long stride and the short ones of lower order that make it up end in the same state.
@@ -261,6 +303,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_series_solve_the_equations_all_over_the_stride),
+        cmocka_unit_test(instants_together_are_those_one_by_one),
         cmocka_unit_test(orders_agree_and_the_ledger_closes),
         cmocka_unit_test(the_bounds_hold),
         cmocka_unit_test(peaks_are_the_largest_force_there_is),

@@ -31,7 +31,8 @@ status corrected_audit(corrected_run *c)
     return wrong > WRONG_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
 }
 
-sample corrected_row(const corrected_run *c, double *state, double impulse)
+// The row of a state that holds that energy.
+static sample row_of(const corrected_run *c, double *state, state_energy has, double impulse)
 {
     const arm *a = &c->arm;
     const motion *m = c->motion;
@@ -39,7 +40,6 @@ sample corrected_row(const corrected_run *c, double *state, double impulse)
     // the state's parts, and the links that the signals name
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
-    const double kinetic = chain_kinetic_energy(a, q, w), strain = chain_strain_energy(a, q);
     const bool rigid = motion_wall_is_rigid(m);
     const double held = motion_wall_energy(a, m, state);
     int first = a->first, last = a->dof - 1;
@@ -64,15 +64,15 @@ sample corrected_row(const corrected_run *c, double *state, double impulse)
         .voltage = a->motor.voltage,
         .motor_torque = a->motor.torque + state[SLOT_MOTOR_TORQUE],
         .friction_torque = state[SLOT_FRICTION_TORQUE],
-        .kinetic_energy = kinetic,
-        .strain_energy = strain,
+        .kinetic_energy = has.kinetic,
+        .strain_energy = has.strain,
         .motor_work = motion_motor_work(m, state),
         .external_work = state[SLOT_EXTERNAL_WORK],
         .viscous_loss = quadrature[QUADRATURE_VISCOUS],
         .friction_loss = state[SLOT_FRICTION_LOSS],
         .damping_loss = quadrature[QUADRATURE_DAMPING],
         .impact_loss = state[SLOT_IMPACT_LOSS],
-        .energy_residual = motion_unaccounted(m, state, kinetic + strain + held),
+        .energy_residual = motion_unaccounted(m, state, has.kinetic + has.strain + held),
         .wall_energy = rigid ? (double)NAN : held,
         .wall_loss = rigid ? (double)NAN : quadrature[QUADRATURE_WALL],
         .face_depth = m->wall_has_face ? state[SLOT_FACE] : (double)NAN,
@@ -82,15 +82,26 @@ sample corrected_row(const corrected_run *c, double *state, double impulse)
     return row;
 }
 
+sample corrected_row(const corrected_run *c, double *state, double impulse)
+{
+    return row_of(c, state, motion_energy(&c->arm, c->motion, state), impulse);
+}
+
+static status record_row_of(corrected_run *c, double *state, state_energy has, double impulse)
+{
+    const motion *m = c->motion;
+    const sample row = row_of(c, state, has, impulse);
+    return recording_add_row(c->recording, &row, state_angles(m, state),
+                             state_velocities(m, state));
+}
+
 status corrected_record_row(corrected_run *c, double *state, double impulse)
 {
-    recording *r = c->recording;
-    const motion *m = c->motion;
-    if (!r->options->keep_trace) {
+    if (!c->recording->options->keep_trace) {
         return STATUS_OK;
     }
-    const sample row = corrected_row(c, state, impulse);
-    return recording_add_row(r, &row, state_angles(m, state), state_velocities(m, state));
+    const state_energy has = motion_energy(&c->arm, c->motion, state);
+    return record_row_of(c, state, has, impulse);
 }
 
 sensed_motion corrected_sensed_motion(const corrected_run *c, double *state)
@@ -106,6 +117,27 @@ sensed_motion corrected_sensed_motion(const corrected_run *c, double *state)
                            .force = state[SLOT_FORCE]};
 }
 
+// Records rows within the step just made, stepped to again from its start: side by side if the
+// engine can do that.
+static status record_within(corrected_run *c, const double *times, int count)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+    state_energy has[MOTION_TOGETHER];
+    const bool together = count > 1 && motion_between_all(&c->arm, m, times, count, has);
+    status failed = STATUS_OK;
+    for (int i = 0; i < count && failed == STATUS_OK; i++) {
+        if (together) {
+            failed = record_row_of(c, m->between + i * m->size, has[i], 0);
+        } else {
+            double *state = motion_between(&c->arm, m, times[i]);
+            failed = state ? corrected_record_row(c, state, 0) : STATUS_NOT_FINITE;
+        }
+        failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
+    }
+    return failed;
+}
+
 // Records the rows of the grid that lie within the step just made, and passes over one at its end
 // if an event is there.
 static status record_grid(corrected_run *c, bool at_event)
@@ -113,28 +145,31 @@ static status record_grid(corrected_run *c, bool at_event)
     recording *r = c->recording;
     motion *m = c->motion;
     const double interval = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
+    const double end = GRID_TOLERANCE * interval;
+    status failed = STATUS_OK;
     if (!r->options->keep_trace) {
         return STATUS_OK;
     }
 
-    for (;; r->state.grid_row++) {
-        double time = (double)r->state.grid_row * interval;
-        bool at_end = fabs(time - now) <= GRID_TOLERANCE * interval;
-        if (time > now && !at_end) {
-            return STATUS_OK;
+    // those within it, some at a time
+    double time = (double)r->state.grid_row * interval;
+    while (failed == STATUS_OK && time < now - end) {
+        double times[MOTION_TOGETHER];
+        int count = 0;
+        for (; count < MOTION_TOGETHER && time < now - end; count++) {
+            times[count] = time;
+            time = (double)++r->state.grid_row * interval;
         }
-        if (at_end && at_event) {
-            continue; // an event records its own rows
-        }
-
-        // a row within the step is stepped to again from the step's start
-        double *state = at_end ? m->state : motion_between(&c->arm, m, time);
-        status failed = state ? corrected_record_row(c, state, 0) : STATUS_NOT_FINITE;
-        failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
-        if (failed != STATUS_OK) {
-            return failed;
-        }
+        failed = record_within(c, times, count);
     }
+
+    // one at its end; an event records its own rows
+    if (failed == STATUS_OK && time <= now + end) {
+        r->state.grid_row++;
+        failed = at_event ? STATUS_OK : corrected_record_row(c, m->state, 0);
+        failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
+    }
+    return failed;
 }
 
 // Whether the gap was a separation at any instant of the step just made. A whole flight may lie

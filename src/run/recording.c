@@ -3,6 +3,9 @@
 #include <assert.h>
 #include <math.h>
 
+// Room for rows is made in advance up to so many of them, some of them for events.
+enum { MOST_ROWS_AHEAD = 100000, ROWS_OF_EVENTS = 64 };
+
 size_t recording_most_rows(size_t expected)
 {
     return 16 * expected + 1000000;
@@ -13,7 +16,13 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     assert(r != NULL && angle_count > 0);
     size_t expected = r->options->rows_expected;
     if (expected == 0) {
+        // a row for each step, and two for an event; where there is no memory, rows will say so
+        const parameters *p = &r->scenario->parameters;
+        const double rows = ROWS_OF_EVENTS + p->run.duration / p->method.step;
         trace_init(&r->result->trace, angle_count);
+        if (r->options->keep_trace && rows < MOST_ROWS_AHEAD) {
+            trace_expect(&r->result->trace, (size_t)rows);
+        }
         return STATUS_OK;
     }
     size_t most = recording_most_rows(expected);

@@ -107,16 +107,22 @@ status trace_copy(trace *t, const trace *from)
     return STATUS_OK;
 }
 
-// Room for one more row; the places of plain arrays may change.
-static bool make_room(trace *t)
+// Room for so many rows; the places of plain arrays may change.
+static bool make_room(trace *t, size_t rows)
 {
-    bool grown = shared_array_grow(&t->row_array, t->row_count + 1) &&
-                 shared_array_grow(&t->angle_array, t->row_count + 1) &&
-                 shared_array_grow(&t->velocity_array, t->row_count + 1);
+    bool grown = shared_array_grow(&t->row_array, rows) &&
+                 shared_array_grow(&t->angle_array, rows) &&
+                 shared_array_grow(&t->velocity_array, rows);
     if (t->row_array.reserved == 0) {
         find_places(t);
     }
     return grown;
+}
+
+bool trace_expect(trace *t, size_t rows)
+{
+    assert(t != NULL);
+    return make_room(t, rows);
 }
 
 status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities)
@@ -124,13 +130,16 @@ status trace_add_row(trace *t, const sample *row, const double *angles, const do
     size_t n = (size_t)t->angle_count;
     bool full = t->row_count >= t->row_array.capacity || t->row_count >= t->angle_array.capacity ||
                 t->row_count >= t->velocity_array.capacity;
-    if (full && !make_room(t)) {
+    if (full && !make_room(t, t->row_count + 1)) {
         return STATUS_NO_MEMORY;
     }
 
     t->rows[t->row_count] = *row;
-    memcpy(t->angles + t->row_count * n, angles, n * sizeof *angles);
-    memcpy(t->velocities + t->row_count * n, velocities, n * sizeof *velocities);
+    double *to_angles = t->angles + t->row_count * n, *to_rates = t->velocities + t->row_count * n;
+    for (size_t i = 0; i < n; i++) {
+        to_angles[i] = angles[i];
+        to_rates[i] = velocities[i];
+    }
     t->row_count++;
     return STATUS_OK;
 }

@@ -54,6 +54,9 @@ status trace_copy(trace *t, const trace *from);
 // a copy. STATUS_NO_MEMORY if there is no room.
 status trace_share(trace *t, const trace *from, size_t rows, size_t events);
 
+// Makes room for so many rows in advance. False without memory, then the trace is as it was.
+bool trace_expect(trace *t, size_t rows);
+
 // Append a row (angles, velocities: angle_count values each) or an event; STATUS_NO_MEMORY if there
 // is no room.
 status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities);

@@ -37,6 +37,11 @@ typedef struct glance {
     double slope; // its derivative by time
 } glance;
 
+// What a state holds.
+typedef struct state_energy {
+    double kinetic, strain; // [J]
+} state_energy;
+
 typedef struct engine {
     const char *name;
 
@@ -69,6 +74,13 @@ typedef struct engine {
 
     // Dense engines: the contact force [N] and its slope [N/s], never divided by anything.
     glance (*force_at)(const arm *a, const motion *m, double h);
+
+    // Dense engines, or NULL: state_at, to the last bit, for several h at once and from the
+    // stride's start in `start`, into states[count], whose other slots are set already, with the
+    // energy that each holds. Up to MOTION_TOGETHER; false if the arm's state has to be taken one
+    // by one.
+    bool (*states_at)(const arm *a, motion *m, double *start, const double *h, int count,
+                      double *const *states, state_energy *energies);
 
     // Dense engines that have ways of their own, else NULL: what dense_first_event and dense_peak
     // of dense_location.h do.

@@ -74,7 +74,8 @@ motion *motion_create(const arm *a, const method_parameters *method)
     size_t sweeps = links * m->engine->link_scratch;
     m->state = calloc(size, sizeof(double));
     m->trial = calloc(size, sizeof(double));
-    m->between = calloc(size, sizeof(double));
+    m->between =
+        calloc(m->engine->states_at != NULL ? MOTION_TOGETHER * size : size, sizeof(double));
     m->stages =
         calloc((size_t)(m->engine->scratch_vectors + 1) * (size_t)smooth_length(m), sizeof(double));
     m->scratch = calloc(4 * n, sizeof(double));
@@ -170,10 +171,16 @@ double motion_wall_energy(const arm *a, const motion *m, const double *state)
                             : 0;
 }
 
-double motion_energy_residual(const arm *a, const motion *m, double *state)
+state_energy motion_energy(const arm *a, const motion *m, double *state)
 {
     const double *q = state_angles(m, state), *w = state_velocities(m, state);
-    double energy = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q);
+    return (state_energy){chain_kinetic_energy(a, q, w), chain_strain_energy(a, q)};
+}
+
+double motion_energy_residual(const arm *a, const motion *m, double *state)
+{
+    const state_energy has = motion_energy(a, m, state);
+    const double energy = has.kinetic + has.strain;
     return motion_unaccounted(m, state, energy + motion_wall_energy(a, m, state));
 }
 
@@ -190,12 +197,12 @@ double motion_unaccounted(const motion *m, double *state, double energy)
 
 // --- a step of smooth motion ----------------------------------------------------------------
 
-void motion_project(const arm *a, motion *m, double *state)
+bool motion_project(const arm *a, motion *m, double *state)
 {
     bool locked = contact_state_of(state).friction == HUB_STICK;
     if (m->dof == 1 || (fabs(state[SLOT_GAP]) <= PROJECTION_GAP &&
                         fabs(state[SLOT_GAP_VELOCITY]) <= PROJECTION_RATE)) {
-        return;
+        return false;
     }
     double compliance, *response = m->scratch;
     double *q = state_angles(m, state), *w = state_velocities(m, state);
@@ -211,6 +218,7 @@ void motion_project(const arm *a, motion *m, double *state)
         w[i] += jump * response[i];
     }
     motion_evaluate(a, m, state);
+    return true;
 }
 
 double motion_begin_stride(const arm *a, motion *m, double remaining, double step)
@@ -226,6 +234,50 @@ static void let_time_pass(motion *m, double h)
     state_quadratures(m, m->trial)[QUADRATURE_FORCE] += h * m->state[SLOT_FORCE];
 }
 
+// Whether a face that nothing touches swings on its own.
+static bool face_swings(const motion *m, const double *state)
+{
+    return m->wall_has_face && state[SLOT_CONTACT] == 0;
+}
+
+// What a state `h` after another one has without being evaluated.
+static void set_slots(const arm *a, const motion *m, double *from, double h, double *state)
+{
+    static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR};
+    memcpy(state, from, SLOT_COUNT * sizeof(double));
+    state[SLOT_TIME] += h;
+    state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
+        state_quadratures(m, state)[kept[i]] = state_quadratures(m, from)[kept[i]];
+    }
+    if (face_swings(m, from)) {
+        const wall_face face = wall_face_after(&a->wall, state_face(from), h);
+        state[SLOT_FACE] = face.position;
+        state[SLOT_FACE_VELOCITY] = face.velocity;
+    }
+}
+
+// The ledger of an evaluated state, from that of another one.
+static void book(const arm *a, const motion *m, double *from, double *state)
+{
+    if (face_swings(m, from)) {
+        state_quadratures(m, state)[QUADRATURE_WALL] +=
+            motion_wall_energy(a, m, from) - motion_wall_energy(a, m, state);
+    }
+    double turned = state_angles(m, state)[0] - state_angles(m, from)[0];
+    state[SLOT_MOTOR_WORK] += a->motor.torque * turned;
+    state[SLOT_FRICTION_LOSS] += state[SLOT_FRICTION] * a->motor.stiction * turned;
+}
+
+static bool is_finite(const motion *m, double *state)
+{
+    double sum = state[SLOT_FORCE];
+    for (int i = 0; i < 2 * m->dof; i++) {
+        sum += state_angles(m, state)[i];
+    }
+    return isfinite(sum);
+}
+
 status motion_try_step(const arm *a, motion *m, double h)
 {
     double *trial = m->trial;
@@ -234,39 +286,39 @@ status motion_try_step(const arm *a, motion *m, double h)
         return STATUS_OK;
     }
 
-    memcpy(trial, m->state, SLOT_COUNT * sizeof(double));
-    trial[SLOT_TIME] += h;
-    trial[SLOT_JUMPED] = trial[SLOT_IMPULSE] = 0;
-    static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR};
-    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
-        state_quadratures(m, trial)[kept[i]] = state_quadratures(m, m->state)[kept[i]];
-    }
-
-    // a face that nothing touches swings on its own
-    const bool swings = m->wall_has_face && m->state[SLOT_CONTACT] == 0;
-    if (swings) {
-        const wall_face face = wall_face_after(&a->wall, state_face(m->state), h);
-        trial[SLOT_FACE] = face.position;
-        trial[SLOT_FACE_VELOCITY] = face.velocity;
-    }
-
+    set_slots(a, m, m->state, h, trial);
     status s = m->engine->state_at(a, m, h);
     if (s != STATUS_OK) {
         return s;
     }
 
-    // the ledger
-    if (swings) {
-        state_quadratures(m, trial)[QUADRATURE_WALL] +=
-            motion_wall_energy(a, m, m->state) - motion_wall_energy(a, m, trial);
-    }
-    double turned = state_angles(m, trial)[0] - state_angles(m, m->state)[0];
-    trial[SLOT_MOTOR_WORK] += a->motor.torque * turned;
-    trial[SLOT_FRICTION_LOSS] += trial[SLOT_FRICTION] * a->motor.stiction * turned;
+    book(a, m, m->state, trial);
+    return is_finite(m, trial) ? STATUS_OK : STATUS_NOT_FINITE;
+}
 
-    double sum = trial[SLOT_FORCE];
-    for (int i = 0; i < 2 * m->dof; i++) {
-        sum += state_angles(m, trial)[i];
+bool motion_between_all(const arm *a, motion *m, const double *times, int count,
+                        state_energy *energies)
+{
+    assert(a != NULL && m != NULL && count >= 1 && count <= MOTION_TOGETHER);
+    double *start = m->trial, *states[MOTION_TOGETHER], h[MOTION_TOGETHER];
+    if (m->engine->states_at == NULL || state_is_held_still(m, start)) {
+        return false;
     }
-    return isfinite(sum) ? STATUS_OK : STATUS_NOT_FINITE;
+
+    for (int i = 0; i < count; i++) {
+        states[i] = m->between + i * m->size;
+        h[i] = times[i] - start[SLOT_TIME];
+        set_slots(a, m, start, h[i], states[i]);
+    }
+    if (!m->engine->states_at(a, m, start, h, count, states, energies)) {
+        return false;
+    }
+
+    bool finite = true;
+    for (int i = 0; i < count; i++) {
+        book(a, m, start, states[i]);
+        states[i][SLOT_TIME] = times[i];
+        finite = finite && is_finite(m, states[i]);
+    }
+    return finite;
 }

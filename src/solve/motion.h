@@ -13,6 +13,9 @@
 // then loses a few parts in 1e12 of the fastest mode's energy in one.
 #define EXPLICIT_RESOLUTION 0.36
 
+// So many states within a step are evaluated together.
+enum { MOTION_TOGETHER = 8 };
+
 // Bookkeeping at the head of the state vector; angles, velocities and the rest follow.
 enum motion_slot {
     SLOT_TIME,             // [s]
@@ -74,7 +77,7 @@ struct motion {
 
     // scratch, nothing of it outlives a step
     double *trial;   // state at the end of the step tried; after it, at the step's start
-    double *between; // state within the last step, for motion_between
+    double *between; // states within the last step: MOTION_TOGETHER of a dense engine, else one
     double *stages;  // explicit stages
     double *scratch; // vectors of length dof
     chain_link *links;
@@ -157,16 +160,19 @@ static inline bool motion_wall_is_rigid(const motion *m)
 }
 
 // Whether contact and friction together leave the arm no way to move, and nothing else can change.
-static inline bool motion_held_still(const motion *m)
+static inline bool state_is_held_still(const motion *m, const double *state)
 {
     if (m->electric) {
         return false;
     }
-    contact_state now = contact_state_of(m->state);
+    contact_state now = contact_state_of(state);
     int holds = (now.contact && motion_wall_is_rigid(m)) + (now.friction == HUB_STICK);
-    bool face_moves =
-        !now.contact && (m->state[SLOT_FACE] != 0 || m->state[SLOT_FACE_VELOCITY] != 0);
+    bool face_moves = !now.contact && (state[SLOT_FACE] != 0 || state[SLOT_FACE_VELOCITY] != 0);
     return !face_moves && (m->dof == 1 ? holds > 0 : holds >= m->dof);
+}
+static inline bool motion_held_still(const motion *m)
+{
+    return state_is_held_still(m, m->state);
 }
 
 // Begins a stride from m->state that is not to go beyond `remaining` [s]; `step` as engine.begin
@@ -177,10 +183,17 @@ double motion_begin_stride(const arm *a, motion *m, double remaining, double ste
 // for finiteness. Stepping engines need no stride: they step from m->state.
 status motion_try_step(const arm *a, motion *m, double h);
 
+// The states at `count` instants [s] within the step just made, which left its start in m->trial,
+// and what each of them holds: count up to MOTION_TOGETHER, one after the other in m->between.
+// False if the engine has no such way; then motion_between of contact_machine.h gives them one by
+// one.
+bool motion_between_all(const arm *a, motion *m, const double *times, int count,
+                        state_energy *energies);
+
 // Puts an evaluated state in contact back onto the constraint, position and velocity, along
 // M^-1 J^T: the nearest admissible state in the metric of the kinetic energy. Evaluates it again if
-// that moved it.
-void motion_project(const arm *a, motion *m, double *state);
+// that moved it, and says whether it did.
+bool motion_project(const arm *a, motion *m, double *state);
 
 // How many times more than in a slow soft arm rounding shows in accelerations, at least 1: a spring
 // of stiffness k between bodies of inertia I turns a last bit of an angle q into a change of
@@ -208,6 +221,9 @@ static inline double motion_motor_work(const motion *m, double *state)
 
 // Energy that a wall that gives holds, with that of its face's motion; 0 in a rigid one [J].
 double motion_wall_energy(const arm *a, const motion *m, const double *state);
+
+// Energy of motion and of bending in a state of this motion.
+state_energy motion_energy(const arm *a, const motion *m, double *state);
 
 // Energy that the ledger does not account for at a state of this motion [J].
 double motion_energy_residual(const arm *a, const motion *m, double *state);

@@ -25,6 +25,8 @@
 #define EDGE_GAP   1e-12 // [m]
 // As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
 #define EDGE_DEPTH 1e-6 // [m]
+// Angles beyond it are reduced as one number only [rad].
+#define MOST_TURNED 9e4
 
 enum { MOST_TERMS = TAYLOR_MOST + 2, ANGLES = 3 };
 
@@ -427,6 +429,76 @@ static status state_at(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
+static void take_instant(const arm *a, const motion *m, double *start, const taylor_instants *at,
+                         int i, double *state)
+{
+    const taylor_stride *s = m->memory;
+    const double *before = state_quadratures(m, start);
+    double *quadrature = state_quadratures(m, state);
+
+    // the motion
+    for (int k = 0; k < m->dof; k++) {
+        const int body = k + 1 - a->first;
+        state_angles(m, state)[k] = at->angle[body][i];
+        state_velocities(m, state)[k] = at->velocity[body][i];
+        state_accelerations(m, state)[k] = at->acceleration[body][i];
+        state_algorithmic(m, state)[k] = at->acceleration[body][i];
+    }
+
+    // what it has lost and pressed
+    const double turn = state_velocities(m, state)[0];
+    quadrature[QUADRATURE_VISCOUS] =
+        before[QUADRATURE_VISCOUS] + a->motor.damping * at->hub_square[i];
+    quadrature[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
+    if (s->form.damped) {
+        quadrature[QUADRATURE_DAMPING] += at->dissipated[i];
+        state[SLOT_DAMPING_POWER] = at->dissipation[i];
+    }
+    quadrature[QUADRATURE_FORCE] = before[QUADRATURE_FORCE];
+    state[SLOT_VISCOUS_POWER] = a->motor.damping * turn * turn;
+
+    // friction and wall
+    const bool stuck = state[SLOT_FRICTION] == HUB_STICK;
+    state[SLOT_FRICTION_TORQUE] = stuck ? at->hold[i] : -state[SLOT_FRICTION] * a->motor.stiction;
+    if (s->form.contact) {
+        state[SLOT_FORCE] = at->force[i];
+        quadrature[QUADRATURE_FORCE] += at->pressed[i];
+    }
+    if (wall_stands(&a->wall)) {
+        state[SLOT_GAP] = at->gap[i];
+        state[SLOT_GAP_VELOCITY] = at->gap_velocity[i];
+        state[SLOT_GAP_ACCELERATION] = s->form.contact ? 0 : at->gap_acceleration[i];
+    }
+}
+
+static bool states_at(const arm *a, motion *m, double *start, const double *h, int count,
+                      double *const *states, state_energy *energies)
+{
+    const taylor_stride *s = m->memory;
+    const int width = taylor_width();
+    for (int i = 0; i < m->dof; i++) {
+        if (!(fabs(state_angles(m, start)[i]) < MOST_TURNED)) {
+            return false;
+        }
+    }
+
+    for (int done = 0; done < count; done += width) {
+        taylor_instants at;
+        const int more = count - done < width ? count - done : width;
+        memcpy(at.time, h + done, (size_t)more * sizeof *h);
+        taylor_evaluate(a, s->block, s->form, more, &at);
+        for (int i = 0; i < more; i++) {
+            double *state = states[done + i];
+            take_instant(a, m, start, &at, i, state);
+            energies[done + i] = (state_energy){at.kinetic[i], at.strain[i]};
+            if (s->form.contact && motion_project(a, m, state)) {
+                energies[done + i] = motion_energy(a, m, state);
+            }
+        }
+    }
+    return true;
+}
+
 // --- what the contact machine asks --------------------------------------------------------------
 
 static glance look(const arm *a, const motion *m, watch w, double h)
@@ -487,6 +559,7 @@ static bool bounded(const arm *a, motion *m, double h, double most)
 const engine taylor_engine = {.name = "Taylor series",
                               .begin = begin,
                               .state_at = state_at,
+                              .states_at = states_at,
                               .look = look,
                               .bend = bend,
                               .clear = clear,

@@ -24,6 +24,10 @@ void taylor_compute(const taylor_request *requests, int count);
 // Computes the series of one arm, in the widest vectors that help it; the same bits in all of them.
 void taylor_compute_one(double *block, taylor_form form);
 
+// Evaluates the series of one arm at `count` instants of the stride, up to taylor_width().
+void taylor_evaluate(const arm *a, const double *block, taylor_form form, int count,
+                     taylor_instants *at);
+
 // How many arms the widest vectors of this processor hold, 1 to TAYLOR_WIDEST.
 int taylor_width(void);
 

@@ -44,6 +44,33 @@ void taylor_compute_one(double *block, taylor_form form)
     taylor_series_1(block, form);
 }
 
+void taylor_evaluate(const arm *a, const double *block, taylor_form form, int count,
+                     taylor_instants *at)
+{
+    const int width = taylor_width();
+    assert(a != NULL && block != NULL && at != NULL && count >= 1 && count <= width);
+    for (int i = count; i < width; i++) {
+        at->time[i] = at->time[0];
+    }
+
+    switch (width) {
+#if defined __x86_64__
+    case 8:
+        taylor_instants_8(a, block, form, at);
+        break;
+    case 4:
+        taylor_instants_4(a, block, form, at);
+        break;
+    case 2:
+        taylor_instants_2(a, block, form, at);
+        break;
+#endif
+    default:
+        taylor_instants_1(a, block, form, at);
+        break;
+    }
+}
+
 static void compute_block(double *block, int width, taylor_form form)
 {
     switch (width) {

@@ -6,6 +6,8 @@
 
 #include <stdbool.h>
 
+#include "src/arm/arm.h"
+
 // Highest order of the velocities' series; strides that something cuts short take less.
 enum { TAYLOR_MOST = 24, TAYLOR_WIDEST = 8 };
 
@@ -65,3 +67,29 @@ void taylor_series_1_avx2(double *block, taylor_form form);
 void taylor_series_2(double *block, taylor_form form);
 void taylor_series_4(double *block, taylor_form form);
 void taylor_series_8(double *block, taylor_form form);
+
+// What the series of one arm come to at instants of the stride, side by side. Bodies are the hub
+// (with a spring), the first and the second link.
+typedef struct taylor_instants {
+    double time[TAYLOR_WIDEST];             // given: since its start [s]
+    double angle[3][TAYLOR_WIDEST];         // [rad]
+    double velocity[3][TAYLOR_WIDEST];      // [rad/s]
+    double acceleration[3][TAYLOR_WIDEST];  // [rad/s2]
+    double gap[TAYLOR_WIDEST];              // [m]; with a wall
+    double gap_velocity[TAYLOR_WIDEST];     // [m/s]
+    double gap_acceleration[TAYLOR_WIDEST]; // [m/s2]
+    double force[TAYLOR_WIDEST];            // in contact [N]
+    double pressed[TAYLOR_WIDEST];          // integral of the force [N s]
+    double hold[TAYLOR_WIDEST];             // of a stuck hub [N m]
+    double hub_square[TAYLOR_WIDEST];       // integral of the hub's velocity squared [rad2/s]
+    double dissipation[TAYLOR_WIDEST];      // power lost in damped springs [W]
+    double dissipated[TAYLOR_WIDEST];       // its integral [J]
+    double kinetic[TAYLOR_WIDEST];          // energy of motion [J]
+    double strain[TAYLOR_WIDEST];           // and of bending [J]
+} taylor_instants;
+
+// Evaluates the series of the arm, a block of its own, at as many instants as the name says.
+void taylor_instants_1(const arm *a, const double *block, taylor_form form, taylor_instants *at);
+void taylor_instants_2(const arm *a, const double *block, taylor_form form, taylor_instants *at);
+void taylor_instants_4(const arm *a, const double *block, taylor_form form, taylor_instants *at);
+void taylor_instants_8(const arm *a, const double *block, taylor_form form, taylor_instants *at);

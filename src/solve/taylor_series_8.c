@@ -2,5 +2,6 @@
 // other.
 #if defined __x86_64__
 #define LANES 8
+#include "src/solve/taylor_instants.h"
 #include "src/solve/taylor_kernel.h"
 #endif
