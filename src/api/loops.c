@@ -112,6 +112,20 @@ int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double valu
     return came_to(loop_set_number(loop->loop, index, value, &f), &f, error);
 }
 
+int impactlab_loop_set_text(impactlab_loop *loop, const char *path, const char *text,
+                            impactlab_error *error)
+{
+    API_NEEDS(error, loop);
+    API_NEEDS(error, path);
+    API_NEEDS(error, text);
+    fault f;
+    int index = api_parameter(path, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    return came_to(loop_set_text(loop->loop, index, text, &f), &f, error);
+}
+
 int impactlab_loop_push(impactlab_loop *loop, double impulse, impactlab_error *error)
 {
     API_NEEDS(error, loop);

@@ -126,12 +126,6 @@ size_t background_run_look(background_run *c, run_result *view)
     return rows;
 }
 
-double background_run_time(background_run *c)
-{
-    assert(c != NULL);
-    return atomic_load_explicit(&c->monitor.time, memory_order_relaxed);
-}
-
 void background_run_stop(background_run *c)
 {
     assert(c != NULL);

@@ -27,9 +27,6 @@ bool background_run_wait(background_run *c, double seconds);
 // Returns how many rows there are. The view owns nothing and is good until background_run_finish.
 size_t background_run_look(background_run *c, run_result *view);
 
-// How far the run has come [s].
-double background_run_time(background_run *c);
-
 // Asks the run to end; it is over as soon as it sees that.
 void background_run_stop(background_run *c);
 

@@ -219,10 +219,16 @@ static status act(run_loop *l, const action *todo, fault *f)
                             "%s holds from the start and cannot change during this run", path);
     }
 
+    // tried on a copy, with what the rig will say
     parameters tried = l->recording.now;
     status code =
         todo->kind == ACTION_SET ? parameter_may_change(&tried, todo->parameter, &why) : STATUS_OK;
     code = code == STATUS_OK ? action_apply(todo, &tried, &why) : code;
+    const rig *on = l->recording.rig;
+    if (code == STATUS_OK && on != NULL) {
+        int mode;
+        code = rig_find_mode(on->law, tried.control.lock, &mode, &why);
+    }
     if (code == STATUS_OK) {
         code = l->failed = l->run.model->act(&l->run, todo, &l->fault);
         return stay_failed(l, f);

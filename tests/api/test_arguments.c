@@ -168,6 +168,9 @@ static void loops_say_what_they_lack(void **state)
     LACKS("loop", impactlab_loop_command(NULL, 1, error));
     LACKS("loop", impactlab_loop_set_input(NULL, "motor.voltage", 1, error));
     LACKS("path", impactlab_loop_set_input(l, NULL, 1, error));
+    LACKS("loop", impactlab_loop_set_text(NULL, "motor.voltage", "1", error));
+    LACKS("path", impactlab_loop_set_text(l, NULL, "1", error));
+    LACKS("text", impactlab_loop_set_text(l, "motor.voltage", NULL, error));
     LACKS("loop", impactlab_loop_push(NULL, 1, error));
     LACKS("loop", impactlab_loop_read_sensors(NULL, &reading, error));
     LACKS("reading", impactlab_loop_read_sensors(l, NULL, error));
@@ -222,6 +225,7 @@ static void names_that_are_not_known(void **state)
     check_refused(h, impactlab_run_signal(h->run, "forse", &series, error), "'force'");
     check_refused(h, impactlab_loop_signal(h->loop, "zzzzzzzzzzzz", &value, error), "no signal");
     check_refused(h, impactlab_loop_set_input(h->loop, "motor.volt", 1, error), "motor.voltage");
+    check_refused(h, impactlab_loop_set_text(h->loop, "motor.volt", "1", error), "motor.voltage");
     check_refused(h, impactlab_scenario_number(h->scenario, "arm.k", &value, error), "arm.k");
     check_refused(h, impactlab_scenario_text(h->scenario, "arm.k", room, 16, error), "arm.k");
     check_refused(h, impactlab_scenario_set_number(h->scenario, "arm.k", 1, error), "arm.k");
@@ -245,6 +249,8 @@ static void numbers_that_cannot_be(void **state)
     check_refused(h, impactlab_loop_command(h->loop, nan, error), "not finite");
     check_refused(h, impactlab_loop_push(h->loop, nan, error), "not finite");
     check_refused(h, impactlab_loop_set_input(h->loop, "wall.angle", nan, error), "wall.angle");
+    check_refused(h, impactlab_loop_set_text(h->loop, "motor.voltage", "1 m", error), "V");
+    check_refused(h, impactlab_loop_set_text(h->loop, "arm.links", "4", error), "arm.links");
     check_refused(h, impactlab_scenario_add_push(s, 0.1, nan, error), "not finite");
     check_refused(h, impactlab_scenario_add_push(s, 0.4, 1, error), "0.3 s");
     check_refused(h, impactlab_scenario_add_change(s, nan, "motor.voltage", "1", error), "instant");

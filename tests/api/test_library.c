@@ -411,6 +411,33 @@ static void a_process_goes_on_from_a_state(void **state)
     impactlab_scenario_destroy(scenario);
 }
 
+// A mode's name holds a law in it as the script's action does; a name that it has not is refused.
+static void texts_act_at_once(void **state)
+{
+    (void)state;
+    impactlab_error error;
+    impactlab_scenario *scenario = opened("compare/hybrid");
+    impactlab_run *run;
+    impactlab_loop *loop;
+    double mode;
+    set(scenario, "run.duration", "0.4");
+    check_done(impactlab_loop_create(&loop, scenario, 0, &error), &error);
+    check_done(impactlab_loop_step_until(loop, 0.1, &error), &error);
+    assert_int_not_equal(impactlab_loop_set_text(loop, "control.lock", "sideways", &error), 0);
+    check_done(impactlab_loop_set_text(loop, "control.lock", "approach", &error), &error);
+    check_done(impactlab_loop_step_until(loop, 1, &error), &error);
+    check_done(impactlab_loop_signal(loop, "controller_mode", &mode, &error), &error);
+    check_same(mode, 0);
+
+    check_done(impactlab_scenario_add_change(scenario, 0.1, "control.lock", "approach", &error),
+               &error);
+    check_done(impactlab_run_create(&run, scenario, 0, &error), &error);
+    check_same(peak_of_loop(loop), quantity(run, "peak_force_N"));
+    impactlab_run_destroy(run);
+    impactlab_loop_destroy(loop);
+    impactlab_scenario_destroy(scenario);
+}
+
 static void inputs_act_at_once(void **state)
 {
     (void)state;
@@ -540,6 +567,7 @@ int main(void)
         cmocka_unit_test(states_come_back),
         cmocka_unit_test(a_process_goes_on_from_a_state),
         cmocka_unit_test(inputs_act_at_once),
+        cmocka_unit_test(texts_act_at_once),
         cmocka_unit_test(batches_are_runs),
         cmocka_unit_test(scenarios_are_written_and_read),
     };

@@ -281,10 +281,13 @@ IMPACTLAB_EXPORT int impactlab_loop_ended(const impactlab_loop *loop);
 // given. IMPACTLAB_BAD_ARGUMENT without IMPACTLAB_COMMAND.
 IMPACTLAB_EXPORT int impactlab_loop_command(impactlab_loop *loop, double volts,
                                             impactlab_error *error);
-// Gives a parameter that may change during a run another value now; pushes the tip now [N s], which
-// the printed model does not take (IMPACTLAB_BAD_ARGUMENT).
+// Gives a parameter that may change during a run another value now, as a number (of a choice its
+// index) or as a text ("2 V", "impact" for control.lock); pushes the tip now [N s], which the
+// printed model does not take (IMPACTLAB_BAD_ARGUMENT). What is refused changes nothing.
 IMPACTLAB_EXPORT int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double value,
                                               impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_loop_set_text(impactlab_loop *loop, const char *path,
+                                             const char *text, impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_loop_push(impactlab_loop *loop, double impulse,
                                          impactlab_error *error);
 

@@ -104,6 +104,16 @@ def test_states_are_bytes():
         Loop(Scenario(FIRST)).restore_state(state)
 
 
+def test_inputs_are_numbers_or_texts():
+    loop = Loop(Scenario(FIRST))
+    loop.set_input("motor.voltage", 2)
+    doubled = loop["motor_torque"]
+    loop.set_input("motor.voltage", "1 V")
+    assert loop["motor_torque"] == pytest.approx(doubled / 2)
+    with pytest.raises(Error, match="motor.voltage"):
+        loop.set_input("motor.voltage", "much")
+
+
 def test_batches_are_runs():
     scenario = Scenario(FIRST)
     volts = np.linspace(1, 3, 101)

@@ -184,6 +184,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "loop_ended": (c_int, [_handle]),
     "loop_command": (c_int, [_handle, c_double, _error]),
     "loop_set_input": (c_int, [_handle, _text, c_double, _error]),
+    "loop_set_text": (c_int, [_handle, _text, _text, _error]),
     "loop_push": (c_int, [_handle, c_double, _error]),
     "loop_read_sensors": (c_int, [_handle, POINTER(ReadingStruct), _error]),
     "loop_signal": (c_int, [_handle, _text, POINTER(c_double), _error]),

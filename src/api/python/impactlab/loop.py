@@ -61,8 +61,12 @@ class Loop:
         if lib.impactlab_loop_command(self._handle, volts, byref(self._error)) != 0:
             raise_error(self._error)
 
-    def set_input(self, path: str, value: float) -> None:
-        """Gives a parameter that may change during a run another value now."""
+    def set_input(self, path: str, value: Union[float, str]) -> None:
+        """Gives a parameter that may change during a run another value now: a number, or a text
+        such as "2 V" or the mode of control.lock."""
+        if isinstance(value, str):
+            call("loop_set_text", self._handle, path.encode(), value.encode())
+            return
         if lib.impactlab_loop_set_input(self._handle, path.encode(), value,
                                         byref(self._error)) != 0:
             raise_error(self._error)
