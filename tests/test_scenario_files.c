@@ -326,6 +326,45 @@ static void written_scenarios_read_back(void **state)
     scenario_finish(&odd);
 }
 
+// The file that a scenario would be written as, to be freed.
+static char *file_of(const scenario *s)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    scenario_write(stream, s);
+    fclose(stream);
+    return text;
+}
+
+static void a_copy_shares_nothing_with_the_original(void **state)
+{
+    (void)state;
+    char **names;
+    int count;
+    fault f;
+    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        scenario s, copy;
+        sentences all = {0};
+        assert_int_equal(scenario_open(&s, names[i], keep_sentence, &all), STATUS_OK);
+        char *before = file_of(&s);
+        const int expected = s.expectation_count;
+
+        // the copy outlives it, and is freed by itself
+        assert_int_equal(scenario_copy(&copy, &s), STATUS_OK);
+        scenario_finish(&s);
+        char *after = file_of(&copy);
+        assert_string_equal(after, before);
+        assert_int_equal(copy.expectation_count, expected);
+        scenario_finish(&copy);
+        free(before);
+        free(after);
+        free(names[i]);
+    }
+    free(names);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -342,6 +381,7 @@ int main(void)
         cmocka_unit_test(a_wrong_override_changes_nothing),
         cmocka_unit_test(an_endless_override_is_refused),
         cmocka_unit_test(written_scenarios_read_back),
+        cmocka_unit_test(a_copy_shares_nothing_with_the_original),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -2,6 +2,8 @@
 // checked. It stands in a scenario file, under `lesson:`.
 #pragma once
 
+#include <stdbool.h>
+
 enum { LESSON_PARAMETERS = 6, LESSON_CHOICES = 6, LESSON_COMMANDS = 8 };
 
 // What has to be so before a step is done.
@@ -42,3 +44,6 @@ typedef struct lesson {
 
 // Frees what a lesson holds; one of zeroes is allowed.
 void lesson_finish(lesson *l);
+
+// A copy of one's own. False without memory, and then nothing is to be freed.
+bool lesson_copy(lesson *copy, const lesson *l);

@@ -8,26 +8,6 @@
 
 #define NEAR_ENOUGH 0.001 // share of a value that a parameter may be off
 
-void lesson_finish(lesson *l)
-{
-    for (int i = 0; i < l->step_count; i++) {
-        lesson_step *step = &l->steps[i];
-        free(step->say);
-        free(step->then);
-        free(step->hint);
-        for (int k = 0; k < LESSON_CHOICES; k++) {
-            free(step->choices[k]);
-        }
-        for (int k = 0; k < LESSON_COMMANDS; k++) {
-            free(step->commands[k]);
-        }
-    }
-
-    // nothing else of a lesson is allocated
-    free(l->steps);
-    *l = (lesson){0};
-}
-
 // --- pieces -----------------------------------------------------------------------------------
 
 // The text of a node in one line; NULL after a fault.

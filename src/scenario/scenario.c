@@ -55,6 +55,7 @@ status scenario_copy(scenario *copy, const scenario *s)
     good = copy_array(&expectations, s->expectations,
                       (size_t)s->expectation_count * sizeof *s->expectations) &&
            good;
+    good = lesson_copy(&copy->lesson, &s->lesson) && good;
     copy->actions = actions;
     copy->expectations = expectations;
 
