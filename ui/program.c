@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include "render/page/text.h"
-#include "src/base/json.h"
 #include "src/base/whole_file.h"
 #include "src/base/version.h"
 #include "ui/commands/command.h"
@@ -198,7 +197,6 @@ int program_run(int argc, char **argv, const rank_group *ranks)
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     catch_endings();
-    json_watch_memory();
     text_when_giving_up(end_without_memory);
     return close_output(dispatch(argc, argv, ranks));
 }

@@ -179,7 +179,7 @@ int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *e
     size_t size;
     *json = NULL;
     json_t *object = export_run(&run->scenario, &run->result);
-    FILE *stream = object != NULL ? open_memstream(json, &size) : NULL;
+    FILE *stream = !json_lost_something() && object != NULL ? open_memstream(json, &size) : NULL;
     if (stream == NULL) {
         json_decref(object);
         return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");

@@ -8,18 +8,16 @@
 
 #include "src/base/numbers.h"
 
-static _Thread_local bool lost; // memory was refused
+static _Thread_local bool lost; // something that was to be put or written
 
-static void *watched_malloc(size_t size)
+void json_put(json_t *object, const char *key, json_t *value)
 {
-    void *memory = malloc(size);
-    lost = lost || memory == NULL;
-    return memory;
+    lost = json_object_set_new(object, key, value) != 0 || lost;
 }
 
-void json_watch_memory(void)
+void json_add(json_t *array, json_t *value)
 {
-    json_set_alloc_funcs(watched_malloc, free);
+    lost = json_array_append_new(array, value) != 0 || lost;
 }
 
 bool json_lost_something(void)
@@ -39,7 +37,6 @@ json_t *json_text(const char *text)
     assert(text != NULL);
     json_t *string = json_string(text);
     char *copy = string == NULL ? strdup(text) : NULL;
-    lost = lost || (string == NULL && copy == NULL);
 
     // a file's name may be no UTF-8, which JSON cannot hold
     for (char *c = copy; c != NULL && *c != '\0'; c++) {
@@ -57,7 +54,7 @@ json_t *json_numbers(const double *values, int count)
     assert(count >= 0 && (values != NULL || count == 0));
     json_t *array = json_array();
     for (int i = 0; i < count; i++) {
-        json_array_append_new(array, json_number(values[i]));
+        json_add(array, json_number(values[i]));
     }
     return array;
 }
@@ -65,9 +62,7 @@ json_t *json_numbers(const double *values, int count)
 static void write_string(FILE *stream, const char *text)
 {
     json_t *string = json_text(text);
-    if (string != NULL) {
-        json_dumpf(string, stream, JSON_ENCODE_ANY);
-    }
+    lost = string == NULL || json_dumpf(string, stream, JSON_ENCODE_ANY) != 0 || lost;
     json_decref(string);
 }
 

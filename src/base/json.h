@@ -15,12 +15,12 @@ json_t *json_numbers(const double *values, int count);
 // A JSON string; in a text that is not UTF-8 every byte beyond ASCII becomes '?'.
 json_t *json_text(const char *text);
 
-// From now on every allocation of jansson is watched, for the whole program: what fails to be set
-// for want of memory would be missing from an object without a word.
-void json_watch_memory(void);
+// Puts a member into an object, an element at the end of an array, and takes the value over. What
+// cannot be put for want of memory (value or container may be NULL then) is lost, and noted.
+void json_put(json_t *object, const char *key, json_t *value);
+void json_add(json_t *array, json_t *value);
 
-// Whether this thread was refused memory for JSON since the last call, in a program that watches:
-// what it made may lack something and is not to be written.
+// Whether anything was lost on this thread since the last call: what it made is not whole.
 bool json_lost_something(void);
 
 // Writes a JSON value with two spaces of indentation, keys in the order in which they were set and

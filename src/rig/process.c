@@ -149,7 +149,7 @@ static bool fail(process *p, const char *format, ...)
 
 static void set_number(json_t *object, const char *name, double value)
 {
-    json_object_set_new(object, name, json_number(value));
+    json_put(object, name, json_number(value));
 }
 
 // What the program is told about the rig, under the names of controller_setup.
@@ -215,7 +215,7 @@ static json_t *settings_object(const process_memory *m)
         double value;
         const char *rest;
         bool number = decimal_read(text, &value, &rest) && *rest == '\0';
-        json_object_set_new(object, name, number ? json_number(value) : json_text(text));
+        json_put(object, name, number ? json_number(value) : json_text(text));
         word += length;
     }
     return object;
@@ -226,10 +226,10 @@ static char *question_of(const process_memory *m, const controller_input *in)
 {
     json_t *object = json_object();
     if (m->tells_setup) {
-        json_object_set_new(object, "protocol", json_integer(PROTOCOL));
-        json_object_set_new(object, "setup", setup_object(&m->setup));
-        json_object_set_new(object, "control", control_object(m));
-        json_object_set_new(object, "settings", settings_object(m));
+        json_put(object, "protocol", json_integer(PROTOCOL));
+        json_put(object, "setup", setup_object(&m->setup));
+        json_put(object, "control", control_object(m));
+        json_put(object, "settings", settings_object(m));
     }
 
     // what a controller within the program would see
@@ -245,8 +245,9 @@ static char *question_of(const process_memory *m, const controller_input *in)
     // enough digits for every bit
     char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(object);
-    const size_t length = text != NULL ? strlen(text) : 0;
-    char *line = text != NULL ? realloc(text, length + 2) : NULL;
+    const bool whole = !json_lost_something() && text != NULL;
+    const size_t length = whole ? strlen(text) : 0;
+    char *line = whole ? realloc(text, length + 2) : NULL;
     if (line == NULL) {
         free(text);
         return NULL;

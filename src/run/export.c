@@ -35,7 +35,7 @@ json_t *export_parameters(const parameters *p)
     assert(p != NULL);
     json_t *object = json_object();
     for (int i = 0; i < parameter_count; i++) {
-        json_object_set_new(object, parameter_table[i].path, parameter_value(p, i));
+        json_put(object, parameter_table[i].path, parameter_value(p, i));
     }
     return object;
 }
@@ -49,14 +49,14 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
         double value = summary_value(&result->summary, e->quantity);
 
         json_t *object = json_object();
-        json_object_set_new(object, "quantity", json_string(summary_table[e->quantity].key));
-        json_object_set_new(object, "expected", e->is_null ? json_null() : json_number(e->value));
-        json_object_set_new(object, "tolerance",
+        json_put(object, "quantity", json_string(summary_table[e->quantity].key));
+        json_put(object, "expected", e->is_null ? json_null() : json_number(e->value));
+        json_put(object, "tolerance",
                             e->is_null ? json_null() : json_number(e->tolerance));
-        json_object_set_new(object, "value", json_number(value));
-        json_object_set_new(object, "met", json_boolean(expectation_is_met(e, value)));
+        json_put(object, "value", json_number(value));
+        json_put(object, "met", json_boolean(expectation_is_met(e, value)));
 
-        json_array_append_new(array, object);
+        json_add(array, object);
     }
     return array;
 }
@@ -65,22 +65,22 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
 static json_t *event_object(const scenario *s, const event *e)
 {
     json_t *object = json_object();
-    json_object_set_new(object, "t_s", json_number(e->time));
-    json_object_set_new(object, "kind", json_string(event_name(e->kind)));
+    json_put(object, "t_s", json_number(e->time));
+    json_put(object, "kind", json_string(event_name(e->kind)));
 
     if (e->kind == EVENT_IMPACT || e->kind == EVENT_PUSH) {
-        json_object_set_new(object, "impulse_Ns", json_number(e->impulse));
+        json_put(object, "impulse_Ns", json_number(e->impulse));
     }
     if (e->kind == EVENT_IMPACT) {
-        json_object_set_new(object, "speed_m_s", json_number(e->speed));
-        json_object_set_new(object, "loss_J", json_number(e->loss));
+        json_put(object, "speed_m_s", json_number(e->speed));
+        json_put(object, "loss_J", json_number(e->loss));
     }
 
     if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
         const action *a = &s->actions[e->index];
-        json_object_set_new(object, "parameter", json_string(parameter_table[a->parameter].path));
+        json_put(object, "parameter", json_string(parameter_table[a->parameter].path));
         bool text = parameter_is_text(&parameter_table[a->parameter]);
-        json_object_set_new(object, "value", text ? json_text(a->text) : json_number(a->value));
+        json_put(object, "value", text ? json_text(a->text) : json_number(a->value));
     }
     return object;
 }
@@ -89,7 +89,7 @@ static json_t *events_array(const scenario *s, const trace *t)
 {
     json_t *array = json_array();
     for (size_t i = 0; i < t->event_count; i++) {
-        json_array_append_new(array, event_object(s, &t->events[i]));
+        json_add(array, event_object(s, &t->events[i]));
     }
     return array;
 }
@@ -104,21 +104,21 @@ json_t *export_run(const scenario *s, const run_result *result)
     }
 
     // which run, and how it went
-    json_object_set_new(object, "scenario", json_text(s->name));
-    json_object_set_new(object, "version", json_string(lab_version()));
-    json_object_set_new(object, "status", json_string(summary_status(m)));
-    json_object_set_new(object, "message", json_text(m->message));
-    json_object_set_new(object, "method_used", json_text(m->method));
+    json_put(object, "scenario", json_text(s->name));
+    json_put(object, "version", json_string(lab_version()));
+    json_put(object, "status", json_string(summary_status(m)));
+    json_put(object, "message", json_text(m->message));
+    json_put(object, "method_used", json_text(m->method));
 
     // what went in and what came out
-    json_object_set_new(object, "parameters", export_parameters(&s->parameters));
+    json_put(object, "parameters", export_parameters(&s->parameters));
     for (int i = 0; i < summary_count; i++) {
-        json_object_set_new(object, summary_table[i].key, json_number(summary_value(m, i)));
+        json_put(object, summary_table[i].key, json_number(summary_value(m, i)));
     }
     if (s->expectation_count > 0) {
-        json_object_set_new(object, "expectations", expectations_array(s, result));
+        json_put(object, "expectations", expectations_array(s, result));
     }
-    json_object_set_new(object, "events", events_array(s, &result->trace));
+    json_put(object, "events", events_array(s, &result->trace));
     return object;
 }
 

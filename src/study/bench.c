@@ -107,15 +107,15 @@ json_t *bench_export(const bench_result *results, int count)
     // with its extremes, as one number says little about a machine
     for (int i = 0; i < count; i++) {
         json_t *entry = json_object();
-        json_object_set_new(entry, "name", json_string(results[i].name));
-        json_object_set_new(entry, "unit", json_string(results[i].unit));
-        json_object_set_new(entry, "median", json_number(results[i].median));
-        json_object_set_new(entry, "min", json_number(results[i].min));
-        json_object_set_new(entry, "max", json_number(results[i].max));
-        json_object_set_new(entry, "wall_per_cpu", json_number(results[i].wall));
-        json_array_append_new(array, entry);
+        json_put(entry, "name", json_string(results[i].name));
+        json_put(entry, "unit", json_string(results[i].unit));
+        json_put(entry, "median", json_number(results[i].median));
+        json_put(entry, "min", json_number(results[i].min));
+        json_put(entry, "max", json_number(results[i].max));
+        json_put(entry, "wall_per_cpu", json_number(results[i].wall));
+        json_add(array, entry);
     }
-    json_object_set_new(object, "bench", array);
+    json_put(object, "bench", array);
     return object;
 }
 

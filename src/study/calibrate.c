@@ -218,20 +218,20 @@ json_t *calibration_json(const calibration *c, const scenario *s, const char *ta
 {
     assert(c != NULL && s != NULL && table != NULL);
     json_t *object = json_object(), *points = json_array();
-    json_object_set_new(object, "scenario", json_text(s->name));
-    json_object_set_new(object, "k2_table", json_text(table));
+    json_put(object, "scenario", json_text(s->name));
+    json_put(object, "k2_table", json_text(table));
 
     for (int i = 0; i < c->count; i++) {
         json_t *point = json_object();
         double values[COLUMNS];
         fill_columns(&c->points[i], s, values);
         for (int k = 0; k < COLUMNS; k++) {
-            json_object_set_new(point, columns[k].key, json_number(values[k]));
+            json_put(point, columns[k].key, json_number(values[k]));
         }
-        json_array_append_new(points, point);
+        json_add(points, point);
     }
 
-    json_object_set_new(object, "points", points);
+    json_put(object, "points", points);
     return object;
 }
 

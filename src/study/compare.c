@@ -314,11 +314,10 @@ static json_t *varied_object(const compare_table *t, int row)
         const parameter_info *info = &parameter_table[t->varied[v]];
         char text[PARAMETER_TEXT_SIZE];
         format_varied(t, row, v, text, sizeof text);
-        json_object_set_new(object, info->path,
-                            info->type == PARAMETER_CHOICE ? json_text(text)
-                            : info->type == PARAMETER_BOOLEAN
-                                ? json_boolean(t->rows[row].varied[v])
-                                : json_number(t->rows[row].varied[v]));
+        json_put(object, info->path,
+                 info->type == PARAMETER_CHOICE    ? json_text(text)
+                 : info->type == PARAMETER_BOOLEAN ? json_boolean(t->rows[row].varied[v])
+                                                   : json_number(t->rows[row].varied[v]));
     }
     return object;
 }
@@ -329,24 +328,24 @@ static json_t *row_object(const compare_table *t, int i)
     json_t *object = json_object(), *differs = json_array();
 
     // which run
-    json_object_set_new(object, "scenario", json_text(row->scenario));
-    json_object_set_new(object, "law", json_text(row->law));
+    json_put(object, "scenario", json_text(row->scenario));
+    json_put(object, "law", json_text(row->law));
     if (t->varied_count > 0) {
-        json_object_set_new(object, "varied", varied_object(t, i));
+        json_put(object, "varied", varied_object(t, i));
     }
 
     // its results, and which of them differ from the reference
-    json_object_set_new(object, "status", json_string(row->ok ? "ok" : "failed"));
+    json_put(object, "status", json_string(row->ok ? "ok" : "failed"));
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
         const char *key = compare_quantities[k].key;
-        json_object_set_new(object, key, json_number(row->values[k]));
+        json_put(object, key, json_number(row->values[k]));
         if (marked(t, i, k)) {
-            json_array_append_new(differs, json_string(key));
+            json_add(differs, json_string(key));
         }
     }
 
     if (t->against != NULL) {
-        json_object_set(object, "differs", differs);
+        json_put(object, "differs", json_incref(differs));
     }
     json_decref(differs);
     return object;
@@ -357,14 +356,14 @@ json_t *compare_json(const compare_table *t)
     assert(t != NULL);
     json_t *whole = json_object(), *array = json_array();
     for (int i = 0; i < t->count; i++) {
-        json_array_append_new(array, row_object(t, i));
+        json_add(array, row_object(t, i));
     }
 
     if (t->against != NULL) {
-        json_object_set_new(whole, "against", json_text(t->against->scenario));
-        json_object_set_new(whole, "tolerance", json_number(t->tolerance));
+        json_put(whole, "against", json_text(t->against->scenario));
+        json_put(whole, "tolerance", json_number(t->tolerance));
     }
-    json_object_set_new(whole, "runs", array);
+    json_put(whole, "runs", array);
     return whole;
 }
 

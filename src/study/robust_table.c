@@ -252,21 +252,21 @@ json_t *robust_json(const robust_table *t)
 
         // which, then its numbers
         if (found->case_title != NULL) {
-            json_object_set_new(law, "case", json_text(found->case_title));
+            json_put(law, "case", json_text(found->case_title));
         }
-        json_object_set_new(law, "law", json_text(found->law));
-        json_object_set_new(law, "runs", json_integer((json_int_t)found->runs));
-        json_object_set_new(law, "failed", json_integer((json_int_t)found->failed));
+        json_put(law, "law", json_text(found->law));
+        json_put(law, "runs", json_integer((json_int_t)found->runs));
+        json_put(law, "failed", json_integer((json_int_t)found->failed));
         for (int k = 0; k < COLUMNS; k++) {
-            json_object_set_new(law, columns[k].key, json_number(values[k]));
+            json_put(law, columns[k].key, json_number(values[k]));
         }
-        json_array_append_new(laws, law);
+        json_add(laws, law);
     }
 
-    json_object_set_new(whole, "scenario", json_text(t->scenario));
+    json_put(whole, "scenario", json_text(t->scenario));
     if (t->against != NULL) {
-        json_object_set_new(whole, "against", json_text(t->against));
+        json_put(whole, "against", json_text(t->against));
     }
-    json_object_set_new(whole, "laws", laws);
+    json_put(whole, "laws", laws);
     return whole;
 }

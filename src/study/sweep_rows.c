@@ -199,20 +199,20 @@ static json_t *field_value(sqlite3_stmt *row, int column)
 // The row that a statement stands on, without what depends on the machine.
 static json_t *row_object(const sweep *s, sqlite3_stmt *row)
 {
-    json_t *object = json_object();
+    json_t *object = json_object(); // NULL loses whatever is put into it
     int column = 0;
-    json_object_set_new(object, "run", field_value(row, column++));
+    json_put(object, "run", field_value(row, column++));
     for (int i = 0; i < s->axis_count; i++) {
         const char *path = parameter_table[s->axes[i].parameter].path;
-        json_object_set_new(object, path, field_value(row, column++));
+        json_put(object, path, field_value(row, column++));
     }
 
     // how it ended, and with what numbers
-    json_object_set_new(object, "status", field_value(row, column++));
-    json_object_set_new(object, "message", field_value(row, column++));
+    json_put(object, "status", field_value(row, column++));
+    json_put(object, "message", field_value(row, column++));
     for (int i = 0; i < summary_count; i++, column++) {
         if (!summary_table[i].timing) {
-            json_object_set_new(object, summary_table[i].key, field_value(row, column));
+            json_put(object, summary_table[i].key, field_value(row, column));
         }
     }
     return object;
@@ -240,11 +240,14 @@ status sweep_store_json(sweep_store *store, FILE *stream, fault *f)
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
         json_t *object = row_object(s, rows);
         fputs(separator, stream);
-        json_write_member(stream, object, 2);
+        if (object != NULL) {
+            json_write_member(stream, object, 2);
+        }
         json_decref(object);
         separator = ",\n    ";
     }
     fputs("\n  ]\n}\n", stream);
+    const bool lost = json_lost_something();
     code = sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
-    return code == STATUS_OK && json_lost_something() ? fault_no_memory(f) : code;
+    return code == STATUS_OK && lost ? fault_no_memory(f) : code;
 }

@@ -17,7 +17,7 @@ static void take_fault(void *context, const char *sentence)
     checking *c = context;
     c->count++;
     report_to_stderr(NULL, sentence);
-    json_array_append_new(c->faults, json_text(sentence));
+    json_add(c->faults, json_text(sentence));
 }
 
 // Reads one file (or a scenario by its name). True if it has no fault.
@@ -37,13 +37,13 @@ static bool check_one(const char *file, const arguments *a, checking *c)
         }
     } else if (c->count == 0) {
         complain("'%s': %s", file, status_text(code));
-        json_array_append_new(c->faults, json_text(status_text(code)));
+        json_add(c->faults, json_text(status_text(code)));
     }
 
     json_t *object = json_object();
-    json_object_set_new(object, "file", json_text(file));
-    json_object_set_new(object, "faults", c->faults);
-    json_array_append_new(c->files, object);
+    json_put(object, "file", json_text(file));
+    json_put(object, "faults", c->faults);
+    json_add(c->files, object);
     return code == STATUS_OK;
 }
 

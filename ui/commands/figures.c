@@ -130,12 +130,12 @@ static json_t *figures_array(const figure_list *list)
     json_t *array = json_array();
     for (size_t i = 0; i < list->count; i++) {
         json_t *object = json_object();
-        json_object_set_new(object, "id", json_text(list->figures[i]->id));
-        json_object_set_new(object, "folder", json_text(list->folder));
-        json_object_set_new(object, "file", json_text(list->figures[i]->file));
-        json_object_set_new(object, "formats", json_text(list->formats));
-        json_object_set_new(object, "caption", json_text(list->figures[i]->caption));
-        json_array_append_new(array, object);
+        json_put(object, "id", json_text(list->figures[i]->id));
+        json_put(object, "folder", json_text(list->folder));
+        json_put(object, "file", json_text(list->figures[i]->file));
+        json_put(object, "formats", json_text(list->formats));
+        json_put(object, "caption", json_text(list->figures[i]->caption));
+        json_add(array, object);
     }
     return array;
 }

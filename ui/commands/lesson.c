@@ -41,10 +41,10 @@ static void list_lesson(json_t *all, const char *name, const char *title)
         return;
     }
     json_t *object = json_object();
-    json_object_set_new(object, "name", json_text(leaf_of(name)));
-    json_object_set_new(object, "scenario", json_text(name));
-    json_object_set_new(object, "title", json_text(title));
-    json_array_append_new(all, object);
+    json_put(object, "name", json_text(leaf_of(name)));
+    json_put(object, "scenario", json_text(name));
+    json_put(object, "title", json_text(title));
+    json_add(all, object);
 }
 
 // Opens the lab on a lesson, as the lab command does on a scenario.

@@ -28,12 +28,12 @@ static json_t *scenario_object(const char *name)
 {
     scenario s;
     json_t *object = json_object();
-    json_object_set_new(object, "name", json_text(name));
+    json_put(object, "name", json_text(name));
     if (scenario_open(&s, name, ignore_fault, NULL) != STATUS_OK) {
-        json_object_set_new(object, "title", json_null());
+        json_put(object, "title", json_null());
         return object;
     }
-    json_object_set_new(object, "title", json_text(s.title ? s.title : ""));
+    json_put(object, "title", json_text(s.title ? s.title : ""));
     scenario_finish(&s);
     return object;
 }
@@ -51,7 +51,7 @@ static int list(const arguments *a)
     // for a program
     json_t *all = a->json != NULL ? json_array() : NULL;
     for (int i = 0; i < count && a->json != NULL; i++) {
-        json_array_append_new(all, scenario_object(names[i]));
+        json_add(all, scenario_object(names[i]));
     }
 
     // or for people: titles stand in a column

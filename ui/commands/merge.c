@@ -7,9 +7,9 @@
 static json_t *merged_object(const char *path, const sweep_merged *merged)
 {
     json_t *object = json_object();
-    json_object_set_new(object, "file", json_text(path));
-    json_object_set_new(object, "runs", json_integer((json_int_t)merged->runs));
-    json_object_set_new(object, "runs_of_sweep", json_integer((json_int_t)merged->total));
+    json_put(object, "file", json_text(path));
+    json_put(object, "runs", json_integer((json_int_t)merged->runs));
+    json_put(object, "runs_of_sweep", json_integer((json_int_t)merged->total));
     return object;
 }
 

@@ -34,7 +34,7 @@ static json_t *array_of(const double *values, int count, double scale)
 {
     json_t *array = json_array();
     for (int i = 0; i < count; i++) {
-        json_array_append_new(array, json_number(scale * values[i]));
+        json_add(array, json_number(scale * values[i]));
     }
     return array;
 }
@@ -42,23 +42,23 @@ static json_t *array_of(const double *values, int count, double scale)
 static json_t *modes_object(const scenario *s, const arm *a, const mode_set *sets)
 {
     json_t *object = json_object(), *array = json_array();
-    json_object_set_new(object, "scenario", json_text(s->name));
+    json_put(object, "scenario", json_text(s->name));
 
     for (int i = 0; i < HOLDS; i++) {
         json_t *entry = json_object(), *shapes = json_array();
         for (int mode = 0; mode < sets[i].count; mode++) {
-            json_array_append_new(shapes, array_of(sets[i].shapes + mode * a->dof, a->dof, 1));
+            json_add(shapes, array_of(sets[i].shapes + mode * a->dof, a->dof, 1));
         }
 
-        json_object_set_new(entry, "hub", json_string(holds[i].hub_name));
-        json_object_set_new(entry, "tip", json_string(holds[i].tip_name));
-        json_object_set_new(entry, "frequency_Hz",
+        json_put(entry, "hub", json_string(holds[i].hub_name));
+        json_put(entry, "tip", json_string(holds[i].tip_name));
+        json_put(entry, "frequency_Hz",
                             array_of(sets[i].frequencies, sets[i].count, 1 / TWO_PI));
-        json_object_set_new(entry, "shapes", shapes);
-        json_array_append_new(array, entry);
+        json_put(entry, "shapes", shapes);
+        json_add(array, entry);
     }
 
-    json_object_set_new(object, "modes", array);
+    json_put(object, "modes", array);
     return object;
 }
 

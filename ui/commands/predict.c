@@ -46,13 +46,13 @@ static json_t *prediction_object(const prediction_answer *answer)
     json_t *object = json_object();
     bool known = prediction_known(answer);
     const prediction *p = &answer->prediction;
-    json_object_set_new(object, "method", json_string(answer->name));
-    json_object_set_new(object, "message", json_text(known ? "" : prediction_reason(answer)));
-    json_object_set_new(object, "holds", known ? json_boolean(p->holds) : json_null());
-    json_object_set_new(object, "peak_N", json_number(p->force));
-    json_object_set_new(object, "time_to_peak_s", json_number(p->delay));
-    json_object_set_new(object, "impulse_Ns", json_number(p->impulse));
-    json_object_set_new(object, "equivalent_restitution", json_number(p->restitution));
+    json_put(object, "method", json_string(answer->name));
+    json_put(object, "message", json_text(known ? "" : prediction_reason(answer)));
+    json_put(object, "holds", known ? json_boolean(p->holds) : json_null());
+    json_put(object, "peak_N", json_number(p->force));
+    json_put(object, "time_to_peak_s", json_number(p->delay));
+    json_put(object, "impulse_Ns", json_number(p->impulse));
+    json_put(object, "equivalent_restitution", json_number(p->restitution));
     return object;
 }
 
@@ -60,20 +60,20 @@ static json_t *predict_object(const scenario *s, const sample *row,
                               const prediction_answer *answers, const summary *m)
 {
     json_t *object = json_object(), *array = json_array(), *simulation = json_object();
-    json_object_set_new(object, "scenario", json_text(s->name));
-    json_object_set_new(object, "t_s", json_number(row->time));
+    json_put(object, "scenario", json_text(s->name));
+    json_put(object, "t_s", json_number(row->time));
 
     // one entry each, even where a predictor has no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        json_array_append_new(array, prediction_object(&answers[i]));
+        json_add(array, prediction_object(&answers[i]));
     }
-    json_object_set_new(object, "predictions", array);
+    json_put(object, "predictions", array);
 
     // the same pulse as the run has it
-    json_object_set_new(simulation, "peak_N", json_number(m->first_pulse_peak_N));
-    json_object_set_new(simulation, "time_to_peak_s", json_number(m->first_pulse_time_to_peak_s));
-    json_object_set_new(simulation, "impulse_Ns", json_number(m->contact_impulse_Ns));
-    json_object_set_new(object, "simulation", simulation);
+    json_put(simulation, "peak_N", json_number(m->first_pulse_peak_N));
+    json_put(simulation, "time_to_peak_s", json_number(m->first_pulse_time_to_peak_s));
+    json_put(simulation, "impulse_Ns", json_number(m->contact_impulse_Ns));
+    json_put(object, "simulation", simulation);
     return object;
 }
 

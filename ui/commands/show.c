@@ -68,16 +68,16 @@ static json_t *show_object(const scenario *s)
     // defaults are not named
     for (int i = 0; i < parameter_count; i++) {
         if (s->parameters.set[i]) {
-            json_array_append_new(given, json_string(parameter_table[i].path));
+            json_add(given, json_string(parameter_table[i].path));
         }
     }
 
     // what describes it, and all values whether given or not
-    json_object_set_new(object, "scenario", json_text(s->name));
-    json_object_set_new(object, "title", json_text(s->title));
-    json_object_set_new(object, "description", json_text(s->description));
-    json_object_set_new(object, "parameters", export_parameters(&s->parameters));
-    json_object_set_new(object, "given", given);
+    json_put(object, "scenario", json_text(s->name));
+    json_put(object, "title", json_text(s->title));
+    json_put(object, "description", json_text(s->description));
+    json_put(object, "parameters", export_parameters(&s->parameters));
+    json_put(object, "given", given);
     return object;
 }
 

@@ -11,35 +11,35 @@
 static json_t *methods_object(const scenario *s, const method_study *study)
 {
     json_t *object = json_object(), *reference = json_object(), *points = json_array();
-    json_object_set_new(object, "scenario", json_text(s->name));
+    json_put(object, "scenario", json_text(s->name));
 
     // what errors are measured against
-    json_object_set_new(reference, "method", json_string("event"));
-    json_object_set_new(reference, "step_s", json_number(study->reference_step));
+    json_put(reference, "method", json_string("event"));
+    json_put(reference, "step_s", json_number(study->reference_step));
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
-        json_object_set_new(reference, study_keys[k], json_number(study->reference[k]));
+        json_put(reference, study_keys[k], json_number(study->reference[k]));
     }
-    json_object_set_new(object, "reference", reference);
+    json_put(object, "reference", reference);
 
     for (int m = 0; m < STUDY_METHODS; m++) {
         for (int i = 0; i < STUDY_STEPS; i++) {
             const study_point *p = &study->points[m][i];
             json_t *line = json_object(), *errors = json_object();
 
-            json_object_set_new(line, "method", json_string(study_methods[m]));
-            json_object_set_new(line, "step_s", json_number(p->step));
-            json_object_set_new(line, "computing_time_s", json_number(p->cost));
+            json_put(line, "method", json_string(study_methods[m]));
+            json_put(line, "step_s", json_number(p->step));
+            json_put(line, "computing_time_s", json_number(p->cost));
 
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
-                json_object_set_new(errors, study_keys[k], json_number(p->error[k]));
+                json_put(errors, study_keys[k], json_number(p->error[k]));
             }
 
-            json_object_set_new(line, "errors", errors);
-            json_array_append_new(points, line);
+            json_put(line, "errors", errors);
+            json_add(points, line);
         }
     }
 
-    json_object_set_new(object, "methods", points);
+    json_put(object, "methods", points);
     return object;
 }
 

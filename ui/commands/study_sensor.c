@@ -10,36 +10,36 @@
 static json_t *sensor_object(const scenario *s, const sensor_study *study)
 {
     json_t *object = json_object(), *rows = json_array();
-    json_object_set_new(object, "scenario", json_text(s->name));
+    json_put(object, "scenario", json_text(s->name));
 
     for (int i = 0; i < study->count; i++) {
         const sensor_view *view = &study->views[i];
         json_t *line = json_object(), *sensors = json_array();
 
         // what the contact gives, of the links and of the beam
-        json_object_set_new(line, "links", json_integer(view->links));
-        json_object_set_new(line, "approach_speed_m_s", json_number(view->speed));
-        json_object_set_new(line, "contact_impulse_Ns", json_number(view->impulse));
-        json_object_set_new(line, "peak_N", json_number(view->peak));
-        json_object_set_new(line, "impacts", json_number(view->impacts));
-        json_object_set_new(line, "momentum_2ms_Ns", json_number(view->momentum));
-        json_object_set_new(line, "beam_momentum_2ms_Ns", json_number(study->beam_momentum[i]));
+        json_put(line, "links", json_integer(view->links));
+        json_put(line, "approach_speed_m_s", json_number(view->speed));
+        json_put(line, "contact_impulse_Ns", json_number(view->impulse));
+        json_put(line, "peak_N", json_number(view->peak));
+        json_put(line, "impacts", json_number(view->impacts));
+        json_put(line, "momentum_2ms_Ns", json_number(view->momentum));
+        json_put(line, "beam_momentum_2ms_Ns", json_number(study->beam_momentum[i]));
 
         // what sensors make of it
         for (int k = 0; k < SENSOR_CONSTANTS; k++) {
             json_t *sensor = json_object();
-            json_object_set_new(sensor, "time_constant_s", json_number(sensor_constants[k]));
-            json_object_set_new(sensor, "peak_N", json_number(view->sensed[k]));
-            json_object_set_new(sensor, "time_to_peak_s", json_number(view->delay[k]));
-            json_object_set_new(sensor, "beam_peak_N", json_number(study->beam_peak[k][i]));
-            json_array_append_new(sensors, sensor);
+            json_put(sensor, "time_constant_s", json_number(sensor_constants[k]));
+            json_put(sensor, "peak_N", json_number(view->sensed[k]));
+            json_put(sensor, "time_to_peak_s", json_number(view->delay[k]));
+            json_put(sensor, "beam_peak_N", json_number(study->beam_peak[k][i]));
+            json_add(sensors, sensor);
         }
 
-        json_object_set_new(line, "sensors", sensors);
-        json_array_append_new(rows, line);
+        json_put(line, "sensors", sensors);
+        json_add(rows, line);
     }
 
-    json_object_set_new(object, "sensor", rows);
+    json_put(object, "sensor", rows);
     return object;
 }
 

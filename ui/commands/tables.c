@@ -10,7 +10,7 @@ static json_t *numbers(const double *values)
 {
     json_t *array = json_array();
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
-        json_array_append_new(array, json_number(values[i]));
+        json_add(array, json_number(values[i]));
     }
     return array;
 }
@@ -22,17 +22,17 @@ static json_t *tables_object(const thesis_tables *t)
         const table_row *row = &t->rows[i];
         json_t *line = json_object();
 
-        json_object_set_new(line, "table", json_string(row->table));
-        json_object_set_new(line, "k2_factor", json_number(row->k2_factor));
-        json_object_set_new(line, "model", json_string(row->model));
-        json_object_set_new(line, "quantity", json_string(row->quantity));
-        json_object_set_new(line, "voltage_V", numbers(t->voltage));
-        json_object_set_new(line, "printed", numbers(row->printed));
-        json_object_set_new(line, "computed", numbers(row->computed));
-        json_array_append_new(rows, line);
+        json_put(line, "table", json_string(row->table));
+        json_put(line, "k2_factor", json_number(row->k2_factor));
+        json_put(line, "model", json_string(row->model));
+        json_put(line, "quantity", json_string(row->quantity));
+        json_put(line, "voltage_V", numbers(t->voltage));
+        json_put(line, "printed", numbers(row->printed));
+        json_put(line, "computed", numbers(row->computed));
+        json_add(rows, line);
     }
 
-    json_object_set_new(object, "tables", rows);
+    json_put(object, "tables", rows);
     return object;
 }
 
