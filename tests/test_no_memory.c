@@ -1,0 +1,539 @@
+// Every request for memory, descriptors and threads refused in turn: what the library computes is
+// then whole and right, or it says that there is no memory. The linker puts the functions below in
+// the place of the C library's (-Wl,--wrap=malloc and so on, see meson.build), so that requests of
+// this project are counted and refused, of jansson and SQLite too, and of nobody else's.
+#include <errno.h>
+#include <pthread.h>
+#include <sqlite3.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "src/base/json.h"
+#include "src/base/whole_file.h"
+#include "src/predict/predictors.h"
+#include "src/run/export.h"
+#include "src/run/loop.h"
+#include "src/session/session.h"
+#include "src/study/batch.h"
+#include "src/study/compare.h"
+#include "src/study/robust.h"
+#include "src/study/sweep_rows.h"
+#include "src/study/sweep_run.h"
+#include "tests/check.h"
+
+// --- who refuses --------------------------------------------------------------------------------
+
+static atomic_long requests;
+static long refused_at;    // the request that is refused; 0: none
+static bool refused_later; // and all after it
+
+// Whether the next request is to be refused.
+static bool refuses(void)
+{
+    const long number = atomic_fetch_add(&requests, 1) + 1;
+    return refused_at > 0 && (number == refused_at || (refused_later && number > refused_at));
+}
+
+// A function of the C library that gives `none` with a reason where it is refused.
+#define REFUSABLE(type, name, none, reason, parameters, arguments)                                 \
+    type __real_##name parameters;                                                                 \
+    type __wrap_##name parameters;                                                                 \
+    type __wrap_##name parameters                                                                  \
+    {                                                                                              \
+        if (refuses()) {                                                                           \
+            errno = reason;                                                                        \
+            return none;                                                                           \
+        }                                                                                          \
+        return __real_##name arguments;                                                            \
+    }
+REFUSABLE(void *, malloc, NULL, ENOMEM, (size_t size), (size))
+REFUSABLE(void *, calloc, NULL, ENOMEM, (size_t count, size_t size), (count, size))
+REFUSABLE(void *, realloc, NULL, ENOMEM, (void *old, size_t size), (old, size))
+REFUSABLE(char *, strdup, NULL, ENOMEM, (const char *text), (text))
+REFUSABLE(char *, strndup, NULL, ENOMEM, (const char *text, size_t most), (text, most))
+REFUSABLE(int, vasprintf, -1, ENOMEM, (char **text, const char *format, va_list list),
+          (text, format, list))
+
+int __wrap_asprintf(char **text, const char *format, ...);
+int __wrap_asprintf(char **text, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    const int length = __wrap_vasprintf(text, format, list);
+    va_end(list);
+    return length;
+}
+
+REFUSABLE(int, memfd_create, -1, EMFILE, (const char *name, unsigned flags), (name, flags))
+REFUSABLE(int, ftruncate64, -1, ENOSPC, (int fd, off_t size), (fd, size))
+REFUSABLE(int, fallocate64, -1, ENOSPC, (int fd, int mode, off_t from, off_t length),
+          (fd, mode, from, length))
+REFUSABLE(void *, mmap64, MAP_FAILED, ENOMEM,
+          (void *at, size_t length, int protection, int flags, int fd, off_t offset),
+          (at, length, protection, flags, fd, offset))
+REFUSABLE(int, pthread_create, EAGAIN, EAGAIN,
+          (pthread_t * thread, const pthread_attr_t *attributes, void *(*function)(void *),
+           void *argument),
+          (thread, attributes, function, argument))
+
+static sqlite3_mem_methods sqlite_memory;
+
+static void *sqlite_take(int size)
+{
+    return refuses() ? NULL : sqlite_memory.xMalloc(size);
+}
+
+static void *sqlite_take_again(void *old, int size)
+{
+    return refuses() ? NULL : sqlite_memory.xRealloc(old, size);
+}
+
+static int use_refusing_allocators(void **state)
+{
+    (void)state;
+    json_set_alloc_funcs(__wrap_malloc, free);
+    sqlite3_config(SQLITE_CONFIG_GETMALLOC, &sqlite_memory);
+    sqlite3_mem_methods refusing = sqlite_memory;
+    refusing.xMalloc = sqlite_take;
+    refusing.xRealloc = sqlite_take_again;
+    return sqlite3_config(SQLITE_CONFIG_MALLOC, &refusing) != SQLITE_OK;
+}
+
+// --- what is tried ------------------------------------------------------------------------------
+
+// Some work of the library: writes what came of it to `out`. The status is the library's.
+typedef status work(const char *settings, FILE *out);
+
+// Whether a status is one that a refused request may lead to. A law that cannot start has a
+// sentence and no code of its own: the scenario that asks for it is refused.
+static bool tells_of_refusal(status code)
+{
+    return code == STATUS_OK || code == STATUS_NO_MEMORY || code == STATUS_CANNOT_WRITE ||
+           code == STATUS_BAD_SCENARIO;
+}
+
+static long tries = 12; // requests that are refused of a piece of work, at most
+
+// The work with no request refused is the measure; then each k-th, or every n-th where there are
+// many, alone and with all that follow.
+static void try_all(work *does, const char *settings)
+{
+    char *expected = NULL, *found = NULL;
+    size_t size = 0;
+    refused_at = 0;
+    for (int i = 0; i < 2; i++) { // what is asked for once in a program's life is there then
+        FILE *out = open_memstream(&expected, &size);
+        if (i == 0) {
+            free(expected);
+        }
+        atomic_store(&requests, 0);
+        assert_int_equal(does(settings, out), STATUS_OK);
+        fclose(out);
+    }
+    const long all = atomic_load(&requests), step = (all + tries - 1) / tries;
+    assert_true(all > 0);
+
+    for (int later = 0; later < 2; later++) {
+        for (long k = 1; k <= all; k += step) {
+            FILE *out = open_memstream(&found, &size);
+            atomic_store(&requests, 0);
+            refused_later = later;
+            refused_at = k;
+            const status code = does(settings, out);
+            refused_at = 0;
+            fclose(out);
+            if (code == STATUS_OK && strcmp(found, expected) != 0) {
+                fail_msg("%s: request %ld of %ld refused%s: another result, and no failure",
+                         settings, k, all, later ? ", and all after it" : "");
+            } else if (!tells_of_refusal(code)) {
+                fail_msg("%s: request %ld of %ld refused%s: '%s'", settings, k, all,
+                         later ? ", and all after it" : "", status_text(code));
+            }
+            free(found);
+        }
+    }
+    free(expected);
+}
+
+static void keep_nothing(void *context, const char *sentence)
+{
+    (void)context;
+    assert_true(sentence[0] != 0);
+    if (refused_at == 0) {
+        fail_msg("%s", sentence);
+    }
+}
+
+static status made(scenario *s, const char *settings)
+{
+    static const char text[] =
+        "title: t\n"
+        "description: some\n"
+        "run: {duration: 0.12 s}\n"
+        "initial: {angle: -0.01 rad}\n"
+        "script:\n"
+        "  - {at: 0.05, set: {motor.voltage: 2 V}}\n"
+        "  - {at: 0.06, push: -0.01 N s}\n"
+        "expect: {impacts: {value: 1, tolerance: 9}}\n"
+        "panes: [force, gap]\n"
+        "lesson:\n"
+        "  parameters: [arm.k2]\n"
+        "  steps:\n"
+        "  - {say: one, value: {arm.k2: 5}, hint: h, then: right, do: [seek 0]}\n";
+    status code = scenario_parse(s, text, strlen(text), "t.yaml", NULL, keep_nothing, NULL);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // each of the settings, separated by blanks
+    char all[256], *rest = NULL;
+    snprintf(all, sizeof all, "%s", settings);
+    for (char *one = strtok_r(all, " ", &rest); one != NULL; one = strtok_r(NULL, " ", &rest)) {
+        fault f = {0};
+        code = code == STATUS_OK ? scenario_override(s, one, &f) : code;
+        if (code != STATUS_OK && refused_at == 0) {
+            fail_msg("%s", f.text);
+        }
+    }
+    if (code != STATUS_OK) {
+        scenario_finish(s);
+    }
+    return code;
+}
+
+static status read_and_write(const char *settings, FILE *out)
+{
+    scenario s, copy;
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = scenario_copy(&copy, &s);
+    if (code == STATUS_OK) {
+        scenario_write(out, &copy);
+        scenario_finish(&copy);
+    }
+    scenario_finish(&s);
+    return code;
+}
+
+// JSON and rows of a result.
+static status show(const scenario *s, run_result *result, FILE *out)
+{
+    result->summary.cpu_time_s = result->summary.wall_time_s = 0;
+    json_t *object = export_run(s, result);
+    if (json_lost_something() || object == NULL) {
+        json_decref(object);
+        return STATUS_NO_MEMORY;
+    }
+    json_write(out, object);
+    json_decref(object);
+    if (json_lost_something()) {
+        return STATUS_NO_MEMORY;
+    }
+    export_csv(out, &result->trace, s->parameters.arm.links);
+    return STATUS_OK;
+}
+
+static status run(const char *settings, FILE *out)
+{
+    scenario s;
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // with rows that can be shared, as a session keeps them
+    run_result result;
+    run_options options = {.keep_trace = true, .rows_expected = 1000};
+    code = run_scenario_with(&s, &options, &result);
+    code = code == STATUS_OK ? show(&s, &result, out) : code;
+    run_finish(&result);
+    scenario_finish(&s);
+    return code;
+}
+
+static status predict(const char *settings, FILE *out)
+{
+    parameters p;
+    scenario s;
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    p = s.parameters;
+    scenario_finish(&s);
+
+    // a straight arm that turns into the wall
+    double q[40] = {0}, w[40];
+    for (size_t i = 0; i < sizeof w / sizeof w[0]; i++) {
+        w[i] = 0.5;
+    }
+    prediction_answer answers[PREDICTOR_COUNT];
+    prediction_question question = {.parameters = &p,
+                                    .bodies = {.velocity = {0.5, 0.5, 0.5}},
+                                    .angles = q,
+                                    .velocities = w,
+                                    .whole_pulse = true};
+    predict_all(&question, answers);
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        fprintf(out, "%d %a\n", answers[i].outcome, answers[i].prediction.force);
+        code = answers[i].outcome == PREDICTION_FAILED ? answers[i].fault.code : code;
+    }
+    return code;
+}
+
+static status change_on_the_way(const char *settings, FILE *out)
+{
+    scenario s;
+    session made_session;
+    fault f = {0};
+    status code = made(&s, settings);
+    code = code == STATUS_OK ? session_init(&made_session, &s, &f) : code;
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // changed, pushed, taken back, and beside what it was; a run that ends early is kept and says
+    // so
+    session *t = &made_session;
+    code = t->run.summary.status;
+    session_seek(t, 0.03);
+    code = code == STATUS_OK ? session_change(t, PARAMETER_INDEX(motor.voltage), "1.5", &f) : code;
+    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? session_branch(t, &f) : code;
+    session_seek(t, 0.07);
+    code = code == STATUS_OK ? session_push(t, 0.01, &f) : code;
+    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? session_undo(t, &f) : code;
+    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? session_redo(t, &f) : code;
+    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? show(&t->effective, &t->run, out) : code;
+    session_finish(t);
+    return code;
+}
+
+static status step_as_a_loop(const char *settings, FILE *out)
+{
+    scenario s;
+    run_loop *loop = NULL;
+    fault f = {0};
+    const loop_options options = {.keep_trace = true};
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = loop_create(&loop, &s, &options, &f);
+    scenario_finish(&s);
+    for (int i = 1; i <= 4 && code == STATUS_OK; i++) {
+        code = loop_until(loop, 0.03 * i, &f);
+        code = code == STATUS_OK && i == 2
+                   ? loop_set_text(loop, PARAMETER_INDEX(motor.voltage), "1", &f)
+                   : code;
+        code = code == STATUS_OK && i == 3 ? loop_push(loop, 0.001, &f) : code;
+    }
+    if (code == STATUS_OK) {
+        fprintf(out, "%a\n", loop_row(loop).force);
+    }
+    loop_destroy(loop);
+    return code;
+}
+
+static void make_one(void *context, size_t i, scenario *made_one)
+{
+    *made_one = *(const scenario *)context;
+    made_one->parameters.motor.voltage = 1 + (double)i;
+}
+
+static status run_many(const char *settings, FILE *out)
+{
+    enum { RUNS = 6 };
+    scenario s;
+    summary all[RUNS];
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = batch_run(make_one, &s, RUNS, 2, all);
+    for (int i = 0; i < RUNS && code == STATUS_OK; i++) {
+        fprintf(out, "%a\n", all[i].peak_force_N);
+        code = all[i].status;
+    }
+    scenario_finish(&s);
+    return code;
+}
+
+static status sweep_over(const char *settings, FILE *out)
+{
+    char *vary[] = {(char[]){"motor.voltage=1:3:3"}, (char[]){"arm.k2=5,10"}};
+    sweep_request request = {.vary = vary, .vary_count = 2};
+    sweep made_sweep;
+    sweep_store *store = NULL;
+    sweep_progress progress;
+    robust_law law = {0};
+    fault f = {0};
+    scenario s;
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // into a database in memory, and out again
+    code = sweep_init(&made_sweep, &s, &request, &f);
+    if (code == STATUS_OK) {
+        const sweep_options options = {.jobs = 1};
+        code = sweep_store_open(&store, NULL, &made_sweep, &f);
+        code = code == STATUS_OK ? sweep_run(&made_sweep, store, &options, &progress, &f) : code;
+        code = code == STATUS_OK ? sweep_store_csv(store, out, &f) : code;
+        code = code == STATUS_OK ? sweep_store_json(store, out, &f) : code;
+        code = code == STATUS_OK ? robust_law_of(&law, "none", &made_sweep, store, &f) : code;
+        robust_law_finish(&law);
+        sweep_store_close(store);
+        sweep_finish(&made_sweep);
+    }
+    scenario_finish(&s);
+    return code;
+}
+
+static status put_side_by_side(const char *settings, FILE *out)
+{
+    scenario s;
+    run_result result;
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = run_scenario(&s, false, &result);
+    if (code == STATUS_OK) {
+        compare_row row = compare_row_of(&s, &result);
+        compare_table table = {.rows = &row, .count = 1, .group = 1};
+        json_t *object = compare_json(&table);
+        code = json_lost_something() || object == NULL ? STATUS_NO_MEMORY : STATUS_OK;
+        if (code == STATUS_OK) {
+            json_write(out, object);
+            code = json_lost_something() ? STATUS_NO_MEMORY : STATUS_OK;
+        }
+        json_decref(object);
+    }
+    run_finish(&result);
+    scenario_finish(&s);
+    return code;
+}
+
+static status write_whole_file(const char *path, FILE *out)
+{
+    whole_file w;
+    fault f = {0};
+    FILE *old = fopen(path, "w");
+    fputs("old", old);
+    fclose(old);
+    status code = whole_file_check(path, &f);
+    code = code == STATUS_OK ? whole_file_open(&w, path, &f) : code;
+    if (code == STATUS_OK) {
+        fputs("new", w.stream);
+        code = whole_file_commit(&w, &f);
+    }
+
+    // the file of before, or the whole new one
+    char now[8] = "";
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(now, sizeof now, file));
+    fclose(file);
+    assert_string_equal(now, code == STATUS_OK ? "new" : "old");
+    fputs(now, out);
+    return code;
+}
+
+// --- the tests ----------------------------------------------------------------------------------
+
+static void scenarios_are_read_copied_and_written(void **state)
+{
+    (void)state;
+    try_all(read_and_write, "arm.links=4 arm.joint_stiffness=4,5,6");
+}
+
+static void runs_of_every_engine(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {"",
+                                           "arm.links=5 arm.damping_ratio=0.01",
+                                           "arm.links=24",
+                                           "method.name=generalized-alpha",
+                                           "wall.contact=kelvin-voigt wall.stiffness=1e4",
+                                           "arm.hub_joint=spring arm.k1=100"};
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
+        try_all(run, settings[i]);
+    }
+}
+
+static void runs_of_the_rig(void **state)
+{
+    (void)state;
+    static const char *const settings[] = {"control.law=hybrid", "control.law=optimal",
+                                           "control.law=observer", "control.law=inverse-dynamics"};
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
+        try_all(run, settings[i]);
+    }
+}
+
+static void predictions(void **state)
+{
+    (void)state;
+    try_all(predict, "");
+    try_all(predict, "arm.links=6 arm.damping_ratio=0.01");
+    try_all(predict, "wall.contact=kelvin-voigt wall.stiffness=1e4");
+}
+
+static void sessions_and_loops(void **state)
+{
+    (void)state;
+    try_all(change_on_the_way, "");
+    try_all(change_on_the_way, "control.law=hybrid");
+    try_all(step_as_a_loop, "");
+    try_all(step_as_a_loop, "control.law=hybrid");
+}
+
+static void many_runs(void **state)
+{
+    (void)state;
+    try_all(run_many, "");
+    try_all(run_many, "arm.links=3");
+    try_all(sweep_over, "control.law=hybrid");
+    try_all(put_side_by_side, "");
+}
+
+static void whole_files(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/no-memory-XXXXXX", path[64], link[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/file", folder);
+    snprintf(link, sizeof link, "%s/link", folder);
+    assert_int_equal(symlink("file", link), 0);
+    try_all(write_whole_file, path);
+    try_all(write_whole_file, link);
+    unlink(link);
+    unlink(path);
+    assert_int_equal(rmdir(folder), 0); // no temporary stays
+}
+
+// argument: how many requests are refused, spread over those of a piece of work
+int main(int argc, char **argv)
+{
+    tries = argc > 1 ? atol(argv[1]) : tries;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scenarios_are_read_copied_and_written),
+        cmocka_unit_test(runs_of_every_engine),
+        cmocka_unit_test(runs_of_the_rig),
+        cmocka_unit_test(predictions),
+        cmocka_unit_test(sessions_and_loops),
+        cmocka_unit_test(many_runs),
+        cmocka_unit_test(whole_files),
+    };
+    return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;
+}
