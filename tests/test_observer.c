@@ -258,6 +258,19 @@ static controller_setup setup_of(const parameters *p)
     return setup;
 }
 
+// Behind a spring a torque is no force at once, and a limit on that force is none of the command.
+static void a_hub_on_a_spring_does_not_swing(void **state)
+{
+    (void)state;
+    static const char *const springs[] = {"arm.k1=90", "arm.k1=150", "arm.k1=300"};
+    for (int i = 0; i < 3; i++) {
+        summary s = rig_summary(SETTINGS("control.law=observer", "control.force=2",
+                                         "arm.hub_joint=spring", springs[i]));
+        check_below(s.settling_time_s, 0.3);
+        check_close(s.steady_error_N, 0, 0.05);
+    }
+}
+
 // The readings of a run with these settings, as all observers of the arms held possible see them:
 // which of them the law ends with.
 static observer_arms arms_after(const char *const *settings)
@@ -480,6 +493,7 @@ int main(void)
         cmocka_unit_test(wrong_beliefs_do_no_harm),
         cmocka_unit_test(a_delay_untold_does_no_harm),
         cmocka_unit_test(it_settles_on_many_links),
+        cmocka_unit_test(a_hub_on_a_spring_does_not_swing),
         cmocka_unit_test(readings_tell_which_arm_it_is),
         cmocka_unit_test(it_learns_how_stiff_the_arm_is),
         cmocka_unit_test(it_finds_the_wall_again),

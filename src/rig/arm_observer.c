@@ -132,6 +132,13 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     o->tip_before = o->tip_now = in->encoder;
 }
 
+void arm_observer_know_wall(arm_observer *o, double angle)
+{
+    assert(o != NULL && !o->touches && isfinite(angle));
+    o->wall = angle;
+    o->wall_variance = 0;
+}
+
 // --- what an estimate says --------------------------------------------------------------------
 
 double arm_observer_hub(const arm_observer *o, const estimator *e)

@@ -40,6 +40,9 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup, do
 // Starts at rest where the encoder is.
 void arm_observer_start(arm_observer *o, const controller_input *in);
 
+// From the start on the wall's angle [rad] is known, but for what no touch is surer of.
+void arm_observer_know_wall(arm_observer *o, double angle);
+
 // One sample: the estimate follows the arm over the period before it and takes in all readings.
 // takes_force: the force reading too, which shows more than the force just after an impact.
 void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force);

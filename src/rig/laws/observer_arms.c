@@ -55,6 +55,13 @@ void observer_arms_start(observer_arms *a, const controller_input *in)
     }
 }
 
+void observer_arms_know_wall(observer_arms *a, double angle)
+{
+    for (int i = 0; i < a->count; i++) {
+        arm_observer_know_wall(&a->arms[i].observer, angle);
+    }
+}
+
 void observer_arms_sample(observer_arms *a, const controller_input *in, bool takes_force)
 {
     for (int i = 0; i < a->count; i++) {

@@ -23,8 +23,9 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
 const observer_design *observer_arms_design(const observer_arms *a);
 const arm_observer *observer_arms_observer(const observer_arms *a);
 
-// What becomes of all observers: arm_observer_start, _sample, _touch and _leave.
+// What becomes of all observers: arm_observer_start, _know_wall, _sample, _touch and _leave.
 void observer_arms_start(observer_arms *a, const controller_input *in);
+void observer_arms_know_wall(observer_arms *a, double angle);
 void observer_arms_sample(observer_arms *a, const controller_input *in, bool takes_force);
 void observer_arms_touch(observer_arms *a, double time);
 void observer_arms_leave(observer_arms *a, double time);

@@ -11,19 +11,18 @@
 
 // The numbers of the design, derived in docs/control.md.
 #define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s]
-#define TOUCH_SHARE  0.5  // of the speed that the stopping force stops, to touch with
-#define RISE_PERIODS 0.5  // that the force rises for, periods of the vibration in contact
+#define LEAST_MARGIN 0.05 // of p h over 1, below which the force does not run away with the motion
 
-// Modal coordinates and rates of one state under the command, over a period; the angle of the
-// rotation, which nothing brings back, is left out where `first` is 1.
+// Modal coordinates and rates of one state over a period, under a command that gives so much torque
+// each [N m]; the angle of the rotation, which nothing brings back, is left out where `first` is 1.
 static void command_model(const controller_setup *setup, const mode_set *set, int first,
-                          sampled_model *model)
+                          double torque_per_command, sampled_model *model)
 {
     const int n = set->count, k = n - first;
 
     double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}}, input[ESTIMATOR_STATES] = {0};
 
-    // a_i'' = -w_i^2 a_i - c_i a_i' + h_i (Kt u - damping hub rate)
+    // a_i'' = -w_i^2 a_i - c_i a_i' + h_i (torque - damping hub rate)
     for (int i = 0; i < n; i++) {
         if (i >= first) {
             rate[i - first][k + i] = 1;
@@ -33,7 +32,7 @@ static void command_model(const controller_setup *setup, const mode_set *set, in
         for (int j = 0; j < n; j++) {
             rate[k + i][k + j] -= setup->hub_damping * set->hub[i] * set->hub[j];
         }
-        input[k + i] = set->hub[i] * setup->torque_per_volt;
+        input[k + i] = set->hub[i] * torque_per_command;
     }
     sampled_model_init(model, k + n, rate, input, setup->period);
 }
@@ -60,7 +59,7 @@ static bool find_travel_gain(observer_design *d, const controller_setup *setup)
     const int n = set->count;
     sampled_model model;
     quadratic_cost cost = {.growth = 1};
-    command_model(setup, set, 1, &model);
+    command_model(setup, set, 1, setup->torque_per_volt, &model);
 
     // twice the energy: of motion, and of bending
     for (int i = 0; i < n; i++) {
@@ -93,7 +92,7 @@ static bool find_press_gain(observer_design *d, const controller_setup *setup)
     const int n = set->count;
     sampled_model model;
     quadratic_cost cost = {.growth = 1};
-    command_model(setup, set, 0, &model);
+    command_model(setup, set, 0, setup->torque_per_volt, &model);
 
     for (int i = 0; i < n; i++) {
         double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
@@ -122,17 +121,18 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
     d->top_speed = fmax(0, held) / fmax(setup->hub_damping, 1e-9);
     d->touch_speed = d->top_speed;
 
-    // the touch is slow enough to be stopped
+    // the touch is slow enough to be stopped, and fast enough for a rise that begins with the least
+    // force: f = 2 x - w for the stopping force x (force_rise.h)
+    d->divergence = sqrt(square / fmax(p * h - 1, LEAST_MARGIN));
     if (p * h > 1) {
-        double s = sqrt(square / (p * h - 1));
+        double s = d->divergence, share = (1 + OBSERVER_LEAST_FORCE) / 2;
         double stopped = task->stopping_force * h * arm->length * s / (square * p) *
                          plain_exp(-s * (setup->period + setup->delay));
-        d->touch_speed = fmin(d->touch_speed, TOUCH_SHARE * stopped);
+        d->touch_speed = fmin(d->touch_speed, share * stopped);
     }
 
     d->ramp_edge = arm->free.count > 2 ? 2 * PI / sqrt(arm->free.square[2]) : 0;
     d->ramp_time = 2 * PI / sqrt(arm->free.square[1]) + d->ramp_edge;
-    d->rise_time = RISE_PERIODS * 2 * PI / sqrt(square);
 }
 
 const char *observer_design_init(observer_design *d, const controller_setup *setup,
@@ -147,6 +147,7 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
         return "the Riccati equation of its gains has no stabilising solution";
     }
     command_plan(d, setup);
+    command_model(setup, &d->observer.arm.free, 0, 1, &d->flight_model);
     find_speeds(d, setup, task);
     return NULL;
 }

@@ -4,6 +4,9 @@
 
 #include "src/rig/arm_observer.h"
 
+// Share of the wanted force below which the law lets it fall at no time.
+#define OBSERVER_LEAST_FORCE 0.1
+
 typedef struct observer_design {
     arm_observer observer;
     double travel_gain[ESTIMATOR_STATES]; // in flight [V per unit of state]
@@ -11,8 +14,9 @@ typedef struct observer_design {
     double touch_speed, top_speed;        // of the rotation [rad/s]
     double ramp_time;                     // of a change of speed that leaves no vibration [s],
     double ramp_edge;                     // of which its acceleration rises, and falls [s]
-    double rise_time;                     // of the force after a touch [s]
-    sampled_model plan_model;             // of the free arm that the plan moves
+    double divergence;                    // s, with which a wrong force in contact runs away [1/s]
+    sampled_model flight_model;           // of the free arm under a torque,
+    sampled_model plan_model;             // and without damping, which the plan moves
 } observer_design;
 
 // What the design is to do with the arm of a setup.
