@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "src/base/plain_math.h"
+
 #define NEAR    0.05 // share of the wanted force within which the rise is over
 #define SLOWEST 0.98 // share of the wanted force that a motion may lack at most
 
@@ -33,9 +35,9 @@ force_rise force_rise_begin(const force_rise_task *task)
     if (!isnan(r.bound)) {
         double left = r.bound - end;
         off = left / 2;
-        r.bounded = log((off - left) / (r.off - left)) / s;
+        r.bounded = plain_log((off - left) / (r.off - left)) / s;
     }
-    r.time = r.bounded + log(fmax(1, 2 * fabs(off) / (NEAR * end))) / s;
+    r.time = r.bounded + plain_log(fmax(1, 2 * fabs(off) / (NEAR * end))) / s;
     return r;
 }
 
@@ -47,7 +49,7 @@ void force_rise_at(const force_rise *r, double time, double way[3])
 
     // at the bound, a'' = s^2 (a - bound)
     if (r->bounded > 0) {
-        double grown = exp(s * fmin(t, r->bounded));
+        double grown = plain_exp(s * fmin(t, r->bounded));
         double growing = (off + end - r->bound) / 2, dying = from - r->bound - growing;
         from = r->bound + growing * grown + dying / grown;
         off = (off + end - r->bound) * grown + r->bound - end;
@@ -61,7 +63,7 @@ void force_rise_at(const force_rise *r, double time, double way[3])
     }
 
     // and then as it costs least
-    double kept = exp(-s * t);
+    double kept = plain_exp(-s * t);
     way[0] = end + (from - end + s * t * off) * kept;
     way[1] = s * (end + off * kept - way[0]);
     way[2] = s * s * (way[0] - end - 2 * off * kept);
