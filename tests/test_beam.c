@@ -5,6 +5,7 @@
 
 #include "src/arm/chain.h"
 #include "src/arm/modes.h"
+#include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 static arm beam_of(int links, parameters *p)
@@ -133,18 +134,25 @@ static void first_mode_has_the_damping_asked_for(void **state)
     check_relative(a.hub_joint_damping / a.hub_stiffness, 2 * wanted / frequencies[0], 1e-6);
 }
 
-// A mass at the tip: 1 + cos cosh + mu x (cos sinh - sin cosh) = 0 for x = beta L, mu its share of
-// the beam's mass.
-static void a_mass_at_the_tip_lowers_the_frequencies(void **state)
+// beta L of the first mode of the clamped beam with a mass [kg] at its tip, mu its share of the
+// beam's mass: 1 + cos cosh + mu x (cos sinh - sin cosh) = 0.
+static double beam_with_mass(double mass)
 {
-    (void)state;
-    const double mass = 0.1, mu = mass / 0.40108;
-    double lo = 1, hi = 1.8751, error[2];
+    const double mu = mass / 0.40108;
+    double lo = 1, hi = 1.8751;
     for (int i = 0; i < 100; i++) {
         double x = (lo + hi) / 2;
         double left = 1 + cos(x) * cosh(x) + mu * x * (cos(x) * sinh(x) - sin(x) * cosh(x));
         *(left > 0 ? &lo : &hi) = x;
     }
+    return lo;
+}
+
+static void a_mass_at_the_tip_lowers_the_frequencies(void **state)
+{
+    (void)state;
+    const double root = beam_with_mass(0.1);
+    double error[2];
     for (int i = 0; i < 2; i++) {
         char n[32];
         snprintf(n, sizeof n, "arm.links=%d", 8 << i);
@@ -156,10 +164,74 @@ static void a_mass_at_the_tip_lowers_the_frequencies(void **state)
         double frequencies[17], shapes[17 * 17];
         assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
                          STATUS_OK);
-        error[i] = frequencies[0] / (lo * lo * sqrt(p.arm.EI / p.arm.mass)) - 1;
+        error[i] = frequencies[0] / (root * root * sqrt(p.arm.EI / p.arm.mass)) - 1;
         check_relative(a.joint_damping / a.joint_stiffness, 2 * 0.02 / frequencies[0], 1e-6);
     }
     check_close(log2(error[0] / error[1]), 2, 0.1);
+}
+
+// First frequency [rad/s] of the motion itself, hub held by friction: the arm starts at rest in its
+// first mode, and the last link is straight a quarter of a period later.
+static double swing(const arm *a, const method_parameters *method, double expected)
+{
+    enum { QUARTER = 500, MOST = 32 };
+    int count;
+    double frequencies[MOST], shapes[MOST * MOST], before = 1, crossing = 0;
+    const double h = M_PI / 2 / expected / QUARTER;
+    motion_report report;
+    assert_true(a->dof <= MOST);
+    modes_compute(a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes);
+    motion *m = motion_create(a, method);
+    motion_start(a, m, 0, 0);
+    for (int i = 0; i < a->dof; i++) {
+        state_angles(m, m->state)[i] = 1e-4 * shapes[i];
+    }
+    motion_evaluate(a, m, m->state);
+    memcpy(state_algorithmic(m, m->state), state_accelerations(m, m->state),
+           (size_t)m->dof * sizeof(double));
+
+    // to where the last angle changes its sign, which it does at an even pace
+    for (int i = 1; i < 2 * QUARTER && crossing == 0; i++) {
+        assert_int_equal(motion_advance(a, m, i * h, fmin(method->step, h), &report), STATUS_OK);
+        assert_true(m->state[SLOT_FRICTION] == HUB_STICK);
+        const double now = state_angles(m, m->state)[a->dof - 1] / (1e-4 * shapes[a->dof - 1]);
+        crossing = now <= 0 ? (i - now / (now - before)) * h : 0;
+        before = now;
+    }
+    motion_destroy(m);
+    return M_PI / 2 / crossing;
+}
+
+// A chain so stiff that bare it would go to the engine of modes: with a mass at its tip every
+// engine swings it as the beam does.
+static void every_engine_carries_the_mass_of_a_stiff_chain(void **state)
+{
+    (void)state;
+    const double first = beam_with_mass(0.1) * beam_with_mass(0.1);
+    const char *const methods[] = {"method.name=event", "method.name=newmark",
+                                   "method.name=generalized-alpha"};
+    for (int i = 0; i < 6; i++) {
+        const int links = i < 3 ? 8 : 16;
+        char n[32];
+        snprintf(n, sizeof n, "arm.links=%d", links);
+        parameters p = fixture_parameters(SETTINGS(
+            n, methods[i % 3], "arm.hub_joint=beam", "arm.k2=2e4", "motor.stiction=1000",
+            "motor.voltage=0", "wall.kind=none", i % 3 ? "method.step=1e-5" : "method.step=1e-3"));
+        arm a;
+        arm_init(&a, &p);
+        motion *bare = motion_create(&a, &p.method);
+        assert_true(i % 3 != 0 || bare->engine == &modal_engine);
+        motion_destroy(bare);
+
+        p.arm.tip_mass = 0.1;
+        arm_init(&a, &p);
+        const double beam = first * sqrt(p.arm.EI / p.arm.mass);
+        const double found = swing(&a, &p.method, beam);
+        print_message("%d links, %s: %.6f of the beam's frequency\n", links, methods[i % 3],
+                      found / beam);
+        // the chain is stiffer or softer than the beam by the square of a link's length
+        check_close(found / beam, 1, 0.5 / (links * links));
+    }
 }
 
 static void stiffness_may_be_given_as_the_beams(void **state)
@@ -189,6 +261,7 @@ int main(void)
         cmocka_unit_test(frequencies_converge_at_second_order),
         cmocka_unit_test(first_mode_has_the_damping_asked_for),
         cmocka_unit_test(a_mass_at_the_tip_lowers_the_frequencies),
+        cmocka_unit_test(every_engine_carries_the_mass_of_a_stiff_chain),
         cmocka_unit_test(stiffness_may_be_given_as_the_beams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
