@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$1"
 
-rooms="src/base src/quantities src/arm src/solve src/rig src/rig/laws src/predict src/scenario
+rooms="src/base src/quantities src/arm src/solve src/predict src/rig src/rig/laws src/scenario
     src/run src/session src/study src/api/impactlab src/api
     render/page render/plot render/scene render/figures
     ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/commands ui"

@@ -101,7 +101,8 @@ static char *csv_of(int links, double film)
                       .accelerometer = (double)NAN,
                       .wall_energy = (double)NAN,
                       .wall_loss = (double)NAN,
-                      .face_depth = (double)NAN};
+                      .face_depth = (double)NAN,
+                      .predicted_force = (double)NAN};
         double angles[] = {0.1, 0.2, 0.3};
         assert_int_equal(trace_add_row(&t, &row, angles, angles), STATUS_OK);
     }

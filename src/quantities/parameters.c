@@ -231,7 +231,9 @@ const parameter_info parameter_table[] = {
     {PATH(control.switch_share), REAL("", 0, 1), DEFAULT(0.5), TIMED,
      MEANING("bang-bang: share of the way to the wall at which the command is reversed")},
     {PATH(control.force_limit), REAL("N", 0, 1000), DEFAULT(0), TIMED,
-     MEANING("predictive and observer: force that is not to be exceeded, 0 for none")},
+     MEANING(
+         "predictive, observer, speed-limit: force that is not to be exceeded, 0 for none; with "
+         "one the rig predicts at every sample how hard a touch would be")},
     {PATH(control.travel_time), REAL("s", 1e-3, 100), DEFAULT(0.35),
      MEANING("inverse-dynamics: how long the tip moves to the wall")},
     {PATH(control.arrival_speed), REAL("m/s", 0, 1000), DEFAULT(0),

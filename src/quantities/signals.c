@@ -97,6 +97,9 @@ const signal_info signal_table[] = {
      5, LINE_DASH_DOT, AT(wall_loss), OPTIONAL},
     {"face_depth", "x<sub>w</sub>", "xw", "m", "how far a wall's face with a mass is pushed in",
      BODY_NONE, "Depth of the wall's face", 2, LINE_DASHED, AT(face_depth), OPTIONAL},
+    {"predicted_force", "f<sub>pred</sub>", "fpred", "N",
+     "largest contact force if the tip struck now, as the rig predicts it", BODY_NONE,
+     "Contact force", 4, LINE_DOTTED, AT(predicted_force), OPTIONAL},
 };
 
 const int signal_count = (int)(sizeof signal_table / sizeof signal_table[0]);

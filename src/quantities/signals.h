@@ -51,6 +51,8 @@ typedef struct sample {
     double wall_energy; // that its spring and the motion of its face hold [J]
     double wall_loss;   // lost in it [J]
     double face_depth;  // how far its face is pushed in, NaN where it has no mass [m]
+    // on the rig with a limit on the force
+    double predicted_force; // largest force if the tip struck now, as of the last sample [N]
 } sample;
 
 typedef enum line_style { LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT } line_style;

@@ -13,7 +13,7 @@ extern "C" {
 #endif
 
 // Version of this interface; a controller carries the one it was compiled with.
-enum { CONTROLLER_INTERFACE = 4 };
+enum { CONTROLLER_INTERFACE = 5 };
 
 // A number that a user may give a controller. One that is called like a control.NAME of the
 // scenario takes the scenario's value; given by its name alone, as {.name = "force"}, it takes
@@ -63,6 +63,9 @@ typedef struct controller_input {
     double film;          // bending, last link's angle minus the first's, by the piezo film [rad]
     double accelerometer; // hub acceleration [rad/s2]
     int wanted_mode;      // index in controller.modes it is to be in; -1: it chooses itself
+    // largest force [N] if the tip struck the wall now and the command in effect stayed, by (4.20)-
+    // (4.22); 0 if it would not strike, NaN in contact and without control.force_limit
+    double predicted_force;
 } controller_input;
 
 // What a controller answers. The last three are recorded under their names, the others as the

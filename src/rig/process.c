@@ -241,6 +241,7 @@ static char *question_of(const process_memory *m, const controller_input *in)
     set_number(object, "piezo_force", in->piezo_force);
     set_number(object, "film", in->film);
     set_number(object, "accelerometer", in->accelerometer);
+    set_number(object, "predicted_force", in->predicted_force);
 
     // enough digits for every bit
     char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));

@@ -82,6 +82,9 @@ static status start_controller(rig *r, const parameters *p, const given_law *giv
     }
 
     controller_setup setup = rig_believed_setup(r, p);
+    if (p->control.force_limit > 0) {
+        touch_forecast_tell(&r->forecast, p, &setup);
+    }
     const char *refusal = r->law->start != NULL ? r->law->start(r->memory, &setup) : NULL;
     if (refusal != NULL) {
         return fault_set(f, STATUS_BAD_SCENARIO, "the controller '%s' cannot run: %.600s",
@@ -193,6 +196,7 @@ status rig_create_with(rig **created, const parameters *p, const given_law *give
     r->voltage_limit = motor_command_limit(&p->motor);
     r->effect_time = HUGE_VAL;
     r->read_time = -1;
+    r->predicted_force = (double)NAN;
     r->output = no_answer();
     sensors_init(&r->sensors, &p->sensor, p->control.seed);
     random_seed(&r->clock, ~(uint64_t)p->control.seed);
@@ -279,6 +283,9 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
         r->read_time = time;
     }
     controller_input input = input_of(r, time);
+    r->predicted_force =
+        r->told.control.force_limit > 0 ? touch_forecast_sample(&r->forecast, &input) : (double)NAN;
+    input.predicted_force = r->predicted_force;
     controller_output *out = &r->output;
     *out = no_answer();
     if (r->withheld) {

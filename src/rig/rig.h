@@ -9,6 +9,7 @@
 #include "src/rig/plugin.h"
 #include "src/rig/process.h"
 #include "src/rig/sensors.h"
+#include "src/rig/touch_forecast.h"
 #include "src/base/fault.h"
 
 // A controller that a program gives in the place of control.law. The rig leaves `context` at the
@@ -41,6 +42,8 @@ typedef struct rig {
     random_generator clock;       // of the jitter
     double voltage;               // command in effect [V]
     sensor_reading reading;       // of the last sample
+    touch_forecast forecast;      // kept up with control.force_limit
+    double predicted_force;       // of the last sample, NaN without a limit or in contact [N]
     double read_time;             // when it was taken, -1 before the first [s]
     controller_output output;     // of the last sample
     double largest_command;       // in magnitude, as put out [V]

@@ -44,6 +44,9 @@ static status tell_controller(rig *r, const parameters *p, fault *f)
         process_tell(r->memory, &p->control);
     }
     const controller_setup setup = rig_believed_setup(r, p);
+    if (p->control.force_limit > 0) {
+        touch_forecast_tell(&r->forecast, p, &setup);
+    }
 
     const char *refusal = r->law->tune(r->memory, &setup);
     if (refusal != NULL) {

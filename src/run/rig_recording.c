@@ -47,6 +47,7 @@ void recording_add_rig_signals(const recording *r, sample *row)
     row->desired_angle = sampled ? on->output.desired_angle : (double)NAN;
     row->desired_velocity = sampled ? on->output.desired_velocity : (double)NAN;
     row->calculated_force = sampled ? on->output.calculated_force : (double)NAN;
+    row->predicted_force = sampled ? on->predicted_force : (double)NAN;
 }
 
 void recording_change_command(recording *r, double time, double hub_angle)

@@ -80,7 +80,8 @@ class InputStruct(ctypes.Structure):
 
     _fields_ = [("time", c_double), ("encoder", c_double), ("tachometer", c_double),
                 ("force", c_double), ("voltage", c_double), ("piezo_force", c_double),
-                ("film", c_double), ("accelerometer", c_double), ("wanted_mode", c_int)]
+                ("film", c_double), ("accelerometer", c_double), ("wanted_mode", c_int),
+                ("predicted_force", c_double)]
 
 
 class OutputStruct(ctypes.Structure):
@@ -99,7 +100,7 @@ class ControllerStruct(ctypes.Structure):
                 ("tune", c_void_p)]
 
 
-CONTROLLER_INTERFACE = 4
+CONTROLLER_INTERFACE = 5
 
 
 def _places() -> Iterator[str]:

@@ -1,0 +1,155 @@
+// The force that the rig predicts for a touch at every sample: from hub readings alone it says what
+// the predictor says of the true state, and a law that keeps to it keeps the impact below a limit.
+#include <math.h>
+
+#include "src/predict/predict.h"
+#include "src/rig/touch_forecast.h"
+#include "tests/rig_fixture.h"
+
+// The predictor's answer for the true state of a row.
+static double predicted_of(const parameters *p, const sample *row)
+{
+    parameters now = *p;
+    prediction touch;
+    const three_body_state state = {{row->hub_angle, row->first_angle, row->last_angle},
+                                    {row->hub_velocity, row->first_velocity, row->last_velocity}};
+    now.motor.voltage = row->voltage;
+    assert_int_equal(predict_impact_dynamics(&now, &state, &touch, NULL), STATUS_OK);
+    return touch.impulse > 0 && touch.force > 0 ? touch.force : 0;
+}
+
+// At a constant command the beam swings on the way; the rig knows it from the hub's readings.
+static void readings_of_the_hub_say_what_the_state_says(void **state)
+{
+    (void)state;
+    const char *const volts[] = {"control.approach_voltage=1", "control.approach_voltage=4"};
+    const char *const ways[] = {"initial.angle=-0.1", "initial.angle=-0.3"};
+    for (int i = 0; i < 4; i++) {
+        const char *const settings[] = {"sensor.ideal=true", "control.law=open-loop",
+                                        "control.rate=1000", "control.force_limit=1",
+                                        "run.duration=0.6",  volts[i & 1],
+                                        ways[i >> 1],        NULL};
+        const parameters p = rig_parameters(settings);
+        run_result r = rig_run(settings, true);
+        double worst = 0, largest = 0;
+        int compared = 0, turns = 0;
+
+        // a row stands at each sample, whose answer the next row has; the tip of a beam that is set
+        // off goes back at first, and the force begins where it turns
+        for (size_t k = 2; k + 1 < r.trace.row_count; k++) {
+            const sample *row = &r.trace.rows[k];
+            if (row[1].time < r.summary.first_contact_s) {
+                const double truth = predicted_of(&p, row);
+                const bool strikes = truth > 0, told = row[1].predicted_force > 0;
+                turns += strikes != told;
+                worst = fmax(worst, strikes && told ? fabs(row[1].predicted_force - truth) : 0);
+                largest = fmax(largest, truth);
+                compared++;
+            }
+        }
+        print_message("%s, %s: at most %.3g N off in %d samples, up to %.3g N\n", volts[i & 1],
+                      ways[i >> 1], worst, compared, largest);
+        assert_true(compared > 100);
+        assert_true(turns <= 1);
+        check_below(worst, 0.01 * largest);
+        run_finish(&r);
+    }
+}
+
+// It is there only with a limit, and only without contact.
+static void there_is_none_in_contact_or_without_a_limit(void **state)
+{
+    (void)state;
+    run_result with = rig_run(SETTINGS("control.law=hybrid", "control.force_limit=1.5"), true);
+    run_result without = rig_run(SETTINGS("control.law=hybrid"), true);
+    for (size_t k = 0; k < without.trace.row_count; k++) {
+        assert_true(isnan(without.trace.rows[k].predicted_force));
+    }
+
+    // a sample after the touch the reading tells of it
+    for (size_t k = 0; k < with.trace.row_count; k++) {
+        const sample *row = &with.trace.rows[k];
+        if (row->time > 0.006 && row->time < with.summary.first_contact_s) {
+            assert_true(row->predicted_force >= 0);
+        } else if (row->time > with.summary.first_contact_s + 0.05) {
+            assert_true(isnan(row->predicted_force));
+        }
+    }
+
+    // the limit alone changes nothing for a law that does not ask
+    assert_true(with.summary.peak_force_N == without.summary.peak_force_N);
+    run_finish(&with);
+    run_finish(&without);
+}
+
+// An arm that swings back is not on its way to the wall.
+static void a_receding_tip_predicts_nothing(void **state)
+{
+    (void)state;
+    const parameters p = rig_parameters(SETTINGS("control.law=open-loop", "control.force_limit=1"));
+    const controller_setup setup = {.torque_per_volt = 1,
+                                    .hub_damping = 0.1,
+                                    .stiction = p.motor.stiction,
+                                    .hub_inertia = p.arm.hub_inertia,
+                                    .link_mass = p.arm.mass / 2,
+                                    .link_length = p.arm.length / 2,
+                                    .link_inertia = p.arm.link_inertia,
+                                    .k2 = p.arm.k2,
+                                    .hub_spring = HUGE_VAL};
+    touch_forecast t = {0};
+    touch_forecast_tell(&t, &p, &setup);
+    const controller_input away = {.encoder = -0.1, .tachometer = -0.5};
+    const controller_input towards = {.time = 0.005, .encoder = -0.1, .tachometer = 0.5};
+    const controller_input touching = {.time = 0.01, .encoder = 0, .tachometer = 0.5, .force = 1};
+    assert_true(touch_forecast_sample(&t, &away) == 0);
+    t.flies = false; // another flight, with a straight beam
+    assert_true(touch_forecast_sample(&t, &towards) > 0);
+    assert_true(isnan(touch_forecast_sample(&t, &touching)));
+    assert_false(t.flies);
+}
+
+// From near and far, with noise: the first 0.15 s of contact stay below the limit, and without one
+// they do not.
+static void the_speed_limit_law_keeps_to_a_force(void **state)
+{
+    (void)state;
+    const char *const limits[] = {"control.force_limit=1", "control.force_limit=2"};
+    const double bound[] = {1, 2};
+    const char *const ways[] = {"initial.angle=-0.1", "initial.angle=-0.2", "initial.angle=-0.4"};
+    const char *const seeds[] = {"control.seed=3", "control.seed=4"};
+    for (int i = 0; i < 12; i++) {
+        const int limit = i & 1;
+        double peak[2] = {0};
+        for (int without = 0; without < 2; without++) {
+            run_result r = rig_run(
+                SETTINGS("control.law=speed-limit", "control.force=0.3", "control.speed_limit=100",
+                         "control.approach_voltage=5", "run.duration=1.6", seeds[i / 6],
+                         without ? "control.force_limit=0" : limits[limit], ways[i / 2 % 3]),
+                true);
+            const double touch = r.summary.first_contact_s;
+            assert_true(touch > 0);
+            for (size_t k = 0; k < r.trace.row_count; k++) {
+                const sample *row = &r.trace.rows[k];
+                if (row->time >= touch && row->time < touch + 0.15) {
+                    peak[without] = fmax(peak[without], row->force);
+                }
+            }
+            run_finish(&r);
+        }
+        print_message("%s, %s: %.3g N, without %.3g N\n", limits[limit], ways[i / 2 % 3], peak[0],
+                      peak[1]);
+        check_below(peak[0], 1.05 * bound[limit]);
+        check_below(2 * bound[limit], peak[1] * (limit ? 1.2 : 1));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(readings_of_the_hub_say_what_the_state_says),
+        cmocka_unit_test(there_is_none_in_contact_or_without_a_limit),
+        cmocka_unit_test(a_receding_tip_predicts_nothing),
+        cmocka_unit_test(the_speed_limit_law_keeps_to_a_force),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
