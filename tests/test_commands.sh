@@ -66,6 +66,72 @@ awk '/"peak_N"/ { gsub(/,/, ""); p[++n % 4] = $2 } /"time_to_peak_s"/ { k++ } n 
         seen = n; if (!(p[2] > p[3] && p[3] > p[0])) bad = 1 } END { exit bad || n != 32 }' s.json ||
     fail "a slower sensor reads more"
 
+# --- modes: what is printed is what --json has; four times the stiffness, twice the frequency
+mode() {
+    awk -v set="$1" -v mode="$2" 'index($0, set) == 1 { on = 1 } on && $1 == mode { print $2; exit }' out
+}
+expect 0 modes hit.yaml --set arm.k2=5 --json modes.json
+expect 0 modes hit.yaml --set arm.k2=5
+soft=$(mode 'Hub free, tip free' 2)
+near "$soft" "$(sed -n 's/.*"frequency_Hz": \[0, \(.*\)\].*/\1/p' modes.json)" 1e-4
+says out "nothing can move"
+expect 0 modes hit.yaml --set arm.k2=20
+near "$(mode 'Hub free, tip free' 2)" "$(awk -v f="$soft" 'BEGIN { print 2 * f }')" 1e-4
+expect 0 modes corrected/twenty-links
+says out "more (--json lists all)"
+
+# --- the script of a scenario is shown as it will act
+printf 'title: scripted\nscript:\n- at: 0.1 s\n  set: {motor.voltage: 2 V}\n- at: 0.2 s\n  push: 0.01 N s\n' >scripted.yaml
+expect 0 show scripted.yaml
+says out "at 0.1 s: motor.voltage = 2"
+says out "at 0.2 s: push the tip with 0.01 N s"
+
+# --- a scenario with faults is listed, without a title; a folder that is not there is told
+mkdir -p own
+printf 'title: x\nmotor: {voltage: much}\n' >own/broken.yaml
+IMPACTLAB_SCENARIOS=$PWD/own expect 0 list
+says out "broken"
+says out "has faults, see impactlab check"
+IMPACTLAB_SCENARIOS=$PWD/own expect 0 list --json list.json
+grep -A1 '"broken"' list.json | grep -q null || fail "a scenario with faults has a title"
+
+# --- a comparison: the rows of its CSV are the runs by themselves
+expect 0 compare hit.yaml --vary motor.voltage=1,2 --csv compared.csv --json compared.json --quiet
+[ "$(wc -l <compared.csv)" = 3 ] || fail "a comparison of two runs has $(wc -l <compared.csv) lines"
+expect 0 run hit.yaml --json r.json --quiet
+grep -q "$(number r.json peak_force_N)" compared.json || fail "compare --json lacks the run's peak"
+grep -q "$(number r.json peak_force_N)" compared.csv || fail "compare --csv lacks the run's peak"
+
+# --- without a file a sweep lists its first 40 runs and says how many more there are
+expect 0 sweep hit.yaml --set run.duration=0.05 --vary motor.voltage=1:2:43
+says out "and 3 more (--csv writes all)"
+[ "$(grep -c 'motor.voltage = \|motor.voltage=' out)" = 40 ] || fail "not 40 runs are listed: $(cat out)"
+
+# --- drawn at random: the same for the same seed, within the range, another for another
+for seed in 1 1 2; do
+    expect 0 sweep hit.yaml --sample random --runs 5 --seed $seed --vary motor.voltage=1:2 --quiet --csv drawn.csv
+    cut -d, -f2 drawn.csv | tail -n +2 >>drawn
+done
+awk '{ v[NR] = $1; if (!($1 >= 1 && $1 <= 2)) bad = 1 }
+    END { for (i = 1; i <= 5; i++) { if (v[i] != v[i + 5]) bad = 1; if (v[i] == v[i + 10]) bad = 1 }
+          exit bad || NR != 15 }' drawn || fail "draws do not follow their seed: $(cat drawn)"
+
+# --- the table of a robust set as Markdown has a row for each law, as many columns in each line
+expect 0 robust hit.yaml --set control.force=1 --laws hybrid,force-pd --runs 3 --quiet --markdown table.md
+[ "$(grep -c '^| *\(hybrid\|force-pd\) *|' table.md)" = 2 ] || fail "a law has no row: $(cat table.md)"
+[ "$(grep '^|' table.md | tr -cd '|\n' | sort -u | wc -l)" = 1 ] || fail "the table's lines have not equal columns"
+
+# --- a plot without a name of its own has its recipe's
+expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --vary arm.k2=4:6:2 --db map.sqlite --quiet
+printf 'tables:\n  - {file: map.sqlite, x: motor.voltage, y: arm.k2, z: peak_force_N}\npanels:\n  - {weight: 2}\n' >map.yaml
+expect 0 plot map.yaml
+says out "map.png"
+[ "$(head -c 4 map.png | tail -c 3)" = PNG ] || fail "plot draws no map.png"
+
+# --- the environments of figures stand in one file, one for each
+expect 0 figures 3.4 3.5 -o pictures --format svg --latex all.tex
+[ "$(grep -c 'begin{figure}' all.tex)" = 2 ] || fail "all.tex has not two figures"
+
 # --- on a terminal a sweep shows a bar, and takes it away
 if command -v script >/dev/null; then
     on_terminal "$program" sweep hit.yaml --set run.duration=2 --vary motor.voltage=1:2:400 --jobs 1 --csv bar.csv
