@@ -164,11 +164,89 @@ static void foreign_parts_are_refused(void **state)
     unlink("changed");
 }
 
+// What a file has after others changed it, and why it is refused: as a part, and to go on from.
+static void what_others_changed_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *sql;
+        const char *says;
+    } changes[] = {
+        {"DROP TABLE run", "not laid out"},
+        {"DROP TABLE sweep", "not laid out"},
+        {"ALTER TABLE run RENAME TO old; CREATE VIEW run AS SELECT * FROM old", "not laid out"},
+        {"ALTER TABLE run ADD COLUMN more", "columns of runs"},
+        {"ALTER TABLE run DROP COLUMN wall_time_s", "expected wall_time_s"},
+        {"UPDATE run SET peak_force_N = 'much'", "another kind in run 1"},
+        {"UPDATE run SET impacts = x'01' WHERE run = 3", "kind in run 3"},
+        {"UPDATE run SET \"motor.voltage\" = 'two' WHERE run = 2", "run 2"},
+        {"UPDATE run SET status = 'splendid'", "another kind"},
+        {"UPDATE sweep SET value = 'arm.nothing=1:2:3' WHERE key = 'vary 1'", "arm.nothing"},
+        {"DELETE FROM sweep WHERE key = 'runs'", "runs"},
+        {"DELETE FROM run; DELETE FROM sweep; DROP TABLE run; DROP TABLE sweep", "is empty"},
+    };
+    sweep s;
+    must_sweep(&s, "motor.voltage=1:2:3");
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+        char *part[] = {"part"};
+        free(compute(&s, "part", (sweep_share){0, 0}));
+        tamper("part", changes[i].sql);
+        check_refused(part, 1, changes[i].says);
+
+        // an empty one is one to begin with
+        sweep_store *store;
+        fault f = {0};
+        if (strcmp(changes[i].says, "is empty") == 0) {
+            assert_int_equal(sweep_store_open(&store, "part", &s, &f), STATUS_OK);
+            sweep_store_close(store);
+        } else {
+            assert_int_equal(sweep_store_open(&store, "part", &s, &f), STATUS_BAD_ARGUMENT);
+            assert_null(store);
+        }
+        unlink("part");
+    }
+    sweep_finish(&s);
+}
+
+// A part that is not there, and one whose pages were overwritten.
+static void what_cannot_be_read_is_said(void **state)
+{
+    (void)state;
+    sweep s;
+    sweep_merged merged;
+    fault f = {0};
+    char *part[] = {"part"};
+    assert_int_equal(sweep_merge(part, 1, "out", &merged, &f), STATUS_CANNOT_READ);
+    assert_non_null(strstr(f.text, "No such file"));
+
+    // all pages but the first, which says what kind of file it is
+    must_sweep(&s, "motor.voltage=1:2:3");
+    free(compute(&s, "part", (sweep_share){0, 0}));
+    FILE *file = fopen("part", "r+");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    const long size = ftell(file);
+    fseek(file, 4096, SEEK_SET);
+    for (long i = 4096; i < size; i++) {
+        fputc('x', file);
+    }
+    fclose(file);
+    assert_int_equal(sweep_merge(part, 1, "out", &merged, &f), STATUS_CANNOT_READ);
+    assert_non_null(strstr(f.text, "is damaged"));
+    sweep_store *store;
+    assert_int_equal(sweep_store_open(&store, "part", &s, &f), STATUS_CANNOT_READ);
+    assert_int_not_equal(access("out", F_OK), 0);
+    sweep_finish(&s);
+    unlink("part");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_in_any_order_give_the_rows_of_one_sweep),
         cmocka_unit_test(foreign_parts_are_refused),
+        cmocka_unit_test(what_others_changed_is_refused),
+        cmocka_unit_test(what_cannot_be_read_is_said),
     };
     return cmocka_run_group_tests(tests, prepare, clean_up) != 0;
 }

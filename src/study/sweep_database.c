@@ -22,6 +22,18 @@ status database_fault(const sweep_store *store, fault *f)
     if (code == SQLITE_NOTADB) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path);
     }
+    if (code == SQLITE_CORRUPT) {
+        return fault_set(f, STATUS_CANNOT_READ, "'%s' is damaged: %s", path, why);
+    }
+
+    // what is asked of it is always the same, so that tables of others are at fault
+    if (code == SQLITE_ERROR) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is not laid out as this program does it: %s",
+                         path, why);
+    }
+    if (code != SQLITE_READONLY && sqlite3_db_readonly(store->database, "main") == 1) {
+        return fault_set(f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why);
+    }
     if (sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "'%s' was deleted, moved or replaced while runs were added to it; those "
@@ -79,6 +91,12 @@ status database_recognise(sweep_store *store, bool *empty, fault *f)
     return code;
 }
 
+// Whether values of the parameter are written as words.
+static bool has_words(const parameter_info *info)
+{
+    return info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN;
+}
+
 // A row a run: its number, the values of the axes, how it ended, the summary.
 static status create_run_table(sweep_store *store, fault *f)
 {
@@ -89,9 +107,8 @@ static status create_run_table(sweep_store *store, fault *f)
     // what is varied
     for (int i = 0; i < s->axis_count; i++) {
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
-        bool words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN;
         sqlite3_str_appendf(sql, ", \"%w\" %s NOT NULL", info->path,
-                            words                             ? "TEXT"
+                            has_words(info)                   ? "TEXT"
                             : info->type == PARAMETER_INTEGER ? "INTEGER"
                                                               : "REAL");
     }
@@ -152,6 +169,36 @@ static const char *column_name(const sweep *s, int column)
                                         : summary_table[word - RUN_OUTCOME_COLUMNS].key;
 }
 
+// Looks for a run with a text where a number belongs or the other way round, or that ended in no
+// way that is known: SQLite lets others write any type into any column.
+static status check_types(sweep_store *store, fault *f)
+{
+    const sweep *s = store->sweep;
+    sqlite3_str *sql = sqlite3_str_new(store->database);
+    sqlite3_str_appendall(sql, "SELECT min(run) FROM run WHERE typeof(message) <> 'text' OR "
+                               "status NOT IN ('ok', 'inaccurate', 'failed')");
+    for (int i = 0; i < s->axis_count; i++) {
+        const parameter_info *info = &parameter_table[s->axes[i].parameter];
+        sqlite3_str_appendf(sql, " OR typeof(\"%w\") %s", info->path,
+                            has_words(info) ? "<> 'text'" : "IN ('text', 'blob')");
+    }
+    for (int i = 0; i < summary_count; i++) {
+        sqlite3_str_appendf(sql, " OR typeof(\"%w\") IN ('text', 'blob')", summary_table[i].key);
+    }
+
+    // the first of them, if there is one
+    char *text = sqlite3_str_finish(sql);
+    long long run = 0;
+    status code = text ? database_query_number(store, text, &run, f) : fault_no_memory(f);
+    sqlite3_free(text);
+    if (code == STATUS_OK && run != 0) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' has values of another kind in run %lld than this program writes",
+                         store->path, run);
+    }
+    return code;
+}
+
 status database_check_columns(sweep_store *store, fault *f)
 {
     assert(store != NULL && store->sweep != NULL);
@@ -178,7 +225,7 @@ status database_check_columns(sweep_store *store, fault *f)
                          store->path, found, columns);
     }
     sqlite3_finalize(rows);
-    return code;
+    return code == STATUS_OK ? check_types(store, f) : code;
 }
 
 status database_open(sweep_store *store, int flags, fault *f)
@@ -186,7 +233,12 @@ status database_open(sweep_store *store, int flags, fault *f)
     assert(store != NULL);
     if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database, flags, NULL) !=
         SQLITE_OK) {
-        return store->database ? database_fault(store, f) : fault_no_memory(f);
+        const int number = store->database ? sqlite3_system_errno(store->database) : 0;
+        return store->database == NULL ? fault_no_memory(f)
+               : (flags & SQLITE_OPEN_READONLY) != 0 && number != 0
+                   ? fault_set(f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", store->path,
+                               strerror(number))
+                   : database_fault(store, f);
     }
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
