@@ -102,6 +102,67 @@ static void numbers_keep_their_units(void **state)
     g_object_unref(context);
 }
 
+// An index can be read where it is printed, however the page of a diagram is scaled: its letters
+// have 6 points there, or those of the text about it.
+static void indices_can_be_read_on_scaled_pages(void **state)
+{
+    (void)state;
+    static const double scales[] = {0.65, 1, 1.38};
+    PangoContext *context = text_context_create();
+    for (size_t i = 0; i < G_N_ELEMENTS(scales); i++) {
+        const text_block t = {.markup = "<sub>2</sub>", .size = 8 / scales[i], .scale = scales[i]};
+        PangoLayout *layout = text_layout_create(context, &t);
+        PangoLayoutRun *run = pango_layout_get_line_readonly(layout, 0)->runs->data;
+        PangoFontDescription *font = pango_font_describe(run->item->analysis.font);
+        check_close(scales[i] * pango_font_description_get_size(font) / PANGO_SCALE, 6, 0.01);
+        pango_font_description_free(font);
+        g_object_unref(layout);
+    }
+    g_object_unref(context);
+}
+
+// A title of two lines ends with more than a word, and lines are as far apart with an exponent in
+// one of them as without.
+static void lines_are_even(void **state)
+{
+    (void)state;
+    PangoContext *context = text_context_create();
+    double widths[2], plain, raised, width;
+    text_block title = {.markup = "Optical encoder under a constant 1 V",
+                        .size = 9,
+                        .width = 166,
+                        .balanced = true};
+    PangoLayout *layout = text_layout_create(context, &title);
+    assert_int_equal(pango_layout_get_line_count(layout), 2);
+    for (int i = 0; i < 2; i++) {
+        PangoRectangle logical;
+        pango_layout_line_get_extents(pango_layout_get_line_readonly(layout, i), NULL, &logical);
+        widths[i] = logical.width;
+    }
+    check_close(widths[1] / widths[0], 1, 0.35);
+    g_object_unref(layout);
+
+    text_measure(context, &(text_block){.markup = "one\ntwo\nthree", .size = 8}, &width, &plain);
+    text_measure(context, &(text_block){.markup = "one\n10<sup>−5</sup>\nthree", .size = 8}, &width,
+                 &raised);
+    check_close(raised, plain, 0.01);
+    g_object_unref(context);
+}
+
+static void apostrophes_are_the_printers(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {{"Newmark's", "Newmark\u2019s"},
+                                           {"Newmark&apos;s", "Newmark\u2019s"},
+                                           {"Newmark&#39;s", "Newmark\u2019s"},
+                                           {"named 'a'", "named 'a'"}};
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        char *shown = text_translate(cases[i][0], 8, 1);
+        assert_string_equal(shown, cases[i][1]);
+        g_free(shown);
+    }
+}
+
 // A curve that is cut by the axis begins at it: no colour left of it.
 static void curves_begin_at_the_axis(void **state)
 {
@@ -336,6 +397,9 @@ int main(void)
         cmocka_unit_test(the_peak_is_on_the_curve),
         cmocka_unit_test(quantities_have_the_same_digits),
         cmocka_unit_test(numbers_keep_their_units),
+        cmocka_unit_test(indices_can_be_read_on_scaled_pages),
+        cmocka_unit_test(lines_are_even),
+        cmocka_unit_test(apostrophes_are_the_printers),
         cmocka_unit_test(curves_begin_at_the_axis),
         cmocka_unit_test(a_busy_line_has_no_dashes),
         cmocka_unit_test(a_map_without_colours_is_grey),

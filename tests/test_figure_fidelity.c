@@ -130,9 +130,9 @@ static void the_printed_peak_is_a_point(void **state)
 {
     (void)state;
     char *csv = csv_of("3.4");
-    const char *point = strstr(csv, ",Table 4.3,");
-    assert_non_null(point);
-    assert_non_null(strstr(point, ",1.84"));
+    const char *row = strstr(csv, ",Table 4.3,");
+    assert_non_null(row);
+    assert_non_null(strstr(row, ",1.84"));
     g_free(csv);
     expect_in_caption("3.10", "5.22");
 }

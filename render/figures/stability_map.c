@@ -141,7 +141,7 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
         .rows = MAP_ROWS,
         .headings = {"<i>h</i> = 5\u2009ms", "<i>h</i> = 1\u2009ms", "<i>h</i> = 0.2\u2009ms"},
         .scale = {.name = "force_error",
-                  .label = "error of the force",
+                  .label = "Error of the force",
                   .unit = "%",
                   .scale = SCALE_LOGARITHMIC,
                   .low = 0.01,
@@ -229,7 +229,7 @@ status printed_stability_map(const char *title, const figure_options *o, artwork
                        .headings = {"two runs, <i>h</i> = 1\u2009ms", "one run, 1\u2009ms",
                                     "one run, 0.2\u2009ms"},
                        .scale = {.name = "largest_force",
-                                 .label = "largest force over that of Fig. 3.4",
+                                 .label = "Peak over that of Fig. 3.4",
                                  .scale = SCALE_LOGARITHMIC,
                                  .low = 0.5,
                                  .high = 500},
@@ -241,9 +241,10 @@ status printed_stability_map(const char *title, const figure_options *o, artwork
                        .release = release_printed_reference};
     m->caption = text_printf(
         "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the %g\u2009ms "
-        "after first contact, in times the %.3g\u2009N of Fig. 3.4. Left: accelerations and force "
+        "after first contact, in times the %.3g\u2009N of Fig. 3.4. Two runs: accelerations and "
+        "force "
         "are computed once more from the constraint's second derivative (3.13), the thesis's "
-        "remedy. Middle and right: without it no pair gives a usable force, and a shorter step "
+        "remedy. One run: without it no pair gives a usable force, and a shorter step "
         "makes it worse, because the impulse of the impact is delivered within one step. Lines as "
         "in the map of the corrected arm. Hatched: the equations of a step became singular.",
         1e3 * WINDOW, r->peak);

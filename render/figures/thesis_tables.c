@@ -94,7 +94,7 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
     add_motor_row(t, &p, "<i>k</i><sub>B</sub>", "2.443\u2009V·s/rad", "motor.back_emf");
     add_motor_row(t, &p, "<i>k</i><sub>T</sub>", "0.249092\u2009kg·m/A", "motor.torque_constant");
     add_motor_row(t, &p, "<i>R</i><sub>a</sub>", "33.6\u2009Ω", "motor.resistance");
-    add_motor_row(t, &p, "<i>k</i><sub>fr</sub>", "5.4192×10<sup>−3</sup>\u2009N·m·s/rad",
+    add_motor_row(t, &p, "<i>k</i><sub>fr</sub>", "5.4192·10<sup>−3</sup>\u2009N·m·s/rad",
                   "motor.viscous_friction");
     add_motor_row(t, &p, "<i>k</i><sub>st</sub>", "0.045\u2009N·m", "motor.stiction");
     add_motor_row(t, &p, "", "6.02 (section 2.3)", "motor.amplifier_gain");
@@ -151,8 +151,8 @@ status table_stability(const char *title, const figure_options *o, artwork *out,
     double fastest = frequencies[count - 1];
 
     table_page *t = new_table(title, o);
-    table_add_column(t, "Method", 2.6, TEXT_LEFT);
-    table_add_column(t, "<i>β</i>, <i>γ</i>", 1.2, TEXT_LEFT);
+    table_add_column(t, "Method", 2.3, TEXT_LEFT);
+    table_add_column(t, "<i>β</i>, <i>γ</i>", 1.5, TEXT_LEFT);
     table_add_column(t, "Largest <i>ωh</i>", 1.1, TEXT_RIGHT);
     table_add_column(t, "Longest step", 1.2, TEXT_RIGHT);
     table_add_column(t, "Order", 0.7, TEXT_RIGHT);

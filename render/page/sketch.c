@@ -42,21 +42,30 @@ static double inner_width(const sketch_frame *frame)
     return design - 2 * SKETCH_MARGIN;
 }
 
+// Size of the letters round a drawing, in designed points: that of a plot's on any page.
+static double frame_letters(const sketch_frame *frame, double size)
+{
+    return page_letters(frame->look.letters, size) / page_scale(frame);
+}
+
 static text_block title_block(const sketch_frame *frame, const char *markup)
 {
     return (text_block){.markup = markup,
-                        .size = sketch_letters(frame, TITLE_SIZE),
+                        .size = frame_letters(frame, TITLE_SIZE),
                         .family = frame->look.font,
                         .bold = true,
-                        .width = inner_width(frame)};
+                        .balanced = true,
+                        .width = inner_width(frame),
+                        .scale = page_scale(frame)};
 }
 
 static text_block caption_block(const sketch_frame *frame)
 {
     return (text_block){.markup = frame->caption,
-                        .size = sketch_letters(frame, CAPTION_SIZE),
+                        .size = frame_letters(frame, CAPTION_SIZE),
                         .family = frame->look.font,
-                        .width = inner_width(frame)};
+                        .width = inner_width(frame),
+                        .scale = page_scale(frame)};
 }
 
 // Heights of title and caption, with the space between them and the drawing.
@@ -430,6 +439,7 @@ static text_block framed(const sketch *s, text_block t)
     if (s->frame != NULL) {
         t.size = sketch_letters(s->frame, t.size);
         t.family = s->frame->look.font;
+        t.scale = s->scale;
     }
     return t;
 }

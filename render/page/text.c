@@ -131,7 +131,8 @@ static bool space_joins(const char *start, const char *space)
     bool version = space > start && g_ascii_isalpha(space[-1]) && g_ascii_isdigit(space[1]) &&
                    strchr(space + 1, '.') != NULL &&
                    strspn(space + 1, "0123456789") == strcspn(space + 1, ".");
-    return equals || after_equals || number || version;
+    bool figure = space - start >= 4 && strncmp(space - 4, "Fig.", 4) == 0;
+    return equals || after_equals || number || version || figure;
 }
 
 // Whether the slash at `slash` stands before the last part of a unit: "N·m/rad", "m/s²".
@@ -151,9 +152,19 @@ static bool slash_joins(const char *start, const char *slash)
     return false;
 }
 
-char *text_translate(const char *markup, double size)
+// Length of a typewriter's apostrophe within a word ("Newmark's", or as g_markup_escape_text writes
+// it) that begins at `mark`; 0 if none does.
+static size_t apostrophe_length(const char *start, const char *mark)
 {
-    assert(markup != NULL && size > 0);
+    size_t length = *mark == '\'' ? 1 : strncmp(mark, "&apos;", 6) == 0 ? 6 : 0;
+    length = strncmp(mark, "&#39;", 5) == 0 ? 5 : length;
+    bool within = mark > start && g_ascii_isalpha(mark[-1]) && g_ascii_isalpha(mark[length]);
+    return within ? length : 0;
+}
+
+char *text_translate(const char *markup, double size, double scale)
+{
+    assert(markup != NULL && size > 0 && scale > 0);
     GString *out = g_string_new(NULL);
 
     bool in_tag = false;
@@ -162,7 +173,7 @@ char *text_translate(const char *markup, double size)
         bool lowered = strncmp(c, "<sub>", 5) == 0, raised = strncmp(c, "<sup>", 5) == 0;
         if (lowered || raised) {
             // in 1/1024 of a point, which every version of Pango understands
-            double small = index_letters(size);
+            double small = index_letters(size * scale) / scale;
             g_string_append_printf(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
                                    (int)((raised ? 0.35 : -0.2) * size * 1024));
             in_tag = false;
@@ -178,6 +189,9 @@ char *text_translate(const char *markup, double size)
         } else if (*c == ' ' && !in_tag && space_joins(markup, c)) {
             g_string_append(out, "\u00a0");
             c++;
+        } else if (!in_tag && apostrophe_length(markup, c) > 0) {
+            g_string_append(out, "\u2019");
+            c += apostrophe_length(markup, c);
         } else if (*c == '/' && !in_tag && slash_joins(markup, c)) {
             // a word joiner: no line ends after the slash
             g_string_append(out, "/\u2060");
@@ -197,6 +211,28 @@ static char *printable_copy(const char *bytes)
     return valid;
 }
 
+static char *translated(const text_block *t, const char *markup)
+{
+    return text_translate(markup, t->size, t->scale > 0 ? t->scale : 1);
+}
+
+// Narrows a layout of several lines as far as their number allows.
+static void balance(PangoLayout *layout, double width)
+{
+    const int lines = pango_layout_get_line_count(layout);
+    double narrow = width / 2, wide = width;
+    while (lines > 1 && wide - narrow > 1) {
+        double middle = (narrow + wide) / 2;
+        pango_layout_set_width(layout, (int)(middle * PANGO_SCALE));
+        if (pango_layout_get_line_count(layout) > lines) {
+            narrow = middle;
+        } else {
+            wide = middle;
+        }
+    }
+    pango_layout_set_width(layout, (int)(wide * PANGO_SCALE));
+}
+
 PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 {
     assert(context != NULL && t != NULL && t->markup != NULL);
@@ -213,7 +249,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     pango_font_description_free(font);
 
     // text that is no markup is shown as it is
-    char *valid = printable_copy(t->markup), *markup = text_translate(valid, t->size);
+    char *valid = printable_copy(t->markup), *markup = translated(t, valid);
     if (pango_parse_markup(markup, -1, 0, NULL, NULL, NULL, NULL)) {
         pango_layout_set_markup(layout, markup, -1);
     } else {
@@ -223,9 +259,14 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     g_free(valid);
 
     pango_layout_set_alignment(layout, alignments[t->align]);
+    // lines stand alike, with raised letters in them or not
+    pango_layout_set_line_spacing(layout, 1);
     if (t->width > 0) {
         pango_layout_set_width(layout, (int)(t->width * PANGO_SCALE));
         pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);
+        if (t->balanced) {
+            balance(layout, t->width);
+        }
     }
     in_fonts--;
     return layout;

@@ -29,6 +29,8 @@ typedef struct text_block {
     bool bold;
     text_align align; // of its lines
     double width;     // at which it is wrapped into lines; 0: never
+    bool balanced;    // its lines are about equally long: no word stands alone in the last
+    double scale;     // points of the page to one of these, for indices that can be read; 0: 1
 } text_block;
 
 // Fails with STATUS_CANNOT_READ if TEXT_FAMILY is not installed; f says what to install.
@@ -51,10 +53,11 @@ void text_measure(PangoContext *context, const text_block *t, double *width, dou
 // width.
 double text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
 
-// Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size, and the spaces
-// at which a line must not end by ones that do not break: between a number and its unit, round an
-// equals sign, before a version. Free the result with g_free.
-char *text_translate(const char *markup, double size);
+// Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size on a page of the
+// given scale (points of the page to a point of the size), the spaces at which a line must not end
+// by ones that do not break: between a number and its unit, round an equals sign, before a version;
+// and the typewriter's apostrophe within a word by the printer's. Free the result with g_free.
+char *text_translate(const char *markup, double size, double scale);
 
 // A unit as the SI brochure sets it: "rad/s2" gives "rad/s²", "kg m2" gives "kg·m²".
 void text_unit(const char *unit, char *out, size_t size);

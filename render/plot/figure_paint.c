@@ -46,6 +46,7 @@ static double wrapped_height(const figure *fig, const char *markup, double size,
                     .size = page_letters(fig->letters, size),
                     .family = fig->font,
                     .bold = bold,
+                    .balanced = bold,
                     .width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM -
                              sides_of(fig)};
 
@@ -167,7 +168,7 @@ static void draw_frame_texts(drawing *d)
     if (fig->title != NULL && !fig->bare) {
         char *title = text_escape(fig->title);
         text_block t = figure_text_of(d, title, d->style.title);
-        t.bold = true;
+        t.bold = t.balanced = true;
         t.width = width;
         draw_text(d, t, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
         g_free(title);

@@ -12,6 +12,7 @@
 #define END_LABEL_LEAD 12.0 // from the axis' end to the labels at the curves' ends
 #define RIGHT_SPACE    10.0 // of a panel without anything beside it
 #define SHARED_SPACE   6.0  // of a panel whose vertical axis is labelled in the first column
+#define LABEL_GAP      3.0  // between the last label of a column and the first of the next
 #define BAR_TICK       16.0 // of a colour bar to a tick
 #define FIRST_LEFT     40.0 // where the panels begin before anything is known
 
@@ -116,7 +117,7 @@ static double left_space(const drawing *d, const panel_layout *l)
 {
     if (!has_y_labels(d, l)) {
         // as far from the column before as the ends of both axes' labels need
-        return fmax(SHARED_SPACE, widest_tick(d, &d->x, d->style.tick) / 2);
+        return fmax(SHARED_SPACE, widest_tick(d, &d->x, d->style.tick) / 2 + LABEL_GAP);
     }
 
     // title, tick labels and ticks
@@ -223,7 +224,7 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
     if (fig->title != NULL && !fig->bare) {
         char *title = text_escape(fig->title);
         text_block t = figure_text_of(d, title, d->style.title);
-        t.bold = true;
+        t.bold = t.balanced = true;
         t.width = frame_text_width(d, &left);
         y += height_of(d, t) + 3;
         g_free(title);
