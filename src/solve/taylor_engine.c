@@ -148,9 +148,13 @@ static double bend_of(const polynomial *p, double t)
     return bound[0] + t * bound[1];
 }
 
-// How far at most the function goes from its first term for times from 0 to t, a little more than
-// the sum of its terms' magnitudes.
-static double spread_of(const double *terms, int count, double t)
+typedef struct range {
+    double low, high;
+} range;
+
+// Between what the function stays for times from 0 to t: its straight part takes its extremes at
+// the ends, what bends it adds a little more than the sum of its terms' magnitudes at most.
+static range range_of(const double *terms, int count, double t)
 {
     const double u = t * t;
     pair sum = {0, 0};
@@ -158,7 +162,11 @@ static double spread_of(const double *terms, int count, double t)
         sum = sum * u + magnitudes(terms_at(terms, n));
     }
     sum *= u;
-    return (sum[0] + t * (sum[1] + fabs(terms[1]))) * (1 + 1e-12);
+    const double bends =
+        (sum[0] + t * sum[1] + fabs(terms[0]) + fabs(terms[1]) * t) * 1e-12 + (sum[0] + t * sum[1]);
+    const double straight = terms[0] + t * terms[1];
+    return straight < terms[0] ? (range){straight - bends, terms[0] + bends}
+                               : (range){terms[0] - bends, straight + bends};
 }
 
 // Divides the function by the time as often as its first coefficients are nothing but rounding,
@@ -232,12 +240,14 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
 
     // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
     const double *w = state_velocities(m, m->state);
-    double rate = fmax(a->highest_frequency, 1e-3);
+    double rate = a->highest_frequency > 1e-3 ? a->highest_frequency : 1e-3;
     for (int i = 0; i < m->dof; i++) {
-        rate = fmax(rate, 1.2 * fabs(w[i]));
+        rate = rate < 1.2 * fabs(w[i]) ? 1.2 * fabs(w[i]) : rate;
     }
-    rate = fmax(rate, 1.2 * fabs(w[a->first + 1] - w[a->first])); // the bend turns, too
-    double wanted = fmin(remaining, LONGEST_REACH / rate);
+    const double turning = 1.2 * fabs(w[a->first + 1] - w[a->first]); // the bend turns, too
+    rate = rate < turning ? turning : rate;
+    double wanted = LONGEST_REACH / rate;
+    wanted = remaining < wanted ? remaining : wanted;
     if (a->fastest_decay * wanted > LONGEST_DECAY) {
         wanted = LONGEST_DECAY / a->fastest_decay;
     }
@@ -539,14 +549,17 @@ static glance force_at(const arm *a, const motion *m, double h)
 static bool clear(const arm *a, motion *m, watch w, double h)
 {
     taylor_stride *s = m->memory;
-    const polynomial *p = &s->watched[w]; // of stiction the nearer limit, as far as the other
-    const double spread = spread_of(p->terms, p->count, h);
+    const polynomial *p = &s->watched[w];
+    range within = range_of(p->terms, p->count, h);
     (void)a;
     if (w == WATCH_FORCE && !p->divided) {
-        s->force_most = p->terms[0] + spread;
+        s->force_most = within.high;
         s->force_until = h;
+    } else if (w == WATCH_STICTION) {
+        const range far = range_of(s->far_limit.terms, s->far_limit.count, h);
+        within.low = far.low < within.low ? far.low : within.low;
     }
-    return p->terms[0] > spread;
+    return within.low > 0;
 }
 
 static bool bounded(const arm *a, motion *m, double h, double most)
