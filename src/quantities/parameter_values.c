@@ -38,7 +38,9 @@ static void store(parameters *p, const parameter_info *info, double value)
     case PARAMETER_TEXT:
     case PARAMETER_LIST:
         memset(at, 0, PARAMETER_TEXT_SIZE);
-        snprintf(at, PARAMETER_TEXT_SIZE, "%s", info->choices ? info->choices : "");
+        if (info->choices != NULL) {
+            memcpy(at, info->choices, strnlen(info->choices, PARAMETER_TEXT_SIZE - 1));
+        }
         break;
     }
 }

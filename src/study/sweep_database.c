@@ -231,6 +231,8 @@ status database_check_columns(sweep_store *store, fault *f)
 status database_open(sweep_store *store, int flags, fault *f)
 {
     assert(store != NULL);
+    // a store is one thread's at a time: no locks round every value
+    flags |= SQLITE_OPEN_NOMUTEX;
     if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database, flags, NULL) !=
         SQLITE_OK) {
         const int number = store->database ? sqlite3_system_errno(store->database) : 0;

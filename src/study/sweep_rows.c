@@ -65,7 +65,7 @@ static void bind_row(sweep_store *store, size_t run, const summary *result)
 
     // how it ended, and with what numbers
     sqlite3_bind_text(row, column++, summary_status(result), -1, SQLITE_STATIC);
-    sqlite3_bind_text(row, column++, result->message, -1, SQLITE_TRANSIENT);
+    sqlite3_bind_text(row, column++, result->message, -1, SQLITE_STATIC); // until the step
     for (int i = 0; i < summary_count; i++) {
         bind_number(row, column++, summary_value(result, i));
     }
