@@ -18,7 +18,7 @@
 #include "src/solve/modal_watch.h"
 #include "src/solve/series_engine.h"
 
-#define LONGEST    4.5e-3 // [s]
+#define LONGEST    1.8e-2 // [s]
 #define ADVANTAGE  8.0    // strides of the series that one of the modes has to replace
 #define SETTLED    1e-7   // change of the last sweep that is let pass
 #define OPEN       1e-8   // share of the energy that a stride's ledger may lack

@@ -21,7 +21,7 @@
 enum { MODAL_NODES = 6, MODAL_CONTACT_STATES = 4 };
 
 // Strides of 2^-MODAL_LONGEST_LEVEL s and so many shorter powers of two keep their responses.
-enum { MODAL_LONGEST_LEVEL = 8, MODAL_KEPT_LEVELS = 15 };
+enum { MODAL_LONGEST_LEVEL = 6, MODAL_KEPT_LEVELS = 15 };
 
 // Responses of all modes at one instant, arrays of as many as there are modes.
 typedef struct modal_table {
