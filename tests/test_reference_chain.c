@@ -1,6 +1,6 @@
 // Chains of many links against the independent simulation (tests/reference): with both hub roots,
 // with and without structural damping, on both walls, with plastic impacts and with bounces; by the
-// engine that a run takes, and by the straight chain's modes.
+// engine that a run takes, and of few links by the explicit formula too.
 //
 //   test_reference_chain [LINKS[:KIND]...]     default: 8, all kinds
 //
@@ -16,9 +16,11 @@
 #define START_ANGLE    0.095 // a little in front of the wall at 0.1 rad
 #define START_VELOCITY 0.7   // [rad/s]
 #define DURATION       0.06
-#define MODES_STEP     1 // so long that only the modes can [s]
+#define EXPLICIT_MASS                                                                              \
+    1e-12            // at the tip: next to nothing, but only the explicit formula takes it [kg]
+#define FEW_LINKS 16 // of which that formula has the time
 
-static chain_outcome library_outcome(const reference_case *c, bool modes)
+static chain_outcome library_outcome(const reference_case *c, bool by_formula)
 {
     char links[32], damping[48], restitution[48];
     snprintf(links, sizeof links, "arm.links=%d", c->links);
@@ -27,13 +29,13 @@ static chain_outcome library_outcome(const reference_case *c, bool modes)
     parameters p = fixture_parameters(SETTINGS(
         links, damping, restitution, c->beam_root ? "arm.hub_joint=beam" : "arm.hub_joint=rigid",
         c->plane_wall ? "wall.kind=plane" : "wall.kind=point", "motor.voltage=1"));
-    if (modes) {
-        p.method.step = MODES_STEP;
+    if (by_formula) {
+        p.arm.tip_mass = EXPLICIT_MASS;
     }
 
     chain_outcome o = chain_outcome_of(&p, c->angle, c->velocity, c->duration, c->duration);
     if (o.status != STATUS_OK) {
-        fail_msg("%s, %s: %s", c->name, modes ? "modes" : "default", status_text(o.status));
+        fail_msg("%s, %s: %s", c->name, by_formula ? "formula" : "default", status_text(o.status));
     }
     return o;
 }
@@ -62,11 +64,11 @@ static bool within(const char *what, double difference, double bound)
     return close;
 }
 
-static bool compare(const reference_case *c, const chain_outcome *r, bool modes)
+static bool compare(const reference_case *c, const chain_outcome *r, bool by_formula)
 {
-    chain_outcome l = library_outcome(c, modes);
+    chain_outcome l = library_outcome(c, by_formula);
     const int last = REFERENCE_SAMPLES - 1;
-    printf("    %s:", modes ? "modes" : "default");
+    printf("    %s:", by_formula ? "formula" : "default");
     bool same = within("contact", l.first_contact - r->first_contact, 1e-6);
     same &= within("impulse", l.first_impulse / r->first_impulse - 1, 1e-4);
     same &= within("1 ms", l.momentum[OUTCOME_FIRST_MS] / r->momentum[OUTCOME_FIRST_MS] - 1, 1e-3);
@@ -89,7 +91,7 @@ static void library_agrees(void **state)
            r.residual);
     assert_int_equal(r.samples, REFERENCE_SAMPLES);
     bool same = compare(c, &r, false);
-    same &= compare(c, &r, true);
+    same &= c->links > FEW_LINKS || compare(c, &r, true);
     fflush(stdout);
     assert_true(same);
 }

@@ -66,23 +66,55 @@ LOOP void loop_join(chain_rows *r)
     AT(r->whole[3], 0) = yy;
 }
 
+// Sums of an even order, and of the next one as far as what is known goes: the factors that are at
+// hand serve both.
+LOOP void even_products(chain_rows *r, int n, int b)
+{
+    const block *sine = &TERM(r->sine, 0, b), *cosine = &TERM(r->cosine, 0, b);
+    const block *rate = &TERM(r->rate, n + 1, b);
+    const block *gx = &TERM(r->gx, n, b), *gy = &TERM(r->gy, n, b);
+    block of_s = all(0), of_c = all(0), moment = all(0), against = all(0);
+    block next_s = all(0), next_c = all(0), next_moment = all(0), next_against = all(0);
+    block s = sine[1], c = cosine[1];
+    for (int i = 1; i <= n; i++) {
+        of_s += s * rate[-i];
+        of_c += c * rate[-i];
+        moment += c * gy[-i];
+        against += s * gx[-i];
+        s = sine[i + 1];
+        c = cosine[i + 1];
+        next_s += s * rate[-i];
+        next_c += c * rate[-i];
+        next_moment += c * gy[-i];
+        next_against += s * gx[-i];
+    }
+    AT(r->known_s, b) = of_s + s * rate[-n - 1];
+    AT(r->known_c, b) = of_c + c * rate[-n - 1];
+    AT(r->moment, b) = moment - against;
+    AT(r->next_s, b) = next_s;
+    AT(r->next_c, b) = next_c;
+    AT(r->next_moment, b) = next_moment - next_against;
+}
+
+// What an odd order lacks still: its first and last products.
+LOOP void odd_products(chain_rows *r, int n, int b)
+{
+    const block *sine = &TERM(r->sine, 0, b), *cosine = &TERM(r->cosine, 0, b);
+    const block *rate = &TERM(r->rate, 0, b);
+    const block x = TERM(r->gx, n - 1, b), y = TERM(r->gy, n - 1, b);
+    AT(r->known_s, b) = AT(r->next_s, b) + (sine[1] * rate[n] + sine[n + 1] * rate[0]);
+    AT(r->known_c, b) = AT(r->next_c, b) + (cosine[1] * rate[n] + cosine[n + 1] * rate[0]);
+    AT(r->moment, b) = AT(r->next_moment, b) + (cosine[1] * y - sine[1] * x);
+}
+
 LOOP void loop_products(chain_rows *r, const chain_order *o)
 {
-    const int n = o->n;
     for (int b = 0; b < r->blocks; b++) {
-        const block *sine = &TERM(r->sine, 0, b), *cosine = &TERM(r->cosine, 0, b);
-        const block *rate = &TERM(r->rate, n + 1, b);
-        const block *gx = &TERM(r->gx, n, b), *gy = &TERM(r->gy, n, b);
-        block of_s = all(0), of_c = all(0), moment = all(0), against = all(0);
-        for (int i = 1; i <= n; i++) {
-            of_s += sine[i] * rate[-i];
-            of_c += cosine[i] * rate[-i];
-            moment += cosine[i] * gy[-i];
-            against += sine[i] * gx[-i];
+        if (o->n % 2 == 0) {
+            even_products(r, o->n, b);
+        } else {
+            odd_products(r, o->n, b);
         }
-        AT(r->known_s, b) = of_s + sine[n + 1] * rate[-n - 1];
-        AT(r->known_c, b) = of_c + cosine[n + 1] * rate[-n - 1];
-        AT(r->moment, b) = moment - against;
     }
 }
 

@@ -39,8 +39,9 @@ typedef struct chain_rows {
     double *whole[4];    // along a whole stretch, [lane]
     double *unit, *unit_fx, *unit_fy; // acceleration and F of a unit contact force; 0 without
 
-    // of the order in hand
+    // of the order in hand, and of the next one as far as it is known
     double *known_c, *known_s, *moment, *rho_x, *rho_y, *add_x, *add_y;
+    double *next_c, *next_s, *next_moment;
     double *free, *acceleration, *qx, *qy, *base_x, *base_y;
 } chain_rows;
 
@@ -67,8 +68,8 @@ typedef struct chain_order {
 typedef struct chain_loops {
     void (*join)(chain_rows *r); // products of the matrices along the stretches
 
-    // sums over i = 1..n+1 of s_i w_(n+1-i) and c_i w_(n+1-i) into known_s and known_c, over
-    // i = 1..n of c_i Gy_(n-i) - s_i Gx_(n-i) into moment
+    // order by order: sums over i = 1..n+1 of s_i w_(n+1-i) and c_i w_(n+1-i) into known_s and
+    // known_c, over i = 1..n of c_i Gy_(n-i) - s_i Gx_(n-i) into moment
     void (*products)(chain_rows *r, const chain_order *o);
     // moment: torques of joints and hub less those sums
     void (*torques)(chain_rows *r, const chain_order *o);

@@ -18,7 +18,7 @@ enum { LEAST_ORDER = 8, MOST_SHORTENINGS = 400, CACHE_LINE = 64 };
 
 // --- storage ------------------------------------------------------------------------------------
 
-enum { ROWS_OF_TERMS = 7, SINGLE_ROWS = 51 };
+enum { ROWS_OF_TERMS = 7, SINGLE_ROWS = 54 };
 
 static int blocks_of(const arm *a)
 {
@@ -53,13 +53,14 @@ void chain_series_place(chain_series *s, const arm *a)
     }
 
     // by link
-    double **const rows[] = {&r->start_c, &r->start_s, &r->joint,  &r->torque,       &r->ux,
-                             &r->uy,      &r->inv_d,   &r->vx,     &r->vy,           &r->pxx,
-                             &r->pxy,     &r->pyy,     &r->back_x, &r->back_y,       &r->rho_xx,
-                             &r->rho_xy,  &r->rho_yy,  &r->unit,   &r->unit_fx,      &r->unit_fy,
-                             &r->known_c, &r->known_s, &r->moment, &r->rho_x,        &r->rho_y,
-                             &r->add_x,   &r->add_y,   &r->free,   &r->acceleration, &r->qx,
-                             &r->qy,      &r->base_x,  &r->base_y, &s->unit_x,       &s->unit_y};
+    double **const rows[] = {
+        &r->next_c,  &r->next_s,       &r->next_moment, &r->start_c, &r->start_s, &r->joint,
+        &r->torque,  &r->ux,           &r->uy,          &r->inv_d,   &r->vx,      &r->vy,
+        &r->pxx,     &r->pxy,          &r->pyy,         &r->back_x,  &r->back_y,  &r->rho_xx,
+        &r->rho_xy,  &r->rho_yy,       &r->unit,        &r->unit_fx, &r->unit_fy, &r->known_c,
+        &r->known_s, &r->moment,       &r->rho_x,       &r->rho_y,   &r->add_x,   &r->add_y,
+        &r->free,    &r->acceleration, &r->qx,          &r->qy,      &r->base_x,  &r->base_y,
+        &s->unit_x,  &s->unit_y};
     enum { ROWS = sizeof rows / sizeof rows[0] };
     _Static_assert(ROWS + 16 == SINGLE_ROWS, "rows by link");
     for (int i = 0; i < ROWS; i++) {

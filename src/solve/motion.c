@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The event method takes the modes of the straight chain where an explicit formula would need more
-// substeps a step than this.
-#define MOST_SUBSTEPS   90
+// The event method takes the modes of the straight chain where the arm's fastest rate or decay is
+// beyond this [1/s]: a stride of theirs then replaces dozens of the series.
+#define STIFF           3e4
 
 #define CACHE_LINE      64 // [bytes]
 
@@ -17,10 +17,9 @@
 // Some last bits of an acceleration, as a share of 1e-9, which counts as zero in a slow soft arm.
 #define LAST_BITS 4e-4
 
-// The event method's engine: series of the two-link arm, modes of chains so stiff that a time step
-// holds many strides of anything else, series of the other plain chains; Runge-Kutta for arms and
-// walls that those are not for.
-static const engine *event_engine(const arm *a, const motion *m, double step)
+// The event method's engine: series of the two-link arm, modes of stiff plain chains, series of the
+// others; Runge-Kutta for arms and walls that those are not for. The time step has no say.
+static const engine *event_engine(const arm *a, const motion *m)
 {
     if (taylor_engine_suits(a)) {
         return &taylor_engine;
@@ -28,7 +27,7 @@ static const engine *event_engine(const arm *a, const motion *m, double step)
     if (!arm_is_plain(a) || !motion_wall_is_rigid(m) || a->links < 2) {
         return &explicit_engine;
     }
-    const bool stiff = a->fastest_rate * step > EXPLICIT_RESOLUTION * MOST_SUBSTEPS;
+    const bool stiff = fmax(a->highest_frequency, a->fastest_decay) > STIFF;
     return stiff ? &modal_engine : &series_engine;
 }
 
@@ -52,7 +51,7 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = 0.5 - m->alpha_m + m->alpha_f;
         m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
     } else {
-        m->engine = event_engine(a, m, method->step);
+        m->engine = event_engine(a, m);
     }
 }
 
