@@ -338,9 +338,9 @@ static cairo_surface_t *paint_sweep(const char *one, const char *other, figure_r
         values[i] = 1 + 0.1 * (double)i;
     }
     const sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
-    sweep_figure *drawn = sweep_figure_create(&shown);
-    cairo_surface_t *surface = paint_pixels(sweep_figure_of(drawn), 2, r);
-    sweep_figure_destroy(drawn);
+    owned_figure *drawn = sweep_figure_create(&shown);
+    cairo_surface_t *surface = paint_pixels(&drawn->figure, 2, r);
+    owned_figure_destroy(drawn);
     sweep_finish(&s);
     return surface;
 }

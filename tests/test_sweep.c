@@ -584,11 +584,11 @@ static void must_draw(const char *a, const char *b, sweep_sampling sampling, siz
     }
     sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
     assert_int_equal(sweep_plot_check(&s, path, &f), STATUS_OK);
-    sweep_figure *drawn = sweep_figure_create(&shown);
-    if (figure_write(sweep_figure_of(drawn), path, &f) != STATUS_OK) {
+    owned_figure *drawn = sweep_figure_create(&shown);
+    if (figure_write(&drawn->figure, path, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
-    sweep_figure_destroy(drawn);
+    owned_figure_destroy(drawn);
     struct stat about;
     assert_int_equal(stat(path, &about), 0);
     assert_true(about.st_size > 1000);
@@ -629,8 +629,8 @@ static void words_have_a_curve_each(void **state)
             values[run] = volts + (sweep_value(&s, run, k) == s.axes[k].values[1] ? 100 : 0);
         }
         sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
-        sweep_figure *drawn = sweep_figure_create(&shown);
-        const figure *fig = sweep_figure_of(drawn);
+        owned_figure *drawn = sweep_figure_create(&shown);
+        const figure *fig = &drawn->figure;
         assert_null(fig->panels[0].map);
         assert_int_equal(fig->panels[0].series_count, 2);
         assert_string_equal(fig->x.name, "motor.voltage");
@@ -639,7 +639,7 @@ static void words_have_a_curve_each(void **state)
             assert_true(fig->panels[0].series[0].y[i] == fig->panels[0].series[0].x[i]);
             assert_true(fig->panels[0].series[1].y[i] == 100 + fig->panels[0].series[1].x[i]);
         }
-        sweep_figure_destroy(drawn);
+        owned_figure_destroy(drawn);
         sweep_finish(&s);
     }
 }

@@ -27,20 +27,15 @@ typedef struct varied {
 } varied;
 
 // A figure with everything it borrows.
-struct sweep_figure {
-    figure figure;
-    figure_panel panel;
-    figure_series series[PANEL_SERIES];
-    figure_map map;
-    figure_colours colours;
+// A picture in the making.
+typedef struct sweep_drawing {
+    owned_figure *drawn;
     varied varied[2];
-    GPtrArray *owned; // blocks
-};
+} sweep_drawing;
 
-static void *own(sweep_figure *s, void *block)
+static void *own(sweep_drawing *s, void *block)
 {
-    g_ptr_array_add(s->owned, block);
-    return block;
+    return owned_figure_keep(s->drawn, block);
 }
 
 // ---- axes
@@ -52,7 +47,7 @@ static int compare_values(const void *a, const void *b, void *context)
 }
 
 // Sets the points of an axis in ascending order; words stay in theirs.
-static void order_points(sweep_figure *s, varied *v)
+static void order_points(sweep_drawing *s, varied *v)
 {
     const sweep_axis *axis = v->axis;
     v->count = axis->count;
@@ -103,7 +98,7 @@ static char *point_label(const varied *v, size_t i)
 }
 
 // A description's beginning as an axis' label, markup.
-static char *label_of(sweep_figure *s, const char *description)
+static char *label_of(sweep_drawing *s, const char *description)
 {
     char *plain = text_label(description), *label = own(s, text_escape(plain));
     g_free(plain);
@@ -111,7 +106,7 @@ static char *label_of(sweep_figure *s, const char *description)
 }
 
 // The axis of a varied parameter.
-static figure_axis describe_axis(sweep_figure *s, varied *v, const sweep_axis *axis)
+static figure_axis describe_axis(sweep_drawing *s, varied *v, const sweep_axis *axis)
 {
     const parameter_info *info = &parameter_table[axis->parameter];
     *v = (varied){.axis = axis,
@@ -156,7 +151,7 @@ static double place_of(const varied *v, double value)
 }
 
 // Places of all runs along an axis of drawn values.
-static double *drawn_places(sweep_figure *s, const sweep *from, int axis)
+static double *drawn_places(sweep_drawing *s, const sweep *from, int axis)
 {
     double *places = own(s, g_new(double, from->run_count));
     for (size_t run = 0; run < from->run_count; run++) {
@@ -166,7 +161,7 @@ static double *drawn_places(sweep_figure *s, const sweep *from, int axis)
 }
 
 // The axis of the quantity itself.
-static figure_axis quantity_axis(sweep_figure *s, const char *key)
+static figure_axis quantity_axis(sweep_drawing *s, const char *key)
 {
     const summary_info *info = &summary_table[summary_index(key)];
     return (figure_axis){.name = key, .label = label_of(s, info->label), .unit = info->unit};
@@ -180,7 +175,7 @@ static double marker_radius(size_t points)
 }
 
 // One parameter: a curve; dots alone where nothing lies between the points.
-static void describe_line(sweep_figure *s, const sweep_picture *p)
+static void describe_line(sweep_drawing *s, const sweep_picture *p)
 {
     const sweep *from = p->sweep;
     const varied *v = &s->varied[0];
@@ -194,7 +189,7 @@ static void describe_line(sweep_figure *s, const sweep_picture *p)
 
     // one curve, or dots alone
     bool joined = grid && !v->words;
-    s->series[0] =
+    s->drawn->series[0] =
         (figure_series){.name = p->key,
                         .x = grid ? v->place : drawn_places(s, from, 0),
                         .y = y,
@@ -203,14 +198,13 @@ static void describe_line(sweep_figure *s, const sweep_picture *p)
                         .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE,
                         .radius = marker_radius(count)};
 
-    s->panel.y = quantity_axis(s, p->key);
-    s->panel.y.room = LINE_ROOM;
-    s->panel.series = s->series;
-    s->panel.series_count = 1;
+    s->drawn->panel.y = quantity_axis(s, p->key);
+    s->drawn->panel.y.room = LINE_ROOM;
+    s->drawn->panel.series_count = 1;
 }
 
 // A parameter of words and one of numbers: a curve for each word, over the numbers.
-static void describe_words(sweep_figure *s, const sweep_picture *p, int words, int numbers)
+static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, int numbers)
 {
     static const int colours[] = {0, 5, 2, 4, 1, 3, 6, 7};
     static const marker_kind markers[] = {MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE,
@@ -225,26 +219,25 @@ static void describe_words(sweep_figure *s, const sweep_picture *p, int words, i
             size_t w = word->order[k], n = number->order[i];
             y[i] = p->values[words == 0 ? w * inner + n : n * inner + w];
         }
-        s->series[k] = (figure_series){.name = own(s, point_label(word, k)),
-                                       .label = own(s, point_label(word, k)),
-                                       .x = number->place,
-                                       .y = y,
-                                       .count = number->count,
-                                       .colour = colours[k % G_N_ELEMENTS(colours)],
-                                       .marker = number->count > MOST_MARKERS
-                                                     ? MARKER_NONE
-                                                     : markers[k % G_N_ELEMENTS(markers)],
-                                       .radius = marker_radius(number->count)};
+        s->drawn->series[k] = (figure_series){.name = own(s, point_label(word, k)),
+                                              .label = own(s, point_label(word, k)),
+                                              .x = number->place,
+                                              .y = y,
+                                              .count = number->count,
+                                              .colour = colours[k % G_N_ELEMENTS(colours)],
+                                              .marker = number->count > MOST_MARKERS
+                                                            ? MARKER_NONE
+                                                            : markers[k % G_N_ELEMENTS(markers)],
+                                              .radius = marker_radius(number->count)};
     }
 
-    s->panel.y = quantity_axis(s, p->key);
-    s->panel.y.room = LINE_ROOM;
-    s->panel.series = s->series;
-    s->panel.series_count = (int)word->count;
+    s->drawn->panel.y = quantity_axis(s, p->key);
+    s->drawn->panel.y.room = LINE_ROOM;
+    s->drawn->panel.series_count = (int)word->count;
 }
 
 // The axis of words that gives a curve each, -1 if the picture is a map.
-static int axis_of_curves(const sweep_figure *s, const sweep *from)
+static int axis_of_curves(const sweep_drawing *s, const sweep *from)
 {
     for (int i = 0; i < 2 && from->sampling == SWEEP_GRID && from->axis_count == 2; i++) {
         if (s->varied[i].words && !s->varied[1 - i].words && s->varied[i].count <= PANEL_SERIES) {
@@ -255,27 +248,27 @@ static int axis_of_curves(const sweep_figure *s, const sweep *from)
 }
 
 // Two parameters: a map of every combination, or dots where they were drawn.
-static void describe_map(sweep_figure *s, const sweep_picture *p)
+static void describe_map(sweep_drawing *s, const sweep_picture *p)
 {
     const sweep *from = p->sweep;
     const varied *x = &s->varied[0], *y = &s->varied[1];
-    s->colours = (figure_colours){.axis = quantity_axis(s, p->key), .bar = true};
-    s->panel.colours = &s->colours;
+    figure_colours *colours = own(s, g_new(figure_colours, 1));
+    *colours = (figure_colours){.axis = quantity_axis(s, p->key), .bar = true};
+    s->drawn->panel.colours = colours;
 
     // values that were drawn are dots
     if (from->sampling != SWEEP_GRID) {
-        s->series[0] = (figure_series){.name = p->key,
-                                       .x = drawn_places(s, from, 0),
-                                       .y = drawn_places(s, from, 1),
-                                       .shade = p->values,
-                                       .count = from->run_count,
-                                       .no_line = true,
-                                       .marker = MARKER_CIRCLE,
-                                       .radius = from->run_count > 1000  ? 1.5
-                                                 : from->run_count > 200 ? 2.2
-                                                                         : 3.2};
-        s->panel.series = s->series;
-        s->panel.series_count = 1;
+        s->drawn->series[0] = (figure_series){.name = p->key,
+                                              .x = drawn_places(s, from, 0),
+                                              .y = drawn_places(s, from, 1),
+                                              .shade = p->values,
+                                              .count = from->run_count,
+                                              .no_line = true,
+                                              .marker = MARKER_CIRCLE,
+                                              .radius = from->run_count > 1000  ? 1.5
+                                                        : from->run_count > 200 ? 2.2
+                                                                                : 3.2};
+        s->drawn->panel.series_count = 1;
         return;
     }
 
@@ -287,14 +280,15 @@ static void describe_map(sweep_figure *s, const sweep_picture *p)
         }
     }
 
-    s->map = (figure_map){.x = x->place,
-                          .y = y->place,
-                          .columns = x->count,
-                          .rows = y->count,
-                          .z = z,
-                          .contours = !x->words && !y->words};
-    s->panel.map = &s->map;
-    s->figure.x.room = s->panel.y.room = 0;
+    figure_map *map = own(s, g_new(figure_map, 1));
+    *map = (figure_map){.x = x->place,
+                        .y = y->place,
+                        .columns = x->count,
+                        .rows = y->count,
+                        .z = z,
+                        .contours = !x->words && !y->words};
+    s->drawn->panel.map = map;
+    s->drawn->figure.x.room = s->drawn->panel.y.room = 0;
 }
 
 // ---- the picture
@@ -340,7 +334,7 @@ static char *command_of(const sweep *s)
     return g_string_free(out, FALSE);
 }
 
-static void describe(sweep_figure *s, const sweep_picture *p)
+static void describe(sweep_drawing *s, const sweep_picture *p)
 {
     const sweep *from = p->sweep;
     size_t missing = 0;
@@ -354,29 +348,25 @@ static void describe(sweep_figure *s, const sweep_picture *p)
         axes[1] = describe_axis(s, &s->varied[1], &from->axes[1]);
     }
     int words = axis_of_curves(s, from);
-    s->figure.x = axes[words == 0];
+    s->drawn->figure.x = axes[words == 0];
     if (from->axis_count == 1) {
         describe_line(s, p);
     } else if (words >= 0) {
         describe_words(s, p, words, 1 - words);
     } else {
-        s->panel.y = axes[1];
+        s->drawn->panel.y = axes[1];
         describe_map(s, p);
     }
     if (missing == from->run_count) {
-        s->panel.remark = "the quantity did not occur in any run";
+        s->drawn->panel.remark = "the quantity did not occur in any run";
     }
 
     // the page
-    figure *fig = &s->figure;
-    fig->panels = &s->panel;
-    fig->panel_count = 1;
-
+    figure *fig = &s->drawn->figure;
     const summary_info *quantity = &summary_table[summary_index(p->key)];
     fig->title = own(s, title_of(p, quantity->label));
     fig->caption = own(s, caption_of(p, missing));
-    s->panel.weight = PANEL_WEIGHT;
-    fig->software = own(s, g_strconcat("impactlab ", lab_version(), NULL));
+    s->drawn->panel.weight = PANEL_WEIGHT;
     fig->parameters = own(s, command_of(from));
 }
 
@@ -392,24 +382,10 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f)
     return code == STATUS_OK ? text_check_font(f) : code;
 }
 
-sweep_figure *sweep_figure_create(const sweep_picture *p)
+owned_figure *sweep_figure_create(const sweep_picture *p)
 {
     assert(p != NULL && p->sweep->axis_count >= 1 && p->sweep->axis_count <= 2);
-    sweep_figure *s = g_new0(sweep_figure, 1);
-    s->owned = g_ptr_array_new_with_free_func(g_free);
-    describe(s, p);
-    return s;
-}
-
-const figure *sweep_figure_of(const sweep_figure *s)
-{
-    return &s->figure;
-}
-
-void sweep_figure_destroy(sweep_figure *s)
-{
-    if (s != NULL) {
-        g_ptr_array_free(s->owned, TRUE);
-        g_free(s);
-    }
+    sweep_drawing s = {.drawn = owned_figure_create()};
+    describe(&s, p);
+    return s.drawn;
 }

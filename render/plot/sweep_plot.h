@@ -5,7 +5,7 @@
 // random). A logarithmic range has a logarithmic axis.
 #pragma once
 
-#include "render/plot/plot.h"
+#include "render/plot/owned_figure.h"
 #include "src/study/sweep.h"
 
 typedef struct sweep_picture {
@@ -19,10 +19,5 @@ typedef struct sweep_picture {
 // path cannot be written, STATUS_CANNOT_READ if the font is missing.
 status sweep_plot_check(const sweep *s, const char *path, fault *f);
 
-// A picture of a sweep with everything it borrows.
-typedef struct sweep_figure sweep_figure;
-
-// Describes the picture; give it to sweep_figure_destroy. The sweep and the values are borrowed.
-sweep_figure *sweep_figure_create(const sweep_picture *p);
-const figure *sweep_figure_of(const sweep_figure *s);
-void sweep_figure_destroy(sweep_figure *s);
+// Describes the picture; give it to owned_figure_destroy. The sweep and the values are borrowed.
+owned_figure *sweep_figure_create(const sweep_picture *p);

@@ -266,9 +266,9 @@ static int write_results(const robustness *r)
         code = worse(code, write_file(a->markdown, write_markdown, &table));
     }
     if (a->plot != NULL) {
-        robust_figure *drawn = robust_figure_create(&table);
-        code = worse(code, publish_figure(a, robust_figure_of(drawn)));
-        robust_figure_destroy(drawn);
+        owned_figure *drawn = robust_figure_create(&table);
+        code = worse(code, publish_figure(a, &drawn->figure));
+        owned_figure_destroy(drawn);
     }
 
     // and for people

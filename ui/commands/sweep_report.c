@@ -30,9 +30,9 @@ static int write_rows(sweep_store *store, const char *path,
 static int write_plot(const sweep_order *o, const double *values)
 {
     sweep_picture shown = {.sweep = &o->sweep, .key = o->quantity, .values = values};
-    sweep_figure *drawn = sweep_figure_create(&shown);
-    int code = publish_figure(o->arguments, sweep_figure_of(drawn));
-    sweep_figure_destroy(drawn);
+    owned_figure *drawn = sweep_figure_create(&shown);
+    int code = publish_figure(o->arguments, &drawn->figure);
+    owned_figure_destroy(drawn);
     return code;
 }
 
