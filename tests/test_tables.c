@@ -74,6 +74,21 @@ static void printed_delays_are_of_the_right_size(void **state)
     check_below(tables_mean_error(&tables, "printed", "delay_simulation"), 0.30);
 }
 
+// What docs/thesis.md says of the delays: one set fits forces and delays of all cells, and the
+// impact dynamics are late by one factor.
+static void one_set_of_numbers_fits_the_delays(void **state)
+{
+    (void)state;
+    thesis_tables fitted;
+    fault f = {.text = ""};
+    assert_int_equal(tables_compute_fitted(&fitted, &f), STATUS_OK);
+    assert_int_equal(fitted.row_count, 9);
+    check_below(tables_mean_error(&fitted, "fitted", "max_force_simulation"), 0.022);
+    check_below(tables_mean_error(&fitted, "fitted", "delay_simulation"), 0.032);
+    check_below(tables_mean_error(&fitted, "fitted", "delay_dynamics"), 0.049);
+    assert_true(isnan(tables_mean_error(&fitted, "fitted", "max_force_energy")));
+}
+
 static void a_touch_that_does_not_hold_leaves_its_cell_empty_in_all_rows(void **state)
 {
     (void)state;
@@ -145,6 +160,7 @@ int main(void)
         cmocka_unit_test(every_row_is_there_once),
         cmocka_unit_test(printed_model_reproduces_the_forces_of_the_thesis),
         cmocka_unit_test(printed_delays_are_of_the_right_size),
+        cmocka_unit_test(one_set_of_numbers_fits_the_delays),
         cmocka_unit_test(a_touch_that_does_not_hold_leaves_its_cell_empty_in_all_rows),
         cmocka_unit_test(corrected_prediction_meets_the_corrected_simulation_for_a_stiff_beam),
         cmocka_unit_test(mean_error_leaves_empty_cells_out),

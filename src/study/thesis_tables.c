@@ -242,6 +242,60 @@ status tables_compute(thesis_tables *t, fault *f)
     return STATUS_OK;
 }
 
+// Rows of the same table and quantity, the computed ones `scale` times those of `from` plus
+// `shift`.
+static void add_fitted_row(thesis_tables *t, const table_row *from, double scale, double shift)
+{
+    table_row *row = &t->rows[t->row_count++];
+    *row = *from;
+    row->model = "fitted";
+    for (int v = 0; v < TABLE_VOLTAGES; v++) {
+        row->computed[v] = scale * from->computed[v] + shift;
+    }
+}
+
+status tables_compute_fitted(thesis_tables *t, fault *f)
+{
+    // a random search over 700 sets ended here
+    static const struct {
+        const char *path, *value;
+    } fitted[] = {
+        {"arm.k1", "82.36"},
+        {"arm.link_inertia", "4.2e-7"},
+        {"arm.hub_inertia", "1.078e-3"},
+        {"motor.stiction", "0.031"},
+        {"motor.back_emf", "2.107"},
+        {"printed.feed_newmark_acceleration", "true"},
+        {"printed.newton_iterations", "3"},
+    };
+    assert(t != NULL);
+    memset(t, 0, sizeof *t);
+    memcpy(t->voltage, voltages, sizeof t->voltage);
+
+    // the model as it is, and with the set
+    parameters printed, set;
+    parameters_defaults(&printed, ARM_PRINTED);
+    parameters_defaults(&set, ARM_PRINTED);
+    status result = parameters_resolve(&printed, f);
+    for (size_t i = 0; i < sizeof fitted / sizeof fitted[0] && result == STATUS_OK; i++) {
+        result = parameter_set_text(&set, parameter_index(fitted[i].path), fitted[i].value, f);
+    }
+    result = result == STATUS_OK ? parameters_resolve(&set, f) : result;
+
+    for (int k = 0; k < STIFFNESSES && result == STATUS_OK; k++) {
+        table_row as_printed[QUANTITIES], with_set[QUANTITIES];
+        result = compute_table(&printed, &thesis[k], "printed", as_printed, f);
+        result =
+            result == STATUS_OK ? compute_table(&set, &thesis[k], "fitted", with_set, f) : result;
+        if (result == STATUS_OK) {
+            add_fitted_row(t, &with_set[FORCE_SIMULATION], 1, 0);
+            add_fitted_row(t, &as_printed[DELAY_DYNAMICS], sqrt(3) / 2, 0);
+            add_fitted_row(t, &with_set[DELAY_SIMULATION], 1, set.method.step);
+        }
+    }
+    return result;
+}
+
 bool tables_printed(const char *table, const char *quantity, double *values)
 {
     assert(table != NULL && quantity != NULL && values != NULL);

@@ -21,6 +21,7 @@ typedef struct arguments {
     char **operands; // what is no option
     int operand_count;
     bool quiet;
+    bool fitted; // --fitted
 
     // what is run
     text_list sets;                 // --set
