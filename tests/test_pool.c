@@ -1,6 +1,8 @@
 // Pieces of work on several threads: each once, whatever finishes first.
 #include "tests/check.h"
 
+#include <errno.h>
+#include <pthread.h>
 #include <stdatomic.h>
 
 #include "src/study/pool.h"
@@ -57,6 +59,20 @@ static pool_work work_on(tally *t)
                        .stop = &t->stop};
 }
 
+// The linker puts this in the place of the C library's (-Wl,--wrap=pthread_create, see
+// meson.build): of the threads asked for only so many are to be had.
+static int threads_left = 1000;
+int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
+                          void *(*function)(void *), void *argument);
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
+                          void *(*function)(void *), void *argument);
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
+                          void *(*function)(void *), void *argument)
+{
+    return threads_left-- > 0 ? __real_pthread_create(thread, attributes, function, argument)
+                              : EAGAIN;
+}
+
 static void every_piece_is_computed_and_collected_once(void **state)
 {
     (void)state;
@@ -105,6 +121,39 @@ static void no_pieces_are_no_work(void **state)
     assert_int_equal(t.last_ticks, 1);
 }
 
+// Without a single thread to be had the calling one does everything, in order.
+static void the_work_is_done_without_threads(void **state)
+{
+    (void)state;
+    for (int left = 0; left < 3; left++) {
+        tally t = {.fail_at = 0};
+        pool_work w = work_on(&t);
+        threads_left = left;
+        assert_int_equal(pool_run(&w, 4, NULL), STATUS_OK);
+        assert_int_equal(t.total, PIECES);
+        assert_int_equal(t.last_ticks, 1);
+        for (int i = 0; i < PIECES; i++) {
+            assert_int_equal(t.collected[i], 1);
+            check_close(t.results[i], sqrt(i), 0);
+        }
+    }
+
+    // failures and stops end it at once
+    fault f = {.text = ""};
+    tally failing = {.fail_at = 10}, stopped = {.stop = 1};
+    pool_work w = work_on(&failing);
+    threads_left = 0;
+    assert_int_equal(pool_run(&w, 4, &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(failing.total, 10);
+    assert_int_equal(failing.computed, 10);
+    w = work_on(&stopped);
+    threads_left = 0;
+    assert_int_equal(pool_run(&w, 4, NULL), STATUS_OK);
+    assert_int_equal(stopped.computed, 0);
+    assert_int_equal(stopped.last_ticks, 1);
+    threads_left = 1000;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -112,6 +161,7 @@ int main(void)
         cmocka_unit_test(a_failure_ends_the_work_and_is_returned),
         cmocka_unit_test(a_stop_ends_it_early_without_a_fault),
         cmocka_unit_test(no_pieces_are_no_work),
+        cmocka_unit_test(the_work_is_done_without_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -51,8 +51,7 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
         json_t *object = json_object();
         json_put(object, "quantity", json_string(summary_table[e->quantity].key));
         json_put(object, "expected", e->is_null ? json_null() : json_number(e->value));
-        json_put(object, "tolerance",
-                            e->is_null ? json_null() : json_number(e->tolerance));
+        json_put(object, "tolerance", e->is_null ? json_null() : json_number(e->tolerance));
         json_put(object, "value", json_number(value));
         json_put(object, "met", json_boolean(expectation_is_met(e, value)));
 

@@ -52,8 +52,7 @@ static json_t *modes_object(const scenario *s, const arm *a, const mode_set *set
 
         json_put(entry, "hub", json_string(holds[i].hub_name));
         json_put(entry, "tip", json_string(holds[i].tip_name));
-        json_put(entry, "frequency_Hz",
-                            array_of(sets[i].frequencies, sets[i].count, 1 / TWO_PI));
+        json_put(entry, "frequency_Hz", array_of(sets[i].frequencies, sets[i].count, 1 / TWO_PI));
         json_put(entry, "shapes", shapes);
         json_add(array, entry);
     }

@@ -1,0 +1,125 @@
+// Programs under a keeper: how they ended is told, and nothing of them is left.
+#include "src/rig/keeper.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+
+// How many descriptors this process has open.
+static int open_descriptors(void)
+{
+    int count = -3; // the folder itself, "." and ".."
+    DIR *folder = opendir("/proc/self/fd");
+    while (readdir(folder) != NULL) {
+        count++;
+    }
+    closedir(folder);
+    return count;
+}
+
+// What the program writes until the end of its output, or of the first line.
+static void read_line(const kept_program *p, char *text, size_t size)
+{
+    size_t length = 0;
+    struct pollfd watched = {.fd = p->output, .events = POLLIN};
+    while (length + 1 < size && poll(&watched, 1, 20000) == 1 &&
+           read(p->output, text + length, 1) == 1 && text[length] != '\n') {
+        length++;
+    }
+    text[length] = '\0';
+}
+
+// Starts a command, waits for the end of its output and returns what kept_program_end says.
+static int ended(const char *command)
+{
+    kept_program p;
+    char line[64];
+    assert_int_equal(kept_program_start(&p, command), 0);
+    read_line(&p, line, sizeof line);
+    return kept_program_end(&p);
+}
+
+static void the_status_of_a_program_that_ended_is_told(void **state)
+{
+    (void)state;
+    const int before = open_descriptors();
+    assert_int_equal(ended("exit 0"), 0);
+    assert_int_equal(ended("exit 7"), 7);
+    assert_int_equal(ended("no-such-program-here"), 127);
+    assert_int_equal(ended("kill -TERM $$"), 128 + SIGTERM);
+    assert_int_equal(open_descriptors(), before);
+}
+
+static void a_program_hears_and_answers(void **state)
+{
+    (void)state;
+    kept_program p;
+    char line[64];
+    assert_int_equal(kept_program_start(&p, "read x; echo \"heard $x\"; exit 3"), 0);
+    assert_int_equal(write(p.input, "this\n", 5), 5);
+    read_line(&p, line, sizeof line);
+    assert_string_equal(line, "heard this");
+    read_line(&p, line, sizeof line);
+    assert_int_equal(kept_program_end(&p), 3);
+}
+
+// A program that goes on, and what it left to itself, are gone when the keeper has ended.
+static void nothing_is_left_of_what_goes_on(void **state)
+{
+    (void)state;
+    kept_program p;
+    char line[64];
+    assert_int_equal(
+        kept_program_start(&p, "(setsid sleep 1000 & echo $!) ; trap '' TERM HUP; sleep 1000"), 0);
+    read_line(&p, line, sizeof line);
+    const pid_t orphan = atoi(line);
+    assert_true(orphan > 1);
+    assert_int_equal(kill(orphan, 0), 0);
+    assert_int_equal(kept_program_end(&p), -1);
+    assert_int_equal(kill(orphan, 0), -1);
+    assert_int_equal(errno, ESRCH);
+}
+
+static void where_none_can_be_started_nothing_stays_open(void **state)
+{
+    (void)state;
+    const int before = open_descriptors();
+    struct rlimit was, few;
+    getrlimit(RLIMIT_NOFILE, &was);
+    few = was;
+    for (int spare = 0; spare < 8; spare++) {
+        // two are wanted for each of three streams and the lifeline
+        kept_program p;
+        few.rlim_cur = (rlim_t)(before + spare);
+        setrlimit(RLIMIT_NOFILE, &few);
+        const int reason = kept_program_start(&p, "exit 0");
+        setrlimit(RLIMIT_NOFILE, &was);
+        assert_int_equal(reason, EMFILE);
+        assert_int_equal(p.keeper, 0);
+        assert_int_equal(kept_program_end(&p), -1);
+        assert_int_equal(open_descriptors(), before);
+    }
+}
+
+int main(void)
+{
+    // descriptors are counted: only those of the streams are open, without gaps
+    signal(SIGPIPE, SIG_IGN);
+    for (int fd = 3; fd < 1024; fd++) {
+        close(fd);
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_status_of_a_program_that_ended_is_told),
+        cmocka_unit_test(a_program_hears_and_answers),
+        cmocka_unit_test(nothing_is_left_of_what_goes_on),
+        cmocka_unit_test(where_none_can_be_started_nothing_stays_open),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}

@@ -1,0 +1,112 @@
+// Rows and events of a run: where an instant lies among them, copies, and shared beginnings.
+#include "src/run/trace.h"
+
+#include <string.h>
+
+#include "tests/check.h"
+
+enum { ROWS = 5000, ANGLES = 3, EVENTS = 40 };
+
+// Rows at 0, 1, 1, 2, 3, 3, 4 ...: every second instant has one on either side of an event.
+static double time_of(int row)
+{
+    return (2 * row + 1) / 3;
+}
+
+static void fill(trace *t)
+{
+    for (int i = 0; i < ROWS; i++) {
+        sample row = {.time = time_of(i), .force = i};
+        double angles[ANGLES] = {i, -i, 0.5 * i}, velocities[ANGLES] = {1, 2, i};
+        assert_int_equal(trace_add_row(t, &row, angles, velocities), STATUS_OK);
+    }
+    for (int i = 0; i < EVENTS; i++) {
+        assert_int_equal(trace_add_event(t, (event){.time = i, .impulse = 0.1 * i}), STATUS_OK);
+    }
+}
+
+static void check_rows(const trace *t, int rows, int events)
+{
+    assert_int_equal(t->row_count, rows);
+    assert_int_equal(t->event_count, events);
+    for (int i = 0; i < rows; i++) {
+        check_close(t->rows[i].time, time_of(i), 0);
+        check_close(t->rows[i].force, i, 0);
+        check_close(t->angles[i * ANGLES + 1], -i, 0);
+        check_close(t->velocities[i * ANGLES + 2], i, 0);
+    }
+    for (int i = 0; i < events; i++) {
+        check_close(t->events[i].impulse, 0.1 * i, 0);
+    }
+}
+
+static void an_instant_has_its_place_among_the_rows(void **state)
+{
+    (void)state;
+    trace t;
+    trace_init(&t, ANGLES);
+    assert_int_equal(trace_rows_until(&t, 3), 0);
+    assert_int_equal(trace_row_at(&t, 3), 0);
+    fill(&t);
+
+    // between rows, at rows, before the first and after the last
+    for (int k = -2; k <= 2 * ROWS + 2; k++) {
+        const double time = 0.5 * k;
+        size_t until = 0;
+        while (until < ROWS && time_of((int)until) <= time) {
+            until++;
+        }
+        assert_int_equal(trace_rows_until(&t, time), until);
+        assert_int_equal(trace_row_at(&t, time), until > 0 ? until - 1 : 0);
+    }
+    assert_int_equal(trace_rows_until(&t, HUGE_VAL), ROWS);
+    trace_finish(&t);
+}
+
+static void a_copy_outlives_the_original(void **state)
+{
+    (void)state;
+    trace t, copy, empty;
+    trace_init(&t, ANGLES);
+    assert_int_equal(trace_copy(&empty, &t), STATUS_OK);
+    check_rows(&empty, 0, 0);
+    fill(&t);
+    assert_int_equal(trace_copy(&copy, &t), STATUS_OK);
+    trace_finish(&t);
+    check_rows(&copy, ROWS, EVENTS);
+    trace_finish(&copy);
+    trace_finish(&empty);
+}
+
+// Rows that stay where they are are shared up to a row, and go on differently.
+static void a_shared_beginning_goes_on_by_itself(void **state)
+{
+    (void)state;
+    trace t, other;
+    assert_int_equal(trace_reserve(&t, ANGLES, 10, ROWS), STATUS_OK);
+    const sample *first = t.rows;
+    fill(&t);
+    assert_ptr_equal(t.rows, first);
+    assert_int_equal(trace_reserve(&other, ANGLES, 10, ROWS), STATUS_OK);
+    assert_int_equal(trace_share(&other, &t, 1234, 7), STATUS_OK);
+    check_rows(&other, 1234, 7);
+    sample row = {.time = 1e6};
+    double zeros[ANGLES] = {0};
+    assert_int_equal(trace_add_row(&other, &row, zeros, zeros), STATUS_OK);
+    check_close(other.rows[1234].time, 1e6, 0);
+    check_rows(&t, ROWS, EVENTS);
+    trace_finish(&t);
+    other.row_count = 1234;
+    check_rows(&other, 1234, 7);
+    trace_finish(&other);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_instant_has_its_place_among_the_rows),
+        cmocka_unit_test(a_copy_outlives_the_original),
+        cmocka_unit_test(a_shared_beginning_goes_on_by_itself),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
