@@ -2,6 +2,7 @@
 #include "src/predict/predictors.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "tests/arm_fixture.h"
 
@@ -71,12 +72,84 @@ static void a_state_that_is_not_finite_fails_with_a_sentence(void **state)
     assert_true(isnan(answer.prediction.force) && isnan(answer.prediction.delay));
 }
 
+// The force that a predictor says for commands from the touch on.
+static prediction predicted(predictor which, int count, const double *times, const double *volts)
+{
+    parameters p = fixture_parameters(NULL);
+    prediction_question question = {&p, closing, links, rates, {count, times, volts}, false};
+    prediction_answer answer = predict_with(which, &question);
+    if (answer.outcome != PREDICTION_HOLDS) {
+        fail_msg("%s: %s", answer.name, prediction_reason(&answer));
+    }
+    return answer.prediction;
+}
+
+static void commands_after_the_touch_count_while_it_lasts(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(NULL);
+    const double v = p.motor.voltage;
+    for (int which = PREDICTOR_IMPACT_DYNAMICS; which <= PREDICTOR_LINEARISED; which++) {
+        const prediction plain = predicted(which, 0, NULL, NULL);
+
+        // the voltage there is, told once more, and another one when the peak is over
+        const double late[] = {0, 2 * plain.delay}, same[] = {v, 10};
+        const double told = predicted(which, 1, late, same).force;
+        check_relative(told, plain.force, 2e-3); // the linearised arm then follows friction, too
+        if (which != PREDICTOR_LINEARISED) {     // which looks on until the arm leaves the wall
+            check_relative(predicted(which, 2, late, same).force, told, 1e-6);
+        }
+
+        // more voltage presses more, and the earlier it comes
+        const double now[] = {0}, half[] = {plain.delay / 2}, more[] = {1.2 * v};
+        const double all = predicted(which, 1, now, more).force;
+        const double some = predicted(which, 1, half, more).force;
+        check_below(told, some);
+        check_below(some, all);
+    }
+}
+
+static void who_cannot_answer_says_why(void **state)
+{
+    (void)state;
+    const struct {
+        const char *const *settings;
+        predictor which;
+        prediction_outcome outcome;
+    } cases[] = {
+        {SETTINGS("wall.contact=kelvin-voigt"), PREDICTOR_ENERGY, PREDICTION_RIGID_WALL_ONLY},
+        {SETTINGS("arm.tip_mass=0.1"), PREDICTOR_IMPACT_DYNAMICS, PREDICTION_BARE_TIP_ONLY},
+        {SETTINGS("arm.links=3", "arm.joint_stiffness=5,9"), PREDICTOR_IMPACT_QUADRATIC,
+         PREDICTION_EQUAL_LINKS_ONLY},
+        {SETTINGS("arm.stiffening=10"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
+        {SETTINGS("arm.air_drag=0.1"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
+        {SETTINGS("motor.inductance=1e-3"), PREDICTOR_LINEARISED, PREDICTION_CURRENT_AT_ONCE_ONLY},
+        {SETTINGS("motor.current_limit=1"), PREDICTOR_ENERGY, PREDICTION_CURRENT_AT_ONCE_ONLY},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fixture_parameters(cases[i].settings);
+        prediction_question question = {.parameters = &p, .bodies = closing};
+        prediction_answer answer = predict_with(cases[i].which, &question);
+        assert_int_equal(answer.outcome, cases[i].outcome);
+        assert_true(strlen(prediction_reason(&answer)) > 10);
+        assert_true(isnan(answer.prediction.force));
+    }
+
+    // energy knows no time over which a command could act
+    const double at[] = {0}, volts[] = {1};
+    parameters p = fixture_parameters(NULL);
+    prediction_question question = {&p, closing, links, rates, {1, at, volts}, false};
+    assert_int_equal(predict_with(PREDICTOR_ENERGY, &question).outcome, PREDICTION_KNOWS_NO_TIME);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_predictor_answers_for_the_corrected_arm),
         cmocka_unit_test(an_arm_that_moves_away_does_not_hold),
         cmocka_unit_test(the_linearised_arm_says_what_it_lacks),
+        cmocka_unit_test(commands_after_the_touch_count_while_it_lasts),
+        cmocka_unit_test(who_cannot_answer_says_why),
         cmocka_unit_test(a_state_that_is_not_finite_fails_with_a_sentence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

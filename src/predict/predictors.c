@@ -38,7 +38,7 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
 }
 
 // Mean command from the touch until `time` [V]: with it, kT/Ra times the time is the integral of
-// (4.20) over the prescribed v(t).
+// (4.20) over the prescribed v(t); at no time the command in force at the touch.
 static double mean_voltage(const prediction_question *question, double time)
 {
     const voltage_profile *command = &question->command;
@@ -50,7 +50,7 @@ static double mean_voltage(const prediction_question *question, double time)
         double to = i < command->count ? fmin(command->times[i], time) : time;
         sum += volts * fmax(to - from, 0);
         from = fmax(from, to);
-        if (i < command->count) {
+        if (i < command->count && command->times[i] <= time) {
             volts = motor_limited_voltage(motor, command->volts[i]);
         }
     }
