@@ -47,6 +47,18 @@ static void long_sentences_are_cut(void **state)
     assert_int_equal(strlen(f.text), sizeof f.text - 1);
 }
 
+static void every_status_has_a_text_of_its_own(void **state)
+{
+    (void)state;
+    for (int i = STATUS_OK; i <= STATUS_NOT_ALLOWED; i++) {
+        assert_true(strlen(status_text((status)i)) > 0);
+        for (int k = STATUS_OK; k < i; k++) {
+            assert_string_not_equal(status_text((status)i), status_text((status)k));
+        }
+    }
+    assert_non_null(status_text((status)1000));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -54,6 +66,7 @@ int main(void)
         cmocka_unit_test(a_fault_names_its_place),
         cmocka_unit_test(nobody_has_to_listen),
         cmocka_unit_test(long_sentences_are_cut),
+        cmocka_unit_test(every_status_has_a_text_of_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
