@@ -51,7 +51,8 @@ static void texts_are_quoted_where_they_could_be_misread(void **state)
     csv_text(&m.csv, "next");
     csv_text(&m.csv, "\"\x1b[1m\xff\"");
     csv_end_row(&m.csv);
-    check_written(&m, "plain text,\"one, two\",\"say \"\"ah\"\"\",\"two\nlines\",\nnext,\"\"\"?[1m?\"\"\"\n");
+    check_written(
+        &m, "plain text,\"one, two\",\"say \"\"ah\"\"\",\"two\nlines\",\nnext,\"\"\"?[1m?\"\"\"\n");
 }
 
 static void missing_numbers_are_empty(void **state)
