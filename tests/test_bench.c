@@ -154,16 +154,21 @@ static void a_step_can_be_measured_for_any_number_of_links(void **state)
     }
 }
 
-int main(void)
+// Without an argument all but what really measures, with one just that.
+int main(int count, char **arguments)
 {
+    (void)arguments;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(median_and_extremes_leave_out_the_first),
         cmocka_unit_test(a_measurement_that_fails_is_passed_on),
         cmocka_unit_test(slower_is_said_of_times_and_rates),
         cmocka_unit_test(what_is_written_is_read_back),
         cmocka_unit_test(a_file_that_is_no_baseline_is_refused),
+    };
+    const struct CMUnitTest measuring[] = {
         cmocka_unit_test(every_benchmark_of_the_library_gives_a_number),
         cmocka_unit_test(a_step_can_be_measured_for_any_number_of_links),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+    return (count > 1 ? cmocka_run_group_tests(measuring, NULL, NULL)
+                      : cmocka_run_group_tests(tests, NULL, NULL)) != 0;
 }
