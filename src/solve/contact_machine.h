@@ -7,7 +7,8 @@
 // start of the step with a shorter one, bracketed until the bracket is as narrow as time resolves,
 // and the far side is taken (locate.h). Impacts are jumps of the velocities; what holds afterwards
 // follows from the one combination of contact and hub friction that violates nothing. The state
-// diagram stands over contact_machine.c.
+// diagram stands over contact_machine.c, which has the transitions; event_step.c has the way
+// between them.
 #pragma once
 
 #include "src/solve/motion.h"

@@ -1,0 +1,199 @@
+// Between events: a step of the contact machine, which ends at the first of them.
+#include <assert.h>
+#include <math.h>
+
+#include "src/base/instant.h"
+#include "src/solve/contact_machine.h"
+#include "src/solve/dense_location.h"
+#include "src/solve/locate.h"
+
+#define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
+#define MOST_HALVINGS   8     // of a step that does not converge or makes energy
+#define LEAST_AFTER_CUT 1e-9  // share of a step; what is left of one before a cut is longer
+// Angles, velocities and accelerations below this are zero [rad, rad/s, rad/s2]. The square of what
+// is left is a normal number: a motion that dies away never computes with denormal ones, which some
+// processors do many times more slowly.
+#define FADED 1e-150
+
+static void accept(motion *m, double step)
+{
+    double *previous = m->state;
+    m->state = m->trial;
+    m->trial = previous;
+    double passed = m->state[SLOT_TIME] - previous[SLOT_TIME];
+    m->steps += (long)fmax(1, ceil(passed / step - 1e-6));
+    m->largest_penetration = fmax(m->largest_penetration, -state_rest_gap(m->state));
+    if (!motion_wall_is_rigid(m)) {
+        m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
+    }
+}
+
+// A motion that dies away comes to rest: what has faded becomes exactly zero. A velocity that has
+// gives it away.
+static void come_to_rest(motion *m)
+{
+    const double *w = state_velocities(m, m->state);
+    const double *acceleration = state_accelerations(m, m->state);
+    bool fading = false;
+    for (int i = 0; i < m->dof && !fading; i++) {
+        fading = fabs(w[i]) < FADED && (w[i] != 0 || acceleration[i] != 0);
+    }
+    for (int i = SLOT_COUNT; fading && i < m->size; i++) {
+        m->state[i] = fabs(m->state[i]) < FADED ? 0 : m->state[i];
+    }
+}
+
+static motion_event event_of(const motion *m, watch w)
+{
+    // the wall: contact begins with an impact only at a speed, and only if it does not give
+    switch (w) {
+    case WATCH_GAP:
+        if (m->wall_gives) {
+            return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
+        }
+        return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
+    case WATCH_FORCE:
+        return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
+
+    // the hub
+    case WATCH_HUB:
+        return MOTION_STICK;
+    case WATCH_STICTION:
+        return MOTION_SLIP;
+    }
+    return MOTION_REACHED;
+}
+
+// Tries a step of *h, shorter if need be; *h and m->trial end at the first event, if there is
+// one.
+static status step_to_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    status s = motion_try_step(a, m, *h);
+    for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
+        *h /= 2;
+        s = motion_try_step(a, m, *h);
+    }
+    return s == STATUS_OK ? locate_first_event(a, m, h, first, any) : s;
+}
+
+// Ends a step of the `wanted` length that was just tried at m->cut if it goes beyond, or ends
+// within rounding of it.
+static status cut_step(const arm *a, motion *m, double step, status tried, double wanted, double *h,
+                       watch *first, bool *any)
+{
+    double left = m->cut - m->state[SLOT_TIME];
+    double reached = tried == STATUS_OK ? *h : wanted;
+    double spare = tried == STATUS_OK && *any ? 0 : LEAST_AFTER_CUT * step;
+    if (reached <= left - spare) {
+        return tried;
+    }
+    *h = left;
+    *any = false;
+    status s = tried == STATUS_OK ? motion_try_step(a, m, left) : tried;
+    return s == STATUS_OK ? s : step_to_event(a, m, h, first, any);
+}
+
+// A stride of a dense engine, which looks for events within it: to the first of them, to the cut or
+// to its end, h [s].
+static status dense_stride(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    dense_first_event(a, m, h, first, any);
+    double left = m->cut - m->state[SLOT_TIME];
+    if (*h > left) {
+        *h = left;
+        *any = false;
+    }
+    if (m->state[SLOT_CONTACT] != 0) {
+        dense_peak(a, m, *h);
+    }
+    return motion_try_step(a, m, *h);
+}
+
+// A step of a stepping engine, which steps again for all that may be within.
+static status tried_step(const arm *a, motion *m, double step, double wanted, double *h,
+                         watch *first, bool *any)
+{
+    status s = step_to_event(a, m, h, first, any);
+    s = cut_step(a, m, step, s, wanted, h, first, any);
+    if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
+        s = locate_peak(a, m, *h);
+    }
+    return s;
+}
+
+// Whether a rigid wall holds the arm where it cannot: folded over the hub's axis.
+static bool held_folded(const arm *a, motion *m)
+{
+    return m->state[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
+           chain_is_folded(a, state_angles(m, m->state));
+}
+
+status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL && step > 0);
+    *report = (motion_report){.event = MOTION_REACHED};
+    if (held_folded(a, m)) {
+        m->failure_time = m->state[SLOT_TIME];
+        return STATUS_FOLDED;
+    }
+
+    // as far as accuracy allows, the cut, or the first event
+    double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step), h = wanted;
+    watch first = WATCH_GAP;
+    bool any = false;
+    status s = STATUS_NO_PROGRESS;
+    if (engine_is_dense(m->engine) && !motion_held_still(m)) {
+        s = wanted > 0 ? dense_stride(a, m, &h, &first, &any) : s;
+    } else {
+        s = tried_step(a, m, step, wanted, &h, &first, &any);
+    }
+    if (s != STATUS_OK) {
+        m->failure_time = m->state[SLOT_TIME] + h;
+        return s;
+    }
+
+    accept(m, step);
+    if (any && first == WATCH_GAP && motion_wall_is_rigid(m) &&
+        chain_is_folded(a, state_angles(m, m->state))) {
+        m->failure_time = m->state[SLOT_TIME];
+        return STATUS_FOLDED;
+    }
+    if (any && first == WATCH_GAP && m->state[SLOT_PARTED] != 0) {
+        m->state[SLOT_PARTED] = m->state[SLOT_WALL_POWER] = 0; // free flight goes on as it was
+    } else if (any) {
+        report->event = event_of(m, first);
+    } else {
+        come_to_rest(m);
+    }
+    // an instant that was meant is met to the last bit
+    double stop = fmin(until, m->cut);
+    if (!instant_after(stop, m->state[SLOT_TIME])) {
+        m->state[SLOT_TIME] = stop;
+    }
+    return STATUS_OK;
+}
+
+status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL && !isnan(until));
+    status s = STATUS_OK;
+    *report = (motion_report){.event = MOTION_REACHED};
+    while (s == STATUS_OK && report->event == MOTION_REACHED && m->state[SLOT_TIME] < until) {
+        s = motion_step(a, m, until, step, report);
+    }
+    return s;
+}
+
+double *motion_between(const arm *a, motion *m, double time)
+{
+    assert(a != NULL && m != NULL && isfinite(time));
+    // step again from the step's start, which is where m->trial was left, into m->between
+    double *now = m->state, *start = m->trial;
+    m->state = start;
+    m->trial = m->between;
+    status s = motion_try_step(a, m, time - start[SLOT_TIME]);
+    m->state = now;
+    m->trial = start;
+    m->between[SLOT_TIME] = time;
+    return s == STATUS_OK ? m->between : NULL;
+}
