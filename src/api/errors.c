@@ -122,16 +122,18 @@ int api_signal(const char *name, impactlab_error *error)
     return -1;
 }
 
-int api_close_text(FILE *stream, char **text, impactlab_error *error)
+int api_open_text(text_stream *stream, char **text, impactlab_error *error)
 {
-    bool failed = ferror(stream) != 0;
-    failed = fclose(stream) != 0 || failed;
-    if (failed) {
-        free(*text);
-        *text = NULL;
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
-    }
-    return api_done(error);
+    *text = NULL;
+    return text_stream_open(stream) ? IMPACTLAB_OK
+                                    : api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+}
+
+int api_close_text(text_stream *stream, char **text, impactlab_error *error)
+{
+    *text = text_stream_close(stream, NULL);
+    return *text != NULL ? api_done(error)
+                         : api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
 }
 
 void impactlab_text_free(char *text)

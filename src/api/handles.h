@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/api/impactlab/impactlab.h"
+#include "src/base/text_stream.h"
 #include "src/run/loop.h"
 #include "src/run/run.h"
 
@@ -52,5 +53,7 @@ int api_parameter(const char *path, impactlab_error *error);
 // Index of a signal, likewise.
 int api_signal(const char *name, impactlab_error *error);
 
-// What a stream in memory wrote, from open_memstream: closes it. IMPACTLAB_NO_MEMORY if it failed.
-int api_close_text(FILE *stream, char **text, impactlab_error *error);
+// A stream for a text that is handed to the caller; then *text, if all of it is there.
+// IMPACTLAB_NO_MEMORY if not.
+int api_open_text(text_stream *stream, char **text, impactlab_error *error);
+int api_close_text(text_stream *stream, char **text, impactlab_error *error);

@@ -175,34 +175,40 @@ int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *e
     API_NEEDS(error, run);
     API_NEEDS(error, json);
 
-    // there is no text until it is whole
-    size_t size;
-    *json = NULL;
-    json_t *object = export_run(&run->scenario, &run->result);
-    FILE *stream = !json_lost_something() && object != NULL ? open_memstream(json, &size) : NULL;
-    if (stream == NULL) {
-        json_decref(object);
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    text_stream stream;
+    if (api_open_text(&stream, json, error) != IMPACTLAB_OK) {
+        return IMPACTLAB_NO_MEMORY;
     }
 
-    // the text is the caller's, the object is not
-    json_write(stream, object);
+    // what was lost on this thread before is nothing of this run's
+    json_lost_something();
+    json_t *object = export_run(&run->scenario, &run->result);
+    if (object != NULL) {
+        json_write(stream.stream, object);
+    }
+    const bool lost = json_lost_something() || object == NULL;
     json_decref(object);
-    return api_close_text(stream, json, error);
+
+    // the text is the caller's if it is whole
+    int code = api_close_text(&stream, json, error);
+    if (code == IMPACTLAB_OK && lost) {
+        impactlab_text_free(*json);
+        *json = NULL;
+        code = api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    }
+    return code;
 }
 
 int impactlab_run_csv(const impactlab_run *run, char **csv, impactlab_error *error)
 {
     API_NEEDS(error, run);
     API_NEEDS(error, csv);
-    size_t size;
-    *csv = NULL;
-    FILE *stream = open_memstream(csv, &size);
-    if (stream == NULL) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    text_stream stream;
+    if (api_open_text(&stream, csv, error) != IMPACTLAB_OK) {
+        return IMPACTLAB_NO_MEMORY;
     }
-    export_csv(stream, &run->result.trace, run->scenario.parameters.arm.links);
-    return api_close_text(stream, csv, error);
+    export_csv(stream.stream, &run->result.trace, run->scenario.parameters.arm.links);
+    return api_close_text(&stream, csv, error);
 }
 
 // --- what was predicted -----------------------------------------------------------------------

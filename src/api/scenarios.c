@@ -186,14 +186,12 @@ int impactlab_scenario_yaml(const impactlab_scenario *handle, char **yaml, impac
 {
     API_NEEDS_CALLED(error, handle, "scenario");
     API_NEEDS(error, yaml);
-    size_t size;
-    *yaml = NULL;
-    FILE *stream = open_memstream(yaml, &size);
-    if (stream == NULL) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    text_stream stream;
+    if (api_open_text(&stream, yaml, error) != IMPACTLAB_OK) {
+        return IMPACTLAB_NO_MEMORY;
     }
-    scenario_write(stream, &handle->scenario);
-    return api_close_text(stream, yaml, error);
+    scenario_write(stream.stream, &handle->scenario);
+    return api_close_text(&stream, yaml, error);
 }
 
 // --- changing ---------------------------------------------------------------------------------

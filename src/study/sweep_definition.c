@@ -8,6 +8,7 @@
 
 #include "src/base/csv.h"
 #include "src/base/numbers.h"
+#include "src/base/text_stream.h"
 #include "src/base/version.h"
 
 // Adds a line; printf-like.
@@ -71,10 +72,8 @@ static void define_parameters(definition *d, const sweep *s)
 // The script in one line.
 static void define_script(definition *d, const scenario *s)
 {
-    char *text = NULL;
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    if (stream == NULL) {
+    text_stream line;
+    if (!text_stream_open(&line)) {
         d->out_of_memory = true;
         return;
     }
@@ -87,12 +86,13 @@ static void define_script(definition *d, const scenario *s)
         number_format(time, a->time);
         number_format(value, a->value);
         bool text_valued = !push && parameter_is_text(&parameter_table[a->parameter]);
-        fprintf(stream, "%sat %s %s = %s", i > 0 ? "; " : "", time,
+        fprintf(line.stream, "%sat %s %s = %s", i > 0 ? "; " : "", time,
                 push ? "push" : parameter_table[a->parameter].path, text_valued ? a->text : value);
     }
 
     // closing it shows whether there was memory
-    if (fclose(stream) == 0) {
+    char *text = text_stream_close(&line, NULL);
+    if (text != NULL) {
         define(d, "script", "%s", text);
     } else {
         d->out_of_memory = true;

@@ -535,6 +535,34 @@ static void what_there_is_not(void **state)
     check_refused(h, impactlab_scenario_add_push(h->scenario, 0.1, 1e-3, &h->error), "pushes");
 }
 
+// What stopped a loop stays, whatever is asked of it next; a law that cannot be had makes none.
+static void loops_stay_stopped(void **state)
+{
+    handles *h = *state;
+    impactlab_error first;
+    impactlab_loop *loop;
+    impactlab_run *run;
+    check_done(impactlab_scenario_set(h->scenario, "control.command", "true", &h->error),
+               &h->error);
+    check_done(impactlab_scenario_set(h->scenario, "control.law", "process", &h->error), &h->error);
+    check_done(impactlab_loop_create(&loop, h->scenario, 0, &h->error), &h->error);
+    assert_int_equal(impactlab_loop_step(loop, &first), IMPACTLAB_NOT_ALLOWED);
+    check_refused(h, impactlab_loop_step_until(loop, 1, &h->error), first.sentence);
+    check_refused(h, impactlab_loop_set_input(loop, "motor.voltage", 1, &h->error), first.sentence);
+    check_refused(h, impactlab_loop_push(loop, 1, &h->error), first.sentence);
+    check_done(impactlab_loop_run(loop, &run, &h->error), &h->error);
+    assert_string_equal(impactlab_run_status(run), "failed");
+    impactlab_run_destroy(run);
+    impactlab_loop_destroy(loop);
+
+    check_done(impactlab_scenario_set(h->scenario, "control.plugin", "./none.so", &h->error),
+               &h->error);
+    check_done(impactlab_scenario_set(h->scenario, "control.law", "plugin", &h->error), &h->error);
+    impactlab_scenario_allow_code(h->scenario, 1);
+    check_refused(h, impactlab_loop_create(&loop, h->scenario, 0, &h->error), "none.so");
+    assert_null(loop);
+}
+
 #define TEST(test) cmocka_unit_test_setup_teardown(test, make_handles, free_handles)
 
 int main(void)
@@ -555,6 +583,7 @@ int main(void)
         TEST(names_copies_and_defaults),
         TEST(runs_have_what_was_asked_for),
         TEST(what_there_is_not),
+        TEST(loops_stay_stopped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

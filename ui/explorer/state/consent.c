@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "src/base/sha256.h"
+#include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
 #include "ui/explorer/state/settings_folder.h"
@@ -47,19 +48,20 @@ static bool add_file(sha256 *h, const char *path)
 // The scenario as text.
 static bool add_scenario(sha256 *h, const scenario *s)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    if (stream == NULL) {
+    text_stream written;
+    if (!text_stream_open(&written)) {
         return false;
     }
-    scenario_write(stream, s);
-    const bool written = fclose(stream) == 0;
-    if (written) {
+    scenario_write(written.stream, s);
+
+    // one that is not whole is another one
+    size_t size;
+    char *text = text_stream_close(&written, &size);
+    if (text != NULL) {
         sha256_add(h, text, size);
     }
     free(text);
-    return written;
+    return text != NULL;
 }
 
 // The command, the folder it starts in, and the content of every file that one of its words names.
