@@ -343,6 +343,8 @@ static void faults_of_recipes_have_their_places(void **state)
          ":2:28: 'hub_angle' has another unit than 'force'"},
         {"runs: [{scenario: a}, {scenario: a}]\n", ":1:23: the name 'a' is there twice"},
         {"runs: [{scenario: a}]\nx: {range: [1]}\n", ":2:12: range is a list, expected two"},
+        {"runs: [{scenario: a}]\npanels: [{signals: [force], notes: [{at: [0, 1]}]}]\n",
+         ":2:37: a note needs 'text'"},
         {"runs: 3\n", ":1:7: runs is a single value, expected a list"},
         {"runs: [\n", ":2:1: "},
         {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\nmultiples: {vary: motor.volts}\n",

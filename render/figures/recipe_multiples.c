@@ -147,9 +147,9 @@ static bool repeat_panels(recipe_context *c, const multiples *m, int at[][RECIPE
 
 void recipe_take_multiples(recipe_context *c, const tree_node *node)
 {
-    static const recipe_key keys[] = {{"vary", take_vary, "vary: motor.voltage"},
-                                      {"values", take_values, NULL},
-                                      {NULL, NULL, NULL}};
+    static const recipe_key keys[] = {OWN_KEY("vary", take_vary, "vary: motor.voltage"),
+                                      OWN_KEY("values", take_values, NULL),
+                                      {0}};
     recipe *r = c->recipe;
     multiples m = {0};
     int at[MULTIPLES_MOST][RECIPE_SOURCES];

@@ -2,6 +2,7 @@
 #include "render/figures/recipe_parts.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "src/base/words.h"
@@ -45,19 +46,18 @@ TAKE(take_signals, panel)
     }
 }
 
-TAKE(take_sources, panel)
+TAKE(take_source, panel)
 {
     recipe_panel *p = into;
-    if (node->kind != TREE_LIST) {
-        report_node(&c->reader, node, "from is %s, expected a list of names", node_kind_name(node));
-        return;
+    int index = recipe_find_source(c, node);
+    if (index >= 0 && p->source_count < RECIPE_SOURCES) {
+        p->sources[p->source_count++] = index;
     }
-    for (const tree_node *item = node->first; item != NULL; item = item->next) {
-        int index = recipe_find_source(c, item);
-        if (index >= 0 && p->source_count < RECIPE_SOURCES) {
-            p->sources[p->source_count++] = index;
-        }
-    }
+}
+
+TAKE(take_sources, panel)
+{
+    recipe_list(c, node, "from", take_source, into);
 }
 
 TAKE(take_difference, panel)
@@ -73,16 +73,6 @@ TAKE(take_difference, panel)
     p->less = recipe_find_source(c, first->next);
 }
 
-TAKE(take_heading, panel)
-{
-    PANEL->heading = recipe_text(c, node, "heading");
-}
-
-TAKE(take_panel_label, panel)
-{
-    PANEL->label = recipe_text(c, node, "label");
-}
-
 TAKE(take_weight, panel)
 {
     recipe_number(c, node, "weight", &PANEL->weight);
@@ -92,77 +82,41 @@ TAKE(take_weight, panel)
     }
 }
 
-TAKE(take_zero, panel)
+TAKE(take_note, panel)
 {
-    PANEL->zero = recipe_truth(c, node, "zero");
-}
+    static const recipe_key keys[] = {{.key = "text",
+                                       .kind = VALUE_TEXT,
+                                       .offset = offsetof(recipe_note, text),
+                                       .example = "text: here"},
+                                      PAIR_KEY("at", recipe_note, x, y),
+                                      {0}};
+    recipe_panel *p = into;
+    int index =
+        recipe_add(c, node, &p->note_count, (recipe_room){"a panel", "notes", RECIPE_NOTES});
+    if (index < 0) {
+        return;
+    }
 
-TAKE(take_panel_log, panel)
-{
-    PANEL->logarithmic = recipe_truth(c, node, "log");
-}
-
-TAKE(take_range, panel)
-{
-    recipe_pair(c, node, "range", &PANEL->low, &PANEL->high);
-}
-
-TAKE(take_note_text, note)
-{
-    ((recipe_note *)into)->text = recipe_text(c, node, "text");
-}
-
-TAKE(take_note_at, note)
-{
-    recipe_note *n = into;
-    recipe_pair(c, node, "at", &n->x, &n->y);
+    recipe_note *note = &p->notes[index];
+    *note = (recipe_note){0};
+    recipe_map(c, node, "a note", keys, note);
+    if (note->text == NULL) {
+        p->note_count--;
+        if (node->kind == TREE_MAP && recipe_child(node, "text") == NULL) {
+            report_node(&c->reader, node, "a note needs 'text'");
+        }
+    }
 }
 
 TAKE(take_notes, panel)
 {
-    static const recipe_key keys[] = {
-        {"text", take_note_text, "text: here"}, {"at", take_note_at, NULL}, {NULL, NULL, NULL}};
-    recipe_panel *p = into;
-    if (node->kind != TREE_LIST) {
-        report_node(&c->reader, node, "notes is %s, expected a list", node_kind_name(node));
-        return;
-    }
-
-    for (const tree_node *item = node->first; item != NULL; item = item->next) {
-        if (p->note_count == RECIPE_NOTES) {
-            report_node(&c->reader, item, "a panel has at most %d notes", RECIPE_NOTES);
-            return;
-        }
-
-        recipe_note *note = &p->notes[p->note_count];
-        *note = (recipe_note){0};
-        recipe_map(c, item, "a note", keys, note);
-        p->note_count += note->text != NULL;
-    }
+    recipe_list(c, node, "notes", take_note, into);
 }
 
-static void take_panel(recipe_context *c, const tree_node *node)
+// Fills in what a panel does not say, and looks whether its parts go together.
+static void complete_panel(recipe_context *c, const tree_node *node, recipe_panel *p)
 {
-    static const recipe_key keys[] = {{"signals", take_signals, "signals: [force]"},
-                                      {"from", take_sources, NULL},
-                                      {"difference", take_difference, NULL},
-                                      {"heading", take_heading, NULL},
-                                      {"label", take_panel_label, NULL},
-                                      {"weight", take_weight, NULL},
-                                      {"zero", take_zero, NULL},
-                                      {"log", take_panel_log, NULL},
-                                      {"range", take_range, NULL},
-                                      {"notes", take_notes, NULL},
-                                      {NULL, NULL, NULL}};
-    recipe *r = c->recipe;
-    if (r->panel_count == FIGURE_PANELS) {
-        report_node(&c->reader, node, "a figure has more than %d panels", FIGURE_PANELS);
-        return;
-    }
-
-    recipe_panel *p = &r->panels[r->panel_count++];
-    *p = (recipe_panel){.of = -1, .less = -1, .at = {node->line, node->column}};
-    recipe_map(c, node, "a panel", keys, p);
+    const recipe *r = c->recipe;
 
     // nothing named: all there is
     for (int i = 0; p->source_count == 0 && p->of < 0 && i < r->source_count; i++) {
@@ -183,52 +137,51 @@ static void take_panel(recipe_context *c, const tree_node *node)
     }
 }
 
+TAKE(take_panel, recipe)
+{
+    static const recipe_key keys[] = {OWN_KEY("signals", take_signals, "signals: [force]"),
+                                      OWN_KEY("from", take_sources, NULL),
+                                      OWN_KEY("difference", take_difference, NULL),
+                                      FIELD_KEY("heading", VALUE_TEXT, recipe_panel, heading),
+                                      FIELD_KEY("label", VALUE_TEXT, recipe_panel, label),
+                                      OWN_KEY("weight", take_weight, NULL),
+                                      FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, zero),
+                                      FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
+                                      PAIR_KEY("range", recipe_panel, low, high),
+                                      OWN_KEY("notes", take_notes, NULL),
+                                      {0}};
+    recipe *r = into;
+    int index =
+        recipe_add(c, node, &r->panel_count, (recipe_room){"a figure", "panels", FIGURE_PANELS});
+    if (index < 0) {
+        return;
+    }
+
+    recipe_panel *p = &r->panels[index];
+    *p = (recipe_panel){.of = -1, .less = -1, .at = {node->line, node->column}};
+    recipe_map(c, node, "a panel", keys, p);
+
+    complete_panel(c, node, p);
+}
+
 // ---- the top
-
-TAKE(take_title, recipe)
-{
-    ((recipe *)into)->title = recipe_text(c, node, "title");
-}
-
-TAKE(take_caption, recipe)
-{
-    ((recipe *)into)->caption = recipe_text(c, node, "caption");
-}
 
 TAKE(take_panels, recipe)
 {
-    (void)into;
-    recipe_list(c, node, "panels", take_panel);
-}
-
-TAKE(take_x_label, recipe)
-{
-    ((recipe *)into)->x_label = recipe_text(c, node, "label");
-}
-
-TAKE(take_x_unit, recipe)
-{
-    ((recipe *)into)->x_unit = recipe_text(c, node, "unit");
-}
-
-TAKE(take_x_range, recipe)
-{
-    recipe *r = into;
-    recipe_pair(c, node, "range", &r->from, &r->to);
-}
-
-TAKE(take_x_log, recipe)
-{
-    ((recipe *)into)->logarithmic = recipe_truth(c, node, "log");
+    recipe_list(c, node, "panels", take_panel, into);
 }
 
 TAKE(take_x, recipe)
 {
-    static const recipe_key keys[] = {{"range", take_x_range, "range: [0, 1]"},
-                                      {"label", take_x_label, NULL},
-                                      {"unit", take_x_unit, NULL},
-                                      {"log", take_x_log, NULL},
-                                      {NULL, NULL, NULL}};
+    static const recipe_key keys[] = {{.key = "range",
+                                       .kind = VALUE_PAIR,
+                                       .offset = offsetof(recipe, from),
+                                       .second = offsetof(recipe, to),
+                                       .example = "range: [0, 1]"},
+                                      FIELD_KEY("label", VALUE_TEXT, recipe, x_label),
+                                      FIELD_KEY("unit", VALUE_TEXT, recipe, x_unit),
+                                      FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic),
+                                      {0}};
     recipe_map(c, node, "x", keys, into);
 }
 
@@ -244,68 +197,42 @@ TAKE(take_columns, recipe)
     ((recipe *)into)->columns = (int)columns;
 }
 
-TAKE(take_shared, recipe)
+TAKE(take_mark, recipe)
 {
-    ((recipe *)into)->shared = recipe_truth(c, node, "shared");
-}
-
-TAKE(take_contact, recipe)
-{
-    ((recipe *)into)->contact = recipe_truth(c, node, "contact");
-}
-
-TAKE(take_mark_at, mark)
-{
-    recipe_number(c, node, "at", &((recipe_mark *)into)->x);
-}
-
-TAKE(take_mark_label, mark)
-{
-    ((recipe_mark *)into)->label = recipe_text(c, node, "label");
-}
-
-static void take_mark(recipe_context *c, const tree_node *node)
-{
-    static const recipe_key keys[] = {
-        {"at", take_mark_at, "at: 0.36"}, {"label", take_mark_label, NULL}, {NULL, NULL, NULL}};
-    recipe *r = c->recipe;
-    if (r->mark_count == RECIPE_MARKS) {
-        report_node(&c->reader, node, "a figure has more than %d marks", RECIPE_MARKS);
-        return;
+    static const recipe_key keys[] = {{.key = "at",
+                                       .kind = VALUE_NUMBER,
+                                       .offset = offsetof(recipe_mark, x),
+                                       .example = "at: 0.36"},
+                                      FIELD_KEY("label", VALUE_TEXT, recipe_mark, label),
+                                      {0}};
+    recipe *r = into;
+    int index =
+        recipe_add(c, node, &r->mark_count, (recipe_room){"a figure", "marks", RECIPE_MARKS});
+    if (index >= 0) {
+        recipe_map(c, node, "a mark", keys, &r->marks[index]);
     }
-    recipe_map(c, node, "a mark", keys, &r->marks[r->mark_count++]);
 }
 
 TAKE(take_marks, recipe)
 {
-    (void)into;
-    recipe_list(c, node, "marks", take_mark);
-}
-
-// What was taken already.
-TAKE(take_nothing, recipe)
-{
-    (void)c;
-    (void)node;
-    (void)into;
+    recipe_list(c, node, "marks", take_mark, into);
 }
 
 static void take_recipe(recipe_context *c, const tree_node *root)
 {
-    static const recipe_key keys[] = {{"panels", take_panels, "panels:"},
-                                      {"title", take_title, NULL},
-                                      {"caption", take_caption, NULL},
-                                      {"x", take_x, NULL},
-                                      {"columns", take_columns, NULL},
-                                      {"shared", take_shared, NULL},
-                                      {"contact", take_contact, NULL},
-                                      {"marks", take_marks, NULL},
-                                      {"multiples", NULL, NULL},
-                                      {"runs", NULL, NULL},
-                                      {"data", NULL, NULL},
-                                      {"tables", NULL, NULL},
-                                      {NULL, NULL, NULL}};
-    recipe_key rest[G_N_ELEMENTS(keys)];
+    static const recipe_key keys[] = {OWN_KEY("panels", take_panels, "panels:"),
+                                      FIELD_KEY("title", VALUE_TEXT, recipe, title),
+                                      FIELD_KEY("caption", VALUE_TEXT, recipe, caption),
+                                      OWN_KEY("x", take_x, NULL),
+                                      OWN_KEY("columns", take_columns, NULL),
+                                      FIELD_KEY("shared", VALUE_TRUTH, recipe, shared),
+                                      FIELD_KEY("contact", VALUE_TRUTH, recipe, contact),
+                                      OWN_KEY("marks", take_marks, NULL),
+                                      {.key = "multiples", .kind = VALUE_TAKEN},
+                                      {.key = "runs", .kind = VALUE_TAKEN},
+                                      {.key = "data", .kind = VALUE_TAKEN},
+                                      {.key = "tables", .kind = VALUE_TAKEN},
+                                      {0}};
 
     if (!reader_expect_map(&c->reader, root, "a recipe", "panels:")) {
         return;
@@ -315,11 +242,7 @@ static void take_recipe(recipe_context *c, const tree_node *root)
     recipe_take_sources(c, root);
 
     // the rest, in any order
-    memcpy(rest, keys, sizeof keys);
-    for (size_t i = 0; rest[i].key != NULL; i++) {
-        rest[i].take = rest[i].take != NULL ? rest[i].take : take_nothing;
-    }
-    recipe_map(c, root, "a recipe", rest, c->recipe);
+    recipe_map(c, root, "a recipe", keys, c->recipe);
 
     if (c->recipe->panel_count == 0 && c->reader.faults == 0) {
         report_node(&c->reader, root, "there are no panels here");

@@ -1,27 +1,14 @@
 // Where a recipe's curves come from: runs, measured data, tables.
 #include "render/figures/recipe_parts.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "src/base/words.h"
 
-#define SOURCE ((recipe_source *)into)
+#define SOURCE                   ((recipe_source *)into)
 
-// takes a text of a source: KEY's value goes to FIELD
-#define TAKE_TEXT(function, field, key)                                                            \
-    TAKE(function, source)                                                                         \
-    {                                                                                              \
-        SOURCE->field = recipe_text(c, node, key);                                                 \
-    }
-
-TAKE_TEXT(take_name, name, "name")
-TAKE_TEXT(take_label, label, "label")
-TAKE_TEXT(take_scenario, scenario, "scenario")
-TAKE_TEXT(take_file, file, "file")
-TAKE_TEXT(take_column, column, "column")
-TAKE_TEXT(take_x_column, x, "x")
-TAKE_TEXT(take_y_column, y, "y")
-TAKE_TEXT(take_z_column, z, "z")
+#define SOURCE_TEXT(name, field) FIELD_KEY(name, VALUE_TEXT, recipe_source, field)
 
 TAKE(take_shift, source)
 {
@@ -66,12 +53,12 @@ TAKE(take_set, source)
 static recipe_source *new_source(recipe_context *c, const tree_node *node, source_kind kind)
 {
     recipe *r = c->recipe;
-    if (r->source_count == RECIPE_SOURCES) {
-        report_node(&c->reader, node, "a recipe has more than %d runs, data and tables",
-                    RECIPE_SOURCES);
+    const recipe_room room = {"a recipe", "runs, data and tables", RECIPE_SOURCES};
+    int index = recipe_add(c, node, &r->source_count, room);
+    if (index < 0) {
         return NULL;
     }
-    recipe_source *s = &r->sources[r->source_count++];
+    recipe_source *s = &r->sources[index];
     *s = (recipe_source){.kind = kind, .at = {node->line, node->column}};
     return s;
 }
@@ -100,51 +87,62 @@ static void check_source(recipe_context *c, const tree_node *node, recipe_source
     }
 }
 
-static void take_run(recipe_context *c, const tree_node *node)
+// A source of a kind, with its keys; checked as a whole, as what is missing shows only at its end.
+static void take_source(recipe_context *c, const tree_node *node, source_kind kind,
+                        const recipe_key *keys)
 {
-    static const recipe_key keys[] = {{"scenario", take_scenario, "scenario: thesis/fig-3-4"},
-                                      {"name", take_name, NULL},
-                                      {"label", take_label, NULL},
-                                      {"set", take_set, NULL},
-                                      {NULL, NULL, NULL}};
-    recipe_source *s = new_source(c, node, SOURCE_RUN);
+    static const char *const names[] = {
+        [SOURCE_RUN] = "a run", [SOURCE_DATA] = "data", [SOURCE_TABLE] = "a table"};
+    recipe_source *s = new_source(c, node, kind);
     if (s != NULL) {
-        recipe_map(c, node, "a run", keys, s);
+        recipe_map(c, node, names[kind], keys, s);
         check_source(c, node, s);
     }
 }
 
-static void take_data(recipe_context *c, const tree_node *node)
+TAKE(take_run, recipe)
 {
-    static const recipe_key keys[] = {{"file", take_file, "file: bench.csv"},
-                                      {"name", take_name, NULL},
-                                      {"label", take_label, NULL},
-                                      {"column", take_column, NULL},
-                                      {"shift", take_shift, NULL},
-                                      {NULL, NULL, NULL}};
-    recipe_source *s = new_source(c, node, SOURCE_DATA);
-    if (s != NULL) {
-        recipe_map(c, node, "data", keys, s);
-        check_source(c, node, s);
-    }
+    (void)into;
+    static const recipe_key keys[] = {{.key = "scenario",
+                                       .kind = VALUE_TEXT,
+                                       .offset = offsetof(recipe_source, scenario),
+                                       .example = "scenario: thesis/fig-3-4"},
+                                      SOURCE_TEXT("name", name),
+                                      SOURCE_TEXT("label", label),
+                                      OWN_KEY("set", take_set, NULL),
+                                      {0}};
+    take_source(c, node, SOURCE_RUN, keys);
 }
 
-static void take_table(recipe_context *c, const tree_node *node)
+TAKE(take_data, recipe)
 {
-    static const recipe_key keys[] = {{"file", take_file, "file: sweep.sqlite"},
-                                      {"name", take_name, NULL},
-                                      {"label", take_label, NULL},
-                                      {"x", take_x_column, NULL},
-                                      {"y", take_y_column, NULL},
-                                      {"z", take_z_column, NULL},
-                                      {NULL, NULL, NULL}};
+    (void)into;
+    static const recipe_key keys[] = {{.key = "file",
+                                       .kind = VALUE_TEXT,
+                                       .offset = offsetof(recipe_source, file),
+                                       .example = "file: bench.csv"},
+                                      SOURCE_TEXT("name", name),
+                                      SOURCE_TEXT("label", label),
+                                      SOURCE_TEXT("column", column),
+                                      OWN_KEY("shift", take_shift, NULL),
+                                      {0}};
+    take_source(c, node, SOURCE_DATA, keys);
+}
 
-    // checked as a whole: what is missing shows only at its end
-    recipe_source *s = new_source(c, node, SOURCE_TABLE);
-    if (s != NULL) {
-        recipe_map(c, node, "a table", keys, s);
-        check_source(c, node, s);
-    }
+TAKE(take_table, recipe)
+{
+    (void)into;
+    static const recipe_key keys[] = {{.key = "file",
+                                       .kind = VALUE_TEXT,
+                                       .offset = offsetof(recipe_source, file),
+                                       .example = "file: sweep.sqlite"},
+                                      SOURCE_TEXT("name", name),
+                                      SOURCE_TEXT("label", label),
+                                      SOURCE_TEXT("x", x),
+                                      SOURCE_TEXT("y", y),
+                                      SOURCE_TEXT("z", z),
+                                      {0}};
+    take_source(c, node, SOURCE_TABLE, keys);
 }
 
 int recipe_find_source(recipe_context *c, const tree_node *node)
@@ -167,14 +165,14 @@ void recipe_take_sources(recipe_context *c, const tree_node *root)
 {
     static const struct {
         const char *key;
-        void (*take)(recipe_context *c, const tree_node *node);
+        recipe_taker *take;
     } lists[] = {{"runs", take_run}, {"data", take_data}, {"tables", take_table}};
 
     // in this order, whatever the recipe's
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         const tree_node *node = recipe_child(root, lists[i].key);
         if (node != NULL) {
-            recipe_list(c, node, lists[i].key, lists[i].take);
+            recipe_list(c, node, lists[i].key, lists[i].take, c->recipe);
         }
     }
 }

@@ -16,7 +16,7 @@ const char *recipe_text(recipe_context *c, const tree_node *node, const char *wh
     return copy;
 }
 
-bool recipe_truth(recipe_context *c, const tree_node *node, const char *what)
+static bool read_truth(recipe_context *c, const tree_node *node, const char *what)
 {
     bool yes = node_is_scalar(node) && strcmp(node->text, "true") == 0;
     if (!yes && !(node_is_scalar(node) && strcmp(node->text, "false") == 0)) {
@@ -30,7 +30,8 @@ void recipe_number(recipe_context *c, const tree_node *node, const char *what, d
     reader_quantity(&c->reader, node, what, "", value);
 }
 
-bool recipe_pair(recipe_context *c, const tree_node *node, const char *what, double *a, double *b)
+static bool read_pair(recipe_context *c, const tree_node *node, const char *what, double *a,
+                      double *b)
 {
     bool pair = node->kind == TREE_LIST && node->first != NULL && node->first->next != NULL &&
                 node->first->next->next == NULL;
@@ -41,6 +42,31 @@ bool recipe_pair(recipe_context *c, const tree_node *node, const char *what, dou
     }
     bool first = reader_quantity(&c->reader, node->first, what, "", a);
     return reader_quantity(&c->reader, node->first->next, what, "", b) && first;
+}
+
+// Takes the value under a key that was found.
+static void take_value(recipe_context *c, const tree_node *node, const recipe_key *key, void *into)
+{
+    void *field = (char *)into + key->offset, *second = (char *)into + key->second;
+    switch (key->kind) {
+    case VALUE_OWN:
+        key->take(c, node, into);
+        break;
+    case VALUE_TEXT:
+        *(const char **)field = recipe_text(c, node, key->key);
+        break;
+    case VALUE_TRUTH:
+        *(bool *)field = read_truth(c, node, key->key);
+        break;
+    case VALUE_NUMBER:
+        recipe_number(c, node, key->key, field);
+        break;
+    case VALUE_PAIR:
+        read_pair(c, node, key->key, field, second);
+        break;
+    case VALUE_TAKEN:
+        break;
+    }
 }
 
 void recipe_map(recipe_context *c, const tree_node *map, const char *what, const recipe_key *keys,
@@ -60,7 +86,7 @@ void recipe_map(recipe_context *c, const tree_node *map, const char *what, const
         }
 
         if (found != NULL) {
-            found->take(c, child, into);
+            take_value(c, child, found, into);
         } else if (key != NULL) {
             report_node(&c->reader, child->key, "unknown key '%.60s' in %s, did you mean '%s'?",
                         key, what, near.best != NULL ? near.best : keys[0].key);
@@ -68,16 +94,26 @@ void recipe_map(recipe_context *c, const tree_node *map, const char *what, const
     }
 }
 
-void recipe_list(recipe_context *c, const tree_node *list, const char *what,
-                 void (*take)(recipe_context *c, const tree_node *node))
+void recipe_list(recipe_context *c, const tree_node *list, const char *what, recipe_taker *take,
+                 void *into)
 {
     if (list->kind != TREE_LIST) {
         report_node(&c->reader, list, "%s is %s, expected a list", what, node_kind_name(list));
         return;
     }
     for (const tree_node *item = list->first; item != NULL; item = item->next) {
-        take(c, item);
+        take(c, item, into);
     }
+}
+
+int recipe_add(recipe_context *c, const tree_node *node, int *count, recipe_room room)
+{
+    if (*count >= room.most) {
+        report_node(&c->reader, node, "%s has more than %d %s", room.holder, room.most,
+                    room.things);
+        return -1;
+    }
+    return (*count)++;
 }
 
 const tree_node *recipe_child(const tree_node *map, const char *key)
