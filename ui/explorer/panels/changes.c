@@ -26,9 +26,8 @@ static void draw_change(const explorer_state *st, screen *s, area a, int index)
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    (void)body;
     const int count = st->session.input_count;
-    const area a = page_area(s, 76, count < 1 ? 4 : count + 3);
+    const area a = page_area(body, 76, count < 1 ? 4 : count + 3);
     const int height = a.height - 3, first = draw_first_line(st->change, count, height);
 
     // the frame, with what its keys do

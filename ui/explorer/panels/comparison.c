@@ -28,7 +28,6 @@ static bool compare_quantity(const session *e, int index, int width, char *colum
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    (void)body;
     enum { NAMES = 28, WIDE = 12, NARROW = 11 };
     const session *e = &st->session;
     char columns[128];
@@ -43,7 +42,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     // a narrow screen has the name and the numbers below each other
     int rows = s->width - 6 < NAMES + 3 * WIDE ? 2 : 1, names = rows == 1 ? NAMES : 0;
     int width = rows == 1 ? WIDE : NARROW;
-    area a = page_area(s, names + 3 * width + 4, rows * count + 3);
+    area a = page_area(body, names + 3 * width + 4, rows * count + 3);
     int room = a.width - 4, shown = a.height - 3;
     int beyond = rows * count - shown;
     int scroll = layout_keep_scroll(lay, PANEL_COMPARISON, beyond > 0 ? beyond : 0);

@@ -16,16 +16,15 @@ static int keep_matching(help_line *lines, int count, const char *filter)
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    (void)body;
     enum { MOST = 500 };
     static help_line lines[MOST];
     const char *filter = st->filters.text[PANEL_HELP];
 
     // as wide as it may be, then as high as its lines need
-    area a = page_area(s, 114, s->height);
+    area a = page_area(body, 114, body.height);
     int count = help_write(&st->keys, a.width - 4, lines, MOST);
     count = keep_matching(lines, count, filter);
-    a = page_area(s, 114, count + 2);
+    a = page_area(body, 114, count + 2);
     int shown = a.height - 2, last = count > shown ? count - shown : 0;
     int scroll = layout_keep_scroll(lay, PANEL_HELP, last);
     lay->page_lines = shown > 1 ? shown - 1 : 1;

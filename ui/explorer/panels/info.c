@@ -41,13 +41,12 @@ static int write_lines(const explorer_state *st, int width, char lines[LINES][LI
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    (void)body;
     static char lines[LINES][LINE_TEXT];
-    area a = page_area(s, WIDE, s->height);
+    area a = page_area(body, WIDE, body.height);
     const int count = write_lines(st, a.width - 4, lines);
 
     // as high as the text, or scrolled
-    a = page_area(s, WIDE, count + 2);
+    a = page_area(body, WIDE, count + 2);
     const int shown = a.height - 2, beyond = count - shown;
     const int scroll = layout_keep_scroll(lay, PANEL_INFO, beyond > 0 ? beyond : 0);
 

@@ -27,12 +27,12 @@ int draw_first_line(int selected, int count, int height)
     return first < 0 ? 0 : first;
 }
 
-area page_area(const screen *s, int width, int height)
+area page_area(area body, int width, int height)
 {
-    assert(s != NULL);
-    width = width > s->width - 2 ? s->width - 2 : width;
-    height = height > s->height - 3 ? s->height - 3 : height;
-    return (area){(s->width - width) / 2, 1 + (s->height - 3 - height) / 2, width, height};
+    width = width > body.width - 2 ? body.width - 2 : width;
+    height = height > body.height ? body.height : height;
+    return (area){body.x + (body.width - width) / 2, body.y + (body.height - height) / 2, width,
+                  height};
 }
 
 void layout_begin(layout *lay, const explorer_state *st)

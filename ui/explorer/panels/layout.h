@@ -94,5 +94,5 @@ void draw_number(char *text, size_t size, double value);
 // The first line to show so that the selected one is in the window.
 int draw_first_line(int selected, int count, int height);
 
-// A page of at most this size in the middle of the screen.
-area page_area(const screen *s, int width, int height);
+// A page of at most this size in the middle of what panels have of the screen.
+area page_area(area body, int width, int height);

@@ -28,7 +28,7 @@ typedef struct panel {
     // Rows that it takes of a stack in `body`, 0 if it has nothing to show. Stacked panels only.
     int (*rows)(const explorer_state *st, screen_size body);
 
-    // Draws it into an area of the screen; pages find their own within it.
+    // Draws it into an area of the screen; pages take the middle of what all panels have.
     void (*draw)(const explorer_state *st, layout *lay, screen *s, area a);
 
     // Takes the mouse; false if it has no use for the gesture. May be NULL.

@@ -28,9 +28,8 @@ static void draw_run(const explorer_state *st, screen *s, area a, int index)
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    (void)body;
     const int count = st->pinned.count;
-    const area a = page_area(s, WIDE, count < 1 ? 5 : count + 5);
+    const area a = page_area(body, WIDE, count < 1 ? 5 : count + 5);
     const area lines = {a.x + 2, a.y + 2, a.width - 4, count};
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, "pinned runs (Esc closes)");
     layout_add_hit(lay, (hit_area){PANEL_RUN_LIST, PART_BODY, 0, a});

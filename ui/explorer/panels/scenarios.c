@@ -59,10 +59,9 @@ static void draw_preview(const scenario_menu *menu, screen *s, area a)
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    (void)body;
     const scenario_menu *menu = &st->scenarios;
     const int preview = s->height >= TALL_SCREEN ? PREVIEW : 0;
-    area a = page_area(s, 96, menu->count + 4 + preview);
+    area a = page_area(body, 96, menu->count + 4 + preview);
     int height = a.height - 4 - preview, first = first_line(menu, height);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  "scenarios (Enter opens, / filters, Esc closes)");
