@@ -107,6 +107,45 @@ static void ranges_meet_their_ends_and_are_spaced_as_asked(void **state)
     sweep_finish(&s);
 }
 
+// One number of a list, named with its place from 1 on; the others stay as the scenario has them.
+static void a_number_of_a_list_is_varied_by_its_place(void **state)
+{
+    (void)state;
+    static const char text[] = "title: Springs\narm: {links: 4, joint_stiffness: [12, 10, 8]}\n";
+    scenario springs;
+    sweep s;
+    fault f = {0};
+    assert_int_equal(scenario_parse(&springs, text, strlen(text), "springs.yaml", "springs",
+                                    print_sentence, NULL),
+                     STATUS_OK);
+    char *vary[] = {(char[]){"arm.joint_stiffness[2]=0.1:0.3:3"},
+                    (char[]){"arm.joint_stiffness[3]=7 N m/rad,8.5"}};
+    const sweep_request request = {.vary = vary, .vary_count = 2};
+    assert_int_equal(sweep_init(&s, &springs, &request, &f), STATUS_OK);
+    assert_string_equal(s.axes[0].name, "arm.joint_stiffness[2]");
+    assert_string_equal(s.axes[1].text, "7,8.5");
+
+    // every run has its own list, to the last bit
+    assert_int_equal(s.run_count, 6);
+    for (size_t run = 0; run < s.run_count; run++) {
+        scenario derived;
+        double numbers[PARAMETER_LIST_MOST];
+        assert_int_equal(sweep_scenario(&s, run, &derived, &f), STATUS_OK);
+        assert_int_equal(parameter_list_numbers(derived.parameters.arm.joint_stiffness, numbers),
+                         3);
+        check_close(numbers[0], 12, 0);
+        check_close(numbers[1], sweep_value(&s, run, 0), 0);
+        check_close(numbers[2], run % 2 ? 8.5 : 7, 0);
+    }
+    sweep_finish(&s);
+
+    // a place that the list does not have
+    vary[0] = (char[]){"arm.joint_stiffness[4]=5,6"};
+    assert_int_equal(sweep_init(&s, &springs, &request, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "has 3 numbers"));
+    scenario_finish(&springs);
+}
+
 static void bad_requests_are_refused_with_a_sentence(void **state)
 {
     (void)state;
@@ -133,6 +172,12 @@ static void bad_requests_are_refused_with_a_sentence(void **state)
         {"motor.voltage=1,2,1", NULL, SWEEP_GRID, 0, "twice"},
         {"motor.voltage=1 m:2:3", NULL, SWEEP_GRID, 0, "expected V"},
         {"motor.voltage=1:2:3", "motor.voltage=4", SWEEP_GRID, 0, "varied twice"},
+        {"arm.joint_stiffness=1,2", NULL, SWEEP_GRID, 0, "arm.joint_stiffness[1]"},
+        {"arm.joint_stiffness[0]=1,2", NULL, SWEEP_GRID, 0, "no number of a list"},
+        {"arm.joint_stiffness[1=1,2", NULL, SWEEP_GRID, 0, "no number of a list"},
+        {"arm.joint_stiffness[1]=1,-2", NULL, SWEEP_GRID, 0, "out of range"},
+        {"arm.joint_stiffness[1]=1:-2:3", NULL, SWEEP_GRID, 0, "out of range"},
+        {"arm.k2[1]=1,2", NULL, SWEEP_GRID, 0, "no list"},
         {"arm.links=1:4:3", NULL, SWEEP_GRID, 0, "not a whole number"},
         {"arm.links=1:4:9:log", NULL, SWEEP_GRID, 0, "twice"},
         {"method.name=event:newmark:2", NULL, SWEEP_GRID, 0, "event,newmark,generalized-alpha"},
@@ -666,6 +711,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_last_parameter_of_a_grid_changes_fastest),
         cmocka_unit_test(ranges_meet_their_ends_and_are_spaced_as_asked),
+        cmocka_unit_test(a_number_of_a_list_is_varied_by_its_place),
         cmocka_unit_test(bad_requests_are_refused_with_a_sentence),
         cmocka_unit_test(a_latin_hypercube_meets_every_part_of_every_range_once),
         cmocka_unit_test(whole_numbers_and_words_are_drawn_evenly),

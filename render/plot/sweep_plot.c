@@ -112,8 +112,9 @@ static figure_axis describe_axis(sweep_drawing *s, varied *v, const sweep_axis *
     *v = (varied){.axis = axis,
                   .words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
 
-    figure_axis out = {.name = info->path,
-                       .label = label_of(s, info->description),
+    figure_axis out = {.name = own(s, g_strdup(axis->name)),
+                       .label = axis->element > 0 ? own(s, text_escape(axis->name))
+                                                  : label_of(s, info->description),
                        .unit = info->unit,
                        .scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR,
                        .room = DOTS_ROOM};
@@ -299,8 +300,7 @@ static char *caption_of(const sweep_picture *p, size_t missing)
     const sweep *s = p->sweep;
     GString *out = g_string_new("Varied: ");
     for (int i = 0; i < s->axis_count; i++) {
-        g_string_append_printf(out, "%s%s", i > 0 ? ", " : "",
-                               parameter_table[s->axes[i].parameter].path);
+        g_string_append_printf(out, "%s%s", i > 0 ? ", " : "", s->axes[i].name);
     }
 
     if (missing > 0) {
@@ -328,8 +328,8 @@ static char *command_of(const sweep *s)
 {
     GString *out = g_string_new(NULL);
     for (int i = 0; i < s->axis_count; i++) {
-        g_string_append_printf(out, "%s--vary %s=%s", i > 0 ? " " : "",
-                               parameter_table[s->axes[i].parameter].path, s->axes[i].text);
+        g_string_append_printf(out, "%s--vary %s=%s", i > 0 ? " " : "", s->axes[i].name,
+                               s->axes[i].text);
     }
     return g_string_free(out, FALSE);
 }

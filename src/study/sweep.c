@@ -20,23 +20,13 @@ const char *sweep_sampling_name(sweep_sampling sampling)
 // Looks up what an axis varies: a number or a word, once.
 static status find_parameter(const sweep *s, sweep_axis *axis, const char *path, fault *f)
 {
-    axis->parameter = parameter_look_up(path, f);
-    if (axis->parameter < 0) {
-        return STATUS_BAD_ARGUMENT;
-    }
-
-    // texts have no values between
-    if (parameter_is_text(sweep_axis_parameter(axis))) {
-        const bool list = sweep_axis_parameter(axis)->type == PARAMETER_LIST;
-        return fault_set(f, STATUS_BAD_ARGUMENT, "%s is a %s, only numbers and words are varied",
-                         path, list ? "list" : "text");
-    }
-    for (int i = 0; i < s->axis_count; i++) {
-        if (s->axes[i].parameter == axis->parameter) {
-            return fault_set(f, STATUS_BAD_ARGUMENT, "%s is varied twice", path);
+    status code = sweep_axis_find(axis, path, f);
+    for (int i = 0; i < s->axis_count && code == STATUS_OK; i++) {
+        if (strcmp(s->axes[i].name, axis->name) == 0) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT, "%s is varied twice", axis->name);
         }
     }
-    return STATUS_OK;
+    return code;
 }
 
 // Reads one --vary into the next axis.
@@ -187,8 +177,8 @@ status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
     assert(s != NULL && derived != NULL);
     *derived = *s->base;
     for (int i = 0; i < s->axis_count; i++) {
-        status code = parameter_set_number(&derived->parameters, s->axes[i].parameter,
-                                           sweep_value(s, run, i), f);
+        status code =
+            sweep_axis_apply(&s->axes[i], sweep_value(s, run, i), &derived->parameters, f);
         if (code != STATUS_OK) {
             return code;
         }
@@ -212,8 +202,7 @@ static status check_combinations(const sweep *s, fault *f)
                 char text[128];
                 sweep_value_text(s, run, i, text, sizeof text);
                 length += (size_t)snprintf(values + length, sizeof values - length, "%s%s = %s",
-                                           i > 0 ? ", " : "",
-                                           sweep_axis_parameter(&s->axes[i])->path, text);
+                                           i > 0 ? ", " : "", s->axes[i].name, text);
             }
 
             return fault_set_at(f, STATUS_BAD_ARGUMENT, why.path, "run %zu (%s): %.400s", run + 1,

@@ -16,10 +16,96 @@ const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
     return &parameter_table[axis->parameter];
 }
 
+status sweep_axis_find(sweep_axis *axis, const char *name, fault *f)
+{
+    assert(axis != NULL && name != NULL);
+    char path[SWEEP_NAME];
+    const size_t length = strcspn(name, "[");
+    snprintf(path, sizeof path, "%.*s", (int)length, name);
+    axis->parameter = parameter_look_up(path, f);
+    if (axis->parameter < 0) {
+        return STATUS_BAD_ARGUMENT;
+    }
+
+    // a list by one of its numbers, nothing else by any
+    const parameter_type type = sweep_axis_parameter(axis)->type;
+    const bool list = type == PARAMETER_LIST;
+    if (type == PARAMETER_TEXT || (list && name[length] == '\0')) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%s is a %s, only numbers and words are varied%s%s%s", path,
+                         list ? "list" : "text", list ? "; its first number is " : "",
+                         list ? path : "", list ? "[1]" : "");
+    }
+    if (name[length] != '\0') {
+        const char *rest;
+        double k = 0;
+        const bool read = decimal_read(name + length + 1, &k, &rest) && strcmp(rest, "]") == 0;
+        if (!list || !read || k != floor(k) || k < 1 || k > PARAMETER_LIST_MOST) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             list ? "'%.60s' is no number of a list, expected %s[1] to %s[%d]"
+                                  : "'%.60s': %s is no list",
+                             name, path, path, PARAMETER_LIST_MOST);
+        }
+        axis->element = (int)k;
+        snprintf(axis->name, sizeof axis->name, "%.40s[%d]", path, axis->element);
+    } else {
+        snprintf(axis->name, sizeof axis->name, "%s", path);
+    }
+    return STATUS_OK;
+}
+
+status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fault *f)
+{
+    assert(axis != NULL && p != NULL);
+    if (axis->element == 0) {
+        return parameter_set_number(p, axis->parameter, value, f);
+    }
+
+    // the list with one number exchanged
+    char list[PARAMETER_TEXT_SIZE], changed[PARAMETER_LIST_MOST * NUMBER_TEXT + 1] = "";
+    double numbers[PARAMETER_LIST_MOST];
+    parameter_format(p, axis->parameter, list, sizeof list);
+    const int count = parameter_list_numbers(list, numbers);
+    if (axis->element > count) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
+                            "%s: the scenario's list has %d numbers", axis->name, count);
+    }
+    numbers[axis->element - 1] = value;
+    for (int i = 0; i < count; i++) {
+        char *end = changed + strlen(changed);
+        *end = ',';
+        number_format(i > 0 ? end + 1 : end, numbers[i]);
+    }
+    return parameter_set_text(p, axis->parameter, changed, f);
+}
+
+// A value of a list's number alone, checked as one of them.
+static status check_value(const sweep_axis *axis, double value, fault *f)
+{
+    parameters scratch = {0};
+    char text[NUMBER_TEXT];
+    if (axis->element == 0) {
+        return parameter_set_number(&scratch, axis->parameter, value, f);
+    }
+    number_format(text, value);
+    return parameter_set_text(&scratch, axis->parameter, text, f);
+}
+
 // Checks and reads one value of the axis.
 static status read_value(const sweep_axis *axis, const char *text, double *value, fault *f)
 {
     parameters scratch = {0};
+    if (axis->element > 0) {
+        char list[PARAMETER_TEXT_SIZE];
+        double numbers[PARAMETER_LIST_MOST];
+        status read = parameter_set_text(&scratch, axis->parameter, text, f);
+        parameter_format(&scratch, axis->parameter, list, sizeof list);
+        if (read == STATUS_OK && parameter_list_numbers(list, numbers) != 1) {
+            read = fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' is no number", text);
+        }
+        *value = read == STATUS_OK ? numbers[0] : 0;
+        return read;
+    }
     status code = parameter_set_text(&scratch, axis->parameter, text, f);
     *value = parameter_get(&scratch, axis->parameter);
     return code;
@@ -29,6 +115,12 @@ void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t 
 {
     assert(axis != NULL && text != NULL && size > 0);
     parameters scratch = {0};
+    if (axis->element > 0) {
+        char digits[NUMBER_TEXT];
+        number_format_short(digits, value);
+        snprintf(text, size, "%s", digits);
+        return;
+    }
     parameter_set_number(&scratch, axis->parameter, value, NULL);
     parameter_format(&scratch, axis->parameter, text, size);
 }
@@ -82,9 +174,8 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
 
     // a range may leave what the parameter allows at either end
     for (size_t i = 0; i < n; i++) {
-        parameters scratch = {0};
         axis->values[i] = range_point(axis, i, n);
-        status code = parameter_set_number(&scratch, axis->parameter, axis->values[i], f);
+        status code = check_value(axis, axis->values[i], f);
         if (code != STATUS_OK) {
             return code;
         }

@@ -3,11 +3,14 @@
 
 #include "src/quantities/parameters.h"
 
-enum { SWEEP_MOST_RUNS = 10000000, SWEEP_VALUE_TEXT = 128 };
+enum { SWEEP_MOST_RUNS = 10000000, SWEEP_VALUE_TEXT = 128, SWEEP_NAME = 64 };
 
-// One varied parameter. Words and truth values are numbers here, as in parameter_get.
+// One varied parameter, or one number of a list. Words and truth values are numbers here, as in
+// parameter_get.
 typedef struct sweep_axis {
-    int parameter;    // index in parameter_table
+    int parameter;         // index in parameter_table
+    int element;           // the number of a list that is varied, counted from 1; 0: no list
+    char name[SWEEP_NAME]; // path of the parameter, of a list's number "arm.joint_stiffness[2]"
     double *values;   // those of a list, or of a range in a grid; NULL for a range to draw from
     size_t count;     // of values
     double low, high; // of a range, as given; low may be the larger one
@@ -15,6 +18,13 @@ typedef struct sweep_axis {
     bool logarithmic; // a range spaced evenly in the logarithm
     char *text;       // what is varied, in one way of writing: "1:10:5", "0.1:10:3:log", "a,b"
 } sweep_axis;
+
+// Finds what is varied by its name, PATH or LIST[k], and writes it into an axis of zeroes. On
+// failure f says what was expected.
+status sweep_axis_find(sweep_axis *axis, const char *name, fault *f);
+
+// Gives the parameters a value of the axis; f says what does not fit, such as a list too short.
+status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fault *f);
 
 // Reads the values "a:b:n", "a:b:n:log" or "v1,v2,v3" of the axis, whose parameter is set; n may be
 // left out if values are drawn from a range. Changes the text. On failure f says what was expected;

@@ -107,7 +107,7 @@ static status create_run_table(sweep_store *store, fault *f)
     // what is varied
     for (int i = 0; i < s->axis_count; i++) {
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
-        sqlite3_str_appendf(sql, ", \"%w\" %s NOT NULL", info->path,
+        sqlite3_str_appendf(sql, ", \"%w\" %s NOT NULL", s->axes[i].name,
                             has_words(info)                   ? "TEXT"
                             : info->type == PARAMETER_INTEGER ? "INTEGER"
                                                               : "REAL");
@@ -164,7 +164,7 @@ static const char *column_name(const sweep *s, int column)
     static const char *const outcome[RUN_OUTCOME_COLUMNS] = {"status", "message"};
     int value = column - RUN_FIRST_VALUE, word = value - s->axis_count;
     return column < RUN_FIRST_VALUE     ? "run"
-           : value < s->axis_count      ? parameter_table[s->axes[value].parameter].path
+           : value < s->axis_count      ? s->axes[value].name
            : word < RUN_OUTCOME_COLUMNS ? outcome[word]
                                         : summary_table[word - RUN_OUTCOME_COLUMNS].key;
 }
@@ -179,7 +179,7 @@ static status check_types(sweep_store *store, fault *f)
                                "status NOT IN ('ok', 'inaccurate', 'failed')");
     for (int i = 0; i < s->axis_count; i++) {
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
-        sqlite3_str_appendf(sql, " OR typeof(\"%w\") %s", info->path,
+        sqlite3_str_appendf(sql, " OR typeof(\"%w\") %s", s->axes[i].name,
                             has_words(info) ? "<> 'text'" : "IN ('text', 'blob')");
     }
     for (int i = 0; i < summary_count; i++) {

@@ -39,7 +39,7 @@ __attribute__((format(printf, 3, 4))) static void define(definition *d, const ch
 static bool is_varied(const sweep *s, int parameter)
 {
     for (int i = 0; i < s->axis_count; i++) {
-        if (s->axes[i].parameter == parameter) {
+        if (s->axes[i].parameter == parameter && s->axes[i].element == 0) {
             return true;
         }
     }
@@ -116,7 +116,7 @@ void definition_init(definition *d, const sweep *s)
     for (int i = 0; i < s->axis_count; i++) {
         char key[16];
         snprintf(key, sizeof key, "vary %d", i + 1);
-        define(d, key, "%s=%s", parameter_table[s->axes[i].parameter].path, s->axes[i].text);
+        define(d, key, "%s=%s", s->axes[i].name, s->axes[i].text);
     }
 
     // what stays

@@ -40,7 +40,7 @@ static status shape_of(const char *path, const definition *d, sweep *shape, faul
 
     // each names the parameter before its equals sign
     for (int i = 0; i < SWEEP_MOST_AXES; i++) {
-        char name[64] = "";
+        char name[SWEEP_NAME] = "";
         snprintf(key, sizeof key, "vary %d", i + 1);
         if ((varied = definition_value(d, key)) == NULL) {
             break;
@@ -48,8 +48,7 @@ static status shape_of(const char *path, const definition *d, sweep *shape, faul
 
         // which this version must know
         snprintf(name, sizeof name, "%.*s", (int)strcspn(varied, "="), varied);
-        shape->axes[i].parameter = parameter_find(name);
-        if (shape->axes[i].parameter < 0) {
+        if (sweep_axis_find(&shape->axes[i], name, NULL) != STATUS_OK) {
             return fault_set(f, STATUS_BAD_ARGUMENT,
                              "'%s' varies '%s', which is no parameter of this version", path, name);
         }

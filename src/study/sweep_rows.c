@@ -134,7 +134,7 @@ static void write_headings(csv_writer *csv, const sweep *s)
     csv_heading(csv, "run", "");
     for (int i = 0; i < s->axis_count; i++) {
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
-        csv_heading(csv, info->path, info->unit);
+        csv_heading(csv, s->axes[i].name, info->unit);
     }
 
     // how it ended, and with what numbers
@@ -203,8 +203,7 @@ static json_t *row_object(const sweep *s, sqlite3_stmt *row)
     int column = 0;
     json_put(object, "run", field_value(row, column++));
     for (int i = 0; i < s->axis_count; i++) {
-        const char *path = parameter_table[s->axes[i].parameter].path;
-        json_put(object, path, field_value(row, column++));
+        json_put(object, s->axes[i].name, field_value(row, column++));
     }
 
     // how it ended, and with what numbers

@@ -59,6 +59,10 @@ static int open_sweep(comparison *c, const arguments *a, int i)
 
     c->combinations = (int)c->sweeps[i].run_count;
     for (int k = 0; k < c->sweeps[i].axis_count; k++) {
+        if (c->sweeps[i].axes[k].element > 0) {
+            return complain("%s: 'sweep' varies a list's number, 'compare' does not",
+                            c->sweeps[i].axes[k].name);
+        }
         c->varied[k] = c->sweeps[i].axes[k].parameter;
     }
     return EXIT_DONE;

@@ -191,7 +191,8 @@ const command sweep_command = {
         "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them evenly in the "
         "logarithm,\nPATH=v1,v2,v3 takes those (words too: method.name=event,newmark). Several "
         "--vary give every\ncombination, the last one changing fastest. With --sample random or "
-        "latin, --runs N values are drawn\nfrom each PATH=a:b or list.\n\n"
+        "latin, --runs N values are drawn\nfrom each PATH=a:b or list. LIST[k]=... varies the k-th "
+        "number of a list, counted from 1.\n\n"
         "With --db a sweep that was interrupted goes on where it stopped when the same command "
         "is given again.\nCtrl-C finishes the runs in hand and keeps them (exit status 130). "
         "Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",

@@ -43,7 +43,7 @@ static void print_values(const sweep *s, size_t run)
         const parameter_info *info = &parameter_table[s->axes[i].parameter];
         char text[128];
         sweep_value_text(s, run, i, text, sizeof text);
-        say("%s%s = %s%s%s", i > 0 ? ", " : "", info->path, text, info->unit[0] ? " " : "",
+        say("%s%s = %s%s%s", i > 0 ? ", " : "", s->axes[i].name, text, info->unit[0] ? " " : "",
             info->unit);
     }
 }
