@@ -15,10 +15,47 @@ static void estimator_finds_a_constant(void **state)
     check_relative(e.p[0][0], 0.01 / 4 / 100, 1e-3);
 }
 
+// Arrays have room for the most states; those that a model does not use neither count nor change.
+static void states_beyond_the_model_are_left_alone(void **state)
+{
+    (void)state;
+    enum { STATES = 2, ALL = ESTIMATOR_STATES };
+    const double nothing = (double)NAN;
+    double rate[ALL][ALL] = {{0, 1}, {-4, -0.1}}, input[ALL] = {0, 2}, row[ALL] = {1, 0.5};
+    double noise[ALL] = {1e-3, 2e-3};
+    sampled_model plain, m;
+    sampled_model_init(&plain, STATES, rate, input, 0.01);
+    for (int i = STATES; i < ALL; i++) {
+        input[i] = row[i] = noise[i] = nothing;
+        for (int j = 0; j < ALL; j++) {
+            rate[i][j] = rate[j][i] = nothing;
+        }
+    }
+    sampled_model_init(&m, STATES, rate, input, 0.01);
+
+    // two filters, of which one has numbers where there are no states
+    estimator one = {.z = {1, -1}, .p = {{2, 0.1}, {0.1, 3}}}, other = one;
+    for (int i = STATES; i < ALL; i++) {
+        other.z[i] = other.p[i][i] = other.p[i][0] = other.p[0][i] = 7;
+    }
+    estimator_predict(&one, &plain, 0.3, noise);
+    estimator_correct(&one, STATES, row, 0.2, 1.5, 0.04);
+    estimator_predict(&other, &m, 0.3, noise);
+    estimator_correct(&other, STATES, row, 0.2, 1.5, 0.04);
+    for (int i = 0; i < ALL; i++) {
+        const bool used = i < STATES;
+        check_close(other.z[i], used ? one.z[i] : 7, 0);
+        check_close(other.p[i][i], used ? one.p[i][i] : 7, 0);
+        check_close(other.p[i][0], used ? one.p[i][0] : 7, 0);
+        check_close(other.p[0][i], used ? one.p[0][i] : 7, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(estimator_finds_a_constant),
+        cmocka_unit_test(states_beyond_the_model_are_left_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -340,6 +340,23 @@ static void impossible_combinations_are_refused(void **state)
     check_conflict("wall.contact", "hunt-crossley", "wall.mass", "0.5", "kelvin-voigt");
     check_conflict("wall.contact", "kelvin-voigt", "wall.mass", "1e-12", "at least");
     check_conflict("wall.contact", "kelvin-voigt", "method.name", "newmark", "event only");
+    check_conflict("control.delay", "0.02", "control.rate", "100",
+                   "longer than the period of 0.01 s");
+    check_conflict("control.delay_periods", "0.8", "control.delay", "0.002", "period of 0.005 s");
+}
+
+// Of several that contradict one another the first that was given is to blame; defaults are not.
+static void defaults_are_never_to_blame(void **state)
+{
+    (void)state;
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    give(&p, "wall.angle", "-2 rad");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.path, "wall.angle");
+    give(&p, "initial.angle", "-1 rad");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.path, "initial.angle");
 }
 
 static void resolving_twice_changes_nothing(void **state)
@@ -372,6 +389,7 @@ int main(void)
         cmocka_unit_test(defaults_follow_the_model),
         cmocka_unit_test(a_link_is_a_uniform_rod_unless_told),
         cmocka_unit_test(impossible_combinations_are_refused),
+        cmocka_unit_test(defaults_are_never_to_blame),
         cmocka_unit_test(resolving_twice_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

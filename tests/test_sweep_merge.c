@@ -76,6 +76,41 @@ static void check_refused(char **files, int count, const char *says)
     assert_int_not_equal(access("refused", F_OK), 0);
 }
 
+// The first parameter of the table is one like any other.
+static void parts_may_vary_the_model(void **state)
+{
+    (void)state;
+    assert_string_equal(parameter_table[0].path, "arm.model");
+    scenario first = base, either = base;
+    fault f = {0};
+    parameters_defaults(&either.parameters, ARM_CORRECTED);
+    assert_int_equal(parameters_resolve(&either.parameters, &f), STATUS_OK);
+    base = either;
+    sweep s;
+    must_sweep(&s, (char[]){"arm.model=corrected,printed"});
+    char *whole = compute(&s, "both", (sweep_share){0, 0}), *parts[] = {"model-1", "model-2"};
+    for (int i = 0; i < 2; i++) {
+        free(compute(&s, parts[i], (sweep_share){i + 1, 2}));
+    }
+    sweep_merged merged;
+    if (sweep_merge(parts, 2, "models", &merged, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    assert_int_equal(merged.runs, 2);
+    char *rows = compute(&s, "models", (sweep_share){0, 0});
+    assert_string_equal(rows, whole);
+
+    // as it was
+    free(rows);
+    free(whole);
+    sweep_finish(&s);
+    base = first;
+    unlink("both");
+    unlink("models");
+    unlink(parts[0]);
+    unlink(parts[1]);
+}
+
 static void parts_in_any_order_give_the_rows_of_one_sweep(void **state)
 {
     (void)state;
@@ -243,6 +278,7 @@ static void what_cannot_be_read_is_said(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parts_may_vary_the_model),
         cmocka_unit_test(parts_in_any_order_give_the_rows_of_one_sweep),
         cmocka_unit_test(foreign_parts_are_refused),
         cmocka_unit_test(what_others_changed_is_refused),

@@ -1,0 +1,105 @@
+// The values of a varied parameter: grids, lists and shares of a range.
+#include "src/study/sweep_axis.h"
+
+#include <string.h>
+
+#include "tests/check.h"
+
+static sweep_axis parsed(const char *path, const char *values, bool drawn)
+{
+    sweep_axis axis = {.parameter = parameter_find(path)};
+    fault f = {0};
+    char text[128];
+    snprintf(text, sizeof text, "%s", values);
+    if (sweep_axis_parse(&axis, text, drawn, &f) != STATUS_OK) {
+        fail_msg("%s=%s: %s", path, values, f.text);
+    }
+    return axis;
+}
+
+static void shares_of_a_range_are_even(void **state)
+{
+    (void)state;
+    sweep_axis axis = parsed("arm.k2", "4:8", true);
+    check_close(sweep_axis_value_at(&axis, 0), 4, 0);
+    check_close(sweep_axis_value_at(&axis, 0.25), 5, 1e-14);
+    sweep_axis_finish(&axis);
+
+    // the same the other way round, and even in the logarithm
+    axis = parsed("arm.k2", "8:4", true);
+    check_close(sweep_axis_value_at(&axis, 0.25), 5, 1e-14);
+    sweep_axis_finish(&axis);
+    axis = parsed("arm.k2", "1:16:2:log", true);
+    check_relative(sweep_axis_value_at(&axis, 0.25), 2.0, 1e-14);
+    check_relative(sweep_axis_value_at(&axis, 0.75), 8.0, 1e-14);
+    sweep_axis_finish(&axis);
+}
+
+// Whole numbers come alike often, the first and the last of the range, too.
+static void whole_numbers_have_equal_shares(void **state)
+{
+    (void)state;
+    sweep_axis axis = parsed("arm.links", "2:5", true);
+    int found[8] = {0};
+    for (int i = 0; i < 400; i++) {
+        const double value = sweep_axis_value_at(&axis, (i + 0.5) / 400);
+        assert_true(value >= 2 && value <= 5 && value == floor(value));
+        found[(int)value]++;
+    }
+    for (int links = 2; links <= 5; links++) {
+        assert_int_equal(found[links], 100);
+    }
+    sweep_axis_finish(&axis);
+}
+
+static void values_of_a_list_have_equal_shares(void **state)
+{
+    (void)state;
+    sweep_axis axis = parsed("arm.k2", "7,3,5", true);
+    check_close(sweep_axis_value_at(&axis, 0.1), 7, 0);
+    check_close(sweep_axis_value_at(&axis, 0.5), 3, 0);
+    check_close(sweep_axis_value_at(&axis, 0.999), 5, 0);
+    sweep_axis_finish(&axis);
+}
+
+static void a_grid_has_both_ends(void **state)
+{
+    (void)state;
+    sweep_axis axis = parsed("arm.k2", "1:16:3:log", false);
+    assert_int_equal(axis.count, 3);
+    check_close(axis.values[0], 1, 0);
+    check_relative(axis.values[1], 4.0, 1e-14);
+    check_close(axis.values[2], 16, 0);
+    sweep_axis_finish(&axis);
+}
+
+static void what_is_no_axis_is_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"",          "1:2",   "1:2:0", "1:2:3:lag", "1:2:3:log:4",
+                                        "0:1:3:log", "x:1:3", "1,,2",  "1:2:1e9",   "-1:2:3",
+                                        "1:2:2.5"};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        sweep_axis axis = {.parameter = parameter_find("arm.k2")};
+        fault f = {0};
+        char text[64];
+        snprintf(text, sizeof text, "%s", wrong[i]);
+        if (sweep_axis_parse(&axis, text, false, &f) == STATUS_OK) {
+            fail_msg("'%s' was accepted", wrong[i]);
+        }
+        assert_true(strlen(f.text) > 0);
+        sweep_axis_finish(&axis);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shares_of_a_range_are_even),
+        cmocka_unit_test(whole_numbers_have_equal_shares),
+        cmocka_unit_test(values_of_a_list_have_equal_shares),
+        cmocka_unit_test(a_grid_has_both_ends),
+        cmocka_unit_test(what_is_no_axis_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
