@@ -238,6 +238,8 @@ const parameter_info parameter_table[] = {
      MEANING("inverse-dynamics: how long the tip moves to the wall")},
     {PATH(control.arrival_speed), REAL("m/s", 0, 1000), DEFAULT(0),
      MEANING("inverse-dynamics: speed with which the tip is to meet the wall")},
+    {PATH(control.impact_angle), CHOICE(2, "told|film|accelerometer"), DEFAULT(IMPACT_ANGLE_TOLD),
+     MEANING("hybrid: where it has the wall's angle from in contact; a sensor is fitted with it")},
 
     {PATH(belief.links), INTEGER(2, 64), DEFAULT(2),
      MEANING("number of links of the beam in the controller's model, where it can have several")},
@@ -308,7 +310,7 @@ const parameter_info parameter_table[] = {
      MEANING("standard deviation of the piezoelectric force sensor's noise")},
     {PATH(sensor.film), BOOLEAN, DEFAULT(false),
      MEANING("fits a piezo film along the beam that shows its bending, last link's angle minus the "
-             "first's")},
+             "first's (control.impact_angle = film fits it too)")},
     {PATH(sensor.film_gain), REAL("V/rad", 1e-6, 1e6), DEFAULT(10),
      MEANING("volts of the film's amplifier per bending")},
     {PATH(sensor.film_leak_time), REAL("s", 0, 1e6), DEFAULT(1),

@@ -139,7 +139,15 @@ typedef struct control_parameters {
     double switch_share;                // where bang-bang switches, share of the way to the wall
     double travel_time;                 // of the tip to the wall under inverse-dynamics [s]
     double arrival_speed;               // of the tip at the wall under inverse-dynamics [m/s]
+    int impact_angle;                   // impact_angle_source: where hybrid has theta_imp from
 } control_parameters;
+
+// In the order of the choices of control.impact_angle.
+typedef enum impact_angle_source {
+    IMPACT_ANGLE_TOLD,
+    IMPACT_ANGLE_BY_FILM,
+    IMPACT_ANGLE_BY_ACCELEROMETER
+} impact_angle_source;
 
 // What a controller is told of the arm on the rig, as factors of the truth and differences from it.
 typedef struct belief_parameters {

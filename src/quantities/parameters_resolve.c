@@ -414,6 +414,32 @@ static status check_control(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
+// A controller that takes the impact angle from a sensor needs it.
+static status resolve_impact_angle(parameters *p, fault *f)
+{
+    const int source = p->control.impact_angle;
+    if (source == IMPACT_ANGLE_BY_FILM && !IS_SET(p, sensor.film)) {
+        p->sensor.film = true;
+    }
+    if (source == IMPACT_ANGLE_BY_ACCELEROMETER && !IS_SET(p, sensor.accelerometer)) {
+        p->sensor.accelerometer = true;
+    }
+
+    // which somebody may have left out
+    if (source == IMPACT_ANGLE_BY_FILM && !p->sensor.film) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.impact_angle, sensor.film),
+            "control.impact_angle = film needs the sensor that sensor.film = false leaves out");
+    }
+    if (source == IMPACT_ANGLE_BY_ACCELEROMETER && !p->sensor.accelerometer) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO,
+                            BLAME2(p, control.impact_angle, sensor.accelerometer),
+                            "control.impact_angle = accelerometer needs the sensor that "
+                            "sensor.accelerometer = false leaves out");
+    }
+    return STATUS_OK;
+}
+
 // A controller that is to get the piezoelectric sensor's force needs one that shows something.
 static status resolve_piezo(parameters *p, fault *f)
 {
@@ -477,6 +503,7 @@ status parameters_resolve(parameters *p, fault *f)
     code = code == STATUS_OK ? resolve_motor(p, f) : code;
     code = code == STATUS_OK ? resolve_wall(p, f) : code;
     code = code == STATUS_OK ? check_control(p, f) : code;
+    code = code == STATUS_OK ? resolve_impact_angle(p, f) : code;
     code = code == STATUS_OK ? resolve_piezo(p, f) : code;
     return code == STATUS_OK && p->arm.model == ARM_PRINTED ? check_printed(p, f) : code;
 }

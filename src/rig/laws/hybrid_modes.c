@@ -24,6 +24,10 @@ const char *hybrid_start(void *memory, const controller_setup *setup)
     m->printed = p[COEFFICIENTS] != 0;
     m->transition = p[TRANSITION];
     m->threshold = p[THRESHOLD];
+    m->source = (int)p[IMPACT_ANGLE];
+    if (m->readings == 0) {
+        m->impact_angle = setup->wall_angle;
+    }
     return NULL;
 }
 
@@ -39,11 +43,17 @@ static double sign(double x)
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-// Torque of the beam's spring on the hub at an angle: 6 k2 (theta_imp - theta) in (5.13) as
-// printed, 4 k2 once the spring is counted right (errata B2).
+// Stiffness of the hub in contact: 6 k2 in (5.13) as printed, 4 k2 once the spring is counted right
+// (errata B2) [N m/rad].
+static double contact_stiffness(const hybrid_memory *m)
+{
+    return (m->printed ? 6 : 4) * m->rig.k2;
+}
+
+// Torque of the beam's spring on the hub at an angle.
 static double spring_torque(const hybrid_memory *m, double angle)
 {
-    return (m->printed ? 6 : 4) * m->rig.k2 * (m->rig.wall_angle - angle);
+    return contact_stiffness(m) * (m->impact_angle - angle);
 }
 
 // Inertia of the arm in contact: 2 m eps^2 in (5.13) with eps = l/2; corrected, the bodies' own
@@ -57,7 +67,7 @@ static double contact_inertia(const hybrid_memory *m)
 
 double hybrid_final_angle(const hybrid_memory *m)
 {
-    return m->rig.wall_angle + m->force * m->rig.link_length / (2 * m->rig.k2);
+    return m->impact_angle + m->force * m->rig.link_length / (2 * m->rig.k2);
 }
 
 // Hub acceleration in contact under the command u, (5.13), (5.21) [rad/s2].
@@ -88,17 +98,53 @@ static double feedback(const hybrid_memory *m, double angle_error, double veloci
     return volts ? sum : sum / m->rig.torque_per_volt;
 }
 
-// Coefficients of the quintic (5.15) from the state at contact to rest at the final angle: the
-// solution of (5.18)-(5.20).
-static void plan(hybrid_memory *m, double angle, double velocity, double acceleration)
+// The coefficients of the quintic (5.15) that lead it to rest at the final angle from what the
+// first three say of its start: the solution of (5.18)-(5.20).
+static void lead_to_end(hybrid_memory *m)
 {
-    double T = m->length, way = hybrid_final_angle(m) - angle;
-    m->a[0] = angle;
-    m->a[1] = velocity;
-    m->a[2] = acceleration / 2;
+    const double T = m->length, way = hybrid_final_angle(m) - m->a[0];
+    const double velocity = m->a[1], acceleration = 2 * m->a[2];
     m->a[3] = (20 * way - 12 * velocity * T - 3 * acceleration * T * T) / (2 * T * T * T);
     m->a[4] = (-30 * way + 16 * velocity * T + 3 * acceleration * T * T) / (2 * T * T * T * T);
     m->a[5] = (12 * way - 6 * velocity * T - acceleration * T * T) / (2 * T * T * T * T * T);
+}
+
+// Plans from the state at contact.
+static void plan(hybrid_memory *m, double angle, double velocity, double acceleration)
+{
+    m->a[0] = angle;
+    m->a[1] = velocity;
+    m->a[2] = acceleration / 2;
+    lead_to_end(m);
+}
+
+// The impact angle that a sample's readings show, NaN where the sensor is not fitted [rad].
+static double angle_shown(const hybrid_memory *m, const controller_input *in)
+{
+    if (m->source == ANGLE_BY_FILM) {
+        return in->encoder + in->film / 2;
+    }
+
+    // what of the measured acceleration the motor and friction do not account for is the beam's
+    double missing =
+        in->accelerometer - contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
+    return m->impact_angle + contact_inertia(m) * missing / contact_stiffness(m);
+}
+
+// Averages what the first readings of the impact mode show; the trajectory's end goes with it. The
+// accelerometer is off scale at the impact and lags behind it for a while, the film loses its
+// charge.
+static void follow_angle(hybrid_memory *m, const controller_input *in)
+{
+    const double lag = 0.01, window = 0.1; // [s]
+    double time = in->time - m->since, from = m->source == ANGLE_BY_ACCELEROMETER ? lag : 0;
+    bool tells = m->source != ANGLE_TOLD && time >= from && time <= window;
+    double shown = tells ? angle_shown(m, in) : (double)NAN;
+    if (!isnan(shown)) {
+        m->readings++;
+        m->impact_angle += (shown - m->impact_angle) / m->readings;
+        lead_to_end(m);
+    }
 }
 
 void hybrid_begin(hybrid_memory *m, int mode, const controller_input *in)
@@ -107,6 +153,7 @@ void hybrid_begin(hybrid_memory *m, int mode, const controller_input *in)
     m->since = m->begun = in->time;
     m->length = m->transition;
     if (mode == IMPACT) {
+        m->readings = 0;
         plan(m, in->encoder, in->tachometer,
              contact_acceleration(m, in->encoder, in->tachometer, in->voltage));
     }
@@ -176,6 +223,9 @@ double hybrid_command(hybrid_memory *m, const controller_input *in, controller_o
 
     if (m->replans && m->mode == IMPACT) {
         plan_again(m, in);
+    }
+    if (m->mode == IMPACT) {
+        follow_angle(m, in);
     }
 
     out->mode = m->mode;

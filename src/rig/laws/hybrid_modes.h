@@ -16,6 +16,10 @@
 // by the inverse of the model along it and feedback of both errors, (5.24). FORCE holds theta_f
 // with the static torque 2 f l in advance, (5.25). Printed coefficients have 6 k2, 3 f l and M = 2
 // m eps^2 instead (errata B2).
+//
+// theta_imp is what the law is told, or in IMPACT the mean of what a sensor says of it, as 5.2
+// suggests: of film, theta3 - theta2, by (5.8) theta2 + theta3 = 2 theta_imp, or of an
+// accelerometer by (5.13).
 #pragma once
 
 #include "src/rig/laws/laws.h"
@@ -26,20 +30,38 @@ extern const char *const hybrid_modes[];   // without RECOVER
 // Values of control.gains.
 enum { GAINS_TORQUE, GAINS_VOLTS, GAINS_PRINTED };
 
+// Values of control.impact_angle.
+enum { ANGLE_TOLD, ANGLE_BY_FILM, ANGLE_BY_ACCELEROMETER };
+
 // Parameters that these laws share, in this order; OWN is the law's own behind them.
-enum { FORCE_WANTED, APPROACH_VOLTAGE, KP, KV, GAINS, COEFFICIENTS, TRANSITION, THRESHOLD, OWN };
+enum {
+    FORCE_WANTED,
+    APPROACH_VOLTAGE,
+    KP,
+    KV,
+    GAINS,
+    COEFFICIENTS,
+    TRANSITION,
+    THRESHOLD,
+    IMPACT_ANGLE,
+    OWN
+};
 #define HYBRID_PARAMETERS                                                                          \
     {.name = "force"}, {.name = "approach_voltage"}, {.name = "kp"}, {.name = "kv"},               \
         {.name = "gains"}, {.name = "coefficients"}, {.name = "transition_time"},                  \
+        {.name = "contact_threshold"},                                                             \
     {                                                                                              \
-        .name = "contact_threshold"                                                                \
+        .name = "impact_angle"                                                                     \
     }
 
 typedef struct hybrid_memory {
     controller_setup rig;
     double force, approach_voltage, kp, kv, transition, threshold, own;
     int gains;
-    bool printed; // coefficients
+    bool printed;        // coefficients
+    int source;          // of the impact angle
+    double impact_angle; // theta_imp, as told or as the sensors have shown [rad]
+    int readings;        // that it is the mean of; 0: as told
     int mode;
     double since;       // start of the present mode [s]
     double a[6];        // quintic of the impact mode, (5.15)
