@@ -8,6 +8,7 @@
 // rest where the reading is f, whatever wall and stiffness are. One law for both, without a switch.
 // The last term carries what the beam presses, so that the position control has its error only.
 #include <math.h>
+#include <string.h>
 
 #include "src/rig/laws/laws.h"
 #include "src/base/plain_math.h"
@@ -48,9 +49,7 @@ static const char *tune(void *memory, const controller_setup *setup)
 {
     admittance_memory *m = memory;
     m->rig = *setup;
-    for (int i = 0; i < PARAMETERS; i++) {
-        m->p[i] = setup->parameters[i];
-    }
+    memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;
 }
 
@@ -73,21 +72,11 @@ static void sample(void *memory, const controller_input *in, controller_output *
     out->mode = m->mode;
     out->desired_angle = m->angle;
     out->desired_velocity = m->speed;
-    double friction = m->speed > 0 ? r->stiction : m->speed < 0 ? -r->stiction : 0;
     double torque = m->p[KP] * (m->angle - in->encoder) + m->p[KV] * (m->speed - in->tachometer);
-    out->command =
-        (torque + r->hub_damping * m->speed + friction + 2 * r->link_length * in->force) /
-        r->torque_per_volt;
+    out->command = (torque + r->hub_damping * m->speed + coulomb_friction(r, m->speed) +
+                    2 * r->link_length * in->force) /
+                   r->torque_per_volt;
 }
 
-const controller admittance_law = {
-    .interface = CONTROLLER_INTERFACE,
-    .name = "admittance",
-    .modes = mode_names,
-    .parameters = table,
-    .parameter_count = PARAMETERS,
-    .memory_size = sizeof(admittance_memory),
-    .start = tune,
-    .sample = sample,
-    .tune = tune,
-};
+const controller admittance_law = CONTROLLER_LAW("admittance", mode_names, table, admittance_memory,
+                                                 .start = tune, .sample = sample, .tune = tune);

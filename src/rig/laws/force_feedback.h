@@ -32,9 +32,6 @@ double force_feedback_command(const force_memory *m, const controller_input *in)
 
 // A controller of this family: its word, whether it can be held in a mode, its sample function.
 #define FORCE_FEEDBACK_LAW(law, obeys, samples)                                                    \
-    {                                                                                              \
-        .interface = CONTROLLER_INTERFACE, .name = law, .modes = force_feedback_modes,             \
-        .lockable = obeys, .parameters = force_feedback_parameters, .parameter_count = PARAMETERS, \
-        .memory_size = sizeof(force_memory), .start = force_feedback_start, .sample = samples,     \
-        .tune = force_feedback_tune                                                                \
-    }
+    CONTROLLER_LAW(law, force_feedback_modes, force_feedback_parameters, force_memory,             \
+                   .lockable = obeys, .start = force_feedback_start, .sample = samples,            \
+                   .tune = force_feedback_tune)

@@ -108,8 +108,5 @@ double hybrid_speed_command(const hybrid_memory *m, const controller_input *in, 
 
 // A controller of this family: word, modes, table of parameters, start and sample function.
 #define HYBRID_LAW(law, names, table, starts, samples)                                             \
-    {                                                                                              \
-        .interface = CONTROLLER_INTERFACE, .name = law, .modes = names, .lockable = true,          \
-        .parameters = table, .parameter_count = (int)(sizeof table / sizeof table[0]),             \
-        .memory_size = sizeof(hybrid_memory), .start = starts, .sample = samples, .tune = starts   \
-    }
+    CONTROLLER_LAW(law, names, table, hybrid_memory, .lockable = true, .start = starts,            \
+                   .sample = samples, .tune = starts)

@@ -12,6 +12,7 @@
 // stiffness makes of f is what k is made for, k/(k + 4 k2) of a hard position control's error. The
 // damper makes the arm in contact critical, d = 2 sqrt(M (k + 4 k2)) with M = I1 + 2 I + m l^2/2.
 #include <math.h>
+#include <string.h>
 
 #include "src/rig/laws/laws.h"
 
@@ -45,9 +46,7 @@ static const char *tune(void *memory, const controller_setup *setup)
 {
     impedance_memory *m = memory;
     m->rig = *setup;
-    for (int i = 0; i < PARAMETERS; i++) {
-        m->p[i] = setup->parameters[i];
-    }
+    memcpy(m->p, setup->parameters, sizeof m->p);
 
     // the approach's speed, and the damper
     double held = setup->torque_per_volt * fabs(m->p[APPROACH_VOLTAGE]) - setup->stiction;
@@ -79,20 +78,10 @@ static void sample(void *memory, const controller_input *in, controller_output *
     out->mode = m->mode;
     out->desired_angle = m->point;
     out->desired_velocity = rate;
-    double friction = rate > 0 ? r->stiction : rate < 0 ? -r->stiction : 0;
     out->command = (k * (m->point - in->encoder) + m->damping * (rate - in->tachometer) +
-                    r->hub_damping * rate + friction) /
+                    r->hub_damping * rate + coulomb_friction(r, rate)) /
                    r->torque_per_volt;
 }
 
-const controller impedance_law = {
-    .interface = CONTROLLER_INTERFACE,
-    .name = "impedance",
-    .modes = mode_names,
-    .parameters = table,
-    .parameter_count = PARAMETERS,
-    .memory_size = sizeof(impedance_memory),
-    .start = tune,
-    .sample = sample,
-    .tune = tune,
-};
+const controller impedance_law = CONTROLLER_LAW("impedance", mode_names, table, impedance_memory,
+                                                .start = tune, .sample = sample, .tune = tune);

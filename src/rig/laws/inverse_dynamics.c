@@ -241,13 +241,5 @@ static void sample(void *memory, const controller_input *in, controller_output *
     out->calculated_force = now.force;
 }
 
-const controller inverse_dynamics_law = {
-    .interface = CONTROLLER_INTERFACE,
-    .name = "inverse-dynamics",
-    .modes = mode_names,
-    .parameters = table,
-    .parameter_count = PARAMETERS,
-    .memory_size = sizeof(inverse_memory),
-    .start = start,
-    .sample = sample,
-};
+const controller inverse_dynamics_law = CONTROLLER_LAW(
+    "inverse-dynamics", mode_names, table, inverse_memory, .start = start, .sample = sample);

@@ -5,6 +5,21 @@
 #include "src/quantities/control_laws.h"
 #include "src/rig/controller.h"
 
+// A controller: its word, names of modes, table of parameters, type of memory, and its functions
+// and whatever else it has as .start = ..., .sample = ....
+#define CONTROLLER_LAW(law, names, table, memory, ...)                                             \
+    {                                                                                              \
+        .interface = CONTROLLER_INTERFACE, .name = law, .modes = names, .parameters = table,       \
+        .parameter_count = (int)(sizeof table / sizeof table[0]), .memory_size = sizeof(memory),   \
+        __VA_ARGS__                                                                                \
+    }
+
+// Coulomb friction of a hub that moves at a rate [rad/s] [N m].
+static inline double coulomb_friction(const controller_setup *setup, double rate)
+{
+    return rate > 0 ? setup->stiction : rate < 0 ? -setup->stiction : 0;
+}
+
 // hybrid_law and so on, one for each in the list
 #define LAW(name, prefix, word, description) extern const controller prefix##_law;
 CONTROL_LAWS(LAW)

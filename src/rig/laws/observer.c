@@ -108,7 +108,7 @@ static double limited(const observer_memory *m, double command)
 static double friction_ahead(const observer_memory *m, double rate, double wanted)
 {
     double way = fabs(rate) > REST ? rate : wanted;
-    return way > 0 ? m->rig.stiction : way < 0 ? -m->rig.stiction : 0;
+    return coulomb_friction(&m->rig, way);
 }
 
 // Keeps the arm to the plan: the torque it takes, and feedback of all deviations but the angle.
@@ -153,7 +153,8 @@ static double hurry(observer_memory *m, const estimator *e)
                       : travel(m, e);
 }
 
-// Rate with which a wrong force in contact runs away, at the stiffness that the readings show [1/s].
+// Rate with which a wrong force in contact runs away, at the stiffness that the readings show
+// [1/s].
 static double divergence(const observer_memory *m)
 {
     return design_of(m)->divergence * sqrt(observer_of(m)->stiffness);
@@ -412,13 +413,5 @@ static void sample(void *memory, const controller_input *in, controller_output *
     out->calculated_force = force_now;
 }
 
-const controller observer_law = {
-    .interface = CONTROLLER_INTERFACE,
-    .name = "observer",
-    .modes = mode_names,
-    .parameters = table,
-    .parameter_count = PARAMETERS,
-    .memory_size = sizeof(observer_memory),
-    .start = start,
-    .sample = sample,
-};
+const controller observer_law = CONTROLLER_LAW("observer", mode_names, table, observer_memory,
+                                               .start = start, .sample = sample);

@@ -63,9 +63,5 @@ void state_feedback_sample(void *memory, const controller_input *in, controller_
 
 // A controller of this family: word, table of parameters, start function.
 #define STATE_FEEDBACK_LAW(law, table, starts)                                                     \
-    {                                                                                              \
-        .interface = CONTROLLER_INTERFACE, .name = law, .modes = state_feedback_modes,             \
-        .lockable = true, .parameters = table,                                                     \
-        .parameter_count = (int)(sizeof table / sizeof table[0]),                                  \
-        .memory_size = sizeof(optimal_memory), .start = starts, .sample = state_feedback_sample    \
-    }
+    CONTROLLER_LAW(law, state_feedback_modes, table, optimal_memory, .lockable = true,             \
+                   .start = starts, .sample = state_feedback_sample)
