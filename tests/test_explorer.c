@@ -294,6 +294,19 @@ static void test_every_scenario_and_every_size_draws(void **state)
     explorer_finish(&ex);
 }
 
+// Beneath a lesson the arm may be left a row, or none, also from near by.
+static void test_a_lesson_leaves_the_arm_any_height(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "lessons/hybrid-law");
+    press(&ex, ":closeup on<Enter>:seek 0.5<Enter>");
+    for (int height = 1; height <= 40; height++) {
+        free(picture(&ex, 110, height, GLYPHS_BRAILLE));
+    }
+    explorer_finish(&ex);
+}
+
 // At the last row before a touch the linearised arm says what "impactlab predict" says, for as many
 // links as there are; while the run plays it is not asked.
 static void test_many_links_are_predicted_while_the_run_rests(void **state)
@@ -446,6 +459,7 @@ int main(void)
         cmocka_unit_test(test_saved_scenario_and_screen),
         cmocka_unit_test(test_a_click_moves_the_cursor),
         cmocka_unit_test(test_every_scenario_and_every_size_draws),
+        cmocka_unit_test(test_a_lesson_leaves_the_arm_any_height),
         cmocka_unit_test(test_a_long_run_is_drawn_while_it_is_computed),
         cmocka_unit_test(test_many_links_are_predicted_while_the_run_rests),
         cmocka_unit_test(test_random_keys_do_no_harm),

@@ -8,7 +8,10 @@
 #include "render/scene/plan.h"
 #include "ui/terminal/pictures.h"
 
-enum { CLOSE_UP_FROM = 60 }; // width of the panel from which on there is a close-up [cells]
+enum {
+    CLOSE_UP_FROM = 60, // width of the panel from which on there is a close-up [cells]
+    LEAST_FRAME = 3,    // width and height from which on something is drawn in a frame [cells]
+};
 
 // Where a plan of the arm is drawn: cells of the screen, as dots or as pixels.
 typedef struct stage {
@@ -323,6 +326,11 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const parameters *p = &st->session.effective.parameters;
     char title[LINE_TEXT] = "arm";
     find_extent(st, &lay->extent);
+
+    // a frame without room for anything in it
+    if (a.width < LEAST_FRAME || a.height < LEAST_FRAME) {
+        return;
+    }
 
     // the contact from near by takes a third
     const bool wanted = st->looks.close_up == CLOSE_UP_ON ||
