@@ -160,7 +160,8 @@ static void equal_numbers_are_the_uniform_arm_to_the_last_bit(void **state)
         SETTINGS("arm.links=4", "arm.joint_stiffness=20,10,10,10", "arm.hub_joint=beam"));
 }
 
-// Lists that differ from the uniform arm by nothing that counts, and go the general way.
+// Lists that differ from the uniform arm by nothing that counts, and go the general way: by the
+// explicit formula, whose own error in 0.3 s this is, where the uniform arm goes by power series.
 static void the_general_way_meets_the_uniform_one(void **state)
 {
     (void)state;
@@ -168,8 +169,8 @@ static void the_general_way_meets_the_uniform_one(void **state)
     run_result other = run_of(
         SETTINGS("arm.links=4", "arm.joint_stiffness=10,10.000000000001,10", "run.duration=0.33"));
     check_relative(other.summary.first_contact_s, one.summary.first_contact_s, 1e-12);
-    check_relative(other.summary.contact_impulse_Ns, one.summary.contact_impulse_Ns, 1e-11);
-    check_relative(other.summary.first_pulse_peak_N, one.summary.first_pulse_peak_N, 1e-10);
+    check_relative(other.summary.contact_impulse_Ns, one.summary.contact_impulse_Ns, 1e-10);
+    check_relative(other.summary.first_pulse_peak_N, one.summary.first_pulse_peak_N, 1e-9);
     check_below(fabs(other.summary.energy_residual_J), 1e-11);
     run_finish(&one);
     run_finish(&other);
