@@ -178,9 +178,66 @@ static void what_never_settles_is_in_no_quantile(void **state)
     robust_law_finish(&found);
 }
 
+// How often a character stands in a line.
+static int count_in_line(const char *line, char sought)
+{
+    int count = 0;
+    for (; *line != '\0' && *line != '\n'; line++) {
+        count += *line == sought;
+    }
+    return count;
+}
+
+// Every line of a table has as many columns as its heading, and the laws stand in it.
+static void check_table(void (*writes)(FILE *, const robust_table *), const robust_table *t,
+                        char separator, int lines)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    writes(stream, t);
+    fclose(stream);
+    const char *line = text;
+    const int columns = count_in_line(text, separator);
+    assert_true(columns > 5);
+    for (int i = 0; i < lines; i++) {
+        if (count_in_line(line, separator) != columns) {
+            fail_msg("not %d columns in: %s", columns, line);
+        }
+        line = strchr(line, '\n') + 1;
+    }
+    assert_string_equal(line, "");
+    for (int i = 0; i < t->count; i++) {
+        assert_non_null(strstr(text, t->laws[i].law));
+        assert_true(t->laws[i].case_title == NULL || strstr(text, t->laws[i].case_title) != NULL);
+    }
+    free(text);
+}
+
+static void tables_have_a_line_a_law(void **state)
+{
+    (void)state;
+    const double never = (double)NAN;
+    robust_law laws[] = {
+        {.law = "hybrid", .runs = 10, .settled = 1, .overshoot = {3, 8, never}, .against = never},
+        {.law = "optimal", .runs = 10, .failed = 2, .settled = 0.8, .against = 1.25}};
+    robust_table table = {"test", laws, 2, NULL};
+    check_table(robust_markdown, &table, '|', 4);
+    check_table(robust_csv, &table, ',', 3);
+    table.against = "hybrid";
+    check_table(robust_markdown, &table, '|', 4);
+
+    // of cases, by their titles
+    laws[0].case_title = "plain";
+    laws[1].case_title = "late";
+    check_table(robust_markdown, &table, '|', 4);
+    check_table(robust_csv, &table, ',', 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables_have_a_line_a_law),
         cmocka_unit_test(a_set_is_its_lines),
         cmocka_unit_test(cases_are_what_differs),
         cmocka_unit_test(threads_change_nothing),
