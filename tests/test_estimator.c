@@ -51,9 +51,27 @@ static void states_beyond_the_model_are_left_alone(void **state)
     }
 }
 
+// x'' = -w^2 x + u over h: both parts in closed form.
+static void a_sampled_oscillator_has_its_closed_form(void **state)
+{
+    (void)state;
+    const double w = 12, h = 0.02, c = cos(w * h), s = sin(w * h);
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0, 1}, {-w * w, 0}};
+    double input[ESTIMATOR_STATES] = {0, 1};
+    sampled_model m;
+    sampled_model_init(&m, 2, rate, input, h);
+    check_close(m.a[0][0], c, 1e-14);
+    check_close(m.a[0][1], s / w, 1e-15);
+    check_close(m.a[1][0], -w * s, 1e-12);
+    check_close(m.a[1][1], c, 1e-14);
+    check_close(m.b[0], (1 - c) / (w * w), 1e-16);
+    check_close(m.b[1], s / w, 1e-15);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sampled_oscillator_has_its_closed_form),
         cmocka_unit_test(estimator_finds_a_constant),
         cmocka_unit_test(states_beyond_the_model_are_left_alone),
     };

@@ -57,9 +57,20 @@ static void nothing_is_written_behind_the_amplitudes(void **state)
     check_close(amplitude[N / 2], 42, 0);
 }
 
+static void the_ends_of_the_window_count_nothing(void **state)
+{
+    (void)state;
+    double series[N] = {1}, scratch[2 * N], amplitude[N / 2];
+    fourier_amplitudes(series, N, scratch, amplitude);
+    for (int k = 2; k < N / 2; k++) {
+        check_close(amplitude[k], 0, 1e-13);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_ends_of_the_window_count_nothing),
         cmocka_unit_test(nothing_is_written_behind_the_amplitudes),
         cmocka_unit_test(a_transform_is_the_sum_that_defines_it),
         cmocka_unit_test(amplitudes_are_those_of_the_sines),

@@ -68,9 +68,30 @@ static void objects_have_a_line_a_member(void **state)
     free(text);
 }
 
+static void what_cannot_be_put_is_noted_once(void **state)
+{
+    (void)state;
+    json_t *object = json_object(), *array = json_array();
+    (void)json_lost_something();
+    json_put(object, "a", json_number(1));
+    json_add(array, json_text("b"));
+    assert_false(json_lost_something());
+
+    // no value, as without memory, and no container
+    json_put(object, "c", NULL);
+    json_put(object, "d", json_number(2));
+    assert_true(json_lost_something());
+    assert_false(json_lost_something());
+    json_add(NULL, json_number(3));
+    assert_true(json_lost_something());
+    json_decref(object);
+    json_decref(array);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_cannot_be_put_is_noted_once),
         cmocka_unit_test(objects_have_a_line_a_member),
         cmocka_unit_test(json_is_what_jansson_reads),
         cmocka_unit_test(text_without_utf8_is_made_readable),

@@ -448,9 +448,19 @@ static void a_scripted_lock_is_one_of_the_laws_modes(void **state)
                 3, 40, "nonsense");
 }
 
+static void an_expectation_may_be_exact(void **state)
+{
+    (void)state;
+    scenario s = good("title: t\nexpect: {impacts: {value: 2, tolerance: 0}}\n");
+    check_close(s.expectations[0].tolerance, 0, 0);
+    scenario_finish(&s);
+    check_fault("title: t\nexpect: {impacts: {value: 2, tolerance: -1}}\n", 2, 41, "tolerance");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_expectation_may_be_exact),
         cmocka_unit_test(a_scripted_lock_is_one_of_the_laws_modes),
         cmocka_unit_test(faults_come_in_the_order_of_their_places),
         cmocka_unit_test(a_whole_scenario_is_read),
