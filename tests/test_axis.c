@@ -1,4 +1,5 @@
 // Figures over logarithmic axes, judged by the pixels of an image.
+#include "render/plot/axis.h"
 #include "render/plot/figure_file.h"
 
 #include <stdlib.h>
@@ -145,6 +146,21 @@ static void file_and_data_are_written(void **state)
     assert_int_equal(figure_write_with_csv(&fig, path, &f), STATUS_BAD_ARGUMENT);
 }
 
+// However narrow, an axis of two decades or more has two labels: one alone gives no scale.
+static void a_narrow_axis_has_two_labels(void **state)
+{
+    (void)state;
+    const figure_axis from = {.scale = SCALE_LOGARITHMIC};
+    for (double low = -9; low < 3; low += 0.21) {
+        for (double decades = 2.1; decades < 16; decades += 0.37) {
+            axis a = {.scale = {SCALE_LOGARITHMIC, low, low + decades}};
+            axis_choose_ticks(&a, &from, 2);
+            assert_true(a.count >= 2);
+            assert_true(a.count <= 4);
+        }
+    }
+}
+
 static int release(void **state)
 {
     (void)state;
@@ -158,6 +174,7 @@ int main(void)
         cmocka_unit_test(decades_are_evenly_spaced),
         cmocka_unit_test(points_at_or_below_zero_are_left_out),
         cmocka_unit_test(file_and_data_are_written),
+        cmocka_unit_test(a_narrow_axis_has_two_labels),
     };
     return cmocka_run_group_tests(tests, NULL, release) != 0;
 }

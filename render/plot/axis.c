@@ -60,6 +60,10 @@ static void choose_decades(axis *a, int wanted)
     while (decades / spacing > wanted) {
         spacing++;
     }
+    // one label alone gives no scale
+    while (spacing > 1 && floor(s->high / spacing) - ceil(s->low / spacing) < 1) {
+        spacing--;
+    }
 
     // all that lie on the axis
     for (int power = (int)floor(s->low); power <= (int)ceil(s->high); power++) {

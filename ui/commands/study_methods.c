@@ -149,9 +149,9 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
         .title = title,
         .caption =
             "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to right; the event "
-            "method needs none of them and costs the same whichever is asked for. Left and low is "
-            "better. Reference: the event method at 20\u2009µs. What agrees with it to the last "
-            "digit stands at half of one.",
+            "method needs none of them and costs about the same whichever is asked for. Left and "
+            "low is better. Reference: the event method at 20\u2009µs. What agrees with it to the "
+            "last digit stands at half of one.",
         .x = {.name = "computing time", .label = "Computing time", .unit = "s"},
         .panels = panels,
         .panel_count = STUDY_QUANTITIES};
