@@ -179,8 +179,8 @@ const parameter_info parameter_table[] = {
     {PATH(control.answer_time), REAL("s", 0.01, 3600), DEFAULT(10),
      MEANING("for which a process may keep the lab waiting, by the clock, before the run fails")},
     {PATH(control.settings), TEXT(NULL),
-     MEANING(
-         "a plug-in's or process's own parameters, written name=value and separated by spaces")},
+     MEANING("parameters that only this law, plug-in or process has, written name=value and "
+             "separated by spaces")},
     {PATH(control.lock), TEXT("none"), TIMED,
      MEANING("mode that the law is held in, by its name, or none: the law chooses")},
     {PATH(control.rate), REAL("Hz", 1, 1e5), DEFAULT(200), TIMED, MEANING("samples a second")},
