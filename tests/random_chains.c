@@ -17,10 +17,9 @@
 
 #define AFTER_CONTACT 0.0501
 #define DURATION      0.1
-#define SUBSTEPS      20 // of the explicit formula: its fastest rate times its time step
-#define EXPLICIT_MASS                                                                              \
-    1e-12           // at the tip: next to nothing, but neither modes nor series take it [kg]
-#define FASTEST 3e6 // beyond which the explicit formula takes too long [1/s]
+#define SUBSTEPS      20    // of the explicit formula: its fastest rate times its time step
+#define EXPLICIT_MASS 1e-18 // at the tip [kg]: neither modes nor series take it
+#define FASTEST       3e6   // beyond which the explicit formula takes too long [1/s]
 
 enum { MOST_SETTINGS = 12 };
 

@@ -16,9 +16,8 @@
 #define START_ANGLE    0.095 // a little in front of the wall at 0.1 rad
 #define START_VELOCITY 0.7   // [rad/s]
 #define DURATION       0.06
-#define EXPLICIT_MASS                                                                              \
-    1e-12            // at the tip: next to nothing, but only the explicit formula takes it [kg]
-#define FEW_LINKS 16 // of which that formula has the time
+#define EXPLICIT_MASS  1e-18 // at the tip [kg]: only the explicit formula takes it
+#define FEW_LINKS      16    // of which that formula has the time
 
 static chain_outcome library_outcome(const reference_case *c, bool by_formula)
 {

@@ -9,7 +9,7 @@
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
 
-#define EXPLICIT_MASS "arm.tip_mass=1e-12" // next to nothing, but the series are not for it
+#define EXPLICIT_MASS "arm.tip_mass=1e-18" // next to nothing, but the series are not for it
 #define DURATION      0.05
 #define START_ANGLE   0.095
 

@@ -1,4 +1,5 @@
-// Watched functions within a stride of the chain's modes (modal_stride.h): events and peaks.
+// Watched functions within a stride of the chain's modes (modal_stride.h): what they are
+// (modal_function.c), events and peaks (modal_watch.c).
 //
 // A function is what it is at the start, a linear functional of the modes that its gradient there
 // gives, and a polynomial through what is left of its exact values at the points of collocation: a
@@ -30,6 +31,9 @@ void modal_function_place(modal_function *f, int n, double *storage);
 
 // Prepares a function on the stride in hand.
 void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const arm *a, motion *m);
+
+// What is watched of a value and a slope of the sum: friction counts by what is left of it.
+glance modal_function_watched(const modal_function *f, const arm *a, glance g);
 
 // Its value and slope at t within the stride.
 glance modal_function_at(const modal_function *f, const arm *a, double t);

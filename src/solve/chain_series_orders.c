@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "src/base/sincos.h"
+#include "src/solve/chain_series_parts.h"
 
 #define REACH      6.0   // of the fastest mode or decay in a stride
 #define TURNING    1.2   // rotation counts so many times
@@ -79,12 +79,6 @@ void chain_series_place(chain_series *s, const arm *a)
     }
 }
 
-// Coefficient n of the last link, of an array by coefficient and link.
-static double last_of(const chain_series *s, const double *terms, int n)
-{
-    return terms[chain_term(n, s->last_place)];
-}
-
 // --- the stride's start -------------------------------------------------------------------------
 
 double chain_series_reach(const arm *a, const double *w)
@@ -107,114 +101,6 @@ static int order_for(double turn)
         term *= turn / (order + 1);
     }
     return order;
-}
-
-// P and what follows from it, from the tip to the hub.
-static void prepare_sweep(chain_series *s, const arm *a)
-{
-    chain_rows *r = &s->rows;
-    const double l = a->link_length, m = a->link_mass, own = a->link_inertia + m * l * l / 4;
-    double pxx = 0, pxy = 0, pyy = 0;
-    for (int k = s->links - 1; k >= 0; k--) {
-        const size_t at = chain_place(r, k);
-        const double c = r->start_c[at], sn = r->start_s[at];
-        const double ptx = -pxx * sn + pxy * c, pty = -pxy * sn + pyy * c; // P t
-        const double ux = l * ptx - m * l / 2 * sn, uy = l * pty + m * l / 2 * c;
-        double d = own + l * l * (c * pty - sn * ptx);
-        d += k == 0 && !a->hub_spring ? a->hub_inertia : 0;
-        const bool held = k == 0 && !a->hub_spring && s->mode.friction == HUB_STICK;
-        const double inv_d = held ? 0 : 1 / d, vx = -l * sn, vy = l * c;
-
-        // what rho does here: l^2 P t + m l^2/4 t, and l P + m l/2
-        r->back_x[at] = l * l * ptx - m * l * l / 4 * sn;
-        r->back_y[at] = l * l * pty + m * l * l / 4 * c;
-        r->rho_xx[at] = l * pxx + m * l / 2;
-        r->rho_xy[at] = l * pxy;
-        r->rho_yy[at] = l * pyy + m * l / 2;
-
-        // on to the link before
-        r->ux[at] = ux;
-        r->uy[at] = uy;
-        r->inv_d[at] = inv_d;
-        r->vx[at] = vx;
-        r->vy[at] = vy;
-        r->matrix[0][at] = 1 - inv_d * ux * vx;
-        r->matrix[1][at] = -inv_d * ux * vy;
-        r->matrix[2][at] = -inv_d * uy * vx;
-        r->matrix[3][at] = 1 - inv_d * uy * vy;
-        r->pxx[at] = pxx += m - ux * ux * inv_d;
-        r->pxy[at] = pxy -= ux * uy * inv_d;
-        r->pyy[at] = pyy += m - uy * uy * inv_d;
-    }
-}
-
-// The sweeps' answer to a unit contact force.
-static void prepare_contact(chain_series *s, const arm *a)
-{
-    chain_rows *r = &s->rows;
-    const int last = s->links - 1;
-    const bool point = a->wall.kind == WALL_POINT;
-    const double m = a->link_mass;
-    const double ex = point ? -r->start_s[s->last_place] : -a->wall.sine;
-    const double ey = point ? r->start_c[s->last_place] : a->wall.cosine;
-    double qx = point ? 0 : ex, qy = point ? 0 : ey;
-
-    // tip to hub
-    for (int k = last; k >= 0; k--) {
-        const size_t at = chain_place(r, k);
-        double moment = -(r->vx[at] * qx + r->vy[at] * qy);
-        if (k == last && point) {
-            moment = -s->along.term[0];
-            qx = ex;
-            qy = ey;
-        }
-        r->unit[at] = moment * r->inv_d[at];
-        qx += r->ux[at] * r->unit[at];
-        qy += r->uy[at] * r->unit[at];
-        r->unit_fx[at] = qx;
-        r->unit_fy[at] = qy;
-    }
-
-    // hub to tip
-    double bx = 0, by = 0;
-    for (int k = 0; k <= last; k++) {
-        const size_t at = chain_place(r, k);
-        r->unit[at] -= (r->ux[at] * bx + r->uy[at] * by) * r->inv_d[at];
-        s->unit_x[at] = bx;
-        s->unit_y[at] = by;
-        r->unit_fx[at] += r->pxx[at] * bx + r->pxy[at] * by;
-        r->unit_fy[at] += r->pxy[at] * bx + r->pyy[at] * by;
-        bx += r->vx[at] * r->unit[at];
-        by += r->vy[at] * r->unit[at];
-    }
-
-    // the first link's base rests
-    const size_t first = s->first_place, second = chain_place(r, 1), end = s->last_place;
-    r->unit_fx[first] = r->unit_fx[second] + m / 2 * r->vx[first] * r->unit[first];
-    r->unit_fy[first] = r->unit_fy[second] + m / 2 * r->vy[first] * r->unit[first];
-    s->response = point
-                      ? ex * s->unit_x[end] + ey * s->unit_y[end] + s->along.term[0] * r->unit[end]
-                      : ex * bx + ey * by;
-}
-
-// The first coefficients, from the state.
-static void take_state(chain_series *s, const arm *a, const double *q, const double *w)
-{
-    chain_rows *r = &s->rows;
-    for (int k = 0; k < s->links; k++) {
-        const size_t at = chain_place(r, k), zeroth = chain_term(0, at), first = chain_term(1, at);
-        const double rate = s->length * w[a->first + k];
-        double sn, c;
-        inline_sincos(q[a->first + k], &sn, &c);
-        r->angle[zeroth] = q[a->first + k];
-        r->angle[first] = r->rate[zeroth] = rate;
-        r->cosine[zeroth] = r->start_c[at] = c;
-        r->sine[zeroth] = r->start_s[at] = sn;
-        r->cosine[first] = -sn * rate;
-        r->sine[first] = c * rate;
-    }
-    s->hub_angle.term[0] = q[0];
-    s->hub_angle.term[1] = s->hub_rate.term[0] = s->length * w[0];
 }
 
 // --- one order after the other ------------------------------------------------------------------
@@ -245,32 +131,6 @@ static double product_term(const double *x, const double *y, int n, int from)
         sum += x[i] * y[n - i];
     }
     return sum;
-}
-
-// The way from the last link's base to a point wall, to the n-th coefficient.
-static void reach_point(chain_series *s, const arm *a, int n)
-{
-    const chain_rows *r = &s->rows;
-    double x = 0, y = 0, along = 0;
-    for (int b = 0; b < r->blocks; b++) {
-        const double *cosine = r->cosine + chain_term(n, (size_t)b * SERIES_LANES);
-        const double *sine = r->sine + chain_term(n, (size_t)b * SERIES_LANES);
-        x += ((cosine[0] + cosine[1]) + (cosine[2] + cosine[3])) +
-             ((cosine[4] + cosine[5]) + (cosine[6] + cosine[7]));
-        y += ((sine[0] + sine[1]) + (sine[2] + sine[3])) +
-             ((sine[4] + sine[5]) + (sine[6] + sine[7]));
-    }
-    s->tip_x.term[n] = x;
-    s->tip_y.term[n] = y;
-    x -= last_of(s, r->cosine, n);
-    y -= last_of(s, r->sine, n);
-    s->reach_x.term[n] = (n == 0 ? a->wall.x : 0) - a->link_length * x;
-    s->reach_y.term[n] = (n == 0 ? a->wall.y : 0) - a->link_length * y;
-    for (int i = 0; i <= n; i++) {
-        along += last_of(s, r->cosine, i) * s->reach_x.term[n - i] +
-                 last_of(s, r->sine, i) * s->reach_y.term[n - i];
-    }
-    s->along.term[n] = along;
 }
 
 // What the force's earlier coefficients do at a point wall, whose direction turns with the link:
@@ -331,7 +191,7 @@ static void next_order(chain_series *s, const arm *a, const chain_loops *loops, 
     loops->torques(r, &o);
     const double on_first = r->moment[first];
     if (point) {
-        reach_point(s, a, n + 1);
+        chain_series_reach_point(s, a, n + 1);
         r->moment[end] -= earlier_force(s, a, n, push);
     }
     loops->prepare(r, &o);
@@ -373,58 +233,7 @@ static void next_order(chain_series *s, const arm *a, const chain_loops *loops, 
     }
 }
 
-// --- what follows -------------------------------------------------------------------------------
-
-// The gap in free flight, to order + 1.
-static void sum_gap(chain_series *s, const arm *a)
-{
-    const chain_rows *r = &s->rows;
-    for (int n = 0; n <= s->order + 1; n++) {
-        reach_point(s, a, n);
-        double gap =
-            a->link_length * (a->wall.sine * s->tip_x.term[n] - a->wall.cosine * s->tip_y.term[n]);
-        if (a->wall.kind == WALL_POINT) {
-            gap = 0;
-            for (int i = 0; i <= n; i++) {
-                gap += last_of(s, r->cosine, i) * s->reach_y.term[n - i] -
-                       last_of(s, r->sine, i) * s->reach_x.term[n - i];
-            }
-        }
-        s->gap.term[n] = gap;
-    }
-}
-
-// Powers that are lost: the hub's velocity squared, and those of the joints.
-static void sum_losses(chain_series *s, const arm *a)
-{
-    const chain_rows *r = &s->rows;
-    for (int n = 0; n < s->order; n++) {
-        double hub = 0, root = 0, inner = 0;
-        for (int i = 0; i <= n; i++) {
-            const double w =
-                a->hub_spring ? s->hub_rate.term[i] : r->rate[chain_term(i, s->first_place)];
-            const double v = a->hub_spring ? s->hub_rate.term[n - i]
-                                           : r->rate[chain_term(n - i, s->first_place)];
-            hub += w * v;
-            root += s->root_rate.term[i] * s->root_rate.term[n - i];
-        }
-        if (s->damped) {
-            double sum[SERIES_LANES] = {0};
-            for (int b = 0; b < r->blocks; b++) {
-                const double *of = r->bend_rate + chain_term(0, (size_t)b * SERIES_LANES);
-                for (int i = 0; i <= n; i++) {
-                    for (int j = 0; j < SERIES_LANES; j++) {
-                        sum[j] += of[i * SERIES_LANES + j] * of[(n - i) * SERIES_LANES + j];
-                    }
-                }
-            }
-            inner =
-                ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
-        }
-        s->hub_square.term[n] = hub;
-        s->dissipation.term[n] = a->joint_damping * inner + a->hub_joint_damping * root;
-    }
-}
+// --- a stride ------------------------------------------------------------------------------------
 
 // x^n.
 static double power(double x, int n)
@@ -481,12 +290,12 @@ void chain_series_compute(chain_series *s, const arm *a, contact_state mode, con
     s->damped = a->joint_damping > 0 || a->hub_joint_damping > 0;
 
     // what all orders share
-    take_state(s, a, q, w);
-    prepare_sweep(s, a);
+    chain_series_take_state(s, a, q, w);
+    chain_series_prepare_sweep(s, a);
     loops->join(r);
     if (mode.contact) {
-        reach_point(s, a, 0);
-        prepare_contact(s, a);
+        chain_series_reach_point(s, a, 0);
+        chain_series_prepare_contact(s, a);
     } else {
         memset(r->unit, 0, size);
         memset(r->unit_fx, 0, size);
@@ -498,9 +307,9 @@ void chain_series_compute(chain_series *s, const arm *a, contact_state mode, con
         next_order(s, a, loops, n);
     }
     if (!mode.contact && wall_stands(&a->wall)) {
-        sum_gap(s, a);
+        chain_series_sum_gap(s, a);
     }
-    sum_losses(s, a);
+    chain_series_sum_losses(s, a);
     s->allowed = length * small_terms(s);
 }
 

@@ -1,0 +1,31 @@
+// What the files of the chain's series (chain_series.h) share: their parts that nothing else wants.
+//
+//     chain_series_start.c   what all orders share
+//     chain_series_orders.c  one order after the other, the stride
+//     chain_series_sums.c    functions of all links: the tip's place, gap, losses
+//     chain_loops.c          loops over all links
+#pragma once
+
+#include "src/solve/chain_series.h"
+
+// Coefficient n of the last link, of an array by coefficient and link.
+static inline double last_of(const chain_series *s, const double *terms, int n)
+{
+    return terms[chain_term(n, s->last_place)];
+}
+
+// The first coefficients, from angles q[dof] and velocities w[dof].
+void chain_series_take_state(chain_series *s, const arm *a, const double *q, const double *w);
+
+// P and what follows from it, from the tip to the hub; the sweeps' answer to a unit contact force.
+void chain_series_prepare_sweep(chain_series *s, const arm *a);
+void chain_series_prepare_contact(chain_series *s, const arm *a);
+
+// The n-th coefficients of the tip's place and of the way from the last link's base to a point
+// wall.
+void chain_series_reach_point(chain_series *s, const arm *a, int n);
+
+// The gap in free flight, to order + 1; powers that are lost, the hub's velocity squared and those
+// of the joints, to order - 1.
+void chain_series_sum_gap(chain_series *s, const arm *a);
+void chain_series_sum_losses(chain_series *s, const arm *a);

@@ -1,0 +1,268 @@
+#include "src/solve/modal_watch.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/base/sincos.h"
+
+#define SLOW_TURN 1 // of a mode in the stride, or its decay, that the series takes [rad]
+
+// --- the functional ---------------------------------------------------------------------------
+
+// Gradient of the penetration by the angles.
+static void contact_gradient(const arm *a, const double *q, double *gradient)
+{
+    const double l = a->link_length;
+    const int last = a->first + a->links - 1;
+
+    // where the last link begins, and the wall as met from there
+    double x = 0, y = 0, c = 1, s = 0;
+    for (int k = a->first; k < last; k++) {
+        inline_sincos(q[k], &s, &c);
+        x += l * c;
+        y += l * s;
+    }
+    inline_sincos(q[last], &s, &c);
+    wall_contact at = wall_contact_at(&a->wall, l, x, y, 0, 0, c, s, 0);
+
+    // the last link turns about that place, the others move it
+    gradient[0] = 0;
+    gradient[last] = wall_last_lever(&at, l, c, s);
+    for (int k = a->first; k < last; k++) {
+        inline_sincos(q[k], &s, &c);
+        gradient[k] = l * (c * at.ey - s * at.ex);
+    }
+}
+
+// Coordinates V' K direction and, with structural damping, the same of the velocities.
+static void through_springs(modal_function *f, modal_stride *s, const arm *a, double *direction,
+                            double hub)
+{
+    double *springs = s->columns;
+    modal_stiffness_times(a, direction, springs);
+    modal_from_angles(s->modes, s->dof, 1, springs, f->place, s->dof);
+    for (int k = 0; k < s->count; k++) {
+        f->speed[k] = s->per_stiffness * f->place[k] + hub * s->modes->by_dof[k];
+    }
+}
+
+static void fit_functional(modal_function *f, modal_stride *s, const arm *a, motion *m)
+{
+    const int n = s->dof;
+    const double *q = state_angles(m, m->state);
+    double *direction = s->angles, compliance, impulse;
+    const bool stuck = s->mode.friction == HUB_STICK;
+
+    // weights of the modes' angles and speeds; most kinds need no speeds
+    memset(f->speed, 0, (size_t)n * sizeof(double));
+    if (f->kind == WATCH_GAP) {
+        // the gap shrinks as the penetration grows
+        contact_gradient(a, q, direction);
+        for (int i = 0; i < n; i++) {
+            direction[i] = -direction[i];
+        }
+        modal_from_angles(s->modes, n, 1, direction, f->place, n);
+    } else if (f->kind == WATCH_FORCE) {
+        // the force: springs at work along the contact's response
+        chain_contact_response(a, m->links, q, stuck, direction, &compliance);
+        for (int i = 0; i < n; i++) {
+            direction[i] /= compliance;
+        }
+        through_springs(f, s, a, direction, stuck ? 0 : a->motor.damping * direction[0]);
+    } else if (f->kind == WATCH_HUB) {
+        // the hub's speed in the direction that its friction is for
+        memset(f->place, 0, (size_t)n * sizeof(double));
+        for (int k = 0; k < s->count; k++) {
+            f->speed[k] = s->mode.friction * s->modes->by_dof[k];
+        }
+    } else {
+        // the friction torque on a stuck hub: springs at work along what a free hub would do
+        const contact_state free_hub = {s->mode.contact, HUB_FORWARD};
+        memset(direction, 0, (size_t)n * sizeof(double));
+        if (a->hub_spring) {
+            direction[0] = 1;
+        } else {
+            double *unit = s->columns + n, *rates = unit + n;
+            memset(unit, 0, (size_t)n * sizeof(double));
+            unit[0] = 1;
+            chain_from_momentum(a, m->links, free_hub, q, unit, direction, rates, &impulse);
+            for (int i = n - 1; i >= 0; i--) {
+                direction[i] /= direction[0];
+            }
+        }
+        through_springs(f, s, a, direction, 0);
+    }
+}
+
+// --- values -------------------------------------------------------------------------------------
+
+static double exact_at(watch kind, const arm *a, motion *m, contact_state mode, const double *q,
+                       const double *w, double *accelerations)
+{
+    chain_reaction r;
+    if (kind == WATCH_HUB) {
+        return mode.friction * w[0];
+    }
+    chain_accelerations(a, m->links, q, w, mode, accelerations, &r);
+    return kind == WATCH_GAP ? r.gap : kind == WATCH_FORCE ? r.force : r.friction;
+}
+
+// The functional without what it is at the start.
+static double functional(const modal_function *f, const modal_stride *s, const double *x,
+                         const double *y, const double *drift, const double *drift0)
+{
+    double sum = 0;
+    for (int k = 0; k < s->count; k++) {
+        const double change = y[k] + drift[k] - (s->start[k] + drift0[k]);
+        const double speed = k == s->modes->across ? drift[k] - drift0[k] : change;
+        sum += f->place[k] * x[k] + f->speed[k] * speed;
+    }
+    return sum;
+}
+
+// Derivatives at the start of a mode that turns little in the stride, g_j of x = sum g_j t^j / j!,
+// under n(t) = sum n_j t^j / j!; x = 0 at the start.
+static void slow_mode(double damping, double rate, double speed, const double *n, double *g)
+{
+    g[0] = 0;
+    g[1] = speed;
+    for (int j = 0; j + 2 <= MODAL_SERIES; j++) {
+        g[j + 2] = (j < MODAL_NODES ? n[j] : 0) - 2 * damping * g[j + 1] - rate * rate * g[j];
+    }
+}
+
+// The same of what a mode does under n(t) without vibrating.
+static void followed(double damping, double rate, const double *n, double *g)
+{
+    memset(g, 0, (MODAL_SERIES + 1) * sizeof *g);
+    for (int j = MODAL_NODES - 1; j >= 0; j--) {
+        g[j] = (n[j] - 2 * damping * g[j + 1] - g[j + 2]) / (rate * rate);
+    }
+}
+
+// The vibration that takes a mode from `place` and `speed` [of x], into the function's amplitudes.
+static void add_vibration(modal_function *f, const modal_vibrations *v, int mode, double place,
+                          double speed)
+{
+    const int e = v->entry[mode];
+    const double p = f->place[mode], s = f->speed[mode];
+    double *cosine = f->sum.cosine, *sine = f->sum.sine;
+    if (e < v->vibrating) {
+        const double a = v->decay[e], turn = v->turn[e], b = (speed + a * place) / turn;
+        cosine[e] = p * place + s * (turn * b - a * place);
+        sine[e] = p * b - s * (a * b + turn * place);
+        return;
+    }
+
+    // two decays
+    const int other = e + v->overdamped;
+    const double slow = v->decay[e], fast = v->decay[other], per = 1 / (fast - slow);
+    cosine[e] = per * (fast * place + speed) * (p - s * slow);
+    cosine[other] = -per * (slow * place + speed) * (p - s * fast);
+}
+
+// The function on the whole stride from its value, functional and rest.
+static void fit_sum(modal_function *f, const modal_stride *s)
+{
+    const modal_vibrations *v = s->now;
+    modal_sum *sum = &f->sum;
+    const double h = s->length;
+    double total[MODAL_SERIES + 1] = {f->value}, g[MODAL_SERIES + 1];
+    sum->vibrations = s->now;
+    sum->length = h;
+    sum->first = 0;
+    sum->last = v->count;
+    memset(sum->cosine, 0, (size_t)v->count * sizeof(double));
+    memset(sum->sine, 0, (size_t)v->count * sizeof(double));
+    for (int j = 0; j < MODAL_NODES; j++) {
+        total[j] += f->rest[j];
+    }
+
+    // mode by mode
+    for (int k = 0; k < s->count; k++) {
+        const double rate = s->modes->rate[k], damping = s->damping[k];
+        const double speed =
+            k == s->modes->across ? s->drifts[0][k] : s->start[k] + s->drifts[0][k];
+        double n[MODAL_NODES];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const double turn = j + 1 < MODAL_NODES ? s->drift[j + 1][k] : 0;
+            n[j] = s->force[j][k] + 2 * damping * s->drift[j][k] + turn;
+        }
+        if (k == s->modes->across) {
+            memset(g, 0, sizeof g);
+            for (int j = 0; j < MODAL_NODES; j++) {
+                g[j + 1] = s->drift[j][k];
+            }
+        } else if (v->entry[k] < 0 || (rate * h <= SLOW_TURN && 2 * damping * h <= SLOW_TURN)) {
+            slow_mode(damping, rate, speed, n, g);
+            sum->first =
+                v->entry[k] >= 0 && v->entry[k] == sum->first ? sum->first + 1 : sum->first;
+        } else {
+            followed(damping, rate, n, g);
+            add_vibration(f, v, k, -g[0], speed - g[1]);
+        }
+        total[0] -= f->speed[k] * speed;
+        for (int j = 0; j < MODAL_SERIES; j++) {
+            total[j] += f->place[k] * g[j] + f->speed[k] * g[j + 1];
+        }
+    }
+
+    // in powers of the share of the stride
+    double scale = 1, most = 0;
+    sum->terms = 1;
+    for (int j = 0; j < MODAL_SERIES; j++) {
+        sum->series[j] = total[j] * scale;
+        most = fmax(most, fabs(sum->series[j]));
+        sum->terms = fabs(sum->series[j]) > 1e-19 * most ? j + 1 : sum->terms;
+        scale *= h / (j + 1);
+    }
+}
+
+size_t modal_function_size(int n)
+{
+    return 10 * (size_t)n;
+}
+
+void modal_function_place(modal_function *f, int n, double *storage)
+{
+    f->place = storage;
+    f->speed = storage + n;
+    f->sum.cosine = storage + 2 * n;
+    f->sum.sine = storage + 4 * n;
+    f->sum.a = storage + 6 * n;
+    f->sum.b = storage + 8 * n;
+}
+
+void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const arm *a, motion *m)
+{
+    f->kind = kind;
+    fit_functional(f, s, a, m);
+    f->value = exact_at(kind, a, m, s->mode, state_angles(m, m->state),
+                        state_velocities(m, m->state), s->columns);
+
+    // what the modes leave over at the points of collocation
+    double values[MODAL_NODES] = {0};
+    for (int i = 1; i < MODAL_NODES; i++) {
+        const double *x = s->modal + (size_t)(2 * i) * (size_t)s->dof;
+        double exact =
+            exact_at(kind, a, m, s->mode, s->point_angles[i], s->point_velocities[i], s->columns);
+        values[i] = exact - f->value - functional(f, s, x, x + s->dof, s->drifts[i], s->drifts[0]);
+    }
+
+    // both parts as functions of time
+    modal_polynomial(values, s->length, f->rest);
+    fit_sum(f, s);
+}
+
+glance modal_function_watched(const modal_function *f, const arm *a, glance g)
+{
+    if (f->kind == WATCH_STICTION) {
+        g = (glance){a->motor.stiction - fabs(g.value), g.value > 0 ? -g.slope : g.slope};
+    }
+    return (glance){g.value - f->edge, g.slope};
+}
+
+glance modal_function_at(const modal_function *f, const arm *a, double t)
+{
+    return modal_function_watched(f, a, modal_sum_at(&f->sum, t));
+}
