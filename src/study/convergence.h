@@ -31,8 +31,8 @@ double observed_order(double coarse, double middle, double fine);
 status convergence_compute(const scenario *s, run_monitor *monitor, convergence_panel *panel,
                            fault *f);
 
-// The force of a run less that of one with shorter steps, at the instants both have: x [s] and y [N]
-// have room for as many values as `coarse` has rows. Returns their number. Rows of one instant,
+// The force of a run less that of one with shorter steps, at the instants both have: x [s] and y
+// [N] have room for as many values as `coarse` has rows. Returns their number. Rows of one instant,
 // which stand before and after an event, are taken in their order.
 size_t convergence_difference(const trace *coarse, const trace *fine, double *x, double *y);
 
