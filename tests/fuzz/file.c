@@ -9,7 +9,10 @@ const char *fuzz_file(const uint8_t *data, size_t size)
     if (path[0] == '\0') {
         snprintf(path, sizeof path, "/tmp/impactlab-fuzz-%ld", (long)getpid());
     }
-    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+
+    // a new file each time: some file systems wait for the disk when an old one is emptied
+    unlink(path);
+    int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     FUZZ_CHECK(file >= 0);
     FUZZ_CHECK(write(file, data, size) == (ssize_t)size);
     close(file);
