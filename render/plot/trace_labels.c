@@ -186,15 +186,16 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     add_printed_constants(out, p);
     add_drive(out, p);
 
-    // the method and its step
+    // the method and its step, which for the event method is but the spacing of rows
+    const bool located = p->arm.model != ARM_PRINTED && p->method.name == METHOD_EVENT;
     if (p->arm.model == ARM_PRINTED || p->method.name == METHOD_NEWMARK) {
         text_append(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta, p->method.gamma);
     } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
         text_append(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g", p->method.spectral_radius);
     } else {
-        g_string_append(out, "explicit steps, located events");
+        g_string_append_printf(out, "%s, located events", run->result->summary.method);
     }
-    g_string_append_printf(out, ", <i>h</i> = %s. ", step);
+    g_string_append_printf(out, located ? ", a row every %s. " : ", <i>h</i> = %s. ", step);
     add_shading(out, runs, run_count, shaded);
     g_string_append_printf(out, " impactlab %s.", lab_version());
 
