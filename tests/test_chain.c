@@ -395,6 +395,38 @@ static void a_mass_at_the_tip_adds_its_own_energy(void **state)
     }
 }
 
+// Folded over the hub's axis the tip stands on a flat wall that cannot move it: no link's velocity
+// changes the penetration. A point, or an arm that cannot fold, is no such wall.
+static void an_arm_is_folded_where_a_flat_wall_moves_no_link(void **state)
+{
+    (void)state;
+    for (int links = 2; links <= 6; links += 2) {
+        arm flat = make_arm(links, "spring", "plane"), point = make_arm(links, "spring", "point");
+        double q[LARGEST], jacobian[LARGEST], largest = 0;
+        q[0] = 0.7; // a hub behind a spring may stand anywhere
+        for (int k = flat.first; k < flat.dof; k++) {
+            q[k] = 0.1 + (k % 2 ? M_PI / 2 : -M_PI / 2);
+        }
+        numeric_jacobian(&flat, q, q, jacobian);
+        for (int i = 0; i < flat.dof; i++) {
+            largest = fmax(largest, fabs(jacobian[i]));
+        }
+        check_below(largest, 1e-9);
+        assert_true(chain_is_folded(&flat, q));
+        assert_false(chain_is_folded(&point, q));
+
+        // one link that leans lets the wall turn it
+        q[flat.dof - 1] += 0.1;
+        numeric_jacobian(&flat, q, q, jacobian);
+        assert_true(fabs(jacobian[flat.dof - 1]) > 1e-3);
+        assert_false(chain_is_folded(&flat, q));
+    }
+
+    // a rod across the wall stands away from it
+    arm rod = make_arm(1, "rigid", "plane");
+    assert_false(chain_is_folded(&rod, (double[]){0.1 + M_PI / 2}));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -406,6 +438,7 @@ int main(void)
         cmocka_unit_test(one_link_on_a_rigid_hub_is_held_by_the_wall),
         cmocka_unit_test(energies_match_the_dense_form),
         cmocka_unit_test(energies_match_with_any_links_and_joints),
+        cmocka_unit_test(an_arm_is_folded_where_a_flat_wall_moves_no_link),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -142,6 +142,55 @@ static void a_torque_away_from_the_wall_ends_the_contact(void **state)
     motion_destroy(r.motion);
 }
 
+// A wall that gives stops nothing at once: the rod of 1 m keeps its speed, the damper answers it.
+static void a_wall_that_gives_takes_the_rod_at_its_speed(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt",
+                                      "wall.stiffness=1e4", "wall.damping=20"));
+    motion_report report = {.event = MOTION_REACHED};
+    while (report.event == MOTION_REACHED) {
+        assert_int_equal(motion_step(&r.arm, r.motion, 1, 1e-3, &report), STATUS_OK);
+    }
+    assert_int_equal(report.event, MOTION_TOUCH);
+    const double speed = speed_of(&r);
+    motion_apply(&r.arm, r.motion, &report);
+    assert_true(report.holds && touches(&r));
+    check_close(speed_of(&r), speed, 0);
+    check_relative(r.motion->state[SLOT_FORCE], 20 * speed, 1e-9);
+    motion_destroy(r.motion);
+}
+
+// A hub behind its spring under a torque that jumps: one that slides is accelerated by all of it,
+// one that sticks lets friction take it.
+static void a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not(void **state)
+{
+    (void)state;
+    moving_rod sliding = start_rod(SETTINGS("arm.hub_joint=spring", "initial.velocity=1"));
+    const double torque = sliding.arm.motor.torque;
+    const double before = state_accelerations(sliding.motion, sliding.motion->state)[0];
+    arm_set_voltage(&sliding.arm, 0.5);
+    const double jump = sliding.arm.motor.torque - torque;
+    assert_true(jump < 0);
+    motion_retorque(&sliding.arm, sliding.motion, torque);
+    check_close(sliding.motion->state[SLOT_FRICTION_TORQUE], -sliding.arm.motor.stiction, 0);
+    check_relative(state_accelerations(sliding.motion, sliding.motion->state)[0] - before,
+                   jump / sliding.arm.hub_inertia, 1e-9);
+    motion_destroy(sliding.motion);
+
+    moving_rod stuck = start_rod(SETTINGS("arm.hub_joint=spring", "motor.voltage=0.05"));
+    const double held = stuck.arm.motor.torque;
+    assert_true(stuck.motion->state[SLOT_FRICTION] == HUB_STICK);
+    stuck.motion->state[SLOT_JUMPED] = 0;
+    arm_set_voltage(&stuck.arm, 0.06);
+    motion_retorque(&stuck.arm, stuck.motion, held);
+    assert_true(stuck.motion->state[SLOT_FRICTION] == HUB_STICK);
+    check_close(stuck.motion->state[SLOT_FRICTION_TORQUE], -stuck.arm.motor.torque, 1e-15);
+    check_close(state_accelerations(stuck.motion, stuck.motion->state)[0], 0, 0);
+    assert_true(stuck.motion->state[SLOT_JUMPED] == 0); // the implicit methods go on as they were
+    motion_destroy(stuck.motion);
+}
+
 static void a_cut_changes_nothing_before_it(void **state)
 {
     (void)state;
@@ -166,6 +215,8 @@ int main(void)
         cmocka_unit_test(a_push_into_the_wall_is_answered_by_it),
         cmocka_unit_test(a_push_away_ends_the_contact),
         cmocka_unit_test(a_torque_away_from_the_wall_ends_the_contact),
+        cmocka_unit_test(a_wall_that_gives_takes_the_rod_at_its_speed),
+        cmocka_unit_test(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not),
         cmocka_unit_test(a_cut_changes_nothing_before_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

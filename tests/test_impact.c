@@ -128,6 +128,31 @@ static void agrees_with_the_closed_form(void **state)
     check_relative(dw[2], -p * i3, 1e-12);
 }
 
+// Arm and face are two bodies: the impulse that turns the arm moves the face, which then leaves at
+// the share e of the speed they met at; what both lose is the loss.
+static void a_face_takes_the_impulse_that_the_arm_gives(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        const double e = kind & 1 ? 0.6 : 0, face = kind & 2 ? -0.3 : 0.2;
+        arm a =
+            make_arm(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=1e5", "wall.mass=0.05"));
+        double q[LARGEST], w[LARGEST], dw[LARGEST], after[LARGEST];
+        chain_link work[LARGEST];
+        approaching_state(&a, kind, q, w);
+        impact_result r = impact_velocity_increments(&a, work, q, w, face, e, dw);
+        check_close(r.speed, chain_penetration_rate(&a, q, w) - face, 1e-14);
+        for (int i = 0; i < a.dof; i++) {
+            after[i] = w[i] + dw[i];
+        }
+        const double face_after = face + r.impulse / 0.05;
+        check_close(chain_penetration_rate(&a, q, after) - face_after, -e * r.speed, 1e-12);
+        const double before = chain_kinetic_energy(&a, q, w) + 0.025 * face * face;
+        const double left = chain_kinetic_energy(&a, q, after) + 0.025 * face_after * face_after;
+        check_close(before - left, r.loss, 1e-12 * (1 + before));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -135,6 +160,7 @@ int main(void)
         cmocka_unit_test(increments_of_the_two_links_have_opposite_signs),
         cmocka_unit_test(hub_jumps_only_with_a_rigid_joint),
         cmocka_unit_test(agrees_with_the_closed_form),
+        cmocka_unit_test(a_face_takes_the_impulse_that_the_arm_gives),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
