@@ -5,12 +5,19 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+static status cannot_read(sqlite3 *database, const char *path, fault *f)
+{
+    return fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", path,
+                     sqlite3_errmsg(database));
+}
+
 // All rows of a statement with a number in each of its columns.
-static status read_rows(sqlite3_stmt *rows, int key_count, double **columns, size_t *count,
-                        fault *f)
+static status read_rows(sqlite3_stmt *rows, const char *path, int key_count, double **columns,
+                        size_t *count, fault *f)
 {
     size_t room = 0;
-    while (sqlite3_step(rows) == SQLITE_ROW) {
+    int step;
+    while ((step = sqlite3_step(rows)) == SQLITE_ROW) {
         // all grow together; what was had is kept for the caller to free
         if (*count == room) {
             room = room > 0 ? 2 * room : 64;
@@ -28,21 +35,31 @@ static status read_rows(sqlite3_stmt *rows, int key_count, double **columns, siz
         }
         (*count)++;
     }
-    return STATUS_OK;
+
+    // rows that end by a failure are not all
+    return step == SQLITE_DONE ? STATUS_OK : cannot_read(sqlite3_db_handle(rows), path, f);
 }
 
-// Whether the runs' table has a column; sqlite would take an unknown name for a text.
-static bool has_column(sqlite3 *database, const char *key)
+// Looks for a column in the runs' table: sqlite would take an unknown name for a text.
+static status find_column(sqlite3 *database, const char *path, const char *key, fault *f)
 {
     sqlite3_stmt *found = NULL;
-    bool has = false;
     const char *sql = "SELECT 1 FROM pragma_table_info('run') WHERE name = ?1";
-    if (sqlite3_prepare_v2(database, sql, -1, &found, NULL) == SQLITE_OK) {
+    int step = sqlite3_prepare_v2(database, sql, -1, &found, NULL);
+    if (step == SQLITE_OK) {
         sqlite3_bind_text(found, 1, key, -1, SQLITE_STATIC);
-        has = sqlite3_step(found) == SQLITE_ROW;
+        step = sqlite3_step(found);
+    }
+
+    status code = STATUS_OK;
+    if (step == SQLITE_DONE) {
+        code = fault_set(f, STATUS_CANNOT_READ,
+                         "%s: no column '%s' in it, expected the database of a sweep", path, key);
+    } else if (step != SQLITE_ROW) {
+        code = cannot_read(database, path, f);
     }
     sqlite3_finalize(found);
-    return has;
+    return code;
 }
 
 // Opens the rows of runs that have a number in every column.
@@ -51,13 +68,12 @@ static status query(sqlite3 *database, const char *path, const char *const *keys
 {
     sqlite3_str *sql = sqlite3_str_new(database);
 
-    // what is wanted; sqlite would take an unknown name for a text
+    // what is wanted
     for (int k = 0; k < key_count; k++) {
-        if (!has_column(database, keys[k])) {
+        status found = find_column(database, path, keys[k], f);
+        if (found != STATUS_OK) {
             sqlite3_free(sqlite3_str_finish(sql));
-            return fault_set(f, STATUS_CANNOT_READ,
-                             "%s: no column '%s' in it, expected the database of a sweep", path,
-                             keys[k]);
+            return found;
         }
         sqlite3_str_appendf(sql, "%s\"%w\"", k == 0 ? "SELECT " : ", ", keys[k]);
     }
@@ -72,9 +88,7 @@ static status query(sqlite3 *database, const char *path, const char *const *keys
     char *text = sqlite3_str_finish(sql);
     int code = text != NULL ? sqlite3_prepare_v2(database, text, -1, rows, NULL) : SQLITE_NOMEM;
     sqlite3_free(text);
-    return code == SQLITE_OK ? STATUS_OK
-                             : fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", path,
-                                         sqlite3_errmsg(database));
+    return code == SQLITE_OK ? STATUS_OK : cannot_read(database, path, f);
 }
 
 status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,
@@ -92,14 +106,13 @@ status sweep_table_read(const char *path, const char *const *keys, int key_count
     // read only: nothing is created where no file is
     status code = STATUS_OK;
     if (sqlite3_open_v2(path, &database, SQLITE_OPEN_READONLY, NULL) != SQLITE_OK) {
-        code = fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", path,
-                         sqlite3_errmsg(database));
+        code = cannot_read(database, path, f);
     }
     if (code == STATUS_OK) {
         code = query(database, path, keys, key_count, &rows, f);
     }
     if (code == STATUS_OK) {
-        code = read_rows(rows, key_count, columns, count, f);
+        code = read_rows(rows, path, key_count, columns, count, f);
     }
 
     // all or nothing
