@@ -104,6 +104,20 @@ static void other_arms_are_predicted_too(void **state)
     check_relative(damped.predicted.force, damped.simulated.first_pulse_peak_N, 0.01);
 }
 
+// Strong damping makes the force jump up at the touch and peak long before the arm stops.
+static void an_early_peak_is_predicted_too(void **state)
+{
+    (void)state;
+    static const char *const damping[] = {"arm.damping_ratio=0.15", "arm.damping_ratio=0.3",
+                                          "arm.damping_ratio=0.5"};
+    static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
+    for (int i = 0; i < 6; i++) {
+        comparison c = compare(4.92, 1, walls[i % 2], damping[i / 2]);
+        assert_true(c.predicted.holds);
+        check_relative(c.predicted.force, c.simulated.first_pulse_peak_N, 0.005);
+    }
+}
+
 // In free flight the wall is imagined where the arm is; the nearer the wall, the truer.
 static void in_flight_it_approaches_the_prediction_at_the_wall(void **state)
 {
@@ -243,6 +257,7 @@ int main(void)
         cmocka_unit_test(it_is_right_at_a_point),
         cmocka_unit_test(it_is_right_at_a_flat_wall),
         cmocka_unit_test(other_arms_are_predicted_too),
+        cmocka_unit_test(an_early_peak_is_predicted_too),
         cmocka_unit_test(in_flight_it_approaches_the_prediction_at_the_wall),
         cmocka_unit_test(a_receding_arm_does_not_touch),
         cmocka_unit_test(a_prescribed_voltage_is_followed),

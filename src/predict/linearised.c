@@ -12,7 +12,7 @@
 // carry the stiffening by large bending. The force is then evaluated exactly on the predicted path
 // at four instants before the arm stops, and a cubic through them gives peak and delay.
 //
-// Any other arm, and one that bends far.
+// Any other arm, one that bends far, and one damped so strongly that the force peaks early.
 //
 // The pulse is followed on a chain of linear arms, see pulse.h.
 #include "src/predict/linearised.h"
@@ -231,8 +231,9 @@ static void predict_path(pressed_arm *p, double x, double v, double c, double k,
 }
 
 // The force peaks a little before the arm stops: a parabola through three instants there finds
-// where, and a cubic through these and a fourth look says how large and when.
-static void path_peak(pressed_arm *p, const pressed_path *path, double first, prediction *out)
+// where, and a cubic through these and a fourth look says how large and when. False if it peaks
+// earlier, as it does under strong damping, whose force jumps up at the touch: `first` is that.
+static bool path_peak(pressed_arm *p, const pressed_path *path, double first, prediction *out)
 {
     double h = 0.08 * path->stop, t = path->stop - h, f[4], top;
     for (int i = 0; i < 3; i++) {
@@ -258,8 +259,9 @@ static void path_peak(pressed_arm *p, const pressed_path *path, double first, pr
     }
 
     top = f[0] + (s + 1) * (d1 + s * (d2 + (s - 1) * d3));
-    out->force = fmax(top, first);
-    out->delay = top > first ? middle + s * h : 0;
+    out->force = top;
+    out->delay = middle + s * h;
+    return d2 < 0 && s > -1 && top > first;
 }
 
 // --- the touch ------------------------------------------------------------------------------
@@ -296,7 +298,8 @@ static bool closed_form_suits(const arm *a, const double *after)
     return a->dof == 2 && a->links == 2 && after[0] > 0 && !chain_is_loaded(a);
 }
 
-// False if the arm bends further than the few pieces of the closed form are good for.
+// False if the arm bends further than the few pieces of the closed form are good for, or if the
+// force peaks long before the arm stops.
 static bool predict_closed_form(const arm *touched, const double *q, const double *after,
                                 contact_state mode, prediction *out)
 {
@@ -309,8 +312,7 @@ static bool predict_closed_form(const arm *touched, const double *q, const doubl
     // the path, and the force along its end, where the arm is bent the most
     pressed_tangents(touched, q, &c, &k);
     predict_path(&p, q[0], after[0], c, k, &path);
-    path_peak(&p, &path, first, out);
-    return fabs(p.bend) < CLOSED_FORM_BEND;
+    return path_peak(&p, &path, first, out) && fabs(p.bend) < CLOSED_FORM_BEND;
 }
 
 static prediction no_prediction(void)

@@ -13,8 +13,8 @@
 // work: a motion created for this arm, used as scratch; its state is not touched.
 // A wall that gives is taken as it is, a mass at the tip too. Where the number could not be relied
 // on, `doubt` says why and the prediction does not hold.
-// Costs about a microsecond for two links on a rigid hub, a chain of matrix exponentials
-// otherwise.
+// Costs about a microsecond for two links on a rigid hub whose force peaks near standstill, a chain
+// of matrix exponentials otherwise.
 status predict_linearised(const arm *a, motion *work, const double *q, const double *w,
                           prediction *out);
 
