@@ -20,13 +20,15 @@ LOOP block all(double x)
 }
 
 // Every lane's successor of the first block, and every lane's predecessor of the last one.
-LOOP block next_lane(block first, double beyond)
+LOOP block next_lane(const block *first, double beyond)
 {
-    return (block){first[1], first[2], first[3], first[4], first[5], first[6], first[7], beyond};
+    const block f = *first;
+    return (block){f[1], f[2], f[3], f[4], f[5], f[6], f[7], beyond};
 }
-LOOP block lane_before(block last, double before)
+LOOP block lane_before(const block *last, double before)
 {
-    return (block){before, last[0], last[1], last[2], last[3], last[4], last[5], last[6]};
+    const block l = *last;
+    return (block){before, l[0], l[1], l[2], l[3], l[4], l[5], l[6]};
 }
 
 LOOP void loop_join(chain_rows *r)
@@ -127,16 +129,16 @@ LOOP void loop_torques(chain_rows *r, const chain_order *o)
     for (int b = 0; b <= last; b++) {
         const block angle = TERM(r->angle, o->n, b), rate = TERM(r->rate, o->n, b);
         const block angle_beyond =
-            b < last ? TERM(r->angle, o->n, b + 1) : next_lane(TERM(r->angle, o->n, 0), 0);
+            b < last ? TERM(r->angle, o->n, b + 1) : next_lane(&TERM(r->angle, o->n, 0), 0);
         const block rate_beyond =
-            b < last ? TERM(r->rate, o->n, b + 1) : next_lane(TERM(r->rate, o->n, 0), 0);
+            b < last ? TERM(r->rate, o->n, b + 1) : next_lane(&TERM(r->rate, o->n, 0), 0);
         const block turn = AT(r->joint, b) * (rate_beyond - rate);
         TERM(r->bend_rate, o->n, b) = turn;
         AT(r->torque, b) = AT(r->joint, b) * (stiffness * (angle_beyond - angle)) + damping * turn;
     }
 
     // what each link feels of both of its own
-    block inner = lane_before(AT(r->torque, last), -o->root);
+    block inner = lane_before(&AT(r->torque, last), -o->root);
     for (int b = 0; b <= last; b++) {
         const block outer = AT(r->torque, b);
         AT(r->moment, b) = (outer - inner) - AT(r->moment, b);
@@ -239,8 +241,8 @@ LOOP void loop_hand(chain_rows *r, const chain_order *o)
     const int last = r->blocks - 1;
     const block half = all(o->length / 2);
     for (int b = 0; b <= last; b++) {
-        const block x = b < last ? AT(r->qx, b + 1) : next_lane(AT(r->qx, 0), o->tip_x);
-        const block y = b < last ? AT(r->qy, b + 1) : next_lane(AT(r->qy, 0), o->tip_y);
+        const block x = b < last ? AT(r->qx, b + 1) : next_lane(&AT(r->qx, 0), o->tip_x);
+        const block y = b < last ? AT(r->qy, b + 1) : next_lane(&AT(r->qy, 0), o->tip_y);
         TERM(r->gx, o->n, b) = half * (AT(r->qx, b) + x);
         TERM(r->gy, o->n, b) = half * (AT(r->qy, b) + y);
     }
