@@ -53,13 +53,14 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
 
 // The first fall below zero from `lo` to `hi`, both known; negative if there is none. Intervals in
 // which the bound on the second derivative leaves no room for one are passed, those in which it
-// leaves none for a slope upwards have one root, and all others are cut in two.
+// leaves none for a slope upwards have one root, and all others are cut in two. In what is not
+// finite nothing is to be found: the state at its end says so.
 static double first_fall(const arm *a, const motion *m, watch w, point lo, point hi, int cuts)
 {
     const double length = hi.time - lo.time;
     const double bend = m->engine->bend(a, m, w, lo.time, hi.time);
     const double room = bend * length * length / 8;
-    if (fmin(lo.at.value, hi.at.value) > room) {
+    if (fmin(lo.at.value, hi.at.value) > room || !isfinite(room)) {
         return -1;
     }
 
