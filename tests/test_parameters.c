@@ -339,6 +339,7 @@ static void impossible_combinations_are_refused(void **state)
     check_conflict("wall.contact", "hunt-crossley", "wall.restitution", "0.5", "rigid");
     check_conflict("wall.contact", "hunt-crossley", "wall.mass", "0.5", "kelvin-voigt");
     check_conflict("wall.contact", "kelvin-voigt", "wall.mass", "1e-12", "at least");
+    check_conflict("arm.hub_joint", "beam", "arm.hub_inertia", "0", "nothing to move");
     check_conflict("wall.contact", "kelvin-voigt", "method.name", "newmark", "event only");
     check_conflict("control.delay", "0.02", "control.rate", "100",
                    "longer than the period of 0.01 s");

@@ -359,6 +359,13 @@ static status resolve_arm(parameters *p, fault *f)
         return STATUS_BAD_SCENARIO;
     }
 
+    // behind a spring the hub is a body of its own
+    if (p->arm.hub_joint != HUB_RIGID && p->arm.hub_inertia == 0) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.hub_inertia, arm.hub_joint),
+                            "arm.hub_inertia = 0 kg m2 leaves a hub on a spring nothing to move, "
+                            "expected above 0 or arm.hub_joint = rigid");
+    }
+
     // the arm starts in front of the wall
     if (p->wall.kind != WALL_NONE && p->initial.angle > p->wall.angle) {
         return fault_set_at(
