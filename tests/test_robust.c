@@ -37,6 +37,13 @@ static void a_set_is_its_lines(void **state)
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
     unlink(path);
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_CANNOT_READ);
+
+    // a folder, and what has no end
+    static const char *const others[] = {"/tmp", "/dev/zero"};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        assert_int_equal(robust_set_read(&set, others[i], &f), STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, others[i]));
+    }
 }
 
 static void cases_are_what_differs(void **state)
@@ -73,7 +80,15 @@ static void cases_are_what_differs(void **state)
     // what is no case, and a case that cannot be
     static const char *const wrong[] = {"control.seed=1,2\ncase no colon\n",
                                         "control.seed=1,2\ncase a: push=0.05\n",
-                                        "control.seed=1,2\ncase a: nonsense\n", "case a:\n"};
+                                        "control.seed=1,2\ncase a: nonsense\n",
+                                        "case a:\n",
+                                        "control.seed=1,2\ncase : arm.links=3\n",
+                                        "control.seed=1,2\ncase a: push=0.1@-1\n",
+                                        "control.seed=1,2\ncase a: push=0.1@1 s\n",
+                                        "control.seed=1,2\ncase a: push=1e999@0.1\n",
+                                        "control.seed=1,2\ncase a: push=0.1@1e999\n",
+                                        ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
+                                         "push=1@4; push=1@5\n")};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         write_set(path, wrong[i]);
         assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,13 +52,14 @@ static char *trimmed(char *text)
     return text;
 }
 
-// Reads IMPULSE@TIME. False if it is none.
+// Reads IMPULSE@TIME, both finite. False if it is none.
 static bool read_push(robust_case *c, const char *text)
 {
     const char *rest;
     double impulse, time;
     if (c->push_count == ROBUST_CASE_PUSHES || !decimal_read(text, &impulse, &rest) ||
-        *rest != '@' || !decimal_read(rest + 1, &time, &rest) || *rest != '\0' || time < 0) {
+        *rest != '@' || !decimal_read(rest + 1, &time, &rest) || *rest != '\0' || time < 0 ||
+        !isfinite(impulse) || !isfinite(time)) {
         return false;
     }
     c->push_impulse[c->push_count] = impulse;
