@@ -208,7 +208,8 @@ static void begin_rise(observer_memory *m, double time)
         .most = limit > 0 ? mode_at_rest(m, limit) : HUGE_VAL,
         .time = time,
     };
-    m->rise = force_rise_begin(&task);
+    // no force is wanted: nothing rises
+    m->rise = task.end > 0 ? force_rise_begin(&task) : (force_rise){.begun = time};
 }
 
 // Force with which the beam presses where the hub is [N].
