@@ -428,6 +428,16 @@ static void the_tip_comes_back_no_faster_than_it_came(void **state)
     check_close(rig_summary(SETTINGS("control.law=observer")).return_speed_m_s, 0, 0);
 }
 
+// A tip that drifts to the wall where no force is wanted is touched by, and nothing presses on it.
+static void no_force_is_wanted_and_none_is_held(void **state)
+{
+    (void)state;
+    const summary m =
+        rig_summary(SETTINGS("control.law=observer", "control.force=0", "initial.velocity=2"));
+    check_below(0, m.first_contact_s);
+    check_below(fabs(m.steady_force_N), 0.05);
+}
+
 // --- laws see sensors only --------------------------------------------------------------------
 
 // The plant is replaced by a recording of what its sensors read: the commands are the same.
@@ -498,6 +508,7 @@ int main(void)
         cmocka_unit_test(it_learns_how_stiff_the_arm_is),
         cmocka_unit_test(it_finds_the_wall_again),
         cmocka_unit_test(the_tip_comes_back_no_faster_than_it_came),
+        cmocka_unit_test(no_force_is_wanted_and_none_is_held),
         cmocka_unit_test(the_same_readings_give_the_same_commands),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
