@@ -1,6 +1,7 @@
 #include "render/page/text.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <fontconfig/fontconfig.h>
 #include <math.h>
 #include <signal.h>
@@ -272,14 +273,30 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     return layout;
 }
 
+// HarfBuzz sets letters elsewhere where it finds no memory, and tells nobody: what an allocation
+// leaves in errno does. Shaping stands between the two; without memory the program ends as by GLib.
+static void begin_shaping(void)
+{
+    in_fonts++;
+    errno = 0;
+}
+
+static void end_shaping(void)
+{
+    in_fonts--;
+    if (errno == ENOMEM) {
+        g_error("out of memory");
+    }
+}
+
 void text_measure(PangoContext *context, const text_block *t, double *width, double *height)
 {
     assert(context != NULL && t != NULL && t->markup != NULL);
     PangoRectangle logical;
-    in_fonts++;
+    begin_shaping();
     PangoLayout *layout = text_layout_create(context, t);
     pango_layout_get_extents(layout, NULL, &logical);
-    in_fonts--;
+    end_shaping();
     *width = (double)logical.width / PANGO_SCALE;
     *height = (double)logical.height / PANGO_SCALE;
     g_object_unref(layout);
@@ -289,7 +306,7 @@ double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
 {
     assert(cr != NULL && context != NULL && t != NULL && t->markup != NULL);
     PangoRectangle logical;
-    in_fonts++;
+    begin_shaping();
     // the context has to know whether cr is rotated
     pango_cairo_update_context(cr, context);
     PangoLayout *layout = text_layout_create(context, t);
@@ -298,7 +315,7 @@ double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
     cairo_rel_move_to(cr, -(double)logical.x / PANGO_SCALE, 0);
     pango_cairo_show_layout(cr, layout);
     g_object_unref(layout);
-    in_fonts--;
+    end_shaping();
     return (double)logical.width / PANGO_SCALE;
 }
 
