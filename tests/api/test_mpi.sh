@@ -56,7 +56,8 @@ done
 rows merged.sqlite | cmp -s - one.rows || fail "parts make another database"
 
 # a rank is killed on the way; the same command goes on
-heavy=(sweep corrected/twenty-links --set run.duration=1 --vary motor.voltage=1:3:24)
+runs=96
+heavy=(sweep corrected/twenty-links --set run.duration=1 --vary motor.voltage=1:3:$runs)
 count() {
     python3 -c 'import sqlite3; print(sqlite3.connect("killed.sqlite").execute("SELECT count(*) FROM run").fetchone()[0])'
 }
@@ -66,7 +67,7 @@ kill_on_the_way() {
     rm -f killed.sqlite*
     timeout 1000 mpirun -n 3 "$lab_mpi" "${heavy[@]}" --db killed.sqlite >said 2>&1 &
     local mpi=$!
-    python3 - "$work" "$(basename -- "$lab_mpi")" <<'END'
+    python3 - "$work" "$(basename -- "$lab_mpi")" $runs <<'END'
 import os, pathlib, signal, sqlite3, sys, time
 
 def rows():
@@ -88,7 +89,7 @@ def kill_rank_two():
             pass
 
 end = time.monotonic() + 120
-while (rows() < 1 or not kill_rank_two()) and rows() < 24 and time.monotonic() < end:
+while (rows() < 1 or not kill_rank_two()) and rows() < int(sys.argv[3]) and time.monotonic() < end:
     time.sleep(0.02)
 END
     status=0
@@ -99,10 +100,10 @@ END
 # where the ranks were through before the eye saw it, once more
 for _ in 1 2 3; do
     kill_on_the_way
-    [ "$there" = 24 ] || break
+    [ "$there" = $runs ] || break
 done
 [ "$status" != 0 ] || fail "a killed rank went unnoticed"
-[ "$there" -gt 0 ] && [ "$there" -lt 24 ] || fail "$there of 24 rows are there after the kill"
+[ "$there" -gt 0 ] && [ "$there" -lt $runs ] || fail "$there of $runs rows are there after the kill"
 together 3 "${heavy[@]}" --db killed.sqlite --csv killed.csv || fail "it does not go on: $(cat said)"
 grep -q "were there already" said || fail "what was there is computed again: $(cat said)"
 "$lab" "${heavy[@]}" --csv whole.csv --quiet
