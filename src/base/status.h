@@ -9,7 +9,7 @@
     X(STATUS_NOT_FINITE, "a state became infinite or not a number")                                \
     X(STATUS_UNSTABLE, "the energy ledger does not close, the integration is unstable")            \
     X(STATUS_NEWTON_FAILED, "Newton's iteration did not converge")                                 \
-    X(STATUS_NO_PROGRESS, "events follow one another without time passing")                        \
+    X(STATUS_NO_PROGRESS, "events or strides follow one another without time passing")             \
     X(STATUS_SINGULAR, "the system of equations is singular")                                      \
     X(STATUS_NO_MEMORY, "out of memory")                                                           \
     X(STATUS_CANNOT_WRITE, "a file could not be written")                                          \

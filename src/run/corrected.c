@@ -15,7 +15,14 @@
 #define LEDGER_ROUNDING 1e-13 // what the ledger may lack whatever was put in [J]
 #define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
 
-enum { MOST_EVENTS_AT_ONCE = 100 }; // events without time passing before the run is given up
+// A run is given up where it comes on by less than this a stride, as a share of its duration or of
+// a second, whichever is less: it would take a hundred thousand million strides, more than a day.
+#define SLOWEST_PACE 1e-11
+
+enum {
+    MOST_EVENTS_AT_ONCE = 100, // events without time passing before the run is given up
+    STRIDES_A_LOOK = 1 << 16,  // between looks at its pace, more than anything brief takes
+};
 
 // Says when and how the run failed, with the method's name.
 static status explain(const corrected_run *c, status s, fault *f)
@@ -29,6 +36,45 @@ static status explain(const corrected_run *c, status s, fault *f)
                          motion_energy_residual(&c->arm, m, m->state), m->engine->name);
     }
     return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
+}
+
+// The fastest link's angular velocity [rad/s]; *link is its place from the hub on, which is 0.
+static double fastest_turn(const motion *m, int *link)
+{
+    const double *w = state_velocities(m, m->state);
+    *link = 0;
+    for (int i = 1; i < m->dof; i++) {
+        *link = fabs(w[i]) > fabs(w[*link]) ? i : *link;
+    }
+    return w[*link];
+}
+
+// Whether so many strides passed so little time that the run has no end. Says so.
+static status keep_pace(corrected_run *c, fault *f)
+{
+    const double now = c->motion->state[SLOT_TIME], from = c->looked_from;
+    const double duration = c->recording->scenario->parameters.run.duration;
+    if (from >= 0 && ++c->strides < STRIDES_A_LOOK) {
+        return STATUS_OK;
+    }
+
+    // the first stride only begins to count
+    const double least = SLOWEST_PACE * STRIDES_A_LOOK * fmin(duration, 1);
+    const bool passes = from < 0 || now - from >= least;
+    c->strides = 0;
+    c->looked_from = now;
+    if (passes) {
+        return STATUS_OK;
+    }
+
+    int link;
+    const double turn = fastest_turn(c->motion, &link);
+    return fault_set(f, STATUS_NO_PROGRESS,
+                     "at t = %.9g s of %g s: %d strides passed %.3g s, at which the run has no "
+                     "end; its fastest angle turns at %.3g rad/s (w%d), the method was %s: smaller "
+                     "velocities, stiffnesses or dampings have longer strides",
+                     now, duration, STRIDES_A_LOOK, now - from, turn, link + 1,
+                     c->motion->engine->name);
 }
 
 // Says where a flat wall could no longer hold the arm.
@@ -87,7 +133,7 @@ status corrected_stride(corrected_run *c, fault *f)
         s = STATUS_STOPPED;
     }
     recording_publish(r, m->state[SLOT_TIME]);
-    return s == STATUS_OK ? s : explain(c, s, f);
+    return s == STATUS_OK ? keep_pace(c, f) : explain(c, s, f);
 }
 
 // The next instant that steps end at: the rig's, or the end.
@@ -262,7 +308,7 @@ status corrected_open(corrected_run *c, recording *r, fault *f)
 {
     assert(c != NULL && r != NULL && r->scenario->parameters.arm.model != ARM_PRINTED);
     const parameters *p = &r->scenario->parameters;
-    *c = (corrected_run){.recording = r, .last_event = -1};
+    *c = (corrected_run){.recording = r, .last_event = -1, .looked_from = -1};
     corrected_bind_arm(c);
     c->motion = motion_create(&c->arm, &p->method);
     if (c->motion == NULL) {

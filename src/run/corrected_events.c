@@ -194,6 +194,12 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
         e.impulse = todo->value;
         motion_push(&c->arm, m, todo->value, &report);
         add_impulse_to_sensors(c, &report);
+        if (!isfinite(m->state[SLOT_EXTERNAL_WORK])) {
+            failed = fault_set(f, STATUS_NOT_FINITE,
+                               "at t = %.9g s: a push of %g N s gives the arm more energy than "
+                               "there are numbers for",
+                               m->state[SLOT_TIME], todo->value);
+        }
     }
     r->state.energy_put_in += fabs(m->state[SLOT_EXTERNAL_WORK] - work);
     if (failed == STATUS_OK) {

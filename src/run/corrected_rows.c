@@ -28,6 +28,9 @@ status corrected_audit(corrected_run *c)
                          m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN + TINY_ENERGY;
     // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
     double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
+    if (!isfinite(residual) || !isfinite(turned_over)) {
+        return STATUS_NOT_FINITE;
+    }
     return wrong > WRONG_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
 }
 

@@ -13,10 +13,14 @@ typedef struct corrected_run {
     double stop;       // where it ends at the latest, 0 before the first [s]
     double last_event; // in it, -1 if none [s]
     int at_once;       // events in a row without time passing
+
+    // the pace, looked at every so many strides
+    long strides;       // since the last look
+    double looked_from; // instant of the last look, -1 before the first stride [s]
 } corrected_run;
 
 // Takes note of the energy that the ledger does not account for. STATUS_UNSTABLE if the run makes
-// energy.
+// energy, STATUS_NOT_FINITE if an energy is beyond all numbers.
 status corrected_audit(corrected_run *c);
 
 // The row of a state of the motion, at which an impulse [N s] acts or none.

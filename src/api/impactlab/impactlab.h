@@ -42,7 +42,7 @@ typedef enum impactlab_status {
     IMPACTLAB_NOT_FINITE = 3,          // a state or command became infinite or not a number
     IMPACTLAB_UNSTABLE = 4,            // the energy ledger does not close
     IMPACTLAB_NEWTON_FAILED = 5,       // an iteration did not converge
-    IMPACTLAB_NO_PROGRESS = 6,         // events follow one another without time passing
+    IMPACTLAB_NO_PROGRESS = 6,         // events or strides follow each other without time passing
     IMPACTLAB_SINGULAR = 7,            // equations without a single solution
     IMPACTLAB_NO_MEMORY = 8,           //
     IMPACTLAB_CANNOT_WRITE = 9,        //
