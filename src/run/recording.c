@@ -32,7 +32,9 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
 
 bool recording_asked_to_stop(const recording *r)
 {
-    return run_monitor_stops(r->options->monitor);
+    const run_options *o = r->options;
+    return run_monitor_stops(o->monitor) ||
+           (o->abandon != NULL && atomic_load_explicit(o->abandon, memory_order_relaxed));
 }
 
 void recording_publish(const recording *r, double time)

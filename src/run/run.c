@@ -46,14 +46,13 @@ typedef struct side_run {
 
 typedef struct side_by_side {
     const scenario *scenarios;
+    run_options options; // of all
     run_result *results;
     int count, next;      // of them, and the next one to begin
     int waiting[IN_HAND]; // places of those in hand, all of which wait for their series
     int waiting_count;
     side_run in_hand[IN_HAND];
 } side_by_side;
-
-static const run_options summary_only = {.keep_trace = false};
 
 // Goes on with a run until it waits for series that can be computed together with others'. False
 // if it is over: it is closed then.
@@ -105,13 +104,13 @@ static void begin_next(side_by_side *group, int place)
         const scenario *s = &group->scenarios[group->next];
         run_result *result = &group->results[group->next++];
         if (s->parameters.arm.model == ARM_PRINTED) {
-            run_scenario_with(s, &summary_only, result);
+            run_scenario_with(s, &group->options, result);
             continue;
         }
 
         // the next corrected run, up to its first wait
         one->run.motion = NULL;
-        status failed = recording_begin(&one->recording, s, &summary_only, result, &one->fault);
+        status failed = recording_begin(&one->recording, s, &group->options, result, &one->fault);
         if (failed == STATUS_OK) {
             failed = corrected_open(&one->run, &one->recording, &one->fault);
         }
@@ -173,20 +172,23 @@ static void serve(side_by_side *group)
     }
 }
 
-void run_together(const scenario *scenarios, int count, run_result *results)
+void run_together(const scenario *scenarios, int count, const atomic_bool *abandon,
+                  run_result *results)
 {
     assert(scenarios != NULL && results != NULL && count >= 0);
     side_by_side *group = calloc(1, sizeof *group);
+    const run_options options = {.abandon = abandon};
     const time_used start = time_now();
     if (group == NULL || taylor_width() == 1) {
         for (int i = 0; i < count; i++) {
-            run_scenario_with(&scenarios[i], &summary_only, &results[i]);
+            run_scenario_with(&scenarios[i], &options, &results[i]);
         }
         free(group);
         return;
     }
 
     group->scenarios = scenarios;
+    group->options = options;
     group->results = results;
     group->count = count;
     for (int place = 0; place < IN_HAND; place++) {

@@ -34,7 +34,7 @@ static void compute(void *context, size_t piece, void *scratch, void *result)
         b->make(b->context, piece * RUN_TOGETHER + i, &made[i]);
     }
 
-    run_together(made, (int)length, runs);
+    run_together(made, (int)length, NULL, runs);
     for (size_t i = 0; i < length; i++) {
         summaries[i] = runs[i].summary;
         run_finish(&runs[i]);

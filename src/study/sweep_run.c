@@ -73,7 +73,7 @@ static void compute_piece(void *context, size_t piece, void *scratch, void *resu
         }
     }
 
-    run_together(own->derived, begun, own->results);
+    run_together(own->derived, begun, e->options->abandon, own->results);
     for (int i = 0; i < begun; i++) {
         summaries[place[i]] = own->results[i].summary;
         run_finish(&own->results[i]);
@@ -89,6 +89,16 @@ static void compute_piece(void *context, size_t piece, void *scratch, void *resu
     }
 }
 
+// Keeps what the first of the failed runs says, whichever was computed first.
+static void count_failure(sweep_progress *p, size_t run, const summary *s)
+{
+    if (p->failed == 0 || run < p->first_failed) {
+        p->first_failed = run;
+        snprintf(p->first_failure, sizeof p->first_failure, "%s", s->message);
+    }
+    p->failed++;
+}
+
 static status store_run(sweep_execution *e, size_t run, const summary *s, fault *f)
 {
     if (s->status == STATUS_NO_MEMORY) {
@@ -101,7 +111,9 @@ static status store_run(sweep_execution *e, size_t run, const summary *s, fault 
     if (code == STATUS_OK) {
         e->progress->done++;
         e->progress->done_now++;
-        e->progress->failed += s->status != STATUS_OK;
+        if (s->status != STATUS_OK) {
+            count_failure(e->progress, run, s);
+        }
     }
     return code;
 }
@@ -113,7 +125,8 @@ static status store_piece(void *context, size_t piece, const void *result, fault
     status code = STATUS_OK;
     for (size_t i = 0; i < piece_length(e, piece) && code == STATUS_OK; i++) {
         const size_t run = e->wanted[piece * e->together + i];
-        code = e->present[run] ? STATUS_OK : store_run(e, run, &summaries[i], f);
+        const bool passed_over = e->present[run] || summaries[i].status == STATUS_STOPPED;
+        code = passed_over ? STATUS_OK : store_run(e, run, &summaries[i], f);
     }
     return code;
 }

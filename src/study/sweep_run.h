@@ -1,6 +1,9 @@
 // Computes the runs of a sweep on several threads and stores them as they finish.
 #pragma once
 
+#include <stdatomic.h>
+
+#include "src/quantities/summary.h"
 #include "src/study/pool.h"
 #include "src/study/ranks.h"
 #include "src/study/sweep.h"
@@ -10,10 +13,12 @@ enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
 
 // How far a sweep has come.
 typedef struct sweep_progress {
-    size_t done, total; // runs in the store, and in all, of this share of the sweep
-    size_t failed;      // of those done now: runs that failed
-    size_t done_now;    // since sweep_run began
-    double elapsed_s;   // since sweep_run began
+    size_t done, total;  // runs in the store, and in all, of this share of the sweep
+    size_t failed;       // of those done now: runs that failed
+    size_t done_now;     // since sweep_run began
+    double elapsed_s;    // since sweep_run began
+    size_t first_failed; // of those failed the run with the lowest number, from 0
+    char first_failure[sizeof(((summary *)0)->message)]; // and what it says
 } sweep_progress;
 
 // Every parts-th run, beginning with number `part` (from 1): what one of several machines computes.
@@ -26,6 +31,7 @@ typedef struct sweep_options {
     int jobs;                          // threads that compute, 1 ... SWEEP_MOST_JOBS
     const rank_group *ranks;           // that compute together instead, NULL or one: only this one
     const volatile sig_atomic_t *stop; // becomes true to end early; NULL if nothing does
+    const atomic_bool *abandon;        // the same for the runs in hand, which are not stored then
     void (*report)(void *context, const sweep_progress *p); // about ten times a second, or NULL
     void *context;
 } sweep_options;
@@ -33,7 +39,8 @@ typedef struct sweep_options {
 // Computes the runs that are missing in the store, runs of two links side by side in the
 // processor's vectors (run_together): what each gives does not depend on that. Rows are committed
 // at least every second (as soon as the runs themselves let it). If *stop becomes true the runs in
-// hand are finished and committed, and STATUS_OK is returned with progress->done < progress->total.
+// hand are finished, but for *abandon, and committed, and STATUS_OK is returned with
+// progress->done < progress->total.
 // On failure of the store, or without memory, what was committed stays and f says why.
 status sweep_run(const sweep *s, sweep_store *store, const sweep_options *options,
                  sweep_progress *progress, fault *f);

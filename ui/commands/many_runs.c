@@ -2,37 +2,48 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <unistd.h>
 
 #include "src/base/clock.h"
 
-enum { BAR_LENGTH = 24 };
+enum {
+    BAR_LENGTH = 24,
+    MOST_WAITED = 5, // for runs in hand after a signal [s]
+};
 
 static volatile sig_atomic_t signal_caught;
 static volatile double time_caught; // [s]
+static atomic_bool abandoned;
 
-// The first signal lets the runs in hand finish; one that comes a second or more later ends the
-// program. One that follows at once is the same again: timeout and some shells send it both to the
-// program and to its group.
+// The first signal lets the runs in hand finish, if they do soon; one that comes a second or more
+// later ends the program. One that follows at once is the same again: timeout and some shells send
+// it both to the program and to its group.
 static void catch_signal(int number)
 {
     const double now = clock_seconds(CLOCK_MONOTONIC);
-    if (signal_caught == 0) {
+    if (number == SIGALRM) {
+        abandoned = true;
+    } else if (signal_caught == 0) {
         signal_caught = number;
         time_caught = now;
+        alarm(MOST_WAITED);
     } else if (now > time_caught + 1) {
         signal(number, SIG_DFL);
         raise(number);
     }
 }
 
-const volatile sig_atomic_t *many_runs_catch_signals(void)
+void many_runs_catch_signals(sweep_options *o)
 {
+    assert(o != NULL);
     struct sigaction caught = {.sa_handler = catch_signal};
     sigemptyset(&caught.sa_mask);
     sigaction(SIGINT, &caught, NULL);
     sigaction(SIGTERM, &caught, NULL);
-    return &signal_caught;
+    sigaction(SIGALRM, &caught, NULL);
+    o->stop = &signal_caught;
+    o->abandon = &abandoned;
 }
 
 int many_runs_jobs(const arguments *a)
@@ -102,6 +113,13 @@ void many_runs_progress(void *context, const sweep_progress *p)
 void many_runs_clear_progress(void)
 {
     fprintf(stderr, "\r%78s\r", "");
+}
+
+void many_runs_tell_failure(const sweep_progress *p)
+{
+    assert(p != NULL && p->failed > 0);
+    complain("%zu of %zu runs failed; run %zu: %s", p->failed, p->done_now, p->first_failed + 1,
+             p->first_failure);
 }
 
 int many_runs_stopped(const char *db, size_t done, size_t total)

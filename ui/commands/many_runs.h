@@ -12,9 +12,9 @@ int many_runs_jobs(const arguments *a);
 // Whether this process only computes runs for rank 0, which keeps and tells them.
 bool many_runs_only_computes(const arguments *a);
 
-// From now on SIGINT and SIGTERM let the runs in hand finish. Returns what becomes true then; a
-// second signal, a second or more later, ends the program.
-const volatile sig_atomic_t *many_runs_catch_signals(void);
+// From now on SIGINT and SIGTERM stop the sweeps of these options: the runs in hand are finished,
+// or abandoned after five seconds. A second signal, a second or more later, ends the program.
+void many_runs_catch_signals(sweep_options *o);
 
 // Whether to show progress: on a terminal, without --quiet.
 bool many_runs_shows_progress(const arguments *a);
@@ -23,6 +23,9 @@ bool many_runs_shows_progress(const arguments *a);
 // is a word that stands before it (const char *), or NULL.
 void many_runs_progress(void *context, const sweep_progress *p);
 void many_runs_clear_progress(void);
+
+// Says how many of the runs that were computed now failed, and why the first of them did.
+void many_runs_tell_failure(const sweep_progress *p);
 
 // Ended by a signal: says what there is of the runs and how to go on, `db` being where they are
 // kept, or NULL. Returns the exit status, 130 after ^C.

@@ -158,9 +158,9 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     const bool computes = many_runs_only_computes(a);
     sweep_options options = {.jobs = many_runs_jobs(a),
                              .ranks = a->ranks,
-                             .stop = many_runs_catch_signals(),
                              .report = bar ? many_runs_progress : NULL,
                              .context = word};
+    many_runs_catch_signals(&options);
 
     // the runs
     status code = a->db != NULL && db == NULL
@@ -173,6 +173,9 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
 
     // all of them are there, or what there is stays in the store
     bool stopped = code == STATUS_OK && !computes && progress.done < progress.total;
+    if (code == STATUS_OK && !computes && progress.failed > 0 && !a->quiet) {
+        many_runs_tell_failure(&progress);
+    }
     if (code == STATUS_OK && !stopped && !computes) {
         robust_law *found = &r->found[r->judged++];
         code = robust_law_of(found, law, s, store, &f);
@@ -275,7 +278,13 @@ static int write_results(const robustness *r)
     if (summary_wanted(a)) {
         robust_text(stdout, &table);
     }
-    return code;
+
+    // nothing to judge is a failure
+    bool any = false;
+    for (int i = 0; i < r->judged; i++) {
+        any = any || r->found[i].failed < r->found[i].runs;
+    }
+    return any ? code : worse(code, EXIT_FAILED);
 }
 
 static int robust(const arguments *a)
@@ -348,7 +357,8 @@ const command robust_command = {
         "the\ntip's largest speed towards the wall in the air after first contact, over that "
         "before it.\n\n"
         "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with the "
-        "worst of the\nruns of each. Ctrl-C finishes the runs in hand (exit status 130); with "
+        "worst of the\nruns of each. Ctrl-C finishes the runs in hand, within five seconds (exit "
+        "status 130); with "
         "--db they are kept.\n",
     .least = 1,
     .most = 1,

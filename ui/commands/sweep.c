@@ -100,8 +100,8 @@ static int compute(const sweep_order *o, sweep_store *store)
     sweep_options options = {.share = o->share,
                              .jobs = o->jobs,
                              .ranks = o->arguments->ranks,
-                             .stop = many_runs_catch_signals(),
                              .report = bar ? many_runs_progress : NULL};
+    many_runs_catch_signals(&options);
     status code = sweep_run(&o->sweep, store, &options, &progress, &f);
 
     if (bar) {
@@ -194,7 +194,8 @@ const command sweep_command = {
         "latin, --runs N values are drawn\nfrom each PATH=a:b or list. LIST[k]=... varies the k-th "
         "number of a list, counted from 1.\n\n"
         "With --db a sweep that was interrupted goes on where it stopped when the same command "
-        "is given again.\nCtrl-C finishes the runs in hand and keeps them (exit status 130). "
+        "is given again.\nCtrl-C finishes the runs in hand, within five seconds, and keeps them "
+        "(exit status 130). "
         "Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",
     .least = 1,
     .most = 1,

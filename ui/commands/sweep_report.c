@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "render/plot/sweep_plot.h"
+#include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"
 #include "src/study/sweep_rows.h"
 
@@ -132,9 +133,11 @@ int report_sweep(const sweep_order *o, sweep_store *store, const sweep_progress 
         print_summary(o, values, failed, p);
     }
     free(values);
-    if (failed == o->sweep.run_count) {
+    if (p->failed > 0 && (!a->quiet || failed == o->sweep.run_count)) {
+        many_runs_tell_failure(p);
+    } else if (failed == o->sweep.run_count) {
         complain("all %zu runs failed; the message of each is in its row", failed);
-        code = code > EXIT_FAILED ? code : EXIT_FAILED;
     }
+    code = failed == o->sweep.run_count ? worse(code, EXIT_FAILED) : code;
     return code;
 }

@@ -1,0 +1,109 @@
+// Numbers at the far end of what may be asked for: a run ends in bounded effort, and nothing that
+// is no finite number passes for a result.
+#include <signal.h>
+#include <string.h>
+
+#include "src/run/run.h"
+#include "src/study/sweep_run.h"
+#include "tests/check.h"
+
+static void print_sentence(void *context, const char *sentence)
+{
+    (void)context;
+    print_error("%s\n", sentence);
+}
+
+static void read_scenario(scenario *s, const char *text)
+{
+    assert_int_equal(
+        scenario_parse(s, text, strlen(text), "extreme.yaml", "extreme", print_sentence, NULL),
+        STATUS_OK);
+}
+
+// Runs an arm of so many links that is pushed, and says how it ended.
+static status ends_of_push(int links, double impulse)
+{
+    char text[256];
+    run_result result;
+    scenario s;
+    snprintf(text, sizeof text,
+             "title: Pushed\narm: {links: %d}\nwall: {kind: none}\nscript:\n"
+             "  - {at: 0.1 s, push: %g N s}\n",
+             links, impulse);
+    read_scenario(&s, text);
+
+    status code = run_scenario(&s, false, &result);
+    assert_int_equal(code == STATUS_OK, result.summary.message[0] == '\0');
+    run_finish(&result);
+    scenario_finish(&s);
+    return code;
+}
+
+static void a_push_of_any_size_ends_a_run_or_lets_it_go_on(void **state)
+{
+    (void)state;
+    static const int links[] = {1, 2, 3, 8};
+    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
+        assert_int_equal(ends_of_push(links[i], 1e300), STATUS_NOT_FINITE);
+        assert_int_equal(ends_of_push(links[i], -1e300), STATUS_NOT_FINITE);
+        assert_int_equal(ends_of_push(links[i], 1e-300), STATUS_OK);
+    }
+    assert_int_equal(ends_of_push(2, 0.1), STATUS_OK);
+}
+
+// At 1e16 rad/s a turn takes less than a last bit of the time.
+static void strides_that_pass_no_time_end_a_run(void **state)
+{
+    (void)state;
+    assert_int_equal(ends_of_push(1, 1e15), STATUS_NO_PROGRESS);
+    assert_int_equal(ends_of_push(1, -1e20), STATUS_NO_PROGRESS);
+}
+
+static volatile sig_atomic_t stop;
+static atomic_bool abandoned;
+
+static void give_up(void *context, const sweep_progress *p)
+{
+    (void)context;
+    (void)p;
+    stop = 1;
+    abandoned = true;
+}
+
+static void runs_without_an_end_are_abandoned_and_not_stored(void **state)
+{
+    (void)state;
+    static const char text[] = "title: Nearly for ever\nmotor: {voltage: 0.001 V}\n"
+                               "wall: {angle: 3 rad}\narm: {links: 24}\nrun: {duration: 90000 s}\n";
+    char *vary[] = {"motor.voltage=0.001:0.002:3"};
+    const sweep_request request = {.vary = vary, .vary_count = 1};
+    const sweep_options options = {
+        .jobs = 2, .stop = &stop, .abandon = &abandoned, .report = give_up};
+    fault f = {0};
+    scenario base;
+    sweep s;
+    sweep_store *store;
+    sweep_progress progress;
+    read_scenario(&base, text);
+    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
+    assert_int_equal(sweep_store_open(&store, NULL, &s, &f), STATUS_OK);
+
+    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_OK);
+    assert_int_equal(progress.total, 3);
+    assert_int_equal(progress.done, 0);
+    assert_int_equal(progress.failed, 0);
+
+    sweep_store_close(store);
+    sweep_finish(&s);
+    scenario_finish(&base);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_push_of_any_size_ends_a_run_or_lets_it_go_on),
+        cmocka_unit_test(strides_that_pass_no_time_end_a_run),
+        cmocka_unit_test(runs_without_an_end_are_abandoned_and_not_stored),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
