@@ -37,7 +37,8 @@ struct process {
     char line[MOST_LINE + 1];
     size_t length; // of what has been read of the answer
     char errors[LAST_ERRORS + 1];
-    char failure[1024]; // a sentence, "" as long as there is none
+    status code;        // STATUS_OK as long as it can be asked
+    char failure[1024]; // a sentence, where it cannot
 };
 
 // The controller's memory: what a run remembers of its process. Another run, or this one taken back
@@ -77,10 +78,11 @@ void process_tell(void *memory, const control_parameters *control)
     ((process_memory *)memory)->control = *control;
 }
 
-const char *process_failure(const process *p)
+status process_failure(const process *p, const char **why)
 {
-    assert(p != NULL);
-    return p->failure[0] != '\0' ? p->failure : NULL;
+    assert(p != NULL && why != NULL);
+    *why = p->failure;
+    return p->code;
 }
 
 // --- what goes wrong --------------------------------------------------------------------------
@@ -142,6 +144,15 @@ static bool fail(process *p, const char *format, ...)
     snprintf(p->failure, sizeof p->failure, "the process '%.200s' %s%s%s%s", p->begun.command, why,
              ended, errors[0] != '\0' ? "; it said last: " : "", errors);
     make_printable(p->failure);
+    p->code = STATUS_CONTROLLER_FAILED;
+    return false;
+}
+
+// The same where it is not the program's doing.
+static bool fail_without_memory(process *p)
+{
+    fail(p, "could not be asked: %s", status_text(STATUS_NO_MEMORY));
+    p->code = STATUS_NO_MEMORY;
     return false;
 }
 
@@ -351,7 +362,13 @@ static bool understand(process *p, controller_output *out)
     const size_t length = (size_t)(end - p->line);
     *end = '\0';
     json_error_t ignored;
+    errno = 0;
     json_t *object = json_loadb(p->line, length, 0, &ignored);
+
+    // jansson says of a line that it had no memory for what it says of a wrong one
+    if (object == NULL && errno == ENOMEM) {
+        return fail_without_memory(p);
+    }
     bool whole = json_is_object(object) && answered(object, "command", (double)NAN, &out->command);
     whole = whole && answered(object, "desired_angle", (double)NAN, &out->desired_angle) &&
             answered(object, "desired_velocity", (double)NAN, &out->desired_velocity) &&
@@ -389,6 +406,7 @@ static bool start_program(process *p)
     p->errors[0] = '\0';
     int reason = kept_program_start(&p->program, p->begun.command);
     if (reason != 0) {
+        p->code = STATUS_CONTROLLER_FAILED;
         snprintf(p->failure, sizeof p->failure, "'%.200s' cannot be started: %s", p->begun.command,
                  strerror(reason));
     }
@@ -426,7 +444,7 @@ static bool catch_up(process *p, const process_memory *m, double time)
         place = process_tape_before(p->tape, place);
     }
     if (way == NULL) {
-        return fail(p, "%s", status_text(STATUS_NO_MEMORY));
+        return fail_without_memory(p);
     }
 
     // and forth again
@@ -475,9 +493,10 @@ static void sample(void *memory, const controller_input *in, controller_output *
     process_memory *m = memory;
     process *p = m->process;
     out->command = (double)NAN;
-    p->failure[0] = '\0'; // a run that failed does not come here, one taken back to before may
+    p->code = STATUS_OK; // a run that failed does not come here, one taken back to before may
     char *question = question_of(m, in);
     if (question == NULL) {
+        fail_without_memory(p);
         return;
     }
     m->tells_setup = false;

@@ -26,5 +26,6 @@ void process_destroy(process *p);
 // What the program is told of control.* from the next sample on; `memory` is the controller's.
 void process_tell(void *memory, const control_parameters *control);
 
-// Why the program can no longer be asked, a sentence; NULL as long as it can.
-const char *process_failure(const process *p);
+// STATUS_OK as long as the program can be asked. Else STATUS_CONTROLLER_FAILED, or STATUS_NO_MEMORY
+// where that is not the program's doing, and *why is a sentence that begins with "the process".
+status process_failure(const process *p, const char **why);

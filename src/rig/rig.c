@@ -292,9 +292,10 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
         return explain_withheld(r, f);
     }
     r->law->sample(r->memory, &input, out);
-    if (r->process != NULL && process_failure(r->process) != NULL) {
-        return fault_set_at(f, STATUS_CONTROLLER_FAILED, "control.command", "at t = %.9g s %s",
-                            time, process_failure(r->process));
+    const char *why = "";
+    status failed = r->process != NULL ? process_failure(r->process, &why) : STATUS_OK;
+    if (failed != STATUS_OK) {
+        return fault_set_at(f, failed, "control.command", "at t = %.9g s %s", time, why);
     }
     if (!isfinite(out->command)) {
         return fault_set(

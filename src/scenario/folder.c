@@ -54,11 +54,18 @@ static bool is_file(const char *path)
 
 // ---- reading ------------------------------------------------------------------------------------
 
+static status report_no_memory(fault_handler report, void *context)
+{
+    report(context, status_text(STATUS_NO_MEMORY));
+    return STATUS_NO_MEMORY;
+}
+
+// What is wrong with a file as a whole.
 static status report_file(const char *path, const char *what, fault_handler report, void *context)
 {
     char *sentence = text_of("%s:1:1: %s, expected a scenario file", path, what);
     if (sentence == NULL) {
-        return STATUS_NO_MEMORY;
+        return report_no_memory(report, context);
     }
     report(context, sentence);
     free(sentence);
@@ -86,9 +93,9 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
     bool failed = ferror(file) != 0;
     fclose(file);
 
-    status result = STATUS_NO_MEMORY;
+    status result;
     if (text == NULL) {
-        report_file(path, "there is no memory to read it", report, context);
+        result = report_no_memory(report, context);
     } else if (failed) {
         result = report_file(path, "it cannot be read", report, context);
     } else {
@@ -145,42 +152,52 @@ typedef struct folder_list {
     int count;
 } folder_list;
 
-static folder_list open_folders(void)
-{
-    folder_list all = {.count = 0};
-    const char *chosen = getenv("IMPACTLAB_SCENARIOS");
-
-    // the user's folders; one place is left for the shipped one
-    while (chosen != NULL && *chosen != '\0' && all.count < MAX_FOLDERS - 1) {
-        size_t length = strcspn(chosen, ":");
-        if (length > 0) {
-            all.folders[all.count] = strndup(chosen, length);
-            all.count += all.folders[all.count] != NULL;
-        }
-        chosen += length + (chosen[length] == ':');
-    }
-
-    // it comes last, behind all that the user has
-    all.folders[all.count] = shipped_folder();
-    all.count += all.folders[all.count] != NULL;
-    return all;
-}
-
 static void close_folders(folder_list *all)
 {
     for (int i = 0; i < all->count; i++) {
         free(all->folders[i]);
     }
+    all->count = 0;
+}
+
+// False without memory: a folder less would be another scenario of the same name.
+static bool open_folders(folder_list *all)
+{
+    const char *chosen = getenv("IMPACTLAB_SCENARIOS");
+    bool good = true;
+    all->count = 0;
+
+    // the user's folders; one place is left for the shipped one
+    while (good && chosen != NULL && *chosen != '\0' && all->count < MAX_FOLDERS - 1) {
+        size_t length = strcspn(chosen, ":");
+        if (length > 0) {
+            all->folders[all->count] = strndup(chosen, length);
+            good = all->folders[all->count] != NULL;
+            all->count += good;
+        }
+        chosen += length + (chosen[length] == ':');
+    }
+
+    // it comes last, behind all that the user has
+    all->folders[all->count] = good ? shipped_folder() : NULL;
+    good = all->folders[all->count] != NULL;
+    all->count += good;
+    if (!good) {
+        close_folders(all);
+    }
+    return good;
 }
 
 // The file of that name in the first folder that has it, else in the last; NULL without memory.
 static char *find_file(const char *name, const char *ending)
 {
-    folder_list all = open_folders();
+    folder_list all;
     char *path = NULL;
-    for (int i = 0; i < all.count && (path == NULL || !is_file(path)); i++) {
+    bool found = !open_folders(&all); // or nothing to look in
+    for (int i = 0; !found && i < all.count; i++) {
         free(path);
         path = text_of("%s/%s%s", all.folders[i], name, ending);
+        found = path == NULL || is_file(path);
     }
     close_folders(&all);
     return path;
@@ -297,8 +314,8 @@ status scenario_list(char ***names, int *count, fault *f)
     *count = 0;
 
     // those of every folder
-    folder_list all = open_folders();
-    status result = all.count > 0 ? STATUS_OK : fault_no_memory(f);
+    folder_list all;
+    status result = open_folders(&all) ? STATUS_OK : fault_no_memory(f);
     for (int i = 0; i < all.count && result == STATUS_OK; i++) {
         const bool shipped = i == all.count - 1;
         if (shipped && i > 0 && !is_folder(all.folders[i])) {
@@ -327,6 +344,7 @@ status scenario_list(char ***names, int *count, fault *f)
 
 // ---- finding ------------------------------------------------------------------------------------
 
+// Says what is wrong with a name that is neither listed nor a file.
 static status report_unknown(const char *wanted, fault_handler report, void *context)
 {
     char **names;
@@ -334,10 +352,13 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     size_t length = strlen(wanted), tail = sizeof suffix - 1;
     bool has_suffix = length > tail && strcmp(wanted + length - tail, suffix) == 0;
     char *stem = strndup(wanted, has_suffix ? length - tail : length);
+    if (stem == NULL || scenario_list(&names, &count, NULL) == STATUS_NO_MEMORY) {
+        free(stem);
+        return report_no_memory(report, context);
+    }
 
     // the nearest of those that ship; without a folder there is none
-    nearest_word near = nearest_begin(stem != NULL ? stem : wanted);
-    scenario_list(&names, &count, NULL);
+    nearest_word near = nearest_begin(stem);
     for (int i = 0; i < count; i++) {
         nearest_try(&near, names[i]);
     }
@@ -352,31 +373,32 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     free(stem);
 
     if (sentence == NULL) {
-        return STATUS_NO_MEMORY;
+        return report_no_memory(report, context);
     }
     report(context, sentence);
     free(sentence);
     return STATUS_BAD_ARGUMENT;
 }
 
-// True if name is in the list; *path is then its file, to be freed.
-static bool find_name(const char *wanted, char **path)
+// The file of a scenario that the list has, on the heap; *path is NULL if it has none of that name.
+// Folders that cannot be listed have none; STATUS_NO_MEMORY is the only failure.
+static status find_name(const char *wanted, char **path)
 {
     char **names;
     int count;
     bool found = false;
     *path = NULL;
+    if (scenario_list(&names, &count, NULL) == STATUS_NO_MEMORY) {
+        return STATUS_NO_MEMORY;
+    }
 
     // a file is looked for only if the list has its name
-    scenario_list(&names, &count, NULL);
     for (int i = 0; i < count && !found; i++) {
-        if (strcmp(names[i], wanted) == 0) {
-            found = true;
-            *path = find_file(wanted, suffix);
-        }
+        found = strcmp(names[i], wanted) == 0;
     }
     free_names(names, count);
-    return *path != NULL;
+    *path = found ? find_file(wanted, suffix) : NULL;
+    return found && *path == NULL ? STATUS_NO_MEMORY : STATUS_OK;
 }
 
 status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context)
@@ -385,8 +407,12 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
 
     // a scenario of the folder
     char *path;
-    if (find_name(name_or_file, &path)) {
-        status result = scenario_read(s, path, name_or_file, report, context);
+    status result = find_name(name_or_file, &path);
+    if (result != STATUS_OK) {
+        return report_no_memory(report, context);
+    }
+    if (path != NULL) {
+        result = scenario_read(s, path, name_or_file, report, context);
         free(path);
         return result;
     }
@@ -395,17 +421,17 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
     if (is_file(name_or_file)) {
         return scenario_read(s, name_or_file, NULL, report, context);
     }
-
     path = text_of("%s%s", name_or_file, suffix);
-    status result = STATUS_NO_MEMORY;
-    if (path != NULL && is_file(path)) {
+    if (path == NULL) {
+        return report_no_memory(report, context);
+    }
+    if (is_file(path)) {
         result = scenario_read(s, path, NULL, report, context);
-    } else if (path != NULL && is_folder(name_or_file)) {
+    } else if (is_folder(name_or_file)) {
         result = scenario_read(s, name_or_file, NULL, report, context);
-    } else if (path != NULL) {
+    } else {
         result = report_unknown(name_or_file, report, context);
     }
-
     free(path);
     return result;
 }

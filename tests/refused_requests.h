@@ -1,0 +1,158 @@
+// Every request for memory, descriptors and threads refused in turn: what the library computes is
+// then whole and right, or it says that there is no memory. The linker puts the functions below in
+// the place of the C library's (-Wl,--wrap=malloc and so on, see meson.build), so that requests of
+// this project are counted and refused, of jansson and SQLite too, and of nobody else's. Included
+// by one file of a test.
+#pragma once
+
+#include <errno.h>
+#include <pthread.h>
+#include <sqlite3.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "src/base/json.h"
+#include "tests/check.h"
+
+// --- who refuses --------------------------------------------------------------------------------
+
+static atomic_long requests;
+static long refused_at;    // the request that is refused; 0: none
+static bool refused_later; // and all after it
+
+// Whether the next request is to be refused.
+static bool refuses(void)
+{
+    const long number = atomic_fetch_add(&requests, 1) + 1;
+    return refused_at > 0 && (number == refused_at || (refused_later && number > refused_at));
+}
+
+// A function of the C library that gives `none` with a reason where it is refused.
+#define REFUSABLE(type, name, none, reason, parameters, arguments)                                 \
+    type __real_##name parameters;                                                                 \
+    type __wrap_##name parameters;                                                                 \
+    type __wrap_##name parameters                                                                  \
+    {                                                                                              \
+        if (refuses()) {                                                                           \
+            errno = reason;                                                                        \
+            return none;                                                                           \
+        }                                                                                          \
+        return __real_##name arguments;                                                            \
+    }
+REFUSABLE(void *, malloc, NULL, ENOMEM, (size_t size), (size))
+REFUSABLE(void *, calloc, NULL, ENOMEM, (size_t count, size_t size), (count, size))
+REFUSABLE(void *, realloc, NULL, ENOMEM, (void *old, size_t size), (old, size))
+REFUSABLE(char *, strdup, NULL, ENOMEM, (const char *text), (text))
+REFUSABLE(char *, strndup, NULL, ENOMEM, (const char *text, size_t most), (text, most))
+REFUSABLE(int, vasprintf, -1, ENOMEM, (char **text, const char *format, va_list list),
+          (text, format, list))
+
+int __wrap_asprintf(char **text, const char *format, ...);
+int __wrap_asprintf(char **text, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    const int length = __wrap_vasprintf(text, format, list);
+    va_end(list);
+    return length;
+}
+
+REFUSABLE(int, memfd_create, -1, EMFILE, (const char *name, unsigned flags), (name, flags))
+REFUSABLE(int, ftruncate64, -1, ENOSPC, (int fd, off_t size), (fd, size))
+REFUSABLE(int, fallocate64, -1, ENOSPC, (int fd, int mode, off_t from, off_t length),
+          (fd, mode, from, length))
+REFUSABLE(void *, mmap64, MAP_FAILED, ENOMEM,
+          (void *at, size_t length, int protection, int flags, int fd, off_t offset),
+          (at, length, protection, flags, fd, offset))
+REFUSABLE(int, pthread_create, EAGAIN, EAGAIN,
+          (pthread_t * thread, const pthread_attr_t *attributes, void *(*function)(void *),
+           void *argument),
+          (thread, attributes, function, argument))
+
+static sqlite3_mem_methods sqlite_memory;
+
+static void *sqlite_take(int size)
+{
+    return refuses() ? NULL : sqlite_memory.xMalloc(size);
+}
+
+static void *sqlite_take_again(void *old, int size)
+{
+    return refuses() ? NULL : sqlite_memory.xRealloc(old, size);
+}
+
+static int use_refusing_allocators(void **state)
+{
+    (void)state;
+    json_set_alloc_funcs(__wrap_malloc, free);
+    sqlite3_config(SQLITE_CONFIG_GETMALLOC, &sqlite_memory);
+    sqlite3_mem_methods refusing = sqlite_memory;
+    refusing.xMalloc = sqlite_take;
+    refusing.xRealloc = sqlite_take_again;
+    return sqlite3_config(SQLITE_CONFIG_MALLOC, &refusing) != SQLITE_OK;
+}
+
+// --- what is tried ------------------------------------------------------------------------------
+
+// Some work of the library: writes what came of it to `out`. The status is the library's.
+typedef status work(const char *settings, FILE *out);
+
+// Whether a status is one that a refused request may lead to. A law that cannot start has a
+// sentence and no code of its own: the scenario that asks for it is refused.
+static bool tells_of_refusal(status code)
+{
+    return code == STATUS_OK || code == STATUS_NO_MEMORY || code == STATUS_CANNOT_WRITE ||
+           code == STATUS_BAD_SCENARIO;
+}
+
+static long tries = 12; // requests that are refused of a piece of work, at most
+
+// The work with no request refused is the measure; then each k-th, or every n-th where there are
+// many, alone and with all that follow.
+static void try_all(work *does, const char *settings)
+{
+    char *expected = NULL, *found = NULL;
+    size_t size = 0;
+    refused_at = 0;
+    for (int i = 0; i < 2; i++) { // what is asked for once in a program's life is there then
+        free(expected);
+        FILE *out = open_memstream(&expected, &size);
+        atomic_store(&requests, 0);
+        assert_int_equal(does(settings, out), STATUS_OK);
+        fclose(out);
+    }
+    const long all = atomic_load(&requests), step = (all + tries - 1) / tries;
+    assert_true(all > 0);
+
+    for (int later = 0; later < 2; later++) {
+        for (long k = 1; k <= all; k += step) {
+            FILE *out = open_memstream(&found, &size);
+            atomic_store(&requests, 0);
+            refused_later = later;
+            refused_at = k;
+            const status code = does(settings, out);
+            refused_at = 0;
+            fclose(out);
+            if (code == STATUS_OK && strcmp(found, expected) != 0) {
+                fail_msg("%s: request %ld of %ld refused%s: another result, and no failure",
+                         settings, k, all, later ? ", and all after it" : "");
+            } else if (!tells_of_refusal(code)) {
+                fail_msg("%s: request %ld of %ld refused%s: '%s'", settings, k, all,
+                         later ? ", and all after it" : "", status_text(code));
+            }
+            free(found);
+        }
+    }
+    free(expected);
+}
+
+static void keep_nothing(void *context, const char *sentence)
+{
+    (void)context;
+    assert_true(sentence[0] != 0);
+    if (refused_at == 0) {
+        fail_msg("%s", sentence);
+    }
+}

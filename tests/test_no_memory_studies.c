@@ -1,0 +1,384 @@
+// As test_no_memory, for what stands around a run: scenarios by name, sets of cases, studies, parts
+// of a sweep, the printed model, and programs that are controllers.
+#include <unistd.h>
+
+#include "src/run/export.h"
+#include "src/session/session.h"
+#include "src/study/calibrate.h"
+#include "src/study/convergence.h"
+#include "src/study/robust.h"
+#include "src/study/sensor_view.h"
+#include "src/study/sweep_merge.h"
+#include "src/study/sweep_rows.h"
+#include "src/study/sweep_run.h"
+#include "src/study/sweep_table.h"
+#include "src/study/thesis_tables.h"
+#include "tests/refused_requests.h"
+
+// --- scenarios by name --------------------------------------------------------------------------
+
+static char folder[] = "/tmp/no-memory-XXXXXX";
+
+static void put_file(const char *name, const char *text)
+{
+    char path[64];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void write_sentence(void *out, const char *sentence)
+{
+    fprintf(out, "%s\n", sentence);
+}
+
+// A name that is unknown is refused with the same sentence, however little memory there is.
+static status look_up(const char *name, FILE *out)
+{
+    scenario s;
+    status code = scenario_open(&s, name, write_sentence, out);
+    if (code == STATUS_OK) {
+        fprintf(out, "%s: %s\n", s.name, s.title);
+        scenario_finish(&s);
+    }
+    return code == STATUS_BAD_ARGUMENT || code == STATUS_CANNOT_READ ? STATUS_OK : code;
+}
+
+static status list_all(const char *ignored, FILE *out)
+{
+    (void)ignored;
+    char **names;
+    int count;
+    fault f = {0};
+    status code = scenario_list(&names, &count, &f);
+    for (int i = 0; i < count; i++) {
+        fprintf(out, "%s\n", names[i]);
+        free(names[i]);
+    }
+    free(names);
+    return code;
+}
+
+static status place_of(const char *name, FILE *out)
+{
+    char *path = scenario_folder_file(name);
+    fprintf(out, "%s\n", path != NULL ? path : "");
+    const status code = path != NULL ? STATUS_OK : STATUS_NO_MEMORY;
+    free(path);
+    return code;
+}
+
+// --- studies ------------------------------------------------------------------------------------
+
+static status made(scenario *s, const char *settings)
+{
+    static const char text[] = "title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\n"
+                               "run: {duration: 0.12 s}\ninitial: {angle: -0.01 rad}\n";
+    status code = scenario_parse(s, text, strlen(text), "t.yaml", NULL, keep_nothing, NULL);
+    char all[256], *rest = NULL;
+    snprintf(all, sizeof all, "%s", settings);
+    for (char *one = strtok_r(all, " ", &rest); one != NULL && code == STATUS_OK;
+         one = strtok_r(NULL, " ", &rest)) {
+        fault f = {0};
+        code = scenario_override(s, one, &f);
+        if (code != STATUS_OK) {
+            scenario_finish(s);
+        }
+    }
+    return code;
+}
+
+static status draw_cases(const char *path, FILE *out)
+{
+    robust_set set;
+    fault f = {0};
+    scenario s, derived;
+    status code = made(&s, "");
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = robust_set_read(&set, path, &f);
+    for (int i = 0; code == STATUS_OK && i < set.case_count; i++) {
+        code = robust_case_scenario(&derived, &s, &set.cases[i], &f);
+        if (code == STATUS_OK) {
+            fprintf(out, "%s %g %d\n", set.cases[i].title, derived.parameters.arm.k2,
+                    derived.action_count);
+            robust_case_finish(&derived);
+        } else if (f.code == STATUS_BAD_ARGUMENT && refused_at > 0) {
+            code = STATUS_NO_MEMORY; // the case's sentence says so
+        }
+    }
+    robust_set_finish(&set);
+    scenario_finish(&s);
+    return code;
+}
+
+static status thesis(const char *ignored, FILE *out)
+{
+    (void)ignored;
+    thesis_tables t;
+    fault f = {0};
+    const status code = tables_compute(&t, &f);
+    for (int i = 0; i < t.row_count && code == STATUS_OK; i++) {
+        fprintf(out, "%a %a\n", t.rows[i].computed[0], t.rows[i].computed[3]);
+    }
+    return code;
+}
+
+static status sensor(const char *settings, FILE *out)
+{
+    scenario s;
+    sensor_view view;
+    fault f = {0};
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = sensor_view_compute(&s, 4, NULL, &view, &f);
+    fprintf(out, "%a %a %a\n", view.peak, view.momentum, view.sensed[0]);
+    scenario_finish(&s);
+    return code;
+}
+
+static status converge(const char *settings, FILE *out)
+{
+    scenario s;
+    convergence_panel panel;
+    fault f = {0};
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = convergence_compute(&s, NULL, &panel, &f);
+    for (int i = 0; i < panel.row_count && code == STATUS_OK; i++) {
+        fprintf(out, "%s %a\n", panel.rows[i].key, panel.rows[i].value[0]);
+    }
+    scenario_finish(&s);
+    return code;
+}
+
+static status measure_stiffness(const char *settings, FILE *out)
+{
+    scenario s;
+    calibration c;
+    const double commands[] = {1};
+    fault f = {0};
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = calibrate(&s, commands, 1, NULL, &c, &f);
+    if (code == STATUS_OK) {
+        json_t *object = calibration_json(&c, &s, "");
+        code = json_lost_something() || object == NULL ? STATUS_NO_MEMORY : STATUS_OK;
+        fprintf(out, "%a\n", c.points[0].k2);
+        json_decref(object);
+    }
+    scenario_finish(&s);
+    return code;
+}
+
+// --- parts of a sweep ---------------------------------------------------------------------------
+
+// Two parts into files, together into a third, and read as columns.
+static status sweep_in_parts(const char *settings, FILE *out)
+{
+    char paths[3][64], *files[] = {paths[0], paths[1]};
+    char *vary[] = {(char[]){"motor.voltage=1:3"}};
+    sweep_request request = {
+        .vary = vary, .vary_count = 1, .sampling = SWEEP_LATIN, .runs = 4, .seed = 1};
+    sweep w;
+    scenario s;
+    fault f = {0};
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    for (int i = 0; i < 3; i++) {
+        snprintf(paths[i], sizeof paths[i], "%s/%d.sqlite", folder, i);
+        unlink(paths[i]);
+    }
+
+    // the parts
+    code = sweep_init(&w, &s, &request, &f);
+    const bool begun = code == STATUS_OK;
+    for (int i = 0; i < 2 && code == STATUS_OK; i++) {
+        sweep_store *store = NULL;
+        sweep_progress progress;
+        const sweep_options options = {.share = {i + 1, 2}, .jobs = 1};
+        code = sweep_store_open(&store, files[i], &w, &f);
+        code = code == STATUS_OK ? sweep_run(&w, store, &options, &progress, &f) : code;
+        sweep_store_close(store);
+    }
+
+    // and what they are together
+    sweep_merged merged;
+    const char *const keys[] = {"motor.voltage", "peak_force_N"};
+    double *columns[2] = {NULL, NULL};
+    size_t count = 0;
+    code = code == STATUS_OK ? sweep_merge(files, 2, paths[2], &merged, &f) : code;
+    code = code == STATUS_OK ? sweep_table_read(paths[2], keys, 2, columns, &count, &f) : code;
+    for (size_t i = 0; i < count && code == STATUS_OK; i++) {
+        fprintf(out, "%a %a\n", columns[0][i], columns[1][i]);
+    }
+    free(columns[0]);
+    free(columns[1]);
+    for (int i = 0; i < 3; i++) {
+        unlink(paths[i]);
+    }
+    if (begun) {
+        sweep_finish(&w);
+    }
+    scenario_finish(&s);
+
+    // a database that could not be read in full may seem to be none
+    return code == STATUS_CANNOT_READ && refused_at > 0 ? STATUS_NO_MEMORY : code;
+}
+
+// --- runs ---------------------------------------------------------------------------------------
+
+// The force and the hub of every row.
+static status show_rows(const run_result *result, FILE *out)
+{
+    for (size_t i = 0; i < result->trace.row_count; i++) {
+        fprintf(out, "%a %a\n", result->trace.rows[i].force, result->trace.rows[i].hub_angle);
+    }
+    return result->summary.status;
+}
+
+static status run(const char *settings, FILE *out)
+{
+    scenario s;
+    run_result result;
+    status code = made(&s, settings);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = run_scenario(&s, true, &result);
+    show_rows(&result, out);
+    run_finish(&result);
+    scenario_finish(&s);
+    return code;
+}
+
+// A program in the shell that is asked, and asked again after a change.
+static status ask_a_program(const char *command, FILE *out)
+{
+    scenario s;
+    session t;
+    fault f = {0};
+    status code = made(&s, "");
+    if (code != STATUS_OK) {
+        return code;
+    }
+    char law[] = "control.law=process", rate[] = "control.rate=100", said[128];
+    snprintf(said, sizeof said, "%s", command);
+    char *const settings[] = {said, law, rate};
+    code = scenario_override_all(&s, settings, 3, keep_nothing, NULL);
+    if (code != STATUS_OK) {
+        scenario_finish(&s);
+        return refused_at > 0 ? STATUS_NO_MEMORY : code;
+    }
+    s.parameters.code_allowed = true;
+    code = session_init(&t, &s, &f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // what is asked after the change follows what was asked before it
+    code = t.run.summary.status;
+    session_seek(&t, 0.05);
+    code = code == STATUS_OK ? session_change(&t, PARAMETER_INDEX(control.force), "2", &f) : code;
+    code = code == STATUS_OK ? show_rows(&t.run, out) : code;
+    session_finish(&t);
+
+    // without a tape the program cannot go on from the past
+    if (code != STATUS_OK && refused_at == 0)
+        fprintf(stderr, "%s\n", f.text);
+    return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
+}
+
+// --- the tests ----------------------------------------------------------------------------------
+
+static void a_name_means_the_same_scenario(void **state)
+{
+    (void)state;
+    put_file("own.yaml", "title: Own\n");
+    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    char path[64];
+    setenv("IMPACTLAB_SCENARIOS", folder, 1);
+    snprintf(path, sizeof path, "%s/own", folder);
+    try_all(look_up, "own");
+    try_all(look_up, path);
+    try_all(look_up, "owm");
+    try_all(look_up, folder);
+    try_all(list_all, "");
+    try_all(place_of, "own.yaml");
+    setenv("IMPACTLAB_SCENARIOS", before, 1);
+    free(before);
+}
+
+static void sets_and_studies(void **state)
+{
+    (void)state;
+    char path[64];
+    put_file("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
+    snprintf(path, sizeof path, "%s/set", folder);
+    try_all(draw_cases, path);
+    try_all(thesis, "");
+    try_all(sensor, "");
+    try_all(converge, "");
+    try_all(measure_stiffness, "");
+}
+
+static void parts_of_a_sweep(void **state)
+{
+    (void)state;
+    try_all(sweep_in_parts, "");
+}
+
+static void runs_of_the_printed_model(void **state)
+{
+    (void)state;
+    try_all(run, "arm.model=printed");
+    try_all(run, "arm.model=printed control.law=hybrid");
+}
+
+static void programs_as_controllers(void **state)
+{
+    (void)state;
+    try_all(ask_a_program, "control.command=while read -r line; do echo '{\"command\": 1}'; done");
+}
+
+static int make_folder(void **state)
+{
+    return use_refusing_allocators(state) != 0 || mkdtemp(folder) == NULL;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"own.yaml", "set"};
+    char path[64];
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, files[i]);
+        unlink(path);
+    }
+    return rmdir(folder); // nothing else stays
+}
+
+// argument: how many requests are refused, spread over those of a piece of work
+int main(int argc, char **argv)
+{
+    tries = argc > 1 ? atol(argv[1]) : tries;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_name_means_the_same_scenario),
+        cmocka_unit_test(sets_and_studies),
+        cmocka_unit_test(parts_of_a_sweep),
+        cmocka_unit_test(runs_of_the_printed_model),
+        cmocka_unit_test(programs_as_controllers),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder) != 0;
+}
