@@ -346,7 +346,9 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
 
     double g, rate;
     chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
-    resolve(a, m, g >= 0 && rate >= 0, MOTION_REACHED);
+    // on a rigid wall and going into it, the arm is free until the impact that comes at once
+    const bool touching = g >= 0 && (motion_wall_is_rigid(m) ? rate == 0 : rate >= 0);
+    resolve(a, m, touching, MOTION_REACHED);
     m->start_energy += motion_wall_energy(a, m, m->state); // of a face that starts with the arm
     check_invariants(a, m);
 }

@@ -244,7 +244,10 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
         guess = 0.5 * hi;
     }
 
-    // it starts on the edge (a release, a breakaway): find where it is well admissible
+    // it starts on the edge (a release, a breakaway): find where it is well admissible, and on the
+    // way where a gap is first seen closed beyond rounding
+    const double beyond = fmin(v0, 0) - GAP_ROUNDING;
+    double closed = hi, v_closed = v1;
     if (v0 <= tolerance) {
         double s = hi;
         for (int i = 0; i < 20; i++) {
@@ -261,14 +264,23 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
             }
             hi = s;
             v1 = v;
+            if (v < beyond) {
+                closed = hi, v_closed = v;
+            }
         }
         guess = 0.5 * (lo + hi);
     }
 
     // narrowed to the width that time resolves; a gap that was nowhere found open closes where it
-    // is less than rounding makes it: flights too low for that to tell (after an impact that leaves
-    // the arm with hardly any force) end at once
-    const double edge = w == WATCH_GAP && !(v0 > 0) && !m->wall_gives ? -GAP_ROUNDING : 0;
+    // has passed its rounding: flights too low for that to tell (after an impact that leaves the
+    // arm with hardly any force) end there
+    double edge = 0;
+    if (w == WATCH_GAP && !(v0 > 0) && !m->wall_gives) {
+        edge = beyond;
+        hi = closed;
+        v1 = v_closed;
+        guess = 0.5 * hi;
+    }
     *found = true;
     bracket between = {lo, v0 - edge, hi, v1 - edge, edge};
     status s = narrow(a, m, w, guess, &between);
