@@ -106,6 +106,7 @@ void checkpoint_restore(recording *r, arm *a, motion *m)
     r->state = kept->recording;
 
     // and the motion
+    motion_follow_arm(a, m);
     memcpy(m->state, kept->state, (size_t)m->size * sizeof(double));
     m->steps = kept->steps;
     m->start_energy = kept->start_energy;

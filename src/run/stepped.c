@@ -108,6 +108,7 @@ static void corrected_restore(stepped_run *run, const void *bytes)
     motion *m = c->motion;
     saved_motion saved;
     corrected_bind_arm(c); // to parameters and voltage of then
+    motion_follow_arm(&c->arm, m);
     memcpy(&saved, bytes, sizeof saved);
     memcpy(m->state, (const char *)bytes + sizeof saved, (size_t)m->size * sizeof(double));
     c->stop = saved.stop;

@@ -416,6 +416,7 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
 {
     assert(before != NULL && after != NULL && m != NULL && after->dof == m->dof);
     const double *q = state_angles(m, m->state);
+    motion_follow_arm(after, m);
     m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
     if (m->wall_gives) {
         resolve(after, m, face_follows(after, m), MOTION_REACHED);

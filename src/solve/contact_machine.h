@@ -48,8 +48,9 @@ void motion_start(const arm *a, motion *m, double angle, double velocity);
 // A step that would go beyond m->cut is first tried as if the cut were not there, and ends at the
 // cut only if no event comes before it. So what happens before the cut, to the last bit, is what
 // happens without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
-// state is then the last good one. STATUS_FOLDED on a rigid flat wall that holds an arm folded over
-// the hub's axis (chain_is_folded), or is about to: the state is that one, and no step leads on.
+// state is then the last good one. STATUS_NO_MEMORY as motion_follow_arm says. STATUS_FOLDED on a
+// rigid flat wall that holds an arm folded over the hub's axis (chain_is_folded), or is about to:
+// the state is that one, and no step leads on.
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
 
 // Steps until `until` or the first event.

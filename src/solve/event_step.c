@@ -132,9 +132,9 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 {
     assert(a != NULL && m != NULL && report != NULL && step > 0);
     *report = (motion_report){.event = MOTION_REACHED};
-    if (held_folded(a, m)) {
+    if (m->starved || held_folded(a, m)) {
         m->failure_time = m->state[SLOT_TIME];
-        return STATUS_FOLDED;
+        return m->starved ? STATUS_NO_MEMORY : STATUS_FOLDED;
     }
 
     // as far as accuracy allows, the cut, or the first event

@@ -7,7 +7,9 @@
 
 // The event method takes the modes of the straight chain where the arm's fastest rate or decay is
 // beyond this [1/s]: a stride of theirs then replaces dozens of the series.
-#define STIFF           3e4
+#define STIFF 3e4
+// The two-link series are so cheap that decays, which alone can be fast there, pay from here on.
+#define STIFF_PAIR      2e5
 
 #define CACHE_LINE      64 // [bytes]
 
@@ -21,7 +23,7 @@
 // others; Runge-Kutta for arms and walls that those are not for. The time step has no say.
 static const engine *event_engine(const arm *a, const motion *m)
 {
-    if (taylor_engine_suits(a)) {
+    if (taylor_engine_suits(a) && a->fastest_decay <= STIFF_PAIR) {
         return &taylor_engine;
     }
     if (!arm_is_plain(a) || !motion_wall_is_rigid(m) || a->links < 2) {
@@ -59,6 +61,44 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     }
 }
 
+// Frees what belongs to the engine.
+static void close_engine(motion *m)
+{
+    free(m->between);
+    free(m->stages);
+    free(m->sweeps);
+    free(m->memory);
+    m->between = m->stages = NULL;
+    m->sweeps = m->memory = NULL;
+}
+
+// The engine's storage; false, and none of it, if out of memory.
+static bool open_engine(const arm *a, motion *m)
+{
+    const engine *e = m->engine;
+    const size_t size = (size_t)m->size, sweeps = (size_t)a->links * e->link_scratch;
+    const size_t memory = e->memory_for != NULL ? e->memory_for(a) : e->memory_size;
+    m->between = calloc(e->states_at != NULL ? MOTION_TOGETHER * size : size, sizeof(double));
+    m->stages = calloc((size_t)(e->scratch_vectors + 1) * (size_t)smooth_length(m), sizeof(double));
+    m->sweeps = sweeps > 0 ? calloc(1, sweeps) : NULL;
+    m->memory = memory > 0
+                    ? aligned_alloc(CACHE_LINE, (memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE)
+                    : NULL;
+
+    // all of it or none
+    if (!m->between || !m->stages || (sweeps > 0 && !m->sweeps) || (memory > 0 && !m->memory)) {
+        close_engine(m);
+        return false;
+    }
+    if (m->memory != NULL) {
+        memset(m->memory, 0, memory);
+    }
+    if (e->open != NULL) {
+        e->open(a, m);
+    }
+    return true;
+}
+
 motion *motion_create(const arm *a, const method_parameters *method)
 {
     assert(a != NULL && method != NULL && a->dof > 0 && method->step > 0);
@@ -72,36 +112,15 @@ motion *motion_create(const arm *a, const method_parameters *method)
     m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT;
     choose_engine(a, m, method);
 
-    // its storage
-    size_t size = (size_t)m->size, n = (size_t)a->dof, links = (size_t)a->links;
-    size_t sweeps = links * m->engine->link_scratch;
+    // its storage: all of it or none
+    size_t size = (size_t)m->size, n = (size_t)a->dof;
     m->state = calloc(size, sizeof(double));
     m->trial = calloc(size, sizeof(double));
-    m->between =
-        calloc(m->engine->states_at != NULL ? MOTION_TOGETHER * size : size, sizeof(double));
-    m->stages =
-        calloc((size_t)(m->engine->scratch_vectors + 1) * (size_t)smooth_length(m), sizeof(double));
     m->scratch = calloc(4 * n, sizeof(double));
-    m->links = calloc(links, sizeof(chain_link));
-    m->sweeps = sweeps > 0 ? calloc(1, sweeps) : NULL;
-
-    const engine *e = m->engine;
-    size_t memory = e->memory_for != NULL ? e->memory_for(a) : e->memory_size;
-    m->memory = memory > 0
-                    ? aligned_alloc(CACHE_LINE, (memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE)
-                    : NULL;
-    if (m->memory != NULL) {
-        memset(m->memory, 0, memory);
-    }
-
-    // all of it or none
-    if (!m->state || !m->trial || !m->between || !m->stages || !m->scratch || !m->links ||
-        (sweeps > 0 && !m->sweeps) || (memory > 0 && !m->memory)) {
+    m->links = calloc((size_t)a->links, sizeof(chain_link));
+    if (!m->state || !m->trial || !m->scratch || !m->links || !open_engine(a, m)) {
         motion_destroy(m);
         return NULL;
-    }
-    if (e->open != NULL) {
-        e->open(a, m);
     }
     return m;
 }
@@ -109,16 +128,26 @@ motion *motion_create(const arm *a, const method_parameters *method)
 void motion_destroy(motion *m)
 {
     if (m != NULL) {
+        close_engine(m);
         free(m->state);
         free(m->trial);
-        free(m->between);
-        free(m->stages);
         free(m->scratch);
         free(m->links);
-        free(m->sweeps);
-        free(m->memory);
         free(m);
     }
+}
+
+void motion_follow_arm(const arm *a, motion *m)
+{
+    assert(a != NULL && m != NULL && a->dof == m->dof);
+    const engine *wanted = motion_is_implicit(m) ? m->engine : event_engine(a, m);
+    if (wanted == m->engine && !m->starved) {
+        return;
+    }
+    close_engine(m);
+    m->engine = wanted;
+    m->starved = !open_engine(a, m);
+    m->state[SLOT_STRIDE] = 0;
 }
 
 void motion_evaluate(const arm *a, motion *m, double *state)

@@ -71,6 +71,7 @@ struct motion {
     bool wall_gives;     // contact is no constraint
     bool wall_has_face;  // contact ties the arm to a mass on a spring
     bool electric;       // the motor's current is followed
+    bool starved;        // no memory for the engine that a changed arm asks for
     bool brief;          // explicit: the step takes the method of order 6
     double cut; // an instant at which a step ends without being made for it [s]; HUGE_VAL: none
     double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
@@ -146,6 +147,11 @@ static inline int smooth_length(const motion *m)
 // memory.
 motion *motion_create(const arm *a, const method_parameters *method);
 void motion_destroy(motion *m); // m may be NULL
+
+// To be called after the arm's constants changed: the event method takes the engine that is now
+// right, which is the one that motion_create would choose. It has no stride in hand then. Where
+// there is no memory for it, the next step fails with STATUS_NO_MEMORY.
+void motion_follow_arm(const arm *a, motion *m);
 
 // Forgets the recorded peak: the next one counts from the present state.
 void motion_watch(motion *m);
