@@ -15,9 +15,11 @@
 #define LEDGER_ROUNDING 1e-13 // what the ledger may lack whatever was put in [J]
 #define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
 
-// A run is given up where it comes on by less than this a stride, as a share of its duration or of
-// a second, whichever is less: it would take a hundred thousand million strides, more than a day.
-#define SLOWEST_PACE 1e-11
+// A run is given up where its strides are shorter than this, as a share of its duration or of a
+// second, whichever is less: it would take fifty million of them, hours with many links. Steps that
+// method.step asks for are none of these.
+#define SLOWEST_PACE 2e-8
+#define ASKED_FOR    1e-3 // share of method.step
 
 enum {
     MOST_EVENTS_AT_ONCE = 100, // events without time passing before the run is given up
@@ -59,7 +61,8 @@ static status keep_pace(corrected_run *c, fault *f)
     }
 
     // the first stride only begins to count
-    const double least = SLOWEST_PACE * STRIDES_A_LOOK * fmin(duration, 1);
+    const double asked = ASKED_FOR * c->recording->now.method.step;
+    const double least = STRIDES_A_LOOK * fmin(SLOWEST_PACE * fmin(duration, 1), asked);
     const bool passes = from < 0 || now - from >= least;
     c->strides = 0;
     c->looked_from = now;

@@ -1,0 +1,166 @@
+// Arms whose fastest decay or vibration is beyond all that matters: they take few strides or say
+// why not. And arms that start on the wall, whose first flights are lower than rounding.
+#include <math.h>
+
+#include "src/run/run.h"
+#include "src/solve/contact_machine.h"
+#include "tests/arm_fixture.h"
+
+// What became of a motion.
+typedef struct passage {
+    int steps, impacts, touches;
+    double momentum; // that the wall took [N s]
+    double open;     // share of the energy put in that the ledger lacks
+} passage;
+
+static passage move_on(const arm *a, motion *m, double until, int most_steps)
+{
+    passage p = {0};
+    double put_in = m->start_energy;
+    const double force = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    while (m->state[SLOT_TIME] < until) {
+        motion_report r;
+        const double work = m->state[SLOT_MOTOR_WORK], pushed = m->state[SLOT_EXTERNAL_WORK];
+        assert_int_equal(motion_step(a, m, until, 1e-3, &r), STATUS_OK);
+        assert_true(++p.steps <= most_steps);
+        put_in += fabs(m->state[SLOT_MOTOR_WORK] - work) + fabs(pushed);
+        p.open = fmax(p.open, fabs(motion_energy_residual(a, m, m->state)));
+        motion_apply(a, m, &r);
+        p.impacts += r.event == MOTION_IMPACT;
+        p.touches += r.event == MOTION_TOUCH;
+        p.momentum += r.event == MOTION_IMPACT ? r.impulse : 0;
+    }
+    p.momentum += state_quadratures(m, m->state)[QUADRATURE_FORCE] - force;
+    p.open /= put_in;
+    return p;
+}
+
+static passage passage_of(const parameters *p, double angle, double velocity, double until,
+                          int most_steps)
+{
+    arm a;
+    arm_init(&a, p);
+    motion *m = motion_create(&a, &p->method);
+    assert_non_null(m);
+    motion_start(&a, m, angle, velocity);
+    passage result = move_on(&a, m, until, most_steps);
+    motion_destroy(m);
+    return result;
+}
+
+// A hub of a milligram square metre on a damped spring: its decay of 4e8 1/s is over at once.
+static void a_stiff_hub_takes_few_strides(void **state)
+{
+    (void)state;
+    for (int links = 2; links <= 4; links++) {
+        parameters p = fixture_parameters(SETTINGS("arm.hub_joint=spring", "arm.hub_inertia=1e-6",
+                                                   "arm.damping_ratio=0.02", "motor.voltage=1"));
+        p.arm.links = links;
+        passage stiff = passage_of(&p, 0, 0, 0.35, 2000);
+        assert_true(stiff.impacts >= 1);
+        check_below(stiff.open, 1e-6);
+    }
+}
+
+// The two-link arm of a stiffer hub by modes, and by the explicit formula, which alone takes what
+// carries a mass at its tip.
+static void a_stiff_pair_moves_as_by_the_formula(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.hub_joint=spring",
+                                               "arm.hub_inertia=1e-3", "arm.damping_ratio=0.02",
+                                               "motor.voltage=1", "wall.restitution=0.5"));
+    passage modes = passage_of(&p, 0.09, 0.3, 0.1, 2000);
+    p.arm.tip_mass = 1e-18;
+    passage formula = passage_of(&p, 0.09, 0.3, 0.1, 100000);
+    assert_true(modes.impacts > 2);
+    assert_int_equal(modes.impacts, formula.impacts);
+    check_relative(modes.momentum, formula.momentum, 1e-6);
+}
+
+// An edit in mid-run makes the arm stiff: the motion goes on by what is right for it then, as the
+// same arm would that went on from a copy of its state.
+static void an_arm_made_stiff_changes_its_engine(void **state)
+{
+    (void)state;
+    for (int links = 2; links <= 3; links++) {
+        parameters p = fixture_parameters(SETTINGS("arm.hub_joint=spring", "arm.k1=500",
+                                                   "arm.damping_ratio=0.02", "motor.voltage=1"));
+        p.arm.links = links;
+        arm before, after;
+        arm_init(&before, &p);
+        motion *m = motion_create(&before, &p.method);
+        motion_start(&before, m, 0, 0);
+        move_on(&before, m, 0.1, 100000);
+        const engine *soft = m->engine;
+
+        // edited
+        p.arm.k1 = 1e8;
+        arm_init(&after, &p);
+        assert_true(after.fastest_decay > 1e6);
+        motion_rebind(&before, &after, m);
+        assert_ptr_not_equal(m->engine, soft);
+        motion *copy = motion_create(&after, &p.method);
+        assert_ptr_equal(copy->engine, m->engine);
+        memcpy(copy->state, m->state, (size_t)m->size * sizeof(double));
+        copy->start_energy = m->start_energy;
+        passage on = move_on(&after, m, 0.35, 2000);
+        move_on(&after, copy, 0.35, 2000);
+        assert_true(on.impacts >= 1);
+        assert_memory_equal(copy->state, m->state, (size_t)m->size * sizeof(double));
+
+        // and back
+        motion_rebind(&after, &before, m);
+        assert_ptr_equal(m->engine, soft);
+        motion_destroy(m);
+        motion_destroy(copy);
+    }
+}
+
+// Runge-Kutta has no way round such a decay: a run that could not end says so after a bounded
+// effort.
+static void a_run_that_could_not_end_says_so(void **state)
+{
+    (void)state;
+    scenario s = {.parameters = fixture_parameters(
+                      SETTINGS("arm.links=3", "arm.hub_joint=spring", "arm.hub_inertia=1e-6",
+                               "arm.damping_ratio=0.02", "arm.tip_mass=0.01"))};
+    run_result r;
+    assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
+    assert_int_equal(r.summary.status, STATUS_NO_PROGRESS);
+    assert_true(r.summary.message[0] != '\0');
+    assert_true(r.summary.steps > 0);
+    run_finish(&r);
+}
+
+// On the wall from the start and going into it: an impact at once, whatever rounding makes of the
+// gap, and then flights of less than 1e-15 m, which Runge-Kutta cannot tell from rounding.
+static void an_arm_that_starts_on_the_wall_strikes_it(void **state)
+{
+    (void)state;
+    static const int links[] = {1, 2, 3, 6, 8, 10, 16};
+    for (int i = 0; i < 7 * 4; i++) {
+        parameters p = fixture_parameters(SETTINGS("motor.voltage=1"));
+        p.arm.links = links[i / 4];
+        p.wall.kind = i & 1 ? WALL_PLANE : WALL_POINT;
+        p.wall.restitution = i & 2 ? 0.5 : 0;
+        passage series = passage_of(&p, p.wall.angle, 0.7, 0.05, 1000);
+        p.arm.tip_mass = 1e-18;
+        passage formula = passage_of(&p, p.wall.angle, 0.7, 0.05, 2000);
+        assert_true(series.impacts >= 1 && formula.impacts >= 1);
+        assert_int_equal(series.impacts + series.touches, formula.impacts + formula.touches);
+        check_relative(series.momentum, formula.momentum, 1e-9);
+        check_below(series.open, 1e-9);
+        check_below(formula.open, 1e-9);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_stiff_hub_takes_few_strides),
+                                       cmocka_unit_test(a_stiff_pair_moves_as_by_the_formula),
+                                       cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
+                                       cmocka_unit_test(a_run_that_could_not_end_says_so),
+                                       cmocka_unit_test(an_arm_that_starts_on_the_wall_strikes_it)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
