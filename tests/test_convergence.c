@@ -1,5 +1,8 @@
-#include "src/run/run.h"
 #include "src/study/convergence.h"
+
+#include <threads.h>
+
+#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 static void the_order_of_made_up_errors_is_found(void **state)
@@ -126,6 +129,64 @@ static void the_least_cost_is_read_off_a_study(void **state)
     assert_true(isnan(method_study_cost(&study, 0, 1, 1, &step)));
 }
 
+// Stops a study as soon as two of its runs are over.
+static int stop_after_two(void *context)
+{
+    run_monitor *monitor = context;
+    while (atomic_load(&monitor->pieces) < 2) {
+        thrd_sleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    }
+    atomic_store(&monitor->stop, true);
+    return 0;
+}
+
+static void a_study_that_is_stopped_keeps_the_runs_before(void **state)
+{
+    (void)state;
+    static char name[] = "test";
+    static method_study study;
+    // its shortest steps would take hours
+    scenario s = {.name = name,
+                  .parameters = fixture_parameters(
+                      SETTINGS("run.duration=50", "wall.angle=3", "motor.voltage=0.01"))};
+    run_monitor monitor = {0};
+    fault f = {0};
+    thrd_t other;
+    assert_int_equal(thrd_create(&other, stop_after_two, &monitor), thrd_success);
+    assert_int_equal(method_study_compute(&s, &monitor, &study, &f), STATUS_STOPPED);
+    thrd_join(other, NULL);
+    assert_int_equal(f.code, STATUS_STOPPED);
+
+    // the reference and the longest steps were run, the shortest ones were not
+    assert_true(atomic_load(&monitor.pieces) < STUDY_RUNS);
+    assert_true(study.points[0][0].cost > 0);
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        assert_true(isnan(study.points[m][STUDY_STEPS - 1].cost));
+    }
+}
+
+static void a_study_runs_each_method_at_each_step_once(void **state)
+{
+    (void)state;
+    static char name[] = "test";
+    static struct {
+        method_study study;
+        method_study untouched;
+    } both;
+    static const method_study none;
+    scenario s = {.name = name, .parameters = fixture_parameters(SETTINGS("run.duration=0.01"))};
+    run_monitor monitor = {0};
+    fault f = {0};
+    assert_int_equal(method_study_compute(&s, &monitor, &both.study, &f), STATUS_OK);
+    assert_int_equal(atomic_load(&monitor.pieces), STUDY_RUNS);
+    assert_memory_equal(&both.untouched, &none, sizeof none);
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        for (int i = 0; i < STUDY_STEPS; i++) {
+            assert_true(both.study.points[m][i].cost > 0);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -135,6 +196,8 @@ int main(void)
         cmocka_unit_test(rows_at_an_event_are_compared_in_their_order),
         cmocka_unit_test(a_run_that_fails_is_told_with_its_step),
         cmocka_unit_test(the_least_cost_is_read_off_a_study),
+        cmocka_unit_test(a_study_that_is_stopped_keeps_the_runs_before),
+        cmocka_unit_test(a_study_runs_each_method_at_each_step_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

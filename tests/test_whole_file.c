@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -164,6 +165,40 @@ static void a_full_device_is_reported_and_stays_a_device(void **state)
     assert_true(S_ISCHR(about.st_mode));
 }
 
+// Carries out one write to the standard output, which leads to `path` meanwhile.
+static status write_to_output(const char *path, fault *f)
+{
+    whole_file w;
+    fflush(stdout);
+    const int kept = dup(STDOUT_FILENO), there = open(path, O_WRONLY | O_CREAT, 0600);
+    assert_true(kept >= 0 && there >= 0);
+    assert_int_equal(dup2(there, STDOUT_FILENO), STDOUT_FILENO);
+    close(there);
+
+    // nothing may fail before the output is itself again
+    status code = whole_file_open(&w, "-", f);
+    if (code == STATUS_OK) {
+        fputs("new", w.stream);
+        code = whole_file_commit(&w, f);
+    }
+    clearerr(stdout);
+    dup2(kept, STDOUT_FILENO);
+    close(kept);
+    return code;
+}
+
+static void the_standard_output_is_written_or_said_to_be_full(void **state)
+{
+    (void)state;
+    fault f = {0};
+    assert_int_equal(write_to_output("output", &f), STATUS_OK);
+    assert_holds("output", "new");
+    unlink("output");
+    assert_int_equal(write_to_output("/dev/full", &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "standard output"));
+    assert_non_null(strstr(f.text, strerror(ENOSPC)));
+}
+
 static void what_cannot_be_written_is_said_beforehand(void **state)
 {
     (void)state;
@@ -312,6 +347,7 @@ int main(void)
         cmocka_unit_test(a_link_stays_a_link),
         cmocka_unit_test(a_link_to_nothing_leads_to_the_new_file),
         cmocka_unit_test(a_full_device_is_reported_and_stays_a_device),
+        cmocka_unit_test(the_standard_output_is_written_or_said_to_be_full),
         cmocka_unit_test(what_cannot_be_written_is_said_beforehand),
         cmocka_unit_test(a_reader_that_left_is_told_from_a_full_disk),
         cmocka_unit_test(why_a_write_failed_is_known_at_the_end),
