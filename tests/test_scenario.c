@@ -25,21 +25,6 @@ static void check_faults(const char *text, int count, const char *const *beginni
     }
 }
 
-// The text has exactly one fault, at line:column, whose sentence mentions `what`.
-static void check_fault(const char *text, int line, int column, const char *what)
-{
-    scenario s;
-    sentences all;
-    char place[64];
-    assert_int_equal(parse(&s, text, &all), STATUS_BAD_SCENARIO);
-    snprintf(place, sizeof place, "f.yaml:%d:%d: ", line, column);
-    bool there = strncmp(all.text, place, strlen(place)) == 0;
-    if (all.count != 1 || !there || strstr(all.text, what) == NULL) {
-        fail_msg("%d faults, expected one at %d:%d about '%s':\n%s", all.count, line, column, what,
-                 all.text);
-    }
-}
-
 // ---- what a file may say ------------------------------------------------------------------------
 
 static void a_whole_scenario_is_read(void **state)

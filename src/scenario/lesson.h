@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 enum { LESSON_PARAMETERS = 6, LESSON_CHOICES = 6, LESSON_COMMANDS = 8 };
+enum { LESSON_PINNED_RUNS = 7 }; // that the lab pins at most
 
 // What has to be so before a step is done.
 typedef enum lesson_check {

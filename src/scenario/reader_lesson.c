@@ -1,6 +1,7 @@
 // The lesson of a scenario file.
 #include "src/scenario/reader.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,6 +80,20 @@ static void read_number(reader *r, const tree_node *map, const char *key, bool n
     }
 }
 
+// A whole number from 1 to `most`; 0 after a fault, which says that it is `what`.
+static int read_count(reader *r, const tree_node *node, const char *key, int most, const char *what)
+{
+    double number;
+    if (!reader_quantity(r, node, key, "", &number)) {
+        return 0;
+    }
+    if (number != floor(number) || number < 1 || number > most) {
+        report_node(r, node, "%s = %g, expected %s, from 1 to %d", key, number, what, most);
+        return 0;
+    }
+    return (int)number;
+}
+
 // A quantity of the summary that a map names.
 static void read_quantity(reader *r, const tree_node *map, const char *key, int *index)
 {
@@ -96,22 +111,23 @@ static void read_quantity(reader *r, const tree_node *map, const char *key, int 
 
 static void read_choice(reader *r, const tree_node *map, lesson_step *step)
 {
-    const tree_node *of = value_of(r, map, "of");
-    double right = 0;
+    const tree_node *of = value_of(r, map, "of"), *right = value_of(r, map, "right");
     step->check = LESSON_CHOICE;
 
     // without answers there is nothing to choose
-    if (of == NULL) {
-        report_node(r, map, "a choice has no 'of', expected a list of answers");
+    if (of == NULL || right == NULL) {
+        report_node(r, map,
+                    "a choice has no '%s', expected answers under 'of' and the right one's "
+                    "number under 'right'",
+                    of == NULL ? "of" : "right");
         return;
     }
 
     // the file counts them from 1
     step->choice_count = read_texts(r, of, "of", step->choices, LESSON_CHOICES);
-    read_number(r, map, "right", true, &right);
-    step->right = (int)right - 1;
-    if (step->right < 0 || step->right >= step->choice_count) {
-        report_node(r, map, "right = %g, expected the number of an answer, from 1", right);
+    if (step->choice_count > 0) {
+        step->right =
+            read_count(r, right, "right", step->choice_count, "the number of an answer") - 1;
     }
 }
 
@@ -131,8 +147,15 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
     step->parameter = parameter_look_up(path, &f);
     const char *text = step->parameter >= 0 ? reader_value_text(r, child, path) : NULL;
     parameters scratch = r->s->parameters;
-    if (step->parameter < 0 ||
-        (text != NULL && parameter_set_text(&scratch, step->parameter, text, &f) != STATUS_OK)) {
+    status code = step->parameter >= 0 ? STATUS_OK : STATUS_BAD_ARGUMENT;
+    if (code == STATUS_OK && parameter_is_text(&parameter_table[step->parameter])) {
+        code = fault_set(&f, STATUS_BAD_ARGUMENT,
+                         "%s is a text or a list, expected a parameter with one value", path);
+    }
+    if (code == STATUS_OK && text != NULL) {
+        code = parameter_set_text(&scratch, step->parameter, text, &f);
+    }
+    if (code != STATUS_OK) {
         report_node(r, child, "%s", f.text);
         step->parameter = 0;
         return;
@@ -159,10 +182,8 @@ static bool read_check(reader *r, const char *key, const tree_node *node, lesson
 
     // a count, or a map of what it needs
     if (kind == PINNED) {
-        double count = 0;
         step->check = LESSON_PINNED;
-        reader_quantity(r, node, key, "", &count);
-        step->pinned = (int)count;
+        step->pinned = read_count(r, node, key, LESSON_PINNED_RUNS, "how many runs are pinned");
         return true;
     }
     if (!reader_expect_map(r, node, key, "quantity: peak_force_N")) {

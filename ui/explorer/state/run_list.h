@@ -4,7 +4,7 @@
 
 #include "src/session/session.h"
 
-enum { PINNED_RUNS = 7, RUN_NAME = 48 };
+enum { PINNED_RUNS = LESSON_PINNED_RUNS, RUN_NAME = 48 };
 
 typedef struct pinned_run {
     char name[RUN_NAME];

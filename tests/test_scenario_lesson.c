@@ -1,0 +1,95 @@
+// Panes and lessons of scenario files: the place and sentence of everything that is none.
+#include "tests/scenario_fixture.h"
+
+static void faults_of_panes(void **state)
+{
+    (void)state;
+    check_fault("panes: force\n", 1, 8, "panes is a single value, expected a list of signals");
+    check_fault("panes: [force, forse]\n", 1, 16, "no signal 'forse'");
+    check_fault("panes: [[force]]\n", 1, 9, "no signal 'a list'");
+    char many[512] = "panes: [force";
+    for (int i = 0; i < SCENARIO_PANES; i++) {
+        strcat(many, ", gap");
+    }
+    strcat(many, "]\n");
+    scenario s;
+    sentences all;
+    assert_int_equal(parse(&s, many, &all), STATUS_BAD_SCENARIO);
+    assert_int_equal(all.count, 1);
+    assert_non_null(strstr(all.text, "more than"));
+}
+
+// A step of a lesson with this fault, and what its sentence says.
+static void check_step(const char *step, const char *what)
+{
+    scenario s;
+    sentences all;
+    char text[1024];
+    snprintf(text, sizeof text, "lesson: {steps: [%s]}\n", step);
+    const status code = parse(&s, text, &all);
+    if (code != STATUS_BAD_SCENARIO || all.count != 1 || strstr(all.text, what) == NULL) {
+        fail_msg("%s: %d faults, expected one about '%s':\n%s", text, all.count, what, all.text);
+    }
+}
+
+static void faults_of_lessons(void **state)
+{
+    (void)state;
+    scenario s = good("lesson: {steps: [{say: a, choice: {of: [a, b], right: 2}}]}\n");
+    assert_int_equal(s.lesson.steps[0].right, 1);
+    scenario_finish(&s);
+
+    // the lesson as a whole
+    check_fault("lesson: [a]\n", 1, 9, "lesson is a list");
+    check_fault("lesson: {steps: []}\n", 1, 9, "no steps");
+    check_fault("lesson: {parameters: [arm.k2]}\n", 1, 9, "no steps");
+    check_fault("lesson: {steps: {say: a}}\n", 1, 9, "no steps");
+    check_fault("lesson: {steps: [{say: a}], parameters: [motor.volts]}\n", 1, 41, "motor.volt");
+    check_fault("lesson: {steps: [{say: a}], parameters: arm.k2}\n", 1, 41, "expected a list");
+    check_fault("lesson: {steps: [{say: a}], parameters: [arm.k2, arm.k1, arm.EI, arm.mass, "
+                "arm.length, arm.links, arm.model]}\n",
+                1, 99, "more than 6");
+
+    // its steps
+    check_step("a", "a step is a single value");
+    check_step("{hint: a}", "no 'say'");
+    check_step("{say: [a]}", "say is a list, expected text");
+    check_step("{say: ''}", "expected text");
+    check_step("{say: a, saw: b}", "unknown key 'saw'");
+    check_step("{say: a, do: seek}", "do is a single value, expected a list");
+    check_step("{say: a, do: [a, b, c, d, e, f, g, h, i]}", "more than 8");
+
+    // and what has to be so before one is done
+    check_step("{say: a, number: 3}", "expected");
+    check_step("{say: a, number: {quantity: peek, within: 1}}", "no quantity of a run");
+    check_step("{say: a, number: {within: 1}}", "no quantity of a run");
+    check_step("{say: a, number: {quantity: [peak_force_N], within: 1}}", "no quantity of a run");
+    check_step("{say: a, number: {quantity: peak_force_N}}", "no 'within'");
+    check_step("{say: a, cursor: {at: first_contact_s}}", "no 'within'");
+    check_step("{say: a, ratio: {quantity: peak_force_N, from: 1}}", "no 'to'");
+    check_step("{say: a, choice: {right: 1}}", "no 'of'");
+    check_step("{say: a, choice: {of: [a, b]}}", "no 'right'");
+    check_step("{say: a, choice: {of: [a, b], right: 3}}", "from 1 to 2");
+    check_step("{say: a, choice: {of: [a, b], right: 1.5}}", "number of an answer");
+    check_step("{say: a, choice: {of: [a, b], right: 1e300}}", "number of an answer");
+    check_step("{say: a, choice: {of: [a, b], right: first}}", "not a finite number");
+    check_step("{say: a, value: {motor.volts: 1}}", "motor.volt");
+    check_step("{say: a, value: {motor.voltage: much}}", "not a number");
+    check_step("{say: a, value: {motor.voltage: [1]}}", "list");
+    check_step("{say: a, value: {control.settings: a=1}}", "one value");
+    check_step("{say: a, value: {motor.voltage: 1, arm.k2: 5}}", "one parameter");
+    check_step("{say: a, value: {}}", "one parameter");
+    check_step("{say: a, pinned: 1, value: {motor.voltage: 1}}", "second check");
+    check_step("{say: a, pinned: 0}", "from 1 to 7");
+    check_step("{say: a, pinned: 1e300}", "from 1 to 7");
+    check_step("{say: a, pinned: [1]}", "expected a number");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(faults_of_panes),
+        cmocka_unit_test(faults_of_lessons),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
