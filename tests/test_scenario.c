@@ -204,6 +204,53 @@ static void impossible_combinations_point_at_the_key(void **state)
         (const char *const[]){"f.yaml:1:30: ", "f.yaml:1:44: ", "f.yaml:2:14: ", "f.yaml:3:16: "});
 }
 
+// What one parameter asks of others, each told at the place of one of them.
+static void what_does_not_go_together_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *what;
+    } cases[] = {
+        {"arm: {links: 3, link_lengths: [0.1, 0.2]}", "arm.links = 3"},
+        {"arm: {links: 1, hub_joint: beam, link_lengths: [0.1, 0.2]}", "arm.links = 1"},
+        {"arm: {link_lengths: [0.1, 0.2], length: 0.3}", "both given"},
+        {"arm: {link_lengths: [0.1, 0.2], link_inertia: 1e-5}", "two equal links"},
+        {"arm: {joint_stiffness: [7], EI: 2}", "arm.EI are both given"},
+        {"arm: {hub_joint: beam, joint_stiffness: [7]}", "a joint before each"},
+        {"arm: {modal_ratios: [0.1], damping_ratio: 0.1}", "both given"},
+        {"arm: {modal_ratios: [0.1, 0.1, 0.1]}", "expected at most 1"},
+        {"arm: {links: 200, modal_ratios: [0.1]}", "at most"},
+        {"arm: {stiffening: 1, joint_stiffness: [7]}", "equal links and joints"},
+        {"arm: {stiffening: 1, link_lengths: [0.1, 0.2]}", "equal links and joints"},
+        {"arm: {air_drag: 1}\nmethod: {name: newmark}", "method.name = event only"},
+        {"arm: {modal_ratios: [0.1]}\nmethod: {name: newmark}", "method.name = event only"},
+        {"motor: {inductance: 1 H}\nmethod: {name: newmark}", "method.name = event only"},
+        {"motor: {current_limit: 1 A}\nmethod: {name: newmark}", "under a voltage"},
+        {"motor: {drive: current, inductance: 0.1 H}", "motor.drive = voltage"},
+        {"motor: {transconductance: 1}", "motor.drive = current"},
+        {"wall: {mass: 1 kg}", "not rigid"},
+        {"wall: {mass: 1 kg, contact: hunt-crossley}", "not hunt-crossley"},
+        {"wall: {mass: 1e-12 kg, contact: kelvin-voigt}", "expected 0 (none) or at least"},
+        {"wall: {restitution: 0.5, contact: kelvin-voigt}", "wall.restitution is for"},
+        {"wall: {contact: kelvin-voigt}\nmethod: {name: newmark}", "kelvin-voigt runs with"},
+        {"wall: {contact: hunt-crossley}\nmethod: {name: newmark}", "hunt-crossley runs with"},
+        {"control: {law: plugin}", "control.plugin"},
+        {"control: {law: process}", "control.command"},
+        {"control: {law: hybrid, jitter: 0.01 s}", "jitter"},
+        {"control: {law: hybrid, impact_angle: film}\nsensor: {film: false}", "sensor.film"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        scenario s;
+        sentences all;
+        const status code = parse(&s, cases[i].text, &all);
+        if (code != STATUS_BAD_SCENARIO || all.count != 1 ||
+            strstr(all.text, cases[i].what) == NULL) {
+            fail_msg("%s: %d faults, expected one about '%s':\n%s", cases[i].text, all.count,
+                     cases[i].what, all.text);
+        }
+    }
+}
+
 static void a_title_has_a_limit(void **state)
 {
     (void)state;
@@ -458,6 +505,7 @@ int main(void)
         cmocka_unit_test(wrong_shapes_are_named_with_their_place),
         cmocka_unit_test(a_key_may_be_there_once),
         cmocka_unit_test(impossible_combinations_point_at_the_key),
+        cmocka_unit_test(what_does_not_go_together_is_refused),
         cmocka_unit_test(a_title_has_a_limit),
         cmocka_unit_test(faults_of_actions),
         cmocka_unit_test(faults_of_set),

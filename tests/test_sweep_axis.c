@@ -92,6 +92,47 @@ static void what_is_no_axis_is_refused(void **state)
     }
 }
 
+// What is refused is told: the values of a parameter, and a sentence's words.
+static void check_refused(const char *name, const char *values, bool drawn, const char *what)
+{
+    sweep_axis axis = {0};
+    fault f = {0};
+    char text[64];
+    snprintf(text, sizeof text, "%s", values);
+    status code = sweep_axis_find(&axis, name, &f);
+    code = code == STATUS_OK ? sweep_axis_parse(&axis, text, drawn, &f) : code;
+    if (code == STATUS_OK || strstr(f.text, what) == NULL) {
+        fail_msg("%s=%s: expected a refusal about '%s', not '%s'", name, values, what, f.text);
+    }
+    sweep_axis_finish(&axis);
+}
+
+static void a_refusal_says_what_is_expected(void **state)
+{
+    (void)state;
+    check_refused("motor.volts", "1:2:3", false, "motor.volt");
+    check_refused("control.settings", "1:2:3", false, "is a text");
+    check_refused("arm.joint_stiffness", "1:2:3", false, "its first number is");
+    check_refused("arm.k2[1]", "1:2:3", false, "is no list");
+    static const char *const no_numbers[] = {"arm.joint_stiffness[0]",  "arm.joint_stiffness[1.5]",
+                                             "arm.joint_stiffness[]",   "arm.joint_stiffness[1",
+                                             "arm.joint_stiffness[1]x", "arm.joint_stiffness[999]"};
+    for (size_t i = 0; i < sizeof no_numbers / sizeof no_numbers[0]; i++) {
+        check_refused(no_numbers[i], "1:2:3", false, "is no number of a list");
+    }
+    check_refused("arm.joint_stiffness[1]", "[]:4:2", false, "is no number");
+    check_refused("wall.kind", "point:plane:2", false, "expected a list such as");
+    check_refused("printed.sign_dead_band", "false:true:2", false, "true,false");
+    check_refused("arm.k2", "4:4:2", false, "two different ends");
+    check_refused("arm.k2", "4:5:6:7:8", true, "a:b or a:b:n");
+    check_refused("arm.k2", "-1:4:log", true, "out of range");
+    check_refused("initial.angle", "-1:1:3:log", false, "ends above zero");
+    check_refused("initial.angle", "0.1:-1:3:log", false, "ends above zero");
+    check_refused("arm.links", "2:4:9", false, "links");
+    check_refused("arm.k2", "4:5:many", false, "no number of values");
+    check_refused("arm.k2", "4:5:1", false, "no number of values");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -100,6 +141,7 @@ int main(void)
         cmocka_unit_test(values_of_a_list_have_equal_shares),
         cmocka_unit_test(a_grid_has_both_ends),
         cmocka_unit_test(what_is_no_axis_is_refused),
+        cmocka_unit_test(a_refusal_says_what_is_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -253,7 +253,6 @@ static status resolve_stiffness(parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// The shape of the arm, and where it starts.
 // A current drive has a gain and a limit of its own, a voltage drive has neither.
 static status resolve_motor(parameters *p, fault *f)
 {
@@ -336,6 +335,7 @@ static status resolve_wall(parameters *p, fault *f)
     return STATUS_OK;
 }
 
+// The shape of the arm, and where it starts.
 static status resolve_arm(parameters *p, fault *f)
 {
     if (resolve_lists(p, f) != STATUS_OK || check_damping(p, f) != STATUS_OK ||
