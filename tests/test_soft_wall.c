@@ -195,6 +195,38 @@ static void a_face_lies_between_the_two_walls(void **state)
     run_finish(&rigid);
 }
 
+// The same where the damper is so strong that a light face alone would stand still within m/c =
+// 1e-12 s: no step has to follow that.
+static void a_light_face_on_a_strong_damper_is_no_face(void **state)
+{
+    (void)state;
+    const char *const light[] = {"wall.mass=1e-6", "wall.mass=1e-7", "wall.mass=1e-9"};
+    run_result each[4];
+    for (int i = 0; i < 4; i++) {
+        parameters p = fixture_parameters(
+            SETTINGS("wall.contact=kelvin-voigt", i < 3 ? light[i] : "wall.mass=0",
+                     "motor.voltage=2", "wall.damping=1e3", "run.duration=0.25"));
+        each[i] = run_of(&p, false);
+    }
+
+    // of order 1 in the mass, and the lightest in as many steps as none
+    const summary *none = &each[3].summary;
+    double off[2];
+    for (int i = 0; i < 3; i++) {
+        const summary *s = &each[i].summary;
+        assert_int_equal(s->status, STATUS_OK);
+        check_relative(s->first_contact_s, none->first_contact_s, 1e-12);
+        off[i % 2] = i < 2 ? fabs(s->peak_force_N - none->peak_force_N) : off[0];
+    }
+    print_message("peak off by %.3g and %.3g N of %.6g N, in %.0f steps for %.0f\n", off[0], off[1],
+                  none->peak_force_N, each[2].summary.steps, none->steps);
+    check_close(log10(off[0] / off[1]), 1, 0.02);
+    assert_in_range(each[2].summary.steps, 1, 2 * none->steps);
+    for (int i = 0; i < 4; i++) {
+        run_finish(&each[i]);
+    }
+}
+
 // Left alone a face swings as its equation says, whatever its damping: halves of a time make up the
 // whole, and the energy falls at the rate c x'^2.
 static void a_face_left_alone_obeys_its_equation(void **state)
@@ -423,6 +455,7 @@ int main(void)
         cmocka_unit_test(a_face_with_a_mass_has_the_closed_form),
         cmocka_unit_test(a_face_bounces_the_arm_like_two_masses),
         cmocka_unit_test(a_face_lies_between_the_two_walls),
+        cmocka_unit_test(a_light_face_on_a_strong_damper_is_no_face),
         cmocka_unit_test(a_face_left_alone_obeys_its_equation),
         cmocka_unit_test(a_step_from_the_touch_is_of_order_n_plus_1),
         cmocka_unit_test(a_stiff_wall_bounces_like_a_rigid_one),

@@ -40,15 +40,37 @@ static status explain(const corrected_run *c, status s, fault *f)
     return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
 }
 
-// The fastest link's angular velocity [rad/s]; *link is its place from the hub on, which is 0.
-static double fastest_turn(const motion *m, int *link)
+// Says what of the arm or the wall makes strides short, and what would make them longer.
+static void tell_cause(const corrected_run *c, char *text, size_t size)
 {
+    const arm *a = &c->arm;
+    const motion *m = c->motion;
     const double *w = state_velocities(m, m->state);
-    *link = 0;
+    int fastest = 0;
     for (int i = 1; i < m->dof; i++) {
-        *link = fabs(w[i]) > fabs(w[*link]) ? i : *link;
+        fastest = fabs(w[i]) > fabs(w[fastest]) ? i : fastest;
     }
-    return w[*link];
+
+    const bool electric = m->electric && a->motor.inductance > 0;
+    const double current = electric ? a->motor.resistance / a->motor.inductance : 0;
+    if (fabs(w[fastest]) >= a->fastest_rate) {
+        decimal_print(text, size, "its angle %d turns at %.3g rad/s, too fast to follow",
+                      fastest + 1, w[fastest]);
+    } else if (!motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0) {
+        decimal_print(text, size,
+                      "it is in contact with a wall that gives, and a smaller wall.damping or "
+                      "wall.stiffness has longer strides");
+    } else if (current >= a->fastest_rate) {
+        decimal_print(text, size,
+                      "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "
+                      "none, has longer strides",
+                      current);
+    } else {
+        decimal_print(text, size,
+                      "the fastest mode of the arm changes at %.3g 1/s, and softer joints with "
+                      "less damping have longer strides",
+                      a->fastest_rate);
+    }
 }
 
 // Whether so many strides passed so little time that the run has no end. Says so.
@@ -70,14 +92,12 @@ static status keep_pace(corrected_run *c, fault *f)
         return STATUS_OK;
     }
 
-    int link;
-    const double turn = fastest_turn(c->motion, &link);
+    char cause[200];
+    tell_cause(c, cause, sizeof cause);
     return fault_set(f, STATUS_NO_PROGRESS,
-                     "at t = %.9g s of %g s: %d strides passed %.3g s, at which the run has no "
-                     "end; its fastest angle turns at %.3g rad/s (w%d), the method was %s: smaller "
-                     "velocities, stiffnesses or dampings have longer strides",
-                     now, duration, STRIDES_A_LOOK, now - from, turn, link + 1,
-                     c->motion->engine->name);
+                     "at t = %.9g s of %g s: %d strides by %s passed %.3g s, at which the run is "
+                     "given up: %s",
+                     now, duration, STRIDES_A_LOOK, c->motion->engine->name, now - from, cause);
 }
 
 // Says where a flat wall could no longer hold the arm.
