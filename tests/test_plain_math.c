@@ -29,6 +29,11 @@ static void exponentials_are_right_to_two_units(void **state)
     assert_true(isinf(plain_exp(710)) && isinf(plain_exp((double)INFINITY)));
     check_close(plain_exp(-800), 0, 0);
     assert_true(isnan(plain_exp((double)NAN)));
+
+    // where the result is hardly normal any more, or hardly finite
+    assert_true(units_off(plain_exp(709.5), expl(709.5L)) < 2);
+    assert_true(units_off(plain_exp(-708), expl(-708.0L)) < 2);
+    check_close(plain_exp(-740), exp(-740), 2 * DBL_TRUE_MIN);
 }
 
 static void logarithms_are_right_to_two_units(void **state)
@@ -44,6 +49,9 @@ static void logarithms_are_right_to_two_units(void **state)
         }
     }
     check_close(plain_log(1), 0, 0);
+    assert_true(units_off(plain_log(DBL_TRUE_MIN), logl((long double)DBL_TRUE_MIN)) < 2);
+    assert_true(units_off(plain_log(DBL_MIN / 3), logl((long double)(DBL_MIN / 3))) < 2);
+    assert_true(units_off(plain_log(DBL_MAX), logl((long double)DBL_MAX)) < 2);
     assert_true(isinf(plain_log(0)) && plain_log(0) < 0);
 }
 

@@ -3,6 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/base/extremes.h"
+
 double motor_command_limit(const motor_parameters *p)
 {
     assert(p != NULL);
@@ -14,7 +16,7 @@ double motor_command_limit(const motor_parameters *p)
 
 static double limited(double volts, double limit)
 {
-    return fmax(-limit, fmin(volts, limit));
+    return larger(smaller(volts, limit), -limit);
 }
 
 double motor_limited_voltage(const motor_parameters *p, double volts)

@@ -5,10 +5,12 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "src/base/extremes.h"
+
 // How far two instants, the same but for rounding, may lie apart near `time` [s].
 static inline double instant_tolerance(double time)
 {
-    return 1e-12 * fmax(1, fabs(time));
+    return 1e-12 * larger(fabs(time), 1);
 }
 
 // Whether two instants [s] are one.

@@ -10,7 +10,7 @@
 // e^x; 0 and infinity beyond the range of doubles.
 double plain_exp(double x);
 
-// Natural logarithm of a normal number above zero; -infinity at zero, NaN of NaN.
+// Natural logarithm of a number above zero; -infinity at zero, NaN of NaN.
 double plain_log(double x);
 
 // x^y for x above zero or zero; within y log(x) units in the last place.

@@ -1,7 +1,7 @@
 #include "src/rig/controller_values.h"
 
 #include <assert.h>
-#include <stdio.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "src/base/numbers.h"
@@ -10,9 +10,15 @@
 // Index of control.NAME in the parameter table, -1 if the scenario has no such parameter.
 static int scenario_parameter(const char *name)
 {
-    char path[80];
-    snprintf(path, sizeof path, "control.%.60s", name);
-    return parameter_find(path);
+    const size_t group = offsetof(parameters, control), behind = sizeof "control." - 1;
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        const bool control = info->offset - group < sizeof(control_parameters);
+        if (control && info->path[behind] == name[0] && strcmp(info->path + behind, name) == 0) {
+            return i;
+        }
+    }
+    return -1;
 }
 
 // A controller that says nothing of a parameter but its name leaves the rest to the table.
@@ -41,10 +47,9 @@ controller_parameter controller_parameter_at(const controller *law, int index)
                                   .description = info->description};
 }
 
-// The value without control.settings.
-static double scenario_value(const controller_parameter *own, const parameters *p)
+// The value without control.settings; i: the parameter of that name, -1 if there is none.
+static double scenario_value(const controller_parameter *own, const parameters *p, int i)
 {
-    int i = scenario_parameter(own->name);
     if (i >= 0 && (p->set[i] || has_only_a_name(own))) {
         return parameter_get(p, i);
     }
@@ -128,13 +133,14 @@ status controller_values(const controller *law, const parameters *p, double *val
     // the scenario's values, or the law's own
     for (int i = 0; i < law->parameter_count; i++) {
         const char *name = law->parameters[i].name;
-        if (has_only_a_name(&law->parameters[i]) && scenario_parameter(name) < 0) {
+        const int index = scenario_parameter(name);
+        if (has_only_a_name(&law->parameters[i]) && index < 0) {
             return fault_set(f, STATUS_BAD_SCENARIO,
                              "the controller '%s' says of its parameter '%.60s' nothing but the "
                              "name, and there is no control.%.60s",
                              law->name, name, name);
         }
-        values[i] = scenario_value(&law->parameters[i], p);
+        values[i] = scenario_value(&law->parameters[i], p, index);
     }
 
     // those that control.settings replaces

@@ -9,6 +9,7 @@
 #include "src/quantities/k2_table.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/laws/laws.h"
+#include "src/base/extremes.h"
 #include "src/base/instant.h"
 
 const controller *controller_of(int law)
@@ -244,7 +245,7 @@ void rig_destroy(rig *r)
 
 double rig_next_time(const rig *r)
 {
-    return fmin(r->sample_time, r->effect_time);
+    return smaller(r->sample_time, r->effect_time);
 }
 
 // The pending command goes out.
@@ -307,7 +308,7 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
 
     // what the D/A makes of it goes out after the delay
     r->pending = converter_value(out->command, r->sensors.p.dac_bits, r->voltage_limit);
-    r->largest_command = fmax(r->largest_command, fabs(r->pending));
+    r->largest_command = larger(fabs(r->pending), r->largest_command);
     r->effect_time = time + r->delay;
 
     r->samples++;

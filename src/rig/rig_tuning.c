@@ -6,6 +6,7 @@
 #include "src/arm/motor.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
+#include "src/base/extremes.h"
 #include "src/base/sincos.h"
 
 static const double turn = 2 * 3.14159265358979323846; // [rad]
@@ -104,7 +105,7 @@ status rig_follow_setpoint(rig *r, double time, fault *f)
     const double wave = c->force_amplitude > 0
                             ? c->force_amplitude * inline_sin(turn * c->force_frequency * time)
                             : 0;
-    const double wanted = fmax(0, r->ramp + wave);
+    const double wanted = larger(r->ramp + wave, 0);
 
     // the controller hears of a change only
     if (wanted == r->wanted_force) {

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/base/extremes.h"
 #include "src/base/sincos.h"
 #include "src/base/plain_math.h"
 
@@ -49,8 +50,8 @@ double converter_value(double value, int bits, double range)
 
     // whole steps from the lower end of the range: a conversion that rounds positive numbers
     int64_t codes = INT64_C(1) << bits;
-    double step = 2 * range / (double)codes;
-    int64_t code = (int64_t)((within + range) / step + 0.5);
+    double step = 2 * range / (double)codes, steps = (double)codes / (2 * range);
+    int64_t code = (int64_t)((within + range) * steps + 0.5);
     return step * (double)((code < codes ? code : codes - 1) - codes / 2);
 }
 
@@ -193,7 +194,7 @@ double fsr_volts(const sensor_parameters *p, double force)
         return 0;
     }
     double resistance =
-        p->fsr_resistance * plain_pow(fmin(force, p->fsr_saturation), -p->fsr_exponent);
+        p->fsr_resistance * plain_pow(smaller(force, p->fsr_saturation), -p->fsr_exponent);
     return p->fsr_gain * p->fsr_supply * p->fsr_divider / (p->fsr_divider + resistance);
 }
 
@@ -208,7 +209,7 @@ double fsr_force(const sensor_parameters *p, double volts)
     }
     double resistance = p->fsr_divider * (1 - share) / share;
     double force = plain_pow(resistance / p->fsr_resistance, -1 / p->fsr_exponent);
-    return fmin(force, p->fsr_saturation);
+    return smaller(force, p->fsr_saturation);
 }
 
 static double read_encoder(const sensors *s, double angle)
@@ -230,7 +231,7 @@ static double convert(const sensors *s, noise_source *source, double volts, doub
 // Within the range either way, 0 being no limit.
 static double on_scale(double value, double range)
 {
-    return range > 0 ? fmax(-range, fmin(value, range)) : value;
+    return range > 0 ? larger(smaller(value, range), -range) : value;
 }
 
 // Rise and leak one behind the other, 1/(1 + s r) times s q/(1 + s q), as the difference of two

@@ -9,6 +9,7 @@
 #include "src/run/checkpoint.h"
 #include "src/run/corrected_events.h"
 #include "src/run/rig_recording.h"
+#include "src/base/extremes.h"
 #include "src/base/instant.h"
 
 #define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
@@ -116,7 +117,7 @@ static status explain_fold(const corrected_run *c, fault *f)
 static bool stretch_is_over(const corrected_run *c)
 {
     const motion *m = c->motion;
-    return !(m->state[SLOT_TIME] < fmin(c->stop, m->cut));
+    return !(m->state[SLOT_TIME] < smaller(c->stop, m->cut));
 }
 
 status corrected_stride(corrected_run *c, fault *f)
@@ -163,7 +164,7 @@ status corrected_stride(corrected_run *c, fault *f)
 static double next_stop(const recording *r)
 {
     double stop = r->scenario->parameters.run.duration;
-    return r->rig != NULL ? fmin(stop, rig_next_time(r->rig)) : stop;
+    return r->rig != NULL ? smaller(rig_next_time(r->rig), stop) : stop;
 }
 
 // The next instant at which steps are cut without being made for it: an action, the start of the
@@ -173,7 +174,7 @@ static double next_cut(const recording *r, double window, double now)
     const scenario *s = r->scenario;
     double cut =
         r->state.next_action < s->action_count ? s->actions[r->state.next_action].time : HUGE_VAL;
-    return instant_after(window, now) ? fmin(window, cut) : cut;
+    return instant_after(window, now) ? smaller(window, cut) : cut;
 }
 
 // Puts the arm where it starts.
@@ -218,7 +219,7 @@ status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
     recording *r = c->recording;
     motion *m = c->motion;
     const parameters *p = &r->scenario->parameters;
-    const double duration = p->run.duration, window = fmax(0, duration - STEADY_WINDOW);
+    const double duration = p->run.duration, window = larger(duration - STEADY_WINDOW, 0);
     status failed = r->state.grid_row == 0 ? record_start(c, f) : STATUS_OK;
     *ended = false;
 

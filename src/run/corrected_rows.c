@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "src/base/extremes.h"
 #include "src/run/rig_recording.h"
 
 #define SHORTEST_MEAN  1e-9 // a step shorter than this has the mean of its ends [s]
@@ -22,7 +23,7 @@ status corrected_audit(corrected_run *c)
     const motion *m = c->motion;
     summary *s = &c->recording->result->summary;
     double residual = motion_energy_residual(&c->arm, m, m->state);
-    s->energy_residual_J = fmax(s->energy_residual_J, fabs(residual));
+    s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
 
     double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
                          m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN + TINY_ENERGY;
@@ -228,10 +229,11 @@ static force_step force_over_step(const motion *m)
 static int pieces_of_step(const corrected_run *c, double length, double reach)
 {
     const motion *m = c->motion;
-    if (!engine_is_dense(m->engine) || motion_held_still(m)) {
+    const double pieces = length * c->arm.highest_frequency / reach;
+    if (!(pieces > 1) || !engine_is_dense(m->engine) || motion_held_still(m)) {
         return 1;
     }
-    return (int)fmin(fmax(1, ceil(length * c->arm.highest_frequency / reach)), MOST_PIECES);
+    return (int)smaller(ceil(pieces), MOST_PIECES);
 }
 
 // Keeps the force over the step just made, in pieces that are parabolas to sight.
@@ -321,7 +323,7 @@ status corrected_record_step(corrected_run *c, bool at_event)
     // how fast the tip came towards the wall on its own
     if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
         recording_follow_flight(r,
-                                fmax(-m->trial[SLOT_GAP_VELOCITY], -m->state[SLOT_GAP_VELOCITY]));
+                                larger(-m->trial[SLOT_GAP_VELOCITY], -m->state[SLOT_GAP_VELOCITY]));
     }
 
     if (s == STATUS_OK && length > 0) {

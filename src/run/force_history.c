@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/extremes.h"
+
 void force_history_init(force_history *h)
 {
     assert(h != NULL);
@@ -65,6 +67,11 @@ double force_settled_since(const force_history *h, double final)
     // from the end backwards: where was the force outside for the last time?
     for (size_t i = h->count; i-- > 0;) {
         const force_step *step = &steps[i];
+        const double far =
+            larger(fabs(step->first - final), fabs(step->last - final)) + step_bulge(step);
+        if (far < band) {
+            continue; // well within it
+        }
         double upper = last_crossing(step, final + band), lower = last_crossing(step, final - band);
         double left = fmax(upper, lower);
 

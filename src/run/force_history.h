@@ -24,6 +24,14 @@ static inline step_parabola step_parabola_of(const force_step *step)
     return (step_parabola){step->first, step->last - step->first - curve, curve};
 }
 
+// The force goes no further than this beyond the larger, or below the smaller, of the ends of such
+// a step [N]: a parabola bends by a quarter of its curve at most.
+static inline double step_bulge(const force_step *step)
+{
+    const double curve = 3 * (step->first + step->last) - 6 * step->mean;
+    return (curve < 0 ? -curve : curve) / 4;
+}
+
 // The array is plain (after force_history_init) or shared between runs (after
 // force_history_reserve); all zero is an empty one that may be finished.
 typedef struct force_history {

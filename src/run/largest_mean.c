@@ -3,6 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/base/extremes.h"
+
 // One end of the window, on its way through the run.
 typedef struct window_end {
     double time;     // [s]
@@ -113,6 +115,27 @@ static double largest_between(const run_result *r, const window_end *front, cons
     return largest;
 }
 
+// Whether no window that ends within the front's step holds more than `largest` [N s]: where no
+// event is, by the bounds of the few steps that such windows reach over.
+static bool holds_no_more(const run_result *r, const window_end *front, const window_end *back,
+                          double window, double largest)
+{
+    enum { MOST_STEPS = 8 };
+    const force_step *steps = force_steps(&r->history.forces);
+    const trace *t = &r->trace;
+    if (front->step - back->step > MOST_STEPS ||
+        (back->event < t->event_count && t->events[back->event].time <= steps[front->step].end)) {
+        return false;
+    }
+    for (size_t i = back->step; i <= front->step; i++) {
+        const double most = larger(steps[i].first, steps[i].last) + step_bulge(&steps[i]);
+        if (most * window > largest) {
+            return false;
+        }
+    }
+    return true;
+}
+
 double force_largest_mean(const run_result *result, double from, double window)
 {
     assert(result != NULL && isfinite(from) && window > 0);
@@ -128,6 +151,10 @@ double force_largest_mean(const run_result *result, double from, double window)
         // at the instant itself, impulses on both edges counting
         advance(result, &front, time, true);
         advance(result, &back, time - window, false);
+        if (time < end && holds_no_more(result, &front, &back, window, largest)) {
+            time = fmin(force_steps(h)[front.step].end, end);
+            continue;
+        }
         largest = fmax(largest, integral_to(result, &front, time) -
                                     integral_to(result, &back, time - window));
         if (time >= end) {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "src/arm/motor.h"
+#include "src/base/extremes.h"
 #include "src/run/largest_mean.h"
 
 // The smoothed force: means over SMOOTHING_WINDOW [s], from SMOOTHED_AFTER first contact on [s].
@@ -64,7 +65,7 @@ void recording_follow_flight(recording *r, double closing_speed)
     assert(r != NULL && r->rig != NULL);
     summary *s = &r->result->summary;
     double *largest = isnan(s->first_contact_s) ? &s->approach_speed_m_s : &s->return_speed_m_s;
-    *largest = fmax(*largest, closing_speed);
+    *largest = larger(closing_speed, *largest);
 }
 
 void recording_finish_rig_summary(recording *r, double hub_angle)

@@ -115,10 +115,7 @@ void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *
 
 static void note_force(motion *m, point p)
 {
-    if (p.at.value > m->pulse_peak) {
-        m->pulse_peak = p.at.value;
-        m->pulse_peak_time = m->state[SLOT_TIME] + p.time;
-    }
+    motion_note_force(m, m->state[SLOT_TIME] + p.time, p.at.value);
 }
 
 // Where the force stops growing between `lo`, where it grows, and `hi`, where it falls: secants of

@@ -2,6 +2,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/base/extremes.h"
 #include "src/base/instant.h"
 #include "src/solve/contact_machine.h"
 #include "src/solve/dense_location.h"
@@ -21,8 +22,8 @@ static void accept(motion *m, double step)
     m->state = m->trial;
     m->trial = previous;
     double passed = m->state[SLOT_TIME] - previous[SLOT_TIME];
-    m->steps += (long)fmax(1, ceil(passed / step - 1e-6));
-    m->largest_penetration = fmax(m->largest_penetration, -state_rest_gap(m->state));
+    m->steps += (long)larger(ceil(passed / step - 1e-6), 1);
+    m->largest_penetration = larger(-state_rest_gap(m->state), m->largest_penetration);
     if (!motion_wall_is_rigid(m)) {
         m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
     }
@@ -93,6 +94,17 @@ static status cut_step(const arm *a, motion *m, double step, status tried, doubl
     return s == STATUS_OK ? s : step_to_event(a, m, h, first, any);
 }
 
+// An arm that is held still lets time pass, to the cut or as far as is wanted, h [s]. Its force
+// stays what it is.
+static status rest(const arm *a, motion *m, double wanted, double *h)
+{
+    *h = smaller(m->cut - m->state[SLOT_TIME], wanted);
+    if (m->state[SLOT_CONTACT] != 0) {
+        motion_note_force(m, m->state[SLOT_TIME], m->state[SLOT_FORCE]);
+    }
+    return motion_try_step(a, m, *h);
+}
+
 // A stride of a dense engine, which looks for events within it: to the first of them, to the cut or
 // to its end, h [s].
 static status dense_stride(const arm *a, motion *m, double *h, watch *first, bool *any)
@@ -142,7 +154,9 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     watch first = WATCH_GAP;
     bool any = false;
     status s = STATUS_NO_PROGRESS;
-    if (engine_is_dense(m->engine) && !motion_held_still(m)) {
+    if (motion_held_still(m)) {
+        s = rest(a, m, wanted, &h);
+    } else if (engine_is_dense(m->engine)) {
         s = wanted > 0 ? dense_stride(a, m, &h, &first, &any) : s;
     } else {
         s = tried_step(a, m, step, wanted, &h, &first, &any);
@@ -166,7 +180,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
         come_to_rest(m);
     }
     // an instant that was meant is met to the last bit
-    double stop = fmin(until, m->cut);
+    double stop = smaller(until, m->cut);
     if (!instant_after(stop, m->state[SLOT_TIME])) {
         m->state[SLOT_TIME] = stop;
     }

@@ -57,26 +57,6 @@ double watch_tolerance(watch w)
                                  : 0;
 }
 
-bool watch_active(const arm *a, const motion *m, watch w)
-{
-    bool contact = m->state[SLOT_CONTACT] != 0;
-    bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
-    bool held = m->dof == 1 && contact && motion_wall_is_rigid(m);
-
-    // a watch is of use only where its event could end the present state
-    switch (w) {
-    case WATCH_GAP:
-        return (!contact || m->wall_gives) && wall_stands(&a->wall);
-    case WATCH_FORCE:
-        return contact || m->state[SLOT_PARTED] != 0;
-    case WATCH_HUB:
-        return !stuck && !held && a->motor.stiction > 0;
-    case WATCH_STICTION:
-        return stuck && !held;
-    }
-    return false;
-}
-
 // Where in (0, 1) a cubic with the given end values and end slopes (per step) is least, if that
 // lies inside and the cubic falls at the start and rises at the end; else -1.
 static double cubic_dip(double v0, double v1, double d0, double d1)
@@ -358,14 +338,8 @@ status locate_peak(const arm *a, motion *m, double h)
 
     // the ends
     double f0 = m->state[SLOT_FORCE], f1 = m->trial[SLOT_FORCE], t0 = m->state[SLOT_TIME];
-    if (f0 > m->pulse_peak) {
-        m->pulse_peak = f0;
-        m->pulse_peak_time = t0;
-    }
-    if (f1 > m->pulse_peak) {
-        m->pulse_peak = f1;
-        m->pulse_peak_time = t0 + h;
-    }
+    motion_note_force(m, t0, f0);
+    motion_note_force(m, t0 + h, f1);
 
     // the summit of the parabola through both ends and the mean, if there is one inside
     double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
@@ -391,10 +365,7 @@ status locate_peak(const arm *a, motion *m, double h)
                 return failed;
             }
             f[i] = m->trial[SLOT_FORCE];
-            if (f[i] > m->pulse_peak) {
-                m->pulse_peak = f[i];
-                m->pulse_peak_time = m->trial[SLOT_TIME];
-            }
+            motion_note_force(m, m->trial[SLOT_TIME], f[i]);
         }
         double second = f[0] - 2 * f[1] + f[2];
         if (second >= 0) {

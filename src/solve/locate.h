@@ -7,7 +7,25 @@
 #define FORCE_TOLERANCE 1e-9 // tension that counts as a release [N]
 
 // Whether the function says anything about the contact state that the motion is in.
-bool watch_active(const arm *a, const motion *m, watch w);
+static inline bool watch_active(const arm *a, const motion *m, watch w)
+{
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
+    bool held = m->dof == 1 && contact && motion_wall_is_rigid(m);
+
+    // a watch is of use only where its event could end the present state
+    switch (w) {
+    case WATCH_GAP:
+        return (!contact || m->wall_gives) && wall_stands(&a->wall);
+    case WATCH_FORCE:
+        return contact || m->state[SLOT_PARTED] != 0;
+    case WATCH_HUB:
+        return !stuck && !held && a->motor.stiction > 0;
+    case WATCH_STICTION:
+        return stuck && !held;
+    }
+    return false;
+}
 
 // How far below zero it may be without having left its admissible side, in its unit.
 double watch_tolerance(watch w);

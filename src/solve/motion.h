@@ -156,6 +156,15 @@ void motion_follow_arm(const arm *a, motion *m);
 // Forgets the recorded peak: the next one counts from the present state.
 void motion_watch(motion *m);
 
+// Takes note of a force [N] in contact at an instant [s]: the pulse's peak if none was larger.
+static inline void motion_note_force(motion *m, double time, double force)
+{
+    if (force > m->pulse_peak) {
+        m->pulse_peak = force;
+        m->pulse_peak_time = time;
+    }
+}
+
 // Evaluates accelerations, reactions and gap of a state in its own contact state.
 void motion_evaluate(const arm *a, motion *m, double *state);
 

@@ -3,6 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/base/extremes.h"
+
 const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
 
 const char *hybrid_start(void *memory, const controller_setup *setup)
@@ -185,7 +187,7 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
                              controller_output *out)
 {
     // held in this mode beyond t_f it stays at the trajectory's end
-    const double *a = m->a, t = fmin(in->time - m->begun, m->length);
+    const double *a = m->a, t = smaller(in->time - m->begun, m->length);
     double angle = a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * (a[4] + t * a[5]))));
     double velocity = a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
     double acceleration = 2 * a[2] + t * (6 * a[3] + t * (12 * a[4] + t * 20 * a[5]));
