@@ -135,6 +135,65 @@ static bool add_gradient(modal_basis *b, const arm *a, int start, double *factor
     return true;
 }
 
+// x' K y from the bends of both, a sum in which nothing cancels where modes bend little.
+static double strain_product(const arm *a, const double *x, const double *y)
+{
+    double sum = 0;
+    for (int k = 0; k + 1 < a->dof; k++) {
+        const double s = k + 1 == a->first ? a->hub_stiffness : a->joint_stiffness;
+        sum += s * (x[k + 1] - x[k]) * (y[k + 1] - y[k]);
+    }
+    return sum;
+}
+
+// The slow modes anew. All come with an absolute error of rounding times the fastest one's square,
+// which of hundreds of links is more than the slow ones' squares. But it hardly mixes fast modes
+// into the slow ones: so these are found again among themselves, from products that have their own
+// size; of them the slower ones again, and so on. Storage: 2 (columns / REFINED_SHARE)^2 doubles in
+// `small`, as many times n in `rows`, 3 n in `more`.
+static bool refine_slow(modal_basis *b, const arm *a, double *small, double *rows, double *more)
+{
+    enum { REFINED_SHARE = 4, FEWEST = 4 };
+    const size_t n = (size_t)a->dof;
+    for (int m = b->count / REFINED_SHARE; m >= FEWEST; m /= REFINED_SHARE) {
+        const size_t side = (size_t)m;
+        double *stiffness = small, *mass = small + side * side;
+
+        // both matrices on their span
+        for (size_t i = 0; i < side; i++) {
+            const double *mode = b->by_mode + i * n;
+            modal_mass_times(a, mode, more);
+            for (size_t j = 0; j <= i; j++) {
+                const double *other = b->by_mode + j * n;
+                double sum = 0;
+                for (size_t k = 0; k < n; k++) {
+                    sum += more[k] * other[k];
+                }
+                mass[i * side + j] = mass[j * side + i] = sum;
+                const double strain = strain_product(a, mode, other);
+                stiffness[i * side + j] = stiffness[j * side + i] = strain;
+            }
+        }
+        if (!symmetric_eigen_pair(m, stiffness, mass, b->rate, more)) {
+            return false;
+        }
+
+        // the modes, as combinations of what they were
+        for (size_t i = 0; i < side; i++) {
+            double *row = rows + i * n;
+            memset(row, 0, n * sizeof *row);
+            for (size_t j = 0; j < side; j++) {
+                const double share = stiffness[i * side + j];
+                for (size_t k = 0; k < n; k++) {
+                    row[k] += share * b->by_mode[j * n + k];
+                }
+            }
+        }
+        memcpy(b->by_mode, rows, side * n * sizeof *rows);
+    }
+    return true;
+}
+
 status modal_basis_compute(modal_basis *b, const arm *a, bool contact, bool stuck, double *scratch)
 {
     const int n = a->dof;
@@ -167,9 +226,15 @@ status modal_basis_compute(modal_basis *b, const arm *a, bool contact, bool stuc
                 row[w.last] -= z[c];
             }
         }
-        // a rigid mode's zero comes out as rounding of the stiffest mode's square
-        double square = b->rate[k] > 1e-13 * b->rate[columns - 1] ? b->rate[k] : 0;
-        b->rate[k] = sqrt(square);
+    }
+    if (!refine_slow(b, a, mass, matrix, more)) {
+        return STATUS_SINGULAR;
+    }
+
+    // a rigid mode's zero comes out as rounding of a faster mode's square
+    for (int k = 0; k < columns; k++) {
+        const double faster = b->rate[k + 4 < columns ? k + 4 : columns - 1];
+        b->rate[k] = sqrt(b->rate[k] > 1e-13 * faster ? b->rate[k] : 0);
     }
     if (contact && !add_gradient(b, a, w.start, mass, x, y)) {
         return STATUS_SINGULAR;
