@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "src/base/extremes.h"
 #include "src/base/sincos.h"
@@ -75,6 +76,10 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
     if (p->ideal) {
         idealise(&s->p);
     }
+
+    // no force, no volts is on every curve
+    s->felt = (fsr_point){0, 0};
+    memset(s->read, 0, sizeof s->read);
     s->fsr.time_constant = s->p.fsr_rise_time / RISE_OVER_TIME_CONSTANT;
     s->piezo_rise.time_constant = s->p.piezo_rise_time / RISE_OVER_TIME_CONSTANT;
     s->piezo_leak.time_constant = s->p.piezo_leak_time;
@@ -212,6 +217,31 @@ double fsr_force(const sensor_parameters *p, double volts)
     return smaller(force, p->fsr_saturation);
 }
 
+// The volts of a force in the FSR, before noise.
+static double felt_volts(sensors *s, double force)
+{
+    if (force != s->felt.force) {
+        s->felt = (fsr_point){force, fsr_volts(&s->p, force)};
+    }
+    return s->felt.volts;
+}
+
+// The force that the volts at the A/D are taken for.
+static double read_force(sensors *s, double volts)
+{
+    if (!(volts > 0) || s->p.adc_bits == 0) {
+        return fsr_force(&s->p, volts);
+    }
+
+    // one place for each of some codes in a row
+    const double codes = volts / s->p.adc_range * (double)(INT64_C(1) << (s->p.adc_bits - 1));
+    fsr_point *known = &s->read[(size_t)(codes + 0.5) % FSR_POINTS_READ];
+    if (volts != known->volts) {
+        *known = (fsr_point){fsr_force(&s->p, volts), volts};
+    }
+    return known->force;
+}
+
 static double read_encoder(const sensors *s, double angle)
 {
     if (s->p.encoder_counts == 0) {
@@ -275,12 +305,13 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
     double tachometer =
         convert(s, &s->noise, p->tachometer_gain * now->velocity * ripple, p->tachometer_noise);
 
-    double fsr = convert(s, &s->noise, fsr_volts(p, lag_output(&s->fsr, now->force)), p->fsr_noise);
+    double fsr =
+        convert(s, &s->noise, felt_volts(s, lag_output(&s->fsr, now->force)), p->fsr_noise);
 
     // the others draw from noise of their own, in any order
     return (sensor_reading){.encoder = read_encoder(s, now->angle),
                             .tachometer = tachometer / p->tachometer_gain,
-                            .force_reading = fsr_force(p, fsr),
+                            .force_reading = read_force(s, fsr),
                             .piezo_force = p->piezo ? read_piezo(s, now->force) : (double)NAN,
                             .film = p->film ? read_film(s, now->bending) : (double)NAN,
                             .accelerometer =

@@ -33,6 +33,14 @@ typedef struct noise_source {
     double spare; // second number of a pair of normal ones, NaN if there is none
 } noise_source;
 
+// A point of the FSR's nominal curve.
+typedef struct fsr_point {
+    double force; // [N]
+    double volts; // at the A/D [V]
+} fsr_point;
+
+enum { FSR_POINTS_READ = 32 }; // a power of two
+
 typedef struct sensors {
     sensor_parameters p;      // with sensor.ideal carried out
     noise_source noise;       // of tachometer and FSR
@@ -45,6 +53,10 @@ typedef struct sensors {
     first_order_lag film_leak;  // the part of the bending that has leaked [rad]
     first_order_lag acceleration;
     double seen_velocity; // of the hub when the accelerometer last looked [rad/s], NaN before
+    // points of the FSR's curve that are known already, each a power that need not be raised again:
+    // a force that stays, and the few codes of the A/D that noise goes to and fro between
+    fsr_point felt;
+    fsr_point read[FSR_POINTS_READ];
 } sensors;
 
 // What the sensors read, under the names of the recorded signals: volts read back through their
