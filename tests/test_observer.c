@@ -467,6 +467,7 @@ static void the_same_readings_give_the_same_commands(void **state)
         // sample k is what a row between it and the next one shows
         double voltage = 0;
         size_t row = 0;
+        const converter dac = converter_of(s.parameters.sensor.dac_bits, setup.voltage_limit);
         for (int k = 0; k < 159; k++) {
             while (r.trace.rows[row].time < (k + 0.5) * setup.period) {
                 row++;
@@ -484,8 +485,7 @@ static void the_same_readings_give_the_same_commands(void **state)
             controller_output out = {0};
             c->sample(memory, &in, &out);
             check_close(out.command, read->command, 0);
-            voltage =
-                converter_value(out.command, s.parameters.sensor.dac_bits, setup.voltage_limit);
+            voltage = converter_value(&dac, out.command);
         }
         free(memory);
         run_finish(&r);

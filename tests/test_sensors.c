@@ -47,13 +47,14 @@ static void converter_has_its_bits_and_range(void **state)
 {
     (void)state;
     const double step = 20.0 / 4096;
-    check_close(converter_value(0.4 * step, 12, 10), 0, 0);
-    check_close(converter_value(0.6 * step, 12, 10), step, 1e-15);
-    check_close(converter_value(3, 12, 10), round(3 / step) * step, 1e-12);
-    check_close(converter_value(25, 12, 10), 10 - step, 1e-12);
-    check_close(converter_value(-25, 12, 10), -10, 0);
-    check_close(converter_value(1.23456789, 0, 10), 1.23456789, 0);
-    check_close(converter_value(25, 0, 10), 10, 0);
+    const converter adc = converter_of(12, 10), continuous = converter_of(0, 10);
+    check_close(converter_value(&adc, 0.4 * step), 0, 0);
+    check_close(converter_value(&adc, 0.6 * step), step, 1e-15);
+    check_close(converter_value(&adc, 3), round(3 / step) * step, 1e-12);
+    check_close(converter_value(&adc, 25), 10 - step, 1e-12);
+    check_close(converter_value(&adc, -25), -10, 0);
+    check_close(converter_value(&continuous, 1.23456789), 1.23456789, 0);
+    check_close(converter_value(&continuous, 25), 10, 0);
 }
 
 // Time at which the lagged force crosses a level after a step of 1 N.

@@ -100,6 +100,59 @@ static int split_number(double x, double *m)
     return n;
 }
 
+// For c of few digits near 64/i: -log(c) in two parts, the first one so short that its sum with a
+// multiple of log2_high is exact.
+enum { FIRST_SHARE = 45 };
+static const struct {
+    double share, high, low;
+} logarithms[] = {{0x1.6c0p+0, -0x1.686c81e9b1000p-2, -0x1.2bb110af84054p-44},
+                  {0x1.640p+0, -0x1.51aad872e0000p-2, 0x1.f4bd8db0a7cc1p-44},
+                  {0x1.5d0p+0, -0x1.3d54fa5c1f000p-2, -0x1.c3e1cd9a395e3p-44},
+                  {0x1.550p+0, -0x1.2596010df7000p-2, -0x1.8e7bc224ea3e3p-44},
+                  {0x1.4e0p+0, -0x1.1058bf9ae5000p-2, 0x1.4ab9d817d52cdp-44},
+                  {0x1.480p+0, -0x1.fb9186d5e4000p-3, 0x1.d572aab993c87p-47},
+                  {0x1.410p+0, -0x1.cf6354e09c000p-3, -0x1.771239a07d55bp-45},
+                  {0x1.3b0p+0, -0x1.a8becfc882000p-3, -0x1.e3185cf21b9cfp-44},
+                  {0x1.350p+0, -0x1.815c0a1436000p-3, 0x1.02a52f9201ce8p-44},
+                  {0x1.2f0p+0, -0x1.59338d9982000p-3, -0x1.0ba68b7555d4ap-48},
+                  {0x1.2a0p+0, -0x1.371fc201e8000p-3, -0x1.ee8779b2d8abcp-44},
+                  {0x1.250p+0, -0x1.1478584674000p-3, -0x1.563451027c750p-46},
+                  {0x1.1f0p+0, -0x1.d4313d66cc000p-4, 0x1.9454379135713p-45},
+                  {0x1.1a0p+0, -0x1.8c345d6318000p-4, -0x1.b20f5acb42a66p-44},
+                  {0x1.160p+0, -0x1.51b073f060000p-4, -0x1.83f69278e686ap-44},
+                  {0x1.110p+0, -0x1.0759835990000p-4, 0x1.b8ecfe4b59987p-44},
+                  {0x1.0d0p+0, -0x1.95c830ec90000p-5, 0x1.c148297c5feb8p-45},
+                  {0x1.080p+0, -0x1.f829b0e780000p-6, -0x1.980267c7e09e4p-45},
+                  {0x1.040p+0, -0x1.fc0a8b0fc0000p-7, -0x1.f1e7cf6d3a69cp-50},
+                  {0x1.000p+0, 0, 0},
+                  {0x1.f80p-1, 0x1.0205658930000p-6, 0x1.611d27c8e8417p-44},
+                  {0x1.f00p-1, 0x1.0415d89e78000p-5, -0x1.dddc7f461c516p-44},
+                  {0x1.ea0p-1, 0x1.67c94f2d48000p-5, 0x1.dac20827cca0cp-44},
+                  {0x1.e20p-1, 0x1.eea31c0068000p-5, 0x1.c3dd83606d891p-44},
+                  {0x1.da0p-1, 0x1.3bdf5a7d20000p-4, -0x1.19bd0ad125895p-44},
+                  {0x1.d40p-1, 0x1.700d30aeac000p-4, 0x1.c1e8da99ded32p-49},
+                  {0x1.ce0p-1, 0x1.a4e7640b1c000p-4, -0x1.e42b6b94407c8p-47},
+                  {0x1.c80p-1, 0x1.da72763844000p-4, 0x1.a89401fa71733p-46},
+                  {0x1.c00p-1, 0x1.1178e8227e000p-3, 0x1.1ef78ce2d07f2p-45},
+                  {0x1.ba0p-1, 0x1.2d1610c868000p-3, 0x1.39d6ccb81b4a1p-47},
+                  {0x1.b40p-1, 0x1.4913d8333c000p-3, -0x1.53e43558124c4p-44},
+                  {0x1.b00p-1, 0x1.5bf406b544000p-3, -0x1.27023eb68981cp-46},
+                  {0x1.aa0p-1, 0x1.7898d85444000p-3, 0x1.8e67be3dbaf3fp-44},
+                  {0x1.a40p-1, 0x1.95a5adcf70000p-3, 0x1.7f22858a0ff6fp-47},
+                  {0x1.9e0p-1, 0x1.b31d8575bc000p-3, 0x1.c794e562a63cbp-44},
+                  {0x1.9a0p-1, 0x1.c6ffbc6f00000p-3, 0x1.ee138d3a69d43p-44},
+                  {0x1.940p-1, 0x1.e530effe72000p-3, -0x1.fdbdbb13f7c18p-44},
+                  {0x1.900p-1, 0x1.f991c6cb3c000p-3, -0x1.90d04cd7cc834p-44},
+                  {0x1.8a0p-1, 0x1.0c42d67616000p-2, 0x1.7188b163ceae9p-45},
+                  {0x1.860p-1, 0x1.16b5ccbad0000p-2, -0x1.23299042d74bfp-44},
+                  {0x1.820p-1, 0x1.214456d0ec000p-2, -0x1.caf0428b728a3p-44},
+                  {0x1.7e0p-1, 0x1.2bef07cdc9000p-2, 0x1.a9cfa4a5004f4p-45},
+                  {0x1.780p-1, 0x1.3c25277333000p-2, 0x1.83b54b606bd5cp-46},
+                  {0x1.740p-1, 0x1.4718dc271c000p-2, 0x1.06c18fb4c14c5p-44},
+                  {0x1.700p-1, 0x1.522ae0738a000p-2, 0x1.ebe708164c759p-45},
+                  {0x1.6c0p-1, 0x1.5d5bddf596000p-2, -0x1.a0b2a08a465dcp-47},
+                  {0x1.680p-1, 0x1.68ac83e9c7000p-2, -0x1.7af966c548a30p-44}};
+
 double plain_log(double x)
 {
     assert(!(x < 0));
@@ -107,13 +160,22 @@ double plain_log(double x)
         return x == 0 ? -HUGE_VAL : x;
     }
 
-    // x = 2^n m
+    // x = 2^n m, and m c = 1 + f, where f is small; each part of m times c is exact
     double m;
-    const int n = split_number(x, &m);
+    const int n = split_number(x, &m), i = (int)(m * 64 + 0.5) - FIRST_SHARE;
+    const double c = logarithms[i].share;
+    uint64_t bits;
+    double upper;
+    memcpy(&bits, &m, sizeof bits);
+    bits &= ~UINT64_C(0x7ffffff);
+    memcpy(&upper, &bits, sizeof upper);
+    const double f = (upper * c - 1) + (m - upper) * c, ff = f * f, f4 = ff * ff;
 
-    // log(m) = 2 artanh(s), s = f/(2 + f): f - s (f - tail), as f is exact and s is not
-    const double f = m - 1, s = f / (2 + f);
-    return n * log2_high + (f - (s * (f - artanh_tail(s * s)) - n * log2_low));
+    // log(1 + f) by its series, the terms left out below 1e-19
+    const double tail = ((-1. / 2 + f * (1. / 3)) + ff * (-1. / 4 + f * (1. / 5))) +
+                        f4 * ((-1. / 6 + f * (1. / 7)) + ff * (-1. / 8 + f * (1. / 9)));
+    const double low = n * log2_low + logarithms[i].low;
+    return (n * log2_high + logarithms[i].high) + (f + (ff * tail + low));
 }
 
 double plain_pow(double x, double y)

@@ -200,6 +200,7 @@ status rig_create_with(rig **created, const parameters *p, const given_law *give
     r->predicted_force = (double)NAN;
     r->output = no_answer();
     sensors_init(&r->sensors, &p->sensor, p->control.seed);
+    r->dac = converter_of(r->sensors.p.dac_bits, r->voltage_limit);
     random_seed(&r->clock, ~(uint64_t)p->control.seed);
 
     // the controller, which may refuse the lock, its settings or the arm
@@ -307,7 +308,7 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     }
 
     // what the D/A makes of it goes out after the delay
-    r->pending = converter_value(out->command, r->sensors.p.dac_bits, r->voltage_limit);
+    r->pending = converter_value(&r->dac, out->command);
     r->largest_command = larger(fabs(r->pending), r->largest_command);
     r->effect_time = time + r->delay;
 

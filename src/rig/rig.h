@@ -29,6 +29,7 @@ typedef struct rig {
     sensors sensors;
     double period, delay, jitter; // [s]
     double voltage_limit;         // [V]
+    converter dac;                // within that limit [V]
     double sample_time;           // of the next sample [s]
     double effect_time;           // when the pending command takes effect, HUGE_VAL if none [s]
     parameters told;              // what sensors and controller have been told so far

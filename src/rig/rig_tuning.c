@@ -66,6 +66,7 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
     if (group_differs(told, p, "sensor.")) {
         told->sensor = p->sensor;
         sensors_retune(&r->sensors, &p->sensor);
+        r->dac = converter_of(r->sensors.p.dac_bits, r->voltage_limit);
     }
     if (!changes) {
         return STATUS_OK;
@@ -77,6 +78,7 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
     told->motor.voltage_limit = p->motor.voltage_limit;
     memcpy(told->set, p->set, sizeof told->set);
     r->voltage_limit = motor_command_limit(&p->motor);
+    r->dac = converter_of(r->sensors.p.dac_bits, r->voltage_limit);
     r->jitter = p->control.jitter;
 
     // the next sample comes one new period after the last

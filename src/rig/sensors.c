@@ -42,18 +42,13 @@ static double random_normal(noise_source *n)
     return spare;
 }
 
-double converter_value(double value, int bits, double range)
+converter converter_of(int bits, double range)
 {
-    double within = value < -range ? -range : value < range ? value : range;
-    if (bits == 0 || range == 0) {
-        return within;
-    }
-
-    // whole steps from the lower end of the range: a conversion that rounds positive numbers
-    int64_t codes = INT64_C(1) << bits;
-    double step = 2 * range / (double)codes, steps = (double)codes / (2 * range);
-    int64_t code = (int64_t)((within + range) * steps + 0.5);
-    return step * (double)((code < codes ? code : codes - 1) - codes / 2);
+    assert(bits >= 0 && bits < 63 && range >= 0);
+    const double codes = (double)(INT64_C(1) << bits);
+    return bits == 0 || range == 0
+               ? (converter){.range = range}
+               : (converter){range, 2 * range / codes, codes, codes / (2 * range)};
 }
 
 // --- in time --------------------------------------------------------------------------------
@@ -76,6 +71,10 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
     if (p->ideal) {
         idealise(&s->p);
     }
+
+    // what follows from them
+    s->adc = converter_of(s->p.adc_bits, s->p.ideal ? HUGE_VAL : s->p.adc_range);
+    s->encoder_step = s->p.encoder_counts > 0 ? turn / s->p.encoder_counts : 0;
 
     // no force, no volts is on every curve
     s->felt = (fsr_point){0, 0};
@@ -229,13 +228,12 @@ static double felt_volts(sensors *s, double force)
 // The force that the volts at the A/D are taken for.
 static double read_force(sensors *s, double volts)
 {
-    if (!(volts > 0) || s->p.adc_bits == 0) {
+    if (!(volts > 0) || s->adc.step == 0) {
         return fsr_force(&s->p, volts);
     }
 
     // one place for each of some codes in a row
-    const double codes = volts / s->p.adc_range * (double)(INT64_C(1) << (s->p.adc_bits - 1));
-    fsr_point *known = &s->read[(size_t)(codes + 0.5) % FSR_POINTS_READ];
+    fsr_point *known = &s->read[(int64_t)(volts * s->adc.a_unit + 0.5) & (FSR_POINTS_READ - 1)];
     if (volts != known->volts) {
         *known = (fsr_point){fsr_force(&s->p, volts), volts};
     }
@@ -244,18 +242,15 @@ static double read_force(sensors *s, double volts)
 
 static double read_encoder(const sensors *s, double angle)
 {
-    if (s->p.encoder_counts == 0) {
-        return angle;
-    }
-    double count = turn / s->p.encoder_counts;
-    return count * floor(angle / count + 0.5);
+    const double count = s->encoder_step;
+    return count == 0 ? angle : count * floor(angle / count + 0.5);
 }
 
 // Through the A/D converter, noise added before it.
 static double convert(const sensors *s, noise_source *source, double volts, double noise)
 {
     double disturbed = noise > 0 ? volts + noise * random_normal(source) : volts;
-    return s->p.ideal ? disturbed : converter_value(disturbed, s->p.adc_bits, s->p.adc_range);
+    return converter_value(&s->adc, disturbed);
 }
 
 // Within the range either way, 0 being no limit.

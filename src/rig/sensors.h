@@ -10,6 +10,8 @@
 // bandwidth.
 #pragma once
 
+#include <stdint.h>
+
 #include "src/base/random.h"
 #include "src/quantities/parameters.h"
 
@@ -33,6 +35,14 @@ typedef struct noise_source {
     double spare; // second number of a pair of normal ones, NaN if there is none
 } noise_source;
 
+// An A/D or D/A converter.
+typedef struct converter {
+    double range;  // either way [in the value's unit]
+    double step;   // from code to code [in the value's unit], 0 of a continuous one
+    double codes;  // in all of the range
+    double a_unit; // codes in one unit
+} converter;
+
 // A point of the FSR's nominal curve.
 typedef struct fsr_point {
     double force; // [N]
@@ -43,6 +53,8 @@ enum { FSR_POINTS_READ = 32 }; // a power of two
 
 typedef struct sensors {
     sensor_parameters p;      // with sensor.ideal carried out
+    converter adc;            // the range of an ideal one is not limited [V]
+    double encoder_step;      // of a count, 0: continuous [rad]
     noise_source noise;       // of tachometer and FSR
     noise_source piezo_noise; // the other sensors have their own: fitting one shifts nothing
     noise_source film_noise;  //
@@ -95,6 +107,18 @@ double fsr_volts(const sensor_parameters *p, double force);
 // The force [N] that gives these volts; 0 below, the saturation force above the sensor's range.
 double fsr_force(const sensor_parameters *p, double volts);
 
-// The nearest value that a converter of the given bits has in its range -range to range; 0 bits:
-// the value itself within the range.
-double converter_value(double value, int bits, double range);
+// A converter of the given bits with the range -range to range; 0 bits: a continuous one.
+converter converter_of(int bits, double range);
+
+// The nearest value that it has; of a continuous one the value itself within the range.
+static inline double converter_value(const converter *c, double value)
+{
+    const double within = value < -c->range ? -c->range : value < c->range ? value : c->range;
+    if (c->step == 0) {
+        return within;
+    }
+
+    // whole steps from the lower end of the range: a conversion that rounds positive numbers
+    const double code = (double)(int64_t)((within + c->range) * c->a_unit + 0.5);
+    return c->step * ((code < c->codes ? code : c->codes - 1) - c->codes / 2);
+}
