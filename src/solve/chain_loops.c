@@ -68,60 +68,111 @@ LOOP void loop_join(chain_rows *r)
     AT(r->whole[3], 0) = yy;
 }
 
-// Sums of an even order, and of the next one as far as what is known goes: the factors that are at
-// hand serve both.
-LOOP void even_products(chain_rows *r, int n, int b)
+// Sums of an order that is a multiple of SERIES_TOGETHER, and of the next ones as far as what is
+// known goes: factors that are at hand serve all of them.
+LOOP void common_products(chain_rows *r, int n, int b)
 {
     const block *sine = &TERM(r->sine, 0, b), *cosine = &TERM(r->cosine, 0, b);
     const block *rate = &TERM(r->rate, n + 1, b);
     const block *gx = &TERM(r->gx, n, b), *gy = &TERM(r->gy, n, b);
-    block of_s = all(0), of_c = all(0), moment = all(0), against = all(0);
-    block next_s = all(0), next_c = all(0), next_moment = all(0), next_against = all(0);
-    block s = sine[1], c = cosine[1];
-    for (int i = 1; i <= n; i++) {
-        of_s += s * rate[-i];
-        of_c += c * rate[-i];
-        moment += c * gy[-i];
-        against += s * gx[-i];
-        s = sine[i + 1];
-        c = cosine[i + 1];
-        next_s += s * rate[-i];
-        next_c += c * rate[-i];
-        next_moment += c * gy[-i];
-        next_against += s * gx[-i];
+    const block none = all(0);
+    block s0 = none, s1 = none, s2 = none, s3 = none, c0 = none, c1 = none, c2 = none, c3 = none;
+    block m0 = none, m1 = none, m2 = none, m3 = none;
+
+    // w, Gx and Gy of the order itself and of the three beyond, none of those not known yet
+    block w1 = none, w2 = none, w3 = none, x1 = none, x2 = none, x3 = none;
+    block y1 = none, y2 = none, y3 = none;
+    for (int i = 1; i <= n + 1; i++) {
+        const block s = sine[i], c = cosine[i], w = rate[-i];
+        const block x = i <= n ? gx[-i] : none, y = i <= n ? gy[-i] : none;
+        s0 += s * w;
+        c0 += c * w;
+        m0 += c * y - s * x;
+        s1 += s * w1;
+        c1 += c * w1;
+        m1 += c * y1 - s * x1;
+        s2 += s * w2;
+        c2 += c * w2;
+        m2 += c * y2 - s * x2;
+        s3 += s * w3;
+        c3 += c * w3;
+        m3 += c * y3 - s * x3;
+        w3 = w2, w2 = w1, w1 = w;
+        x3 = x2, x2 = x1, x1 = x;
+        y3 = y2, y2 = y1, y1 = y;
     }
-    AT(r->known_s, b) = of_s + s * rate[-n - 1];
-    AT(r->known_c, b) = of_c + c * rate[-n - 1];
-    AT(r->moment, b) = moment - against;
-    AT(r->next_s, b) = next_s;
-    AT(r->next_c, b) = next_c;
-    AT(r->next_moment, b) = next_moment - next_against;
+
+    AT(r->known_s, b) = s0;
+    AT(r->known_c, b) = c0;
+    AT(r->moment, b) = m0;
+    AT(r->next_s[0], b) = s1;
+    AT(r->next_c[0], b) = c1;
+    AT(r->next_moment[0], b) = m1;
+    AT(r->next_s[1], b) = s2;
+    AT(r->next_c[1], b) = c2;
+    AT(r->next_moment[1], b) = m2;
+    AT(r->next_s[2], b) = s3;
+    AT(r->next_c[2], b) = c3;
+    AT(r->next_moment[2], b) = m3;
 }
 
-// What an odd order lacks still: its first and last products.
-LOOP void odd_products(chain_rows *r, int n, int b)
+// What another order lacks still, `later` orders behind those sums: its first and last products.
+LOOP void own_products(chain_rows *r, int n, int later, int b)
 {
     const block *sine = &TERM(r->sine, 0, b), *cosine = &TERM(r->cosine, 0, b);
     const block *rate = &TERM(r->rate, 0, b);
-    const block x = TERM(r->gx, n - 1, b), y = TERM(r->gy, n - 1, b);
-    AT(r->known_s, b) = AT(r->next_s, b) + (sine[1] * rate[n] + sine[n + 1] * rate[0]);
-    AT(r->known_c, b) = AT(r->next_c, b) + (cosine[1] * rate[n] + cosine[n + 1] * rate[0]);
-    AT(r->moment, b) = AT(r->next_moment, b) + (cosine[1] * y - sine[1] * x);
+    const block *gx = &TERM(r->gx, 0, b), *gy = &TERM(r->gy, 0, b);
+    block of_s = AT(r->next_s[later - 1], b), of_c = AT(r->next_c[later - 1], b);
+    block moment = AT(r->next_moment[later - 1], b);
+    for (int i = 1; i <= later; i++) {
+        const int high = n + 2 - i;
+        of_s += sine[i] * rate[n + 1 - i] + sine[high] * rate[i - 1];
+        of_c += cosine[i] * rate[n + 1 - i] + cosine[high] * rate[i - 1];
+        moment += cosine[i] * gy[n - i] - sine[i] * gx[n - i];
+    }
+    for (int i = 2; i <= later; i++) {
+        const int high = n + 2 - i;
+        moment += cosine[high] * gy[i - 2] - sine[high] * gx[i - 2];
+    }
+    AT(r->known_s, b) = of_s;
+    AT(r->known_c, b) = of_c;
+    AT(r->moment, b) = moment;
+}
+
+// All products of one of the first orders.
+LOOP void first_products(chain_rows *r, int n, int b)
+{
+    const block *sine = &TERM(r->sine, 0, b), *cosine = &TERM(r->cosine, 0, b);
+    const block *rate = &TERM(r->rate, 0, b);
+    const block *gx = &TERM(r->gx, 0, b), *gy = &TERM(r->gy, 0, b);
+    block of_s = sine[n + 1] * rate[0], of_c = cosine[n + 1] * rate[0], moment = all(0);
+    for (int i = 1; i <= n; i++) {
+        of_s += sine[i] * rate[n + 1 - i];
+        of_c += cosine[i] * rate[n + 1 - i];
+        moment += cosine[i] * gy[n - i] - sine[i] * gx[n - i];
+    }
+    AT(r->known_s, b) = of_s;
+    AT(r->known_c, b) = of_c;
+    AT(r->moment, b) = moment;
 }
 
 LOOP void loop_products(chain_rows *r, const chain_order *o)
 {
+    const int later = o->n % SERIES_TOGETHER;
     for (int b = 0; b < r->blocks; b++) {
-        if (o->n % 2 == 0) {
-            even_products(r, o->n, b);
+        if (o->n < SERIES_TOGETHER) {
+            first_products(r, o->n, b);
+        } else if (later == 0) {
+            common_products(r, o->n, b);
         } else {
-            odd_products(r, o->n, b);
+            own_products(r, o->n, later, b);
         }
     }
 }
 
-LOOP void loop_torques(chain_rows *r, const chain_order *o)
+LOOP void loop_torques(const chain_rows *rows, const chain_order *o)
 {
+    const chain_rows own = *rows, *r = &own;
     const int last = r->blocks - 1;
     const block stiffness = all(o->stiffness), damping = all(o->damping);
 
@@ -146,8 +197,9 @@ LOOP void loop_torques(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_prepare(chain_rows *r, const chain_order *o)
+LOOP void loop_prepare(const chain_rows *rows, const chain_order *o)
 {
+    const chain_rows own = *rows, *r = &own;
     const block turns = all(o->n + 1);
     for (int b = 0; b < r->blocks; b++) {
         const block x = -turns * AT(r->known_s, b), y = turns * AT(r->known_c, b);
@@ -161,9 +213,10 @@ LOOP void loop_prepare(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_sweep(chain_rows *r, const chain_order *o)
+LOOP void loop_sweep(chain_rows *rows, const chain_order *o)
 {
-    double **m = r->matrix, **in = r->inwards, **out = r->outwards;
+    const chain_rows own = *rows, *r = &own;
+    double *const *m = r->matrix, *const *in = r->inwards, *const *out = r->outwards;
     const int last = r->blocks - 1;
     block x = all(0), y = all(0), begin_x = all(0), begin_y = all(0);
 
@@ -215,8 +268,9 @@ LOOP void loop_sweep(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_finish(chain_rows *r, const chain_order *o)
+LOOP void loop_finish(const chain_rows *rows, const chain_order *o)
 {
+    const chain_rows own = *rows, *r = &own;
     const int n = o->n;
     const block per_rate = all(1.0 / (n + 1)), per_angle = all(1.0 / (n + 2)), push = all(o->force);
     for (int b = 0; b < r->blocks; b++) {
@@ -236,8 +290,9 @@ LOOP void loop_finish(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_hand(chain_rows *r, const chain_order *o)
+LOOP void loop_hand(const chain_rows *rows, const chain_order *o)
 {
+    const chain_rows own = *rows, *r = &own;
     const int last = r->blocks - 1;
     const block half = all(o->length / 2);
     for (int b = 0; b <= last; b++) {

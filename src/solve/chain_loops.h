@@ -12,8 +12,9 @@
 
 enum {
     SERIES_LANES = 8,
-    SERIES_MOST = 32,              // highest order of the velocities' series
-    SERIES_TERMS = SERIES_MOST + 2 // terms of a polynomial
+    SERIES_MOST = 32,               // highest order of the velocities' series
+    SERIES_TERMS = SERIES_MOST + 2, // terms of a polynomial
+    SERIES_TOGETHER = 4             // orders whose products are summed together
 };
 
 // Arrays by link: [chain_place], and by coefficient and link: [chain_term].
@@ -39,9 +40,10 @@ typedef struct chain_rows {
     double *whole[4];    // along a whole stretch, [lane]
     double *unit, *unit_fx, *unit_fy; // acceleration and F of a unit contact force; 0 without
 
-    // of the order in hand, and of the next one as far as it is known
+    // of the order in hand, and of the next ones as far as they are known
     double *known_c, *known_s, *moment, *rho_x, *rho_y, *add_x, *add_y;
-    double *next_c, *next_s, *next_moment;
+    double *next_c[SERIES_TOGETHER - 1], *next_s[SERIES_TOGETHER - 1];
+    double *next_moment[SERIES_TOGETHER - 1];
     double *free, *acceleration, *qx, *qy, *base_x, *base_y;
 } chain_rows;
 

@@ -68,9 +68,10 @@ double chain_series_reach(const arm *a, const double *w);
 
 // Computes the series of an arm with arm_is_plain and two or more links, from q[dof] and w[dof]
 // [rad/s] in a contact state, for a stride of `length` up to chain_series_reach [s]. s->allowed is
-// then that length, or less where the last terms are not small.
+// then that length, or less where the last terms of the velocities are not below `last_terms` of
+// the largest velocity.
 void chain_series_compute(chain_series *s, const arm *a, contact_state mode, const double *q,
-                          const double *w, double length);
+                          const double *w, double length, double last_terms);
 
 // Coefficient n of w of the first link [rad].
 double chain_series_first_rate(const chain_series *s, int n);

@@ -9,7 +9,6 @@
 
 #define REACH      6.0   // of the fastest mode or decay in a stride
 #define TURNING    1.2   // rotation counts so many times
-#define LAST_TERMS 1e-13 // the last terms of the velocities, as a share of the largest
 #define LEAST_RATE 0.1   // that counts as the largest velocity [rad/s]
 #define SHORTENING 0.92  // of a stride that is too long for that
 #define SMALL_TERM 1e-14 // of the first term that is left out, where the order may be lower
@@ -18,7 +17,7 @@ enum { LEAST_ORDER = 8, MOST_SHORTENINGS = 400, CACHE_LINE = 64 };
 
 // --- storage ------------------------------------------------------------------------------------
 
-enum { ROWS_OF_TERMS = 7, SINGLE_ROWS = 54 };
+enum { ROWS_OF_TERMS = 7, SINGLE_ROWS = 60 };
 
 static int blocks_of(const arm *a)
 {
@@ -53,16 +52,15 @@ void chain_series_place(chain_series *s, const arm *a)
     }
 
     // by link
-    double **const rows[] = {
-        &r->next_c,  &r->next_s,       &r->next_moment, &r->start_c, &r->start_s, &r->joint,
-        &r->torque,  &r->ux,           &r->uy,          &r->inv_d,   &r->vx,      &r->vy,
-        &r->pxx,     &r->pxy,          &r->pyy,         &r->back_x,  &r->back_y,  &r->rho_xx,
-        &r->rho_xy,  &r->rho_yy,       &r->unit,        &r->unit_fx, &r->unit_fy, &r->known_c,
-        &r->known_s, &r->moment,       &r->rho_x,       &r->rho_y,   &r->add_x,   &r->add_y,
-        &r->free,    &r->acceleration, &r->qx,          &r->qy,      &r->base_x,  &r->base_y,
-        &s->unit_x,  &s->unit_y};
+    double **const rows[] = {&r->start_c, &r->start_s, &r->joint,  &r->torque,       &r->ux,
+                             &r->uy,      &r->inv_d,   &r->vx,     &r->vy,           &r->pxx,
+                             &r->pxy,     &r->pyy,     &r->back_x, &r->back_y,       &r->rho_xx,
+                             &r->rho_xy,  &r->rho_yy,  &r->unit,   &r->unit_fx,      &r->unit_fy,
+                             &r->known_c, &r->known_s, &r->moment, &r->rho_x,        &r->rho_y,
+                             &r->add_x,   &r->add_y,   &r->free,   &r->acceleration, &r->qx,
+                             &r->qy,      &r->base_x,  &r->base_y, &s->unit_x,       &s->unit_y};
     enum { ROWS = sizeof rows / sizeof rows[0] };
-    _Static_assert(ROWS + 16 == SINGLE_ROWS, "rows by link");
+    _Static_assert(ROWS + 16 + 3 * (SERIES_TOGETHER - 1) == SINGLE_ROWS, "rows by link");
     for (int i = 0; i < ROWS; i++) {
         *rows[i] = storage;
         storage += row;
@@ -74,6 +72,12 @@ void chain_series_place(chain_series *s, const arm *a)
         r->whole[i] = storage + 3 * row;
         storage += 4 * row;
     }
+    for (int i = 0; i < SERIES_TOGETHER - 1; i++) {
+        r->next_c[i] = storage;
+        r->next_s[i] = storage + row;
+        r->next_moment[i] = storage + 2 * row;
+        storage += 3 * row;
+    }
     for (int k = 0; k + 1 < a->links; k++) {
         r->joint[chain_place(r, k)] = 1;
     }
@@ -83,11 +87,14 @@ void chain_series_place(chain_series *s, const arm *a)
 
 double chain_series_reach(const arm *a, const double *w)
 {
-    double rate = fmax(a->highest_frequency, a->fastest_decay), last = 0;
+    double turning = 0, last = 0;
     for (int i = 0; i < a->dof; i++) {
-        rate = fmax(rate, TURNING * fmax(fabs(w[i]), fabs(w[i] - last)));
+        const double own = fabs(w[i]), bending = fabs(w[i] - last);
+        turning = own > turning ? own : turning;
+        turning = bending > turning ? bending : turning;
         last = w[i];
     }
+    const double rate = fmax(fmax(a->highest_frequency, a->fastest_decay), TURNING * turning);
     return REACH / fmax(rate, 1e-3);
 }
 
@@ -247,7 +254,7 @@ static double power(double x, int n)
 }
 
 // How far the last terms are small, as a share of the stride; 0 if they are not finite.
-static double small_terms(const chain_series *s)
+static double small_terms(const chain_series *s, double last_terms)
 {
     const chain_rows *r = &s->rows;
     double largest = LEAST_RATE * s->length, last = 0, before = 0, sum = 0;
@@ -268,7 +275,7 @@ static double small_terms(const chain_series *s)
     double share = 1;
     for (int i = 0; i < MOST_SHORTENINGS; i++) {
         const double high = power(share, order - 1);
-        if (high * (before + share * last) <= LAST_TERMS * largest) {
+        if (high * (before + share * last) <= last_terms * largest) {
             break;
         }
         share *= SHORTENING;
@@ -277,9 +284,9 @@ static double small_terms(const chain_series *s)
 }
 
 void chain_series_compute(chain_series *s, const arm *a, contact_state mode, const double *q,
-                          const double *w, double length)
+                          const double *w, double length, double last_terms)
 {
-    assert(s != NULL && a != NULL && q != NULL && w != NULL && length > 0);
+    assert(s != NULL && a != NULL && q != NULL && w != NULL && length > 0 && last_terms > 0);
     assert(a->links >= 2 && a->links == s->links && arm_is_plain(a));
     const chain_loops *loops = chain_loops_here();
     chain_rows *r = &s->rows;
@@ -310,7 +317,7 @@ void chain_series_compute(chain_series *s, const arm *a, contact_state mode, con
         chain_series_sum_gap(s, a);
     }
     chain_series_sum_losses(s, a);
-    s->allowed = length * small_terms(s);
+    s->allowed = length * small_terms(s, last_terms);
 }
 
 double chain_series_first_rate(const chain_series *s, int n)

@@ -26,6 +26,7 @@
 #define GROWTH     16     // from stride to stride
 #define FIRST_TURN 3      // of the fastest vibration in the stride after an event [rad]
 #define TURN       0.05   // of the fastest link in a stride [rad]
+#define LAST_TERMS 1e-9   // of the series between the modes' strides
 
 // Turn up to which a stride's points show a vibration [rad]: a stride is then exact to 1e-7 of the
 // velocities, with the second one to 1e-10. An arm that bounces passes on what is lost a thousand
@@ -135,7 +136,7 @@ static double begin(const arm *a, motion *m, double remaining, double step)
         }
     }
     memory->by_series = true;
-    return series_stride_begin(memory->series, a, m, remaining);
+    return series_stride_begin(memory->series, a, m, remaining, LAST_TERMS);
 }
 
 // What the next stride has to know of this one.

@@ -14,6 +14,9 @@
 // As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
 #define EDGE_DEPTH 1e-6 // [m]
 
+// The series' last terms where nothing but rounding is to be left.
+#define EXACT 1e-13
+
 // --- polynomials --------------------------------------------------------------------------------
 
 static glance glance_at(const series_function *p, double x)
@@ -155,11 +158,12 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m)
     }
 }
 
-double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining)
+double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining,
+                           double last_terms)
 {
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     const double length = fmin(remaining, chain_series_reach(a, w));
-    chain_series_compute(s->series, a, contact_state_of(m->state), q, w, length);
+    chain_series_compute(s->series, a, contact_state_of(m->state), q, w, length, last_terms);
     s->force_until = -1;
 
     // nothing is to be found in what is not finite: its end says so
@@ -259,7 +263,7 @@ glance series_stride_force(const series_stride *s, double h)
 static double begin(const arm *a, motion *m, double remaining, double step)
 {
     (void)step;
-    return series_stride_begin(m->memory, a, m, remaining);
+    return series_stride_begin(m->memory, a, m, remaining, EXACT);
 }
 
 static status state_at(const arm *a, motion *m, double h)

@@ -25,8 +25,9 @@ typedef struct series_stride {
 size_t series_stride_size(const arm *a);
 void series_stride_place(series_stride *s, const arm *a);
 
-// What engine.h says of these, for a stride in s.
-double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining);
+// What engine.h says of these, for a stride in s; last_terms as in chain_series.h.
+double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining,
+                           double last_terms);
 status series_stride_state(const series_stride *s, const arm *a, motion *m, double h);
 glance series_stride_look(const series_stride *s, watch w, double h);
 double series_stride_bend(const series_stride *s, watch w, double to);
