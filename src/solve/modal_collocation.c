@@ -91,19 +91,31 @@ void modal_follow(const modal_stride *s, int k, double p[MODAL_NODES + 2])
     }
 }
 
-// Such a mode without its vibration, at t within the stride: what follows the polynomials.
-static void without_vibration(const modal_stride *s, int k, double t, double *x, double *y)
+// Takes the vibrations of fast modes out of x and y in s->columns, from point `first` on: what is
+// left of them follows the polynomials.
+static void leave_out_vibrations(modal_stride *s, int first)
 {
-    double p[MODAL_NODES + 2], place = 0, speed = 0, drift = 0, power = 1;
-    modal_follow(s, k, p);
-    for (int j = 0; j < MODAL_NODES; j++) {
-        place += p[j] * power;
-        speed += p[j + 1] * power;
-        drift += s->drift[j][k] * power;
-        power *= t / (j + 1);
+    const size_t pair = 2 * (size_t)s->dof;
+    for (int k = 0; k < s->count; k++) {
+        if (!modal_is_fast(s, k)) {
+            continue;
+        }
+        double p[MODAL_NODES + 2];
+        modal_follow(s, k, p);
+        for (int i = first; i < MODAL_NODES; i++) {
+            const double t = points[i] * s->length;
+            double *x = s->columns + (size_t)i * pair + k;
+            double place = 0, speed = 0, drift = 0, power = 1;
+            for (int j = 0; j < MODAL_NODES; j++) {
+                place += p[j] * power;
+                speed += p[j + 1] * power;
+                drift += s->drift[j][k] * power;
+                power *= t / (j + 1);
+            }
+            x[0] = place;
+            x[s->dof] = speed - drift;
+        }
     }
-    *x = place;
-    *y = speed - drift;
 }
 
 // The modes' responses at the points of collocation: of a length that is a power of two they are
@@ -155,11 +167,12 @@ static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, co
             memset(x, 0, (size_t)n * sizeof *x);
             memcpy(x + n, s->start, (size_t)s->count * sizeof *x);
         }
-        for (int k = 0; k < s->count && first == 0; k++) {
-            if (modal_is_fast(s, k)) {
-                without_vibration(s, k, points[i] * s->length, x + k, x + n + k);
-            }
-        }
+    }
+    if (first == 0) {
+        leave_out_vibrations(s, first);
+    }
+    for (int i = first; i < MODAL_NODES; i++) {
+        double *x = s->columns + (size_t)i * pair;
         memcpy(s->modal + (size_t)i * pair, x, pair * sizeof *x);
         modal_to_momenta(s, a, x, x + n);
     }

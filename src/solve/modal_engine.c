@@ -28,10 +28,10 @@
 #define TURN       0.05   // of the fastest link in a stride [rad]
 #define LAST_TERMS 1e-9   // of the series between the modes' strides
 
-// Turn up to which a stride's points show a vibration [rad]: a stride is then exact to 1e-7 of the
-// velocities, with the second one to 1e-10. An arm that bounces passes on what is lost a thousand
-// times enlarged, and more.
-#define SHOWN          8
+// Turn up to which a stride's points show a vibration [rad]: 50 ms of free flight are then right to
+// some 1e-7 of the velocities, as what FAINT leaves out allows. An arm that bounces passes on what
+// is lost a thousand times enlarged, and more: its strides are exact to 1e-10.
+#define SHOWN          12
 #define SHOWN_BOUNCING 4
 
 enum { MOST_TRIES = 24, FEW_SWEEPS = 5, PATIENCE = 16 };
