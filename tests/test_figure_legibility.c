@@ -138,8 +138,8 @@ static artwork open_figure(int i, figure_options o)
 {
     fault f = {0};
     artwork drawn;
-    if (figure_open(&thesis_figures[i], &o, &drawn, &f) != STATUS_OK) {
-        fail_msg("%s: %s", thesis_figures[i].id, f.text);
+    if (figure_open(thesis_figure_at(i), &o, &drawn, &f) != STATUS_OK) {
+        fail_msg("%s: %s", thesis_figure_at(i)->id, f.text);
     }
     return drawn;
 }
@@ -537,9 +537,9 @@ static void every_figure_can_be_read(void **state)
     (void)state;
     static figure_report r;
     complaints = 0;
-    for (int i = 0; i < thesis_figure_count; i++) {
+    for (int i = 0; i < thesis_figure_count(); i++) {
         for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
-            const char *id = thesis_figures[i].id;
+            const char *id = thesis_figure_at(i)->id;
             artwork drawn = open_figure(i, (figure_options){.look.width = widths[k]});
             cairo_surface_destroy(pixels_of(&drawn, &r));
             check_page(&drawn, &r, id, widths[k]);

@@ -106,12 +106,12 @@ static void expect_tidy(const char *id, figure_options o)
 static void every_figure_is_tidy(void **state)
 {
     (void)state;
-    for (int i = 0; i < thesis_figure_count; i++) {
-        assert_ptr_equal(thesis_figure_find(thesis_figures[i].id), &thesis_figures[i]);
-        if (thesis_figures[i].slow) {
+    for (int i = 0; i < thesis_figure_count(); i++) {
+        assert_ptr_equal(thesis_figure_find(thesis_figure_at(i)->id), thesis_figure_at(i));
+        if (thesis_figure_at(i)->slow) {
             continue;
         }
-        expect_tidy(thesis_figures[i].id, (figure_options){0});
+        expect_tidy(thesis_figure_at(i)->id, (figure_options){0});
     }
 }
 
@@ -440,11 +440,11 @@ static void the_report_stands_alone(void **state)
     assert_non_null(strstr(html, "aria-label=\"Fig. 3.4"));
     assert_null(strstr(html, "href=\"http"));
     assert_null(strstr(html, "@import"));
-    for (int i = 0; i < thesis_figure_count; i++) {
+    for (int i = 0; i < thesis_figure_count(); i++) {
         char again[64];
-        snprintf(again, sizeof again, "<code>impactlab figures %s</code>", thesis_figures[i].id);
+        snprintf(again, sizeof again, "<code>impactlab figures %s</code>", thesis_figure_at(i)->id);
         if (strstr(html, again) == NULL) {
-            fail_msg("%s is not in the report", thesis_figures[i].id);
+            fail_msg("%s is not in the report", thesis_figure_at(i)->id);
         }
     }
     assert_non_null(strstr(html, "82.92"));

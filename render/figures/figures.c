@@ -66,17 +66,28 @@
 
 #define TRACED(...)           {__VA_ARGS__},
 #define DRAWN(function, ...)  {.open = function, __VA_ARGS__},
-const thesis_figure thesis_figures[] = {
+static const thesis_figure thesis_figures[] = {
 #include "render/figures/catalogue.inc"
 };
 #undef TRACED
 #undef DRAWN
-const int thesis_figure_count = (int)G_N_ELEMENTS(thesis_figures);
+enum { FIGURES = G_N_ELEMENTS(thesis_figures) };
+
+int thesis_figure_count(void)
+{
+    return FIGURES;
+}
+
+const thesis_figure *thesis_figure_at(int i)
+{
+    assert(i >= 0);
+    return i < FIGURES ? &thesis_figures[i] : NULL;
+}
 
 const thesis_figure *thesis_figure_find(const char *id)
 {
     assert(id != NULL);
-    for (int i = 0; i < thesis_figure_count; i++) {
+    for (int i = 0; i < FIGURES; i++) {
         if (g_ascii_strcasecmp(thesis_figures[i].id, id) == 0 ||
             strcmp(thesis_figures[i].file, id) == 0) {
             return &thesis_figures[i];
@@ -256,7 +267,7 @@ status figure_draw_into(const char *id, const figure_options *o, const char *fol
     const thesis_figure *which = thesis_figure_find(id);
     if (which == NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "there is no figure '%s', expected %s to %s", id,
-                         thesis_figures[0].id, thesis_figures[thesis_figure_count - 1].id);
+                         thesis_figures[0].id, thesis_figures[FIGURES - 1].id);
     }
 
     artwork drawn;

@@ -36,8 +36,9 @@ typedef struct thesis_figure {
 #undef TRACED
 #undef DRAWN
 
-extern const thesis_figure thesis_figures[];
-extern const int thesis_figure_count;
+// How many figures there are, and the i-th: NULL behind the last.
+int thesis_figure_count(void);
+const thesis_figure *thesis_figure_at(int i);
 
 // A figure by its id or the name of its files, or NULL.
 const thesis_figure *thesis_figure_find(const char *id);

@@ -29,7 +29,7 @@ status report_item_done(const report *r, fault *f)
 
 int report_length(int count)
 {
-    return count > 0 ? count : thesis_figure_count;
+    return count > 0 ? count : thesis_figure_count();
 }
 
 // ---- what it shows
@@ -38,8 +38,8 @@ static status add_figures(report *r, fault *f)
 {
     const figure_options options = {0};
 
-    for (int i = 0; i < thesis_figure_count; i++) {
-        const thesis_figure *which = &thesis_figures[i];
+    for (int i = 0; i < thesis_figure_count(); i++) {
+        const thesis_figure *which = thesis_figure_at(i);
         report_item item = {.scenario = which->scenario, .model = which->model};
         status code = figure_open(which, &options, &item.drawn, f);
         if (code != STATUS_OK) {

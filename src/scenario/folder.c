@@ -2,16 +2,13 @@
 
 #include <assert.h>
 #include <dirent.h>
-#include <dlfcn.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <limits.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include "src/base/build_config.h"
+#include "src/base/shipped.h"
 #include "src/scenario/scenario.h"
 #include "src/scenario/yaml_tree.h"
 #include "src/base/words.h"
@@ -107,45 +104,6 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
 
 // ---- the folder ---------------------------------------------------------------------------------
 
-// The file that this very code was loaded from: the program, or the shared library in another one.
-// path has PATH_MAX bytes; false if nobody knows.
-static bool own_file(char *path)
-{
-    Dl_info about;
-    if (dladdr(suffix, &about) != 0 && about.dli_fname != NULL &&
-        strstr(about.dli_fname, ".so") != NULL) {
-        return realpath(about.dli_fname, path) != NULL;
-    }
-    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
-    path[length > 0 ? length : 0] = '\0';
-    return length > 0;
-}
-
-// The folder of the scenarios that ship, on the heap; NULL without memory. What was built in a tree
-// has the tree's, what was installed its own, also after the installation has moved.
-static char *shipped_folder(void)
-{
-    char path[PATH_MAX];
-    const size_t build = strlen(IMPACTLAB_BUILD_FOLDER);
-    bool known = own_file(path);
-    if (known && strncmp(path, IMPACTLAB_BUILD_FOLDER, build) == 0 && path[build] == '/') {
-        return text_of("%s", IMPACTLAB_SOURCE_SCENARIOS);
-    }
-
-    // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1: PREFIX/share is near
-    char *end = known ? strrchr(path, '/') : NULL;
-    for (int above = 0; above < 4 && end != NULL && end != path; above++) {
-        *end = '\0';
-        char *folder = text_of("%s/share/impactlab/scenarios", path);
-        if (folder == NULL || is_folder(folder)) {
-            return folder;
-        }
-        free(folder);
-        end = strrchr(path, '/');
-    }
-    return text_of("%s", IMPACTLAB_DATA_SCENARIOS);
-}
-
 // The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that ship.
 typedef struct folder_list {
     char *folders[MAX_FOLDERS];
@@ -179,7 +137,7 @@ static bool open_folders(folder_list *all)
     }
 
     // it comes last, behind all that the user has
-    all->folders[all->count] = good ? shipped_folder() : NULL;
+    all->folders[all->count] = good ? shipped_path(SHIPPED_SCENARIOS) : NULL;
     good = all->folders[all->count] != NULL;
     all->count += good;
     if (!good) {

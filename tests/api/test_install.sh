@@ -51,6 +51,9 @@ IMPACTLAB_SCENARIOS=$work/own "$lab" list | grep -q '^mine .*my own' || fail "ow
 IMPACTLAB_SCENARIOS=$work/own "$lab" list | grep -q 'corrected/first-impact' ||
     fail "own scenarios take the place of those that ship"
 
+# it draws
+"$lab" run corrected/first-impact --quiet --plot moved.svg && [ -s moved.svg ] || fail "a moved program does not draw"
+
 # the peak that all of them have to give
 "$lab" run corrected/first-impact --quiet --json run.json
 expect() {

@@ -7,8 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "render/figures/figures.h"
-#include "render/page/picture_file.h"
+#include "src/base/shipped.h"
 #include "src/study/bench.h"
 #include "src/base/words.h"
 #include "src/base/version.h"
@@ -34,6 +33,28 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
+// Runs the program once more, without its words, and waits for its end.
+static status run_program(char *const *words, fault *f)
+{
+    char *program = shipped_path(SHIPPED_PROGRAM);
+    const pid_t child = program != NULL ? fork() : -1;
+    if (child == 0) {
+        const int nowhere = open("/dev/null", O_WRONLY);
+        dup2(nowhere, STDOUT_FILENO);
+        execv(program, words);
+        _exit(1);
+    }
+
+    int how = 0;
+    status code = STATUS_OK;
+    if (child < 0 || waitpid(child, &how, 0) != child || how != 0) {
+        code = fault_set(f, STATUS_CANNOT_READ, "%s %s: the program cannot be run once more",
+                         program != NULL ? program : "impactlab", words[1]);
+    }
+    free(program);
+    return code;
+}
+
 // All figures of the thesis as `impactlab figures` draws them, into a folder that is then removed.
 static status measure_figures(double *value, fault *f)
 {
@@ -46,12 +67,8 @@ static status measure_figures(double *value, fault *f)
                          folder);
     }
 
-    double start = bench_computing_time();
-    status code = STATUS_OK;
-    for (int i = 0; i < thesis_figure_count && code == STATUS_OK; i++) {
-        code = figure_draw(thesis_figures[i].id, folder, "png", f);
-    }
-
+    const double start = bench_computing_time();
+    const status code = run_program((char *[]){"impactlab", "figures", "-o", folder, NULL}, f);
     *value = bench_computing_time() - start;
     remove_folder(folder);
     return code;
@@ -62,24 +79,12 @@ static status measure_start(double *value, fault *f)
 {
     enum { STARTS = 40 };
     const double start = bench_computing_time();
-    char program[] = "/proc/self/exe", version[] = "--version", *line[] = {program, version, NULL};
-
-    for (int i = 0; i < STARTS; i++) {
-        int how = 0;
-        const pid_t child = fork();
-        if (child == 0) {
-            const int nowhere = open("/dev/null", O_WRONLY);
-            dup2(nowhere, STDOUT_FILENO);
-            execv(program, line);
-            _exit(1);
-        }
-        if (child < 0 || waitpid(child, &how, 0) != child || how != 0) {
-            return fault_set(f, STATUS_NO_MEMORY, "the program cannot be started once more");
-        }
+    status code = STATUS_OK;
+    for (int i = 0; i < STARTS && code == STATUS_OK; i++) {
+        code = run_program((char *[]){"impactlab", "--version", NULL}, f);
     }
-
     *value = 1e3 * (bench_computing_time() - start) / STARTS;
-    return STATUS_OK;
+    return code;
 }
 
 static const benchmark own_table[] = {

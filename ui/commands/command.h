@@ -99,6 +99,7 @@ struct command {
     const char *(*operand_word)(int i);
     const option_table *options[COMMAND_TABLES]; // ends with NULL; --help is every command's
     bool on_ranks;                               // every rank runs it (a.ranks), not only rank 0
+    bool draws;                                  // always, not only where --plot or --scene asks
     int (*run)(const arguments *a);              // returns the exit status
 };
 

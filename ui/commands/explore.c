@@ -326,5 +326,6 @@ const command lab_command = {
     .most = 1,
     .takes_scenarios = true,
     .options = {&set_options, &lab_options, &quiet_options},
+    .draws = true,
     .run = run,
 };

@@ -22,12 +22,13 @@ static int check_ids(const arguments *a)
             continue;
         }
 
-        for (int k = 0; k < thesis_figure_count; k++) {
-            nearest_try(&near, thesis_figures[k].id);
+        const thesis_figure *known;
+        for (int k = 0; (known = thesis_figure_at(k)) != NULL; k++) {
+            nearest_try(&near, known->id);
         }
         return complain("there is no figure '%s', did you mean '%s'? (impactlab figures --help "
                         "lists all)",
-                        a->operands[i], near.best ? near.best : thesis_figures[0].id);
+                        a->operands[i], near.best ? near.best : thesis_figure_at(0)->id);
     }
     return EXIT_DONE;
 }
@@ -143,7 +144,7 @@ static json_t *figures_array(const figure_list *list)
 static int figures(const arguments *a)
 {
     fault f = {0};
-    size_t count = a->operand_count > 0 ? (size_t)a->operand_count : (size_t)thesis_figure_count;
+    size_t count = a->operand_count > 0 ? (size_t)a->operand_count : (size_t)thesis_figure_count();
     figure_list list = {.count = count,
                         .quiet = !summary_wanted(a),
                         .folder = a->output ? a->output : DEFAULT_FOLDER,
@@ -161,7 +162,7 @@ static int figures(const arguments *a)
     list.drawn = g_new0(drawn, count);
     for (size_t i = 0; i < count; i++) {
         list.figures[i] =
-            a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : &thesis_figures[i];
+            a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : thesis_figure_at((int)i);
     }
 
     // drawn, and for LaTeX told of in their order
@@ -185,7 +186,8 @@ static int figures(const arguments *a)
 
 static const char *figure_word(int i)
 {
-    return i < thesis_figure_count ? thesis_figures[i].id : NULL;
+    const thesis_figure *which = thesis_figure_at(i);
+    return which != NULL ? which->id : NULL;
 }
 
 static const option_row rows[] = {
@@ -217,5 +219,6 @@ const command figures_command = {
     .most = 1 << 20,
     .operand_word = figure_word,
     .options = {&json_options, &options, &quiet_options, &page_options},
+    .draws = true,
     .run = figures,
 };

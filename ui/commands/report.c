@@ -50,5 +50,6 @@ const command report_command = {
     .most = 64,
     .takes_scenarios = true,
     .options = {&options, &quiet_options},
+    .draws = true,
     .run = report,
 };

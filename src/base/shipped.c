@@ -1,0 +1,62 @@
+#include "src/base/shipped.h"
+
+#include <dlfcn.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/base/build_config.h"
+
+static const struct {
+    const char *in_tree, *in_prefix, *configured;
+} places[] = {
+    [SHIPPED_SCENARIOS] = {IMPACTLAB_SOURCE_SCENARIOS, IMPACTLAB_SCENARIOS_IN_PREFIX,
+                           IMPACTLAB_SCENARIOS},
+    [SHIPPED_PROGRAM] = {IMPACTLAB_BUILD_FOLDER "/impactlab", IMPACTLAB_PROGRAM_IN_PREFIX,
+                         IMPACTLAB_PROGRAM},
+    [SHIPPED_DRAWING_PROGRAM] = {IMPACTLAB_BUILD_FOLDER "/impactlab-draw",
+                                 IMPACTLAB_DRAWING_PROGRAM_IN_PREFIX, IMPACTLAB_DRAWING_PROGRAM},
+};
+
+// The file that this very code was loaded from: the program, or the shared library in another one.
+// path has PATH_MAX bytes; false if nobody knows.
+static bool own_file(char *path)
+{
+    Dl_info about;
+    if (dladdr(places, &about) != 0 && about.dli_fname != NULL &&
+        strstr(about.dli_fname, ".so") != NULL) {
+        return realpath(about.dli_fname, path) != NULL;
+    }
+    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
+    path[length > 0 ? length : 0] = '\0';
+    return length > 0;
+}
+
+char *shipped_path(shipped_part part)
+{
+    char own[PATH_MAX];
+    const size_t build = strlen(IMPACTLAB_BUILD_FOLDER);
+    bool known = own_file(own);
+    if (known && strncmp(own, IMPACTLAB_BUILD_FOLDER, build) == 0 && own[build] == '/') {
+        return strdup(places[part].in_tree);
+    }
+
+    // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1
+    char *end = known ? strrchr(own, '/') : NULL;
+    for (int above = 0; above < 4 && end != NULL && end != own; above++) {
+        *end = '\0';
+        char *path;
+        if (asprintf(&path, "%s/%s", own, places[part].in_prefix) < 0) {
+            return NULL;
+        }
+        if (access(path, F_OK) == 0) {
+            return path;
+        }
+        free(path);
+        end = strrchr(own, '/');
+    }
+    return strdup(places[part].configured);
+}

@@ -1,0 +1,14 @@
+// Where the parts that belong to the program lie: in the tree it was built in, or where it was
+// installed, also after the installation has moved.
+#pragma once
+
+typedef enum shipped_part {
+    SHIPPED_SCENARIOS,       // the folder of the scenarios that ship
+    SHIPPED_PROGRAM,         // impactlab
+    SHIPPED_DRAWING_PROGRAM, // the same with the rendering libraries
+} shipped_part;
+
+// The part's path, to be freed, whether it is there or not; NULL without memory. What was built in
+// a tree has the tree's; else the prefix is looked for above the file that this code was loaded
+// from, and where no prefix has the part it is the place that the build was set up for.
+char *shipped_path(shipped_part part);

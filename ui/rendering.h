@@ -1,0 +1,19 @@
+// Where the rendering libraries are: Pango and Cairo cost three times the start of a program that
+// only computes. So there are two programs of the same objects. impactlab-draw has the libraries
+// (rendering_here.c); impactlab has none (rendering_elsewhere.c) and becomes the other one, with
+// the same words, where something is to be drawn.
+#pragma once
+
+#include <stdbool.h>
+
+// To be called first: the words that the program was called with, and what ends it where GLib finds
+// no memory for a picture, which is given a reason and must not return.
+void rendering_begin(char **argv, void (*end)(const char *reason));
+
+// Begins anew as the program that draws unless this one does. To be called before anything is
+// computed or said; a program without it ends the process with a sentence.
+void rendering_needed(void);
+
+// Whether this thread is at work in the font libraries (render/page/text.h). For a handler of
+// signals.
+bool rendering_in_fonts(void);

@@ -1,0 +1,110 @@
+// A program without the rendering libraries.
+#include "ui/rendering.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/base/shipped.h"
+
+static char **words;
+
+void rendering_begin(char **argv, void (*end)(const char *reason))
+{
+    (void)end;
+    words = argv;
+}
+
+bool rendering_in_fonts(void)
+{
+    return false;
+}
+
+void rendering_needed(void)
+{
+    char *program = shipped_path(SHIPPED_DRAWING_PROGRAM);
+    fflush(stdout);
+    if (program != NULL) {
+        execv(program, words);
+    }
+    fprintf(stderr, "impactlab: the program that draws cannot be started as %s: %s\n",
+            program != NULL ? program : "impactlab-draw", strerror(errno));
+    exit(EXIT_FAILURE);
+}
+
+// What the other objects of the program call of rendering, page by page. None of it is reached
+// where rendering_needed was called in time, and a call that comes first begins anew, too. A
+// function that is missing here links its libraries (tests/test_start.sh).
+#define ABSENT(name)                                                                               \
+    _Noreturn void name(void);                                                                     \
+    _Noreturn void name(void)                                                                      \
+    {                                                                                              \
+        rendering_needed();                                                                        \
+        abort();                                                                                   \
+    }
+
+// render/page
+ABSENT(picture_check_path)
+ABSENT(text_check_family)
+
+// render/plot
+ABSENT(owned_figure_destroy)
+ABSENT(pane_curve_paint)
+ABSENT(pane_instant_paint)
+ABSENT(pane_level_paint)
+ABSENT(plot_run_beside)
+ABSENT(robust_figure_create)
+ABSENT(sweep_figure_create)
+ABSENT(sweep_plot_check)
+
+// render/scene
+ABSENT(film_file_check)
+ABSENT(film_write)
+ABSENT(plan_close_up)
+ABSENT(plan_paint)
+ABSENT(plan_x)
+ABSENT(plan_y)
+ABSENT(scene_check_path)
+ABSENT(scene_renderer_find)
+ABSENT(scene_write)
+
+// render/figures
+ABSENT(artwork_finish)
+ABSENT(artwork_of_figure)
+ABSENT(artwork_publish)
+ABSENT(figure_draw_into)
+ABSENT(figure_publish)
+ABSENT(latex_write)
+ABSENT(recipe_open)
+ABSENT(report_length)
+ABSENT(report_write)
+ABSENT(run_figure_finish)
+ABSENT(run_figure_init)
+ABSENT(thesis_figure_at)
+ABSENT(thesis_figure_count)
+ABSENT(thesis_figure_find)
+
+// Cairo and GLib
+ABSENT(cairo_create)
+ABSENT(cairo_destroy)
+ABSENT(cairo_image_surface_create)
+ABSENT(cairo_image_surface_get_data)
+ABSENT(cairo_image_surface_get_height)
+ABSENT(cairo_image_surface_get_stride)
+ABSENT(cairo_image_surface_get_width)
+ABSENT(cairo_paint)
+ABSENT(cairo_set_source_rgb)
+ABSENT(cairo_surface_destroy)
+ABSENT(cairo_surface_flush)
+ABSENT(cairo_surface_status)
+ABSENT(g_free)
+ABSENT(g_malloc0_n)
+ABSENT(g_malloc_n)
+ABSENT(g_path_get_basename)
+ABSENT(g_strconcat)
+ABSENT(g_strdup)
+ABSENT(g_string_append_len)
+ABSENT(g_string_free)
+ABSENT(g_string_new)

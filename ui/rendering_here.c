@@ -1,0 +1,19 @@
+// A program with the rendering libraries.
+#include "ui/rendering.h"
+
+#include "render/page/text.h"
+
+void rendering_begin(char **argv, void (*end)(const char *reason))
+{
+    (void)argv;
+    text_when_giving_up(end);
+}
+
+void rendering_needed(void)
+{
+}
+
+bool rendering_in_fonts(void)
+{
+    return text_in_fonts();
+}
