@@ -9,7 +9,7 @@
 
 #define TICK_INTERVAL 0.1 // [s]
 
-enum { QUEUE_LENGTH = 256 };
+enum { LONGEST_QUEUE = 256 };
 
 // A queue of finished pieces.
 typedef struct finished_pieces {
@@ -27,6 +27,7 @@ typedef struct pool {
     size_t next;            // the first piece that no thread has taken
     int working;            // threads that have not ended
     bool stop;
+    int room;                        // pieces that a queue holds
     finished_pieces finished, taken; // they change places when results are taken
 } pool;
 
@@ -63,7 +64,7 @@ static void *work_on_pieces(void *argument)
         pthread_mutex_lock(&p->mutex);
 
         // hand it over, when the calling thread has left room
-        while (p->finished.count == QUEUE_LENGTH) {
+        while (p->finished.count == p->room) {
             pthread_cond_wait(&p->changed, &p->mutex);
         }
         int at = p->finished.count++;
@@ -166,11 +167,12 @@ static int start_threads(pool *p, pool_thread *threads, int wanted)
     return started;
 }
 
-static bool allocate_queue(finished_pieces *queue, size_t result_size)
+// Nothing is cleared: only what was put there is read, and large results are many megabytes.
+static bool allocate_queue(finished_pieces *queue, int room, size_t result_size)
 {
     queue->count = 0;
-    queue->pieces = calloc(QUEUE_LENGTH, sizeof *queue->pieces);
-    queue->results = calloc(QUEUE_LENGTH, result_size);
+    queue->pieces = malloc((size_t)room * sizeof *queue->pieces);
+    queue->results = malloc((size_t)room * result_size);
     return queue->pieces != NULL && queue->results != NULL;
 }
 
@@ -178,8 +180,9 @@ static bool allocate_queue(finished_pieces *queue, size_t result_size)
 static bool allocate(pool *p, pool_thread *threads, int count)
 {
     const pool_work *w = p->work;
-    bool allocated =
-        allocate_queue(&p->finished, w->result_size) && allocate_queue(&p->taken, w->result_size);
+    p->room = w->count < LONGEST_QUEUE ? (int)w->count + 1 : LONGEST_QUEUE;
+    bool allocated = allocate_queue(&p->finished, p->room, w->result_size) &&
+                     allocate_queue(&p->taken, p->room, w->result_size);
     for (int i = 0; i < count && allocated; i++) {
         threads[i].pool = p;
         threads[i].scratch = calloc(1, w->scratch_size + 1);
