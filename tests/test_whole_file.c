@@ -338,6 +338,123 @@ static void a_strangers_link_is_not_followed(void **state)
     assert_int_equal(rmdir("shared"), 0);
 }
 
+// More at once than are remembered for a signal: each is whole all the same.
+static void several_files_are_written_at_once(void **state)
+{
+    (void)state;
+    enum { FILES = 12 };
+    const int before = files();
+    whole_file all[FILES];
+    char name[FILES][16];
+    for (int i = 0; i < FILES; i++) {
+        snprintf(name[i], sizeof name[i], "file-%d", i);
+        assert_int_equal(whole_file_open(&all[i], name[i], NULL), STATUS_OK);
+        fputs(name[i], all[i].stream);
+    }
+    for (int i = 0; i < FILES; i++) {
+        assert_int_equal(whole_file_commit(&all[i], NULL), STATUS_OK);
+        assert_holds(name[i], name[i]);
+        unlink(name[i]);
+    }
+    assert_int_equal(files(), before);
+}
+
+// What a handler of a signal calls: nothing unfinished stays, and what stood there does.
+static void a_signal_leaves_no_temporaries(void **state)
+{
+    (void)state;
+    whole_file one, two;
+    const int before = files();
+    put("one", "old");
+    assert_int_equal(whole_file_open(&one, "one", NULL), STATUS_OK);
+    assert_int_equal(whole_file_open(&two, "two", NULL), STATUS_OK);
+    assert_int_equal(files(), before + 3);
+    whole_file_remove_unfinished();
+    assert_int_equal(files(), before + 1);
+    assert_holds("one", "old");
+    whole_file_abandon(&one);
+    whole_file_abandon(&two);
+    unlink("one");
+}
+
+// Something else took the place of the target meanwhile.
+static void what_cannot_be_renamed_goes(void **state)
+{
+    (void)state;
+    whole_file w;
+    fault f = {0};
+    const int before = files();
+    assert_int_equal(whole_file_open(&w, "place", &f), STATUS_OK);
+    fputs("new", w.stream);
+    assert_int_equal(mkdir("place", 0700), 0);
+    assert_int_equal(whole_file_commit(&w, &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "'place' cannot be written"));
+    assert_int_equal(rmdir("place"), 0);
+    assert_int_equal(files(), before);
+}
+
+static void devices_and_the_standard_output_can_be_abandoned(void **state)
+{
+    (void)state;
+    whole_file w;
+    struct stat about;
+    assert_int_equal(whole_file_open(&w, "/dev/null", NULL), STATUS_OK);
+    whole_file_abandon(&w);
+    assert_int_equal(stat("/dev/null", &about), 0);
+    assert_true(S_ISCHR(about.st_mode));
+    assert_int_equal(whole_file_open(&w, "-", NULL), STATUS_OK);
+    whole_file_abandon(&w);
+    assert_int_equal(whole_file_open(&w, "-", NULL), STATUS_OK);
+    assert_int_equal(whole_file_close(&w, STATUS_STOPPED, NULL), STATUS_STOPPED);
+    assert_int_equal(whole_file_open(&w, "closed", NULL), STATUS_OK);
+    fputs("whole", w.stream);
+    assert_int_equal(whole_file_close(&w, STATUS_OK, NULL), STATUS_OK);
+    assert_holds("closed", "whole");
+    unlink("closed");
+}
+
+static void a_link_may_be_absolute(void **state)
+{
+    (void)state;
+    char there[64];
+    snprintf(there, sizeof there, "%s/target", folder);
+    assert_int_equal(mkdir("below", 0700), 0);
+    assert_int_equal(symlink(there, "below/link"), 0);
+    write_new("below/link");
+    assert_holds("target", "new");
+    unlink("target");
+    unlink("below/link");
+    assert_int_equal(rmdir("below"), 0);
+}
+
+// Only what is a temporary by name and kind is cleaned away.
+static void what_only_looks_left_behind_stays(void **state)
+{
+    (void)state;
+    static const char *const others[] = {".impactlab-1-2.party", ".impactlab-1.part",
+                                         ".impactlab-x-2.part"};
+    const int before = files();
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        put(others[i], "mine");
+    }
+    put("mine", "mine");
+    assert_int_equal(symlink("mine", ".impactlab-1-3.part"), 0);
+    assert_int_equal(mkfifo(".impactlab-1-4.part", 0600), 0);
+    assert_int_equal(mkdir(".impactlab-1-5.part", 0700), 0);
+    put(".impactlab-1-6.part", "left");
+    whole_file_clean_folder("nowhere");
+    whole_file_clean_folder(".");
+    assert_int_equal(access(".impactlab-1-6.part", F_OK), -1);
+    assert_int_equal(files(), before + 7);
+    assert_int_equal(rmdir(".impactlab-1-5.part"), 0);
+    unlink(".impactlab-1-4.part");
+    unlink(".impactlab-1-3.part");
+    unlink("mine");
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        unlink(others[i]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -353,6 +470,12 @@ int main(void)
         cmocka_unit_test(why_a_write_failed_is_known_at_the_end),
         cmocka_unit_test(what_killed_runs_left_goes),
         cmocka_unit_test(a_strangers_link_is_not_followed),
+        cmocka_unit_test(several_files_are_written_at_once),
+        cmocka_unit_test(a_signal_leaves_no_temporaries),
+        cmocka_unit_test(what_cannot_be_renamed_goes),
+        cmocka_unit_test(devices_and_the_standard_output_can_be_abandoned),
+        cmocka_unit_test(a_link_may_be_absolute),
+        cmocka_unit_test(what_only_looks_left_behind_stays),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder) != 0;
 }

@@ -272,9 +272,6 @@ static int obstacle(const char *path, bool *in_place, mode_t *mode)
         return ENOMEM;
     }
     int reason = access(folder, W_OK | X_OK) == 0 ? 0 : errno;
-    if (reason == 0 && path[strlen(path) - 1] == '/') {
-        reason = EISDIR;
-    }
     free(folder);
     return reason;
 }
