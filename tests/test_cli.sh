@@ -281,6 +281,13 @@ silent err
 "$lab" sweep hit.yaml --vary motor.voltage=1:2:2 --db closed.db --csv closed.csv <&- >&- 2>&- || true
 [ "$(head -c 15 closed.db | tr -d '\0')" = "SQLite format 3" ] || fail "a closed output ended in the database"
 [ "$(wc -l <closed.csv)" = 3 ] || fail "a closed output spoilt a CSV file"
+status=0
+"$lab" sweep hit.yaml --vary motor.voltage=1:2:2 --db other.db --csv - >&- 2>err || status=$?
+[ $status = 0 ] && [ "$(head -c 15 other.db | tr -d '\0')" = "SQLite format 3" ] ||
+    fail "rows for a closed output (status $status) went into the database"
+status=0
+"$lab" run hit.yaml --csv closed.csv >&- 2>err || status=$?
+[ $status = 0 ] || fail "a closed output gave exit status $status"
 
 # --- sweep
 expect 0 sweep hit.yaml --vary motor.voltage=1:2:3 --csv -

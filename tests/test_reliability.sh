@@ -101,6 +101,37 @@ for rows in "" "1,\n2,\n" ",3\n" "nan,1\n"; do
     says err "expected at least one"
 done
 
+# --- databases from elsewhere: no code of theirs runs, and what is no row of a sweep is refused
+if command -v sqlite3 >/dev/null; then
+    sweep="sweep hostile.yaml --vary motor.voltage=1:2:3 --quiet --db"
+    # shellcheck disable=SC2086
+    expect 0 $sweep own.sqlite
+    lines=$(sqlite3 own.sqlite "SELECT count(*) FROM sweep")
+
+    # a trigger that would forget what the sweep is
+    cp own.sqlite trigger.sqlite
+    sqlite3 trigger.sqlite "DELETE FROM run WHERE run = 2;
+        CREATE TRIGGER t AFTER INSERT ON run BEGIN DELETE FROM sweep; END"
+    # shellcheck disable=SC2086
+    expect 0 $sweep trigger.sqlite
+    [ "$(sqlite3 trigger.sqlite "SELECT count(*) FROM sweep")" = "$lines" ] || fail "a trigger of a database ran"
+
+    # a row without a status, a view for a table, a column less
+    cp own.sqlite null.sqlite
+    sqlite3 null.sqlite "ALTER TABLE run RENAME TO was; CREATE TABLE run AS SELECT * FROM was;
+        UPDATE run SET status = NULL WHERE run = 2; DROP TABLE was"
+    cp own.sqlite view.sqlite
+    sqlite3 view.sqlite "ALTER TABLE run RENAME TO was; CREATE VIEW run AS SELECT * FROM was"
+    cp own.sqlite column.sqlite
+    sqlite3 column.sqlite "ALTER TABLE run DROP COLUMN peak_force_N"
+    for database in null view column; do
+        # shellcheck disable=SC2086
+        expect 2 $sweep $database.sqlite --csv rows.csv
+        says err "'$database.sqlite'"
+        [ ! -e rows.csv ] || fail "rows were taken from $database.sqlite"
+    done
+fi
+
 # --- a command that fails among keys ends the program so
 expect 1 lab corrected/first-impact --size 100x30 --keys ':sat motor.voltage 2<Enter>:seek 0.1<Enter>'
 says err "there is no command 'sat'"
