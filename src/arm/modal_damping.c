@@ -13,10 +13,9 @@ enum { MOST_BODIES = PARAMETER_LIST_MOST + 1 };
 // the sum of the bends up to its own.
 static void scaled_mass(const arm *a, int first, double *scaled)
 {
-    static const int most = MOST_BODIES;
     double mass[MOST_BODIES * MOST_BODIES] = {0}, stiffness[MOST_BODIES * MOST_BODIES] = {0};
     const int n = a->dof, size = n - first;
-    assert(n <= most);
+    assert(n <= (int)MOST_BODIES);
     modes_matrices(a, mass, stiffness);
 
     // what the bodies from i and from j on have in common, less the roots of both stiffnesses

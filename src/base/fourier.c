@@ -8,7 +8,8 @@
 
 #define PI 3.14159265358979323846
 
-static bool is_power_of_two(size_t n)
+// For assertions, which a build without them does not ask.
+static inline bool is_power_of_two(size_t n)
 {
     return n > 0 && (n & (n - 1)) == 0;
 }

@@ -333,7 +333,7 @@ bool motion_between_all(const arm *a, motion *m, const double *times, int count,
 {
     assert(a != NULL && m != NULL && count >= 1 && count <= MOTION_TOGETHER);
     double *start = m->trial, *states[MOTION_TOGETHER], h[MOTION_TOGETHER];
-    if (m->engine->states_at == NULL || state_is_held_still(m, start)) {
+    if (m->engine->states_at == NULL || state_is_held_still(m, start) || count < 1) {
         return false;
     }
 

@@ -46,14 +46,9 @@ static void *place_of(const arguments *a, const option_row *o)
     return (char *)a + o->place;
 }
 
-static bool stores_text(option_type type)
-{
-    return type >= OPTION_TEXT && type <= OPTION_QUANTITY;
-}
-
 const char *option_text(const arguments *a, const option_row *o)
 {
-    assert(stores_text(o->type));
+    assert(o->type >= OPTION_TEXT && o->type <= OPTION_QUANTITY);
     return *(const char **)place_of(a, o);
 }
 

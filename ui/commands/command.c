@@ -47,11 +47,44 @@ void report_to_stderr(void *context, const char *sentence)
     print_printable(stderr, "%s\n", sentence);
 }
 
-// Counts the faults it passes on, so that none of them goes unsaid.
+// Counts the faults it passes on, so that none of them goes unsaid. The first one waits until it is
+// known whether it is about a place in a file, which begins the sentence then.
+typedef struct told_faults {
+    int count;
+    char *first; // not told yet, or NULL
+} told_faults;
+
+static void tell_first(told_faults *t)
+{
+    if (t->first != NULL) {
+        report_to_stderr(NULL, t->first);
+    }
+    free(t->first);
+    t->first = NULL;
+}
+
 static void report_and_count(void *context, const char *sentence)
 {
-    (*(int *)context)++;
-    report_to_stderr(NULL, sentence);
+    told_faults *t = context;
+    tell_first(t);
+    t->first = t->count++ == 0 ? strdup(sentence) : NULL;
+    if (t->first == NULL) {
+        report_to_stderr(NULL, sentence);
+    }
+}
+
+// Tells of a scenario that could not be opened, and how: one that is not there has no place.
+static int explain_scenario(told_faults *t, status code, const char *name_or_file)
+{
+    if (t->count == 0) {
+        complain("'%s': %s", name_or_file, status_text(code));
+    } else if (t->first != NULL && code == STATUS_BAD_ARGUMENT) {
+        complain("%s", t->first);
+        free(t->first);
+        t->first = NULL;
+    }
+    tell_first(t);
+    return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
 }
 
 static bool is_same_file(const char *path, const char *other)
@@ -82,16 +115,13 @@ static void complain_sentence(void *context, const char *sentence)
 
 int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
 {
-    int reported = 0;
+    told_faults told = {0};
     assert(s != NULL && name_or_file != NULL && a != NULL);
-    status code = scenario_open(s, name_or_file, report_and_count, &reported);
-
+    status code = scenario_open(s, name_or_file, report_and_count, &told);
     if (code != STATUS_OK) {
-        if (reported == 0) {
-            complain("'%s': %s", name_or_file, status_text(code));
-        }
-        return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
+        return explain_scenario(&told, code, name_or_file);
     }
+    tell_first(&told);
 
     // what the command line allows and changes
     s->parameters.code_allowed = a->allow_code;

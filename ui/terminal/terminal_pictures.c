@@ -7,6 +7,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "src/base/text_stream.h"
 #include "ui/terminal/paint.h"
 #include "ui/terminal/pictures.h"
 #include "ui/terminal/pixel_code.h"
@@ -19,10 +20,12 @@ typedef struct shown_region {
     uint64_t hash; // of its pixels
 } shown_region;
 
-static struct {
+typedef struct shown_pictures {
     shown_region regions[PICTURE_REGIONS];
     int count;
-} shown;
+} shown_pictures;
+
+static shown_pictures shown;
 
 // --- answers ----------------------------------------------------------------------------------
 
@@ -144,8 +147,6 @@ void terminal_show_pictures(const screen *s, bool whole)
 {
     const pixel_answers *a = &tty.pixels;
     picture_region regions[PICTURE_REGIONS];
-    char *bytes = NULL;
-    size_t size = 0;
     if (pixel_answers_protocol(a) == PIXELS_NONE || (s->pictures == NULL && shown.count == 0)) {
         return;
     }
@@ -160,13 +161,19 @@ void terminal_show_pictures(const screen *s, bool whole)
     const int count = fit ? pictures_regions(s, width, height, regions) : 0;
 
     // all of them at once
-    FILE *stream = open_memstream(&bytes, &size);
-    if (stream != NULL) {
-        write_regions(stream, s, regions, count, whole);
-        fclose(stream);
-        terminal_send(bytes, size);
+    const shown_pictures before = shown;
+    text_stream all;
+    if (text_stream_open(&all)) {
+        write_regions(all.stream, s, regions, count, whole);
+        size_t size;
+        char *bytes = text_stream_close(&all, &size);
+        if (bytes != NULL) {
+            terminal_send(bytes, size);
+        } else {
+            shown = before; // no memory: nothing was sent
+        }
+        free(bytes);
     }
-    free(bytes);
 }
 
 void terminal_remove_pictures(void)
