@@ -1,0 +1,52 @@
+#include "tests/sweep_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+
+static char folder[] = "/tmp/sweep-XXXXXX";
+scenario base;
+
+void print_sentence(void *context, const char *sentence)
+{
+    (void)context;
+    print_error("%s\n", sentence);
+}
+
+int sweep_fixture_open(void **state)
+{
+    (void)state;
+    static const char text[] = "title: Hit\nmotor: {voltage: 1 V}\nrun: {duration: 0.6 s}\n";
+    return mkdtemp(folder) == NULL || chdir(folder) != 0 ||
+           scenario_parse(&base, text, strlen(text), "hit.yaml", "hit", print_sentence, NULL) !=
+               STATUS_OK;
+}
+
+int sweep_fixture_close(void **state)
+{
+    (void)state;
+    scenario_finish(&base);
+    return chdir("/") != 0 || rmdir(folder) != 0;
+}
+
+status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, fault *f,
+                const char *a, const char *b)
+{
+    char *vary[] = {(char *)a, (char *)b};
+    sweep_request request = {.vary = vary,
+                             .vary_count = (a != NULL) + (b != NULL),
+                             .sampling = sampling,
+                             .runs = runs,
+                             .seed = seed};
+    return sweep_init(s, &base, &request, f);
+}
+
+void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a, const char *b)
+{
+    fault f = {0};
+    if (sweep_of(s, sampling, runs, 1, &f, a, b) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}

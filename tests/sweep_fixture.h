@@ -1,0 +1,22 @@
+// What tests of sweeps share: a folder of their own, and sweeps of one scenario.
+#pragma once
+
+#include "src/study/sweep.h"
+
+// The scenario that is swept: two links at 1 V for 0.6 s.
+extern scenario base;
+
+// A fault_handler that shows what should not be.
+void print_sentence(void *context, const char *sentence);
+
+// Set-up and tear-down of a group of tests: reads `base` and works in a folder that is empty again
+// at the end.
+int sweep_fixture_open(void **state);
+int sweep_fixture_close(void **state);
+
+// The sweep of up to two --vary; those not given are NULL.
+status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, fault *f,
+                const char *a, const char *b);
+
+// The same, which has to be one.
+void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a, const char *b);

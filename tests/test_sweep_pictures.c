@@ -1,0 +1,118 @@
+// Pictures of sweeps: what each kind shows.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "render/page/text.h"
+#include "render/plot/figure_file.h"
+#include "render/plot/sweep_plot.h"
+#include "tests/check.h"
+#include "tests/sweep_fixture.h"
+
+static int close_all(void **state)
+{
+    text_release();
+    return sweep_fixture_close(state);
+}
+
+static void must_draw(const char *a, const char *b, sweep_sampling sampling, size_t runs,
+                      const char *path, double offset)
+{
+    sweep s;
+    fault f = {0};
+    must_sweep(&s, sampling, runs, a, b);
+    double *values = malloc(s.run_count * sizeof *values);
+    assert_non_null(values);
+    for (size_t run = 0; run < s.run_count; run++) {
+        values[run] = run % 7 == 3 ? (double)NAN : offset + (double)(run % 11);
+    }
+    sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
+    assert_int_equal(sweep_plot_check(&s, path, &f), STATUS_OK);
+    owned_figure *drawn = sweep_figure_create(&shown);
+    if (figure_write(&drawn->figure, path, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    owned_figure_destroy(drawn);
+    struct stat about;
+    assert_int_equal(stat(path, &about), 0);
+    assert_true(about.st_size > 1000);
+    unlink(path);
+    free(values);
+    sweep_finish(&s);
+}
+
+static void every_kind_of_sweep_can_be_drawn(void **state)
+{
+    (void)state;
+    must_draw("motor.voltage=1:2:9", NULL, SWEEP_GRID, 0, "a.png", 0);
+    must_draw("motor.voltage=3,1,2", NULL, SWEEP_GRID, 0, "a.pdf", 0);
+    must_draw("arm.k2=1:1e6:200:log", NULL, SWEEP_GRID, 0, "a.svg", 0);
+    must_draw("method.name=newmark,event", NULL, SWEEP_GRID, 0, "a.png", 0);
+    must_draw("motor.voltage=1", NULL, SWEEP_GRID, 0, "a.png", 0);
+    must_draw("motor.voltage=1:2", NULL, SWEEP_RANDOM, 30, "a.svg", -1e9);
+    must_draw("motor.voltage=2:1:9", "arm.k2=1:1e-5:5:log", SWEEP_GRID, 0, "a.png", 0);
+    must_draw("motor.voltage=1:2:9", "method.name=event,newmark", SWEEP_GRID, 0, "a.pdf", 0);
+    must_draw("motor.voltage=1", "arm.k2=3", SWEEP_GRID, 0, "a.png", (double)NAN);
+    must_draw("motor.voltage=1:2", "arm.k2=3,4", SWEEP_LATIN, 30, "a.png", 1e-6);
+}
+
+// Methods beside a number: a curve for each over the number, whichever was varied first.
+static void words_have_a_curve_each(void **state)
+{
+    (void)state;
+    static const char *const varied[2][2] = {{"method.name=event,newmark", "motor.voltage=1,2,4"},
+                                             {"motor.voltage=1,2,4", "method.name=event,newmark"}};
+    for (int k = 0; k < 2; k++) {
+        sweep s;
+        double values[6];
+        must_sweep(&s, SWEEP_GRID, 0, varied[k][0], varied[k][1]);
+        assert_int_equal(s.run_count, 6);
+        for (size_t run = 0; run < 6; run++) {
+            // 100 for the second method, and the voltage
+            double volts = sweep_value(&s, run, 1 - k);
+            values[run] = volts + (sweep_value(&s, run, k) == s.axes[k].values[1] ? 100 : 0);
+        }
+        sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
+        owned_figure *drawn = sweep_figure_create(&shown);
+        const figure *fig = &drawn->figure;
+        assert_null(fig->panels[0].map);
+        assert_int_equal(fig->panels[0].series_count, 2);
+        assert_string_equal(fig->x.name, "motor.voltage");
+        assert_string_equal(fig->panels[0].series[1].label, "newmark");
+        for (int i = 0; i < 3; i++) {
+            assert_true(fig->panels[0].series[0].y[i] == fig->panels[0].series[0].x[i]);
+            assert_true(fig->panels[0].series[1].y[i] == 100 + fig->panels[0].series[1].x[i]);
+        }
+        owned_figure_destroy(drawn);
+        sweep_finish(&s);
+    }
+}
+
+static void a_picture_shows_two_parameters_at_most(void **state)
+{
+    (void)state;
+    char *vary[] = {"arm.k1=1,2", "arm.k2=1,2", "arm.mass=1,2"};
+    sweep_request request = {.vary = vary, .vary_count = 3};
+    sweep s;
+    fault f = {0};
+    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
+    assert_int_equal(s.run_count, 8);
+    assert_int_equal(sweep_plot_check(&s, "a.png", &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "3 are varied"));
+    sweep_finish(&s);
+    must_sweep(&s, SWEEP_GRID, 0, "arm.k1=1,2", NULL);
+    assert_int_equal(sweep_plot_check(&s, "a.jpg", &f), STATUS_BAD_ARGUMENT);
+    sweep_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_kind_of_sweep_can_be_drawn),
+        cmocka_unit_test(words_have_a_curve_each),
+        cmocka_unit_test(a_picture_shows_two_parameters_at_most),
+    };
+    return cmocka_run_group_tests(tests, sweep_fixture_open, close_all) != 0;
+}
