@@ -75,6 +75,21 @@ static void cases_are_what_differs(void **state)
     check_close(derived.actions[0].value, -0.05, 0);
     check_close(derived.actions[0].time, 0.8, 0);
     robust_case_finish(&derived);
+
+    // the scenario's own script stays, with a case and without one
+    action own = {.time = 0.5, .kind = ACTION_PUSH, .parameter = -1, .value = 0.02};
+    base.actions = &own;
+    base.action_count = 1;
+    assert_int_equal(robust_case_scenario(&derived, &base, NULL, &f), STATUS_OK);
+    assert_int_equal(derived.action_count, 1);
+    check_close(derived.actions[0].value, 0.02, 0);
+    robust_case_finish(&derived);
+    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[1], &f), STATUS_OK);
+    assert_int_equal(derived.action_count, 2);
+    check_close(derived.actions[0].value, 0.02, 0);
+    check_close(derived.actions[1].value, -0.05, 0);
+    robust_case_finish(&derived);
+    base.action_count = 0;
     robust_set_finish(&set);
 
     // what is no case, and a case that cannot be
@@ -87,6 +102,8 @@ static void cases_are_what_differs(void **state)
                                         "control.seed=1,2\ncase a: push=0.1@1 s\n",
                                         "control.seed=1,2\ncase a: push=1e999@0.1\n",
                                         "control.seed=1,2\ncase a: push=0.1@1e999\n",
+                                        "control.seed=1,2\ncase a: push=much@1\n",
+                                        "control.seed=1,2\ncase a: push=0.1@soon\n",
                                         ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
                                          "push=1@4; push=1@5\n")};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {

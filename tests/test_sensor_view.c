@@ -152,6 +152,58 @@ static void what_cannot_be_viewed_is_said(void **state)
     s.parameters.arm.model = ARM_PRINTED;
     assert_int_equal(sensor_view_compute(&s, 2, NULL, &view, &f), STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "printed"));
+
+    // a script is no part of what the study looks at
+    s = fast_touch();
+    action late = {.time = 0.9, .kind = ACTION_PUSH, .parameter = -1, .value = 0.01};
+    s.actions = &late;
+    s.action_count = 1;
+    assert_int_equal(sensor_view_compute(&s, 2, NULL, &view, &f), STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(f.text, "script"));
+
+    // nor is it gone on with when it is to stop
+    s.action_count = 0;
+    run_monitor monitor = {0};
+    atomic_store(&monitor.stop, true);
+    assert_int_equal(sensor_view_compute(&s, 2, &monitor, &view, &f), STATUS_STOPPED);
+    sensor_study study;
+    assert_int_equal(sensor_study_compute(&s, &monitor, &study, &f), STATUS_STOPPED);
+    assert_int_equal(study.count, 0);
+    assert_int_equal(atomic_load(&monitor.pieces), 0);
+}
+
+// A stride of no length brings nothing.
+static void a_force_without_time_is_not_felt(void **state)
+{
+    (void)state;
+    sensor_lag lag;
+    sensor_lag_start(&lag, 1e-3, 0);
+    sensor_lag_force(&lag, 0, 5, 5, 5);
+    check_close(lag.value, 0, 0);
+    check_close(lag.peak, 0, 0);
+}
+
+// The study's rows are the views of their numbers of links, beside the beam that stops alike.
+static void the_study_is_its_views(void **state)
+{
+    (void)state;
+    scenario s = fast_touch();
+    sensor_study study;
+    sensor_view view;
+    fault f;
+    run_monitor monitor = {0};
+    assert_int_equal(sensor_study_compute(&s, &monitor, &study, &f), STATUS_OK);
+    assert_int_equal(study.count, SENSOR_LENGTHS);
+    assert_int_equal(atomic_load(&monitor.pieces), SENSOR_LENGTHS);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(sensor_view_compute(&s, study.views[i].links, NULL, &view, &f), STATUS_OK);
+        check_close(study.links[i], view.links, 0);
+        check_close(study.impulse[i], view.impulse, 0);
+        check_close(study.momentum[i], view.momentum, 0);
+        for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+            check_close(study.sensed[k][i], view.sensed[k], 0);
+        }
+    }
 }
 
 int main(void)
@@ -165,6 +217,8 @@ int main(void)
         cmocka_unit_test(two_links_read_as_one_impulse),
         cmocka_unit_test(the_beams_limit_is_the_lag_of_an_inverse_root),
         cmocka_unit_test(what_cannot_be_viewed_is_said),
+        cmocka_unit_test(a_force_without_time_is_not_felt),
+        cmocka_unit_test(the_study_is_its_views),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,0 +1,227 @@
+// What a session refuses leaves it as it was, and a run that is being computed can be left,
+// stopped, and gone on with.
+#include "tests/trace_check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/rig/process_tape.h"
+#include "src/session/session.h"
+
+static void fail_on_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static scenario read_text(const char *text)
+{
+    scenario s;
+    assert_int_equal(scenario_parse(&s, text, strlen(text), "test.yaml", NULL, fail_on_fault, NULL),
+                     STATUS_OK);
+    return s;
+}
+
+static session opened(const char *text)
+{
+    session s;
+    fault f = {0};
+    scenario base = read_text(text);
+    assert_int_equal(session_init(&s, &base, &f), STATUS_OK);
+    return s;
+}
+
+static const char brief[] = "title: t\nwall: {angle: 0}\ninitial: {angle: -0.02}\n"
+                            "run: {duration: 0.3 s}\n";
+
+static void what_is_too_long_or_no_value_is_refused(void **state)
+{
+    (void)state;
+    session s = opened(brief);
+    fault f = {0};
+    char endless[4 * PARAMETER_TEXT_SIZE];
+    memset(endless, '1', sizeof endless - 1);
+    endless[sizeof endless - 1] = '\0';
+    session_seek(&s, 0.1);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "2", &f), STATUS_OK);
+    assert_int_equal(session_push(&s, 0.01, &f), STATUS_OK);
+    const unsigned version = s.version;
+
+    // a new input
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.k2), endless, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "too long"));
+    assert_int_not_equal(session_adjust(&s, PARAMETER_INDEX(arm.k2), "soft", &f), STATUS_OK);
+
+    // another value for one there is
+    assert_int_equal(session_change_input(&s, 0, endless, &f), STATUS_BAD_ARGUMENT);
+    assert_int_not_equal(session_change_input(&s, 0, "strong", &f), STATUS_OK);
+    assert_int_equal(session_change_input(&s, 1, "2", &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "push"));
+
+    // what cannot be undone, redone or gone on with
+    assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(session_go_on(&s, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(s.input_count, 2);
+    assert_int_equal(s.version, version);
+    assert_string_equal(s.inputs[0].text, "2");
+    session_finish(&s);
+
+    session printed = opened("title: t\narm: {model: printed}\nrun: {duration: 0.1 s}\n");
+    assert_int_equal(session_push(&printed, 0.01, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "no pushes"));
+    session_finish(&printed);
+}
+
+// Small steps of one parameter are one input; what is refused on the way is none of them.
+static void adjusting_keeps_what_was_before(void **state)
+{
+    (void)state;
+    session s = opened(brief);
+    fault f = {0};
+    const int voltage = PARAMETER_INDEX(motor.voltage);
+    session_seek(&s, 0.1);
+    assert_int_equal(session_adjust(&s, voltage, "1.1", &f), STATUS_OK);
+    assert_int_equal(session_adjust(&s, voltage, "1.2", &f), STATUS_OK);
+    assert_int_equal(s.input_count, 1);
+    assert_true(s.has_ghost);
+    assert_int_not_equal(session_adjust(&s, voltage, "much", &f), STATUS_OK);
+    assert_int_equal(s.input_count, 1);
+    assert_string_equal(s.inputs[0].text, "1.2");
+
+    // at another instant it is another one, and back at what it was there is none
+    session_seek(&s, 0.2);
+    assert_int_equal(session_adjust(&s, voltage, "1.5", &f), STATUS_OK);
+    assert_int_equal(s.input_count, 2);
+    assert_int_equal(session_adjust(&s, voltage, "1.2", &f), STATUS_OK);
+    assert_int_equal(s.input_count, 1);
+    assert_int_equal(session_push(&s, 0.01, &f), STATUS_OK);
+    assert_int_equal(session_adjust(&s, voltage, "3", &f), STATUS_OK);
+    assert_int_equal(s.input_count, 3);
+    session_finish(&s);
+}
+
+// An input that another one needs stays, and so do all where the run of others cannot be.
+static void inputs_that_cannot_go_stay(void **state)
+{
+    (void)state;
+    session s = opened(brief);
+    fault f = {0};
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.links), "3", &f), STATUS_OK);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.joint_stiffness), "7,8", &f),
+                     STATUS_OK);
+    const unsigned version = s.version;
+    assert_int_equal(session_drop_input(&s, 0, &f), STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(f.text, "arm.joint_stiffness"));
+    assert_int_equal(s.input_count, 2);
+    assert_int_equal(s.inputs[0].parameter, PARAMETER_INDEX(arm.links));
+
+    session_input alone = s.inputs[1];
+    assert_int_equal(session_take_inputs(&s, &alone, 1, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(s.input_count, 2);
+    assert_int_equal(s.version, version);
+    assert_int_equal(session_take_inputs(&s, NULL, 0, &f), STATUS_OK);
+    assert_int_equal(s.input_count, 0);
+    session_finish(&s);
+}
+
+// A change given at the row before an event takes effect before it, one at the row after it does
+// not change the event.
+static void a_change_at_an_event_belongs_to_its_row(void **state)
+{
+    (void)state;
+    session s = opened(brief);
+    fault f = {0};
+    const double contact = s.run.summary.first_contact_s;
+    assert_true(contact > 0);
+    session_seek(&s, contact);
+    assert_true(session_step(&s, -1));
+    if (session_sample(&s)->time != contact) {
+        assert_true(session_step(&s, 1)); // the first of the rows at contact
+    }
+    assert_false(session_sample(&s)->contact);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "9", &f), STATUS_OK);
+    assert_true(s.inputs[0].time < contact && s.inputs[0].time > contact - 1e-3);
+    assert_int_equal(session_undo(&s, &f), STATUS_OK);
+    assert_true(session_sample(&s)->time == contact && !session_sample(&s)->contact);
+
+    while (!session_sample(&s)->contact) {
+        assert_true(session_step(&s, 1));
+    }
+    assert_true(session_sample(&s)->time == contact);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "9", &f), STATUS_OK);
+    assert_true(s.inputs[0].time == contact);
+    assert_true(s.run.summary.first_contact_s == contact);
+    session_finish(&s);
+}
+
+// A run that takes long is there as far as it is; stopped, it goes on to the same rows.
+static void a_stopped_run_goes_on(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    scenario base = read_text("title: t\nmotor: {voltage: 0.001 V}\nwall: {angle: 3 rad}\n"
+                              "arm: {links: 24, damping_ratio: 0}\nrun: {duration: 300 s}\n");
+    assert_int_equal(session_open(&s, &base, 0, &f), STATUS_OK);
+    assert_non_null(s.computing);
+    assert_true(s.run.trace.row_count > 0);
+
+    // meanwhile it cannot be kept or gone on with, and one too large leaves it running
+    assert_int_equal(session_branch(&s, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(session_go_on(&s, &f), STATUS_BAD_ARGUMENT);
+    assert_false(session_take_replay(&s).restarted);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(method.step), "1e-7", &f),
+                     STATUS_BAD_ARGUMENT);
+    assert_int_equal(s.input_count, 0);
+    assert_non_null(s.computing);
+
+    // stopped, all rows so far are there
+    assert_true(session_stop(&s));
+    assert_false(session_stop(&s));
+    assert_int_equal(s.run.summary.status, STATUS_STOPPED);
+    const size_t count = s.run.trace.row_count;
+    sample *before = malloc(count * sizeof *before);
+    assert_non_null(before);
+    memcpy(before, s.run.trace.rows, count * sizeof *before);
+
+    // and stand at the beginning of what comes then
+    assert_int_equal(session_go_on(&s, &f), STATUS_OK);
+    while (s.computing != NULL && s.run.trace.row_count < count + 10) {
+        session_follow(&s);
+    }
+    assert_true(s.run.trace.row_count >= count + 10);
+    for (size_t i = 0; i + 1 < count; i++) { // the last one is where it was cut
+        assert_memory_equal(&before[i], &s.run.trace.rows[i], sizeof *before);
+    }
+    free(before);
+    session_finish(&s);
+}
+
+// Code that is allowed and cannot be loaded: the session is as it was, and not allowed.
+static void code_that_cannot_be_loaded_stays_withheld(void **state)
+{
+    (void)state;
+    session s = opened("title: t\ncontrol: {law: plugin, plugin: /nonexistent.so, force: 1 N}\n"
+                       "run: {duration: 0.1 s}\n");
+    fault f = {0};
+    const unsigned version = s.version;
+    assert_int_not_equal(session_allow_code(&s, &f), STATUS_OK);
+    assert_non_null(strstr(f.text, "/nonexistent.so"));
+    assert_false(s.base.parameters.code_allowed);
+    assert_int_equal(s.version, version);
+    assert_true(s.run.trace.row_count > 0);
+    session_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_too_long_or_no_value_is_refused),
+        cmocka_unit_test(adjusting_keeps_what_was_before),
+        cmocka_unit_test(inputs_that_cannot_go_stay),
+        cmocka_unit_test(a_change_at_an_event_belongs_to_its_row),
+        cmocka_unit_test(a_stopped_run_goes_on),
+        cmocka_unit_test(code_that_cannot_be_loaded_stays_withheld),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
