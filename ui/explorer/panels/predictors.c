@@ -2,6 +2,7 @@
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
 enum { ROWS = 6 };            // of the panel [cells]
@@ -81,8 +82,18 @@ static prediction what_came(const session *s, size_t r)
     return came;
 }
 
+// Why a predictor says nothing, if there is room for it. Links whose state is not known are those
+// of a run that plays: it will say something when that pauses.
+static const char *reason_of(const prediction_answer *answer, area a)
+{
+    const char *reason = prediction_reason(answer);
+    const bool fits = a.width - 20 >= (int)strlen(reason);
+    return fits && answer->outcome != PREDICTION_LINKS_UNKNOWN ? reason : "-";
+}
+
+// A line of the panel; `unknown` stands in the place of a force that is not known, else NULL.
 static void predictor_line(screen *s, area a, int line, const char *label, const prediction *p,
-                           bool known)
+                           const char *unknown)
 {
     int y = a.y + 1 + line;
     if (y >= a.y + a.height - 1) {
@@ -91,8 +102,8 @@ static void predictor_line(screen *s, area a, int line, const char *label, const
     screen_text(s, a.x + 2, y, a.width - 4, INK_TEXT, label);
 
     // force and delay as far as they are known and there is room
-    if (!known) {
-        screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, "-");
+    if (unknown != NULL) {
+        screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, unknown);
     } else if (!p->holds) {
         screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, "would not hold");
     } else if (isfinite(p->delay) && a.width < 36) {
@@ -126,20 +137,21 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
                                       PREDICTOR_LINEARISED};
     for (int i = 0; i < 3; i++) {
         const prediction_answer answer = ask(st, lay, asked[i], r);
-        predictor_line(s, a, i, answer.short_label, &answer.prediction, prediction_known(&answer));
+        predictor_line(s, a, i, answer.short_label, &answer.prediction,
+                       prediction_known(&answer) ? NULL : reason_of(&answer, a));
     }
 
     // and beside it what came
     prediction out;
     if (touches) {
         out = what_came(e, r);
-        predictor_line(s, a, 3, "what came", &out, true);
+        predictor_line(s, a, 3, "what came", &out, NULL);
     } else {
         const summary *m = &e->run.summary;
         out = (prediction){
             .holds = true, .force = m->first_pulse_peak_N, .delay = m->first_pulse_time_to_peak_s};
         bool seen = e->seen >= m->first_contact_s + m->first_pulse_time_to_peak_s;
-        predictor_line(s, a, 3, "first pulse", &out, seen);
+        predictor_line(s, a, 3, "first pulse", &out, seen ? NULL : "-");
     }
 }
 
