@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <jansson.h>
 #include <math.h>
 #include <poll.h>
 #include <stdarg.h>
@@ -13,13 +12,12 @@
 #include <unistd.h>
 
 #include "src/base/clock.h"
-#include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 #include "src/rig/keeper.h"
+#include "src/rig/process_lines.h"
 
 enum {
-    PROTOCOL = 1,       // of the lines, told in the first one
     MOST_LINE = 65536,  // of an answer [bytes]
     LAST_ERRORS = 160,  // of what the program wrote to its standard error last [bytes]
     SHOWN_OF_LINE = 60, // of an answer that is none [bytes]
@@ -156,118 +154,6 @@ static bool fail_without_memory(process *p)
     return false;
 }
 
-// --- a question -------------------------------------------------------------------------------
-
-static void set_number(json_t *object, const char *name, double value)
-{
-    json_put(object, name, json_number(value));
-}
-
-// What the program is told about the rig, under the names of controller_setup.
-static json_t *setup_object(const controller_setup *s)
-{
-    json_t *object = json_object();
-
-    // the sampling and the drive
-    set_number(object, "period", s->period);
-    set_number(object, "delay", s->delay);
-    set_number(object, "voltage_limit", s->voltage_limit);
-    set_number(object, "torque_per_volt", s->torque_per_volt);
-    set_number(object, "hub_damping", s->hub_damping);
-    set_number(object, "stiction", s->stiction);
-
-    // the arm and the wall
-    set_number(object, "hub_inertia", s->hub_inertia);
-    set_number(object, "link_mass", s->link_mass);
-    set_number(object, "link_length", s->link_length);
-    set_number(object, "link_inertia", s->link_inertia);
-    set_number(object, "k2", s->k2);
-    set_number(object, "wall_angle", s->wall_angle);
-    set_number(object, "links", s->links);
-    set_number(object, "hub_spring", s->hub_spring);
-    set_number(object, "damping_ratio", s->damping_ratio);
-    return object;
-}
-
-// All numbers of control.*, by their names.
-static json_t *control_object(const process_memory *m)
-{
-    static const char group[] = "control.";
-    parameters all = {.control = m->control};
-    json_t *object = json_object();
-
-    // from the table, so that a new parameter needs no line here
-    for (int i = 0; i < parameter_count; i++) {
-        const parameter_info *info = &parameter_table[i];
-        const bool number = info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER;
-        if (number && strncmp(info->path, group, sizeof group - 1) == 0) {
-            set_number(object, info->path + sizeof group - 1, parameter_get(&all, i));
-        }
-    }
-
-    // as ramp and wave have it now, where the controller gets it from its setup
-    set_number(object, "force", m->setup.parameters != NULL ? m->setup.parameters[0] : 0);
-    return object;
-}
-
-// control.settings, NAME=VALUE: numbers where they are, else texts.
-static json_t *settings_object(const process_memory *m)
-{
-    json_t *object = json_object();
-    const char *word = m->control.settings;
-    while (*(word += strspn(word, " ")) != '\0') {
-        char name[PARAMETER_TEXT_SIZE] = "", text[PARAMETER_TEXT_SIZE] = "";
-        size_t length = strcspn(word, " "), name_length = strcspn(word, " =");
-        memcpy(name, word, name_length);
-        if (name_length < length) {
-            memcpy(text, word + name_length + 1, length - name_length - 1);
-        }
-
-        double value;
-        const char *rest;
-        bool number = decimal_read(text, &value, &rest) && *rest == '\0';
-        json_put(object, name, number ? json_number(value) : json_text(text));
-        word += length;
-    }
-    return object;
-}
-
-// The line that asks for a command, with its end, to be freed; NULL without memory.
-static char *question_of(const process_memory *m, const controller_input *in)
-{
-    json_t *object = json_object();
-    if (m->tells_setup) {
-        json_put(object, "protocol", json_integer(PROTOCOL));
-        json_put(object, "setup", setup_object(&m->setup));
-        json_put(object, "control", control_object(m));
-        json_put(object, "settings", settings_object(m));
-    }
-
-    // what a controller within the program would see
-    set_number(object, "time", in->time);
-    set_number(object, "encoder", in->encoder);
-    set_number(object, "tachometer", in->tachometer);
-    set_number(object, "force", in->force);
-    set_number(object, "voltage", in->voltage);
-    set_number(object, "piezo_force", in->piezo_force);
-    set_number(object, "film", in->film);
-    set_number(object, "accelerometer", in->accelerometer);
-    set_number(object, "predicted_force", in->predicted_force);
-
-    // enough digits for every bit
-    char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    json_decref(object);
-    const bool whole = !json_lost_something() && text != NULL;
-    const size_t length = whole ? strlen(text) : 0;
-    char *line = whole ? realloc(text, length + 2) : NULL;
-    if (line == NULL) {
-        free(text);
-        return NULL;
-    }
-    memcpy(line + length, "\n", 2);
-    return line;
-}
-
 // --- an answer --------------------------------------------------------------------------------
 
 static double now(void)
@@ -347,43 +233,25 @@ static bool exchange(process *p, const char *text)
     return true;
 }
 
-// A number of the answer: `missing` where there is none. False if it is no number.
-static bool answered(const json_t *object, const char *name, double missing, double *value)
-{
-    const json_t *member = json_object_get(object, name);
-    *value = json_is_number(member) ? json_number_value(member) : missing;
-    return member == NULL || json_is_null(member) || json_is_number(member);
-}
-
 // What the line says. False, with a failure, if that is no answer.
 static bool understand(process *p, controller_output *out)
 {
     char *end = memchr(p->line, '\n', p->length);
     const size_t length = (size_t)(end - p->line);
     *end = '\0';
-    json_error_t ignored;
-    errno = 0;
-    json_t *object = json_loadb(p->line, length, 0, &ignored);
-
-    // jansson says of a line that it had no memory for what it says of a wrong one
-    if (object == NULL && errno == ENOMEM) {
-        return fail_without_memory(p);
-    }
-    bool whole = json_is_object(object) && answered(object, "command", (double)NAN, &out->command);
-    whole = whole && answered(object, "desired_angle", (double)NAN, &out->desired_angle) &&
-            answered(object, "desired_velocity", (double)NAN, &out->desired_velocity) &&
-            answered(object, "calculated_force", (double)NAN, &out->calculated_force) &&
-            !isnan(out->command);
-    json_decref(object);
 
     // lock step: one line for one line
     const bool more = length + 1 < p->length;
     p->length = 0;
-    if (!whole) {
+    switch (process_read_answer(p->line, length, out)) {
+    case PROCESS_ANSWERED:
+        return more ? fail(p, "answered more than one line to one sample") : true;
+    case PROCESS_NO_MEMORY:
+        return fail_without_memory(p);
+    default:
         return fail(p, "answered '%.*s', expected one line such as {\"command\": 1.5}",
                     SHOWN_OF_LINE, p->line);
     }
-    return more ? fail(p, "answered more than one line to one sample") : true;
 }
 
 // Asks the running program one thing. False, with a failure, if that gives no answer.
@@ -494,7 +362,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
     process *p = m->process;
     out->command = (double)NAN;
     p->code = STATUS_OK; // a run that failed does not come here, one taken back to before may
-    char *question = question_of(m, in);
+    char *question = process_question(m->tells_setup ? &m->setup : NULL, &m->control, in);
     if (question == NULL) {
         fail_without_memory(p);
         return;
