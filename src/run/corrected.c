@@ -16,16 +16,7 @@
 #define LEDGER_ROUNDING 1e-13 // what the ledger may lack whatever was put in [J]
 #define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
 
-// A run is given up where its strides are shorter than this, as a share of its duration or of a
-// second, whichever is less: it would take fifty million of them, hours with many links. Steps that
-// method.step asks for are none of these.
-#define SLOWEST_PACE 2e-8
-#define ASKED_FOR    1e-3 // share of method.step
-
-enum {
-    MOST_EVENTS_AT_ONCE = 100, // events without time passing before the run is given up
-    STRIDES_A_LOOK = 1 << 16,  // between looks at its pace, more than anything brief takes
-};
+enum { MOST_EVENTS_AT_ONCE = 100 }; // events without time passing before the run is given up
 
 // Says when and how the run failed, with the method's name.
 static status explain(const corrected_run *c, status s, fault *f)
@@ -39,66 +30,6 @@ static status explain(const corrected_run *c, status s, fault *f)
                          motion_energy_residual(&c->arm, m, m->state), m->engine->name);
     }
     return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
-}
-
-// Says what of the arm or the wall makes strides short, and what would make them longer.
-static void tell_cause(const corrected_run *c, char *text, size_t size)
-{
-    const arm *a = &c->arm;
-    const motion *m = c->motion;
-    const double *w = state_velocities(m, m->state);
-    int fastest = 0;
-    for (int i = 1; i < m->dof; i++) {
-        fastest = fabs(w[i]) > fabs(w[fastest]) ? i : fastest;
-    }
-
-    const bool electric = m->electric && a->motor.inductance > 0;
-    const double current = electric ? a->motor.resistance / a->motor.inductance : 0;
-    if (fabs(w[fastest]) >= a->fastest_rate) {
-        decimal_print(text, size, "its angle %d turns at %.3g rad/s, too fast to follow",
-                      fastest + 1, w[fastest]);
-    } else if (!motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0) {
-        decimal_print(text, size,
-                      "it is in contact with a wall that gives, and a smaller wall.damping or "
-                      "wall.stiffness has longer strides");
-    } else if (current >= a->fastest_rate) {
-        decimal_print(text, size,
-                      "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "
-                      "none, has longer strides",
-                      current);
-    } else {
-        decimal_print(text, size,
-                      "the fastest mode of the arm changes at %.3g 1/s, and softer joints with "
-                      "less damping have longer strides",
-                      a->fastest_rate);
-    }
-}
-
-// Whether so many strides passed so little time that the run has no end. Says so.
-static status keep_pace(corrected_run *c, fault *f)
-{
-    const double now = c->motion->state[SLOT_TIME], from = c->looked_from;
-    const double duration = c->recording->scenario->parameters.run.duration;
-    if (from >= 0 && ++c->strides < STRIDES_A_LOOK) {
-        return STATUS_OK;
-    }
-
-    // the first stride only begins to count
-    const double asked = ASKED_FOR * c->recording->now.method.step;
-    const double least = STRIDES_A_LOOK * fmin(SLOWEST_PACE * fmin(duration, 1), asked);
-    const bool passes = from < 0 || now - from >= least;
-    c->strides = 0;
-    c->looked_from = now;
-    if (passes) {
-        return STATUS_OK;
-    }
-
-    char cause[200];
-    tell_cause(c, cause, sizeof cause);
-    return fault_set(f, STATUS_NO_PROGRESS,
-                     "at t = %.9g s of %g s: %d strides by %s passed %.3g s, at which the run is "
-                     "given up: %s",
-                     now, duration, STRIDES_A_LOOK, c->motion->engine->name, now - from, cause);
 }
 
 // Says where a flat wall could no longer hold the arm.
@@ -157,7 +88,11 @@ status corrected_stride(corrected_run *c, fault *f)
         s = STATUS_STOPPED;
     }
     recording_publish(r, m->state[SLOT_TIME]);
-    return s == STATUS_OK ? keep_pace(c, f) : explain(c, s, f);
+    if (s != STATUS_OK) {
+        return explain(c, s, f);
+    }
+    const double duration = r->scenario->parameters.run.duration;
+    return pace_keep(&c->pace, &c->arm, m, duration, r->now.method.step, f);
 }
 
 // The next instant that steps end at: the rig's, or the end.
@@ -332,7 +267,7 @@ status corrected_open(corrected_run *c, recording *r, fault *f)
 {
     assert(c != NULL && r != NULL && r->scenario->parameters.arm.model != ARM_PRINTED);
     const parameters *p = &r->scenario->parameters;
-    *c = (corrected_run){.recording = r, .last_event = -1, .looked_from = -1};
+    *c = (corrected_run){.recording = r, .last_event = -1, .pace = pace_begin()};
     corrected_bind_arm(c);
     c->motion = motion_create(&c->arm, &p->method);
     if (c->motion == NULL) {

@@ -3,6 +3,7 @@
 
 #include "src/run/recording.h"
 #include "src/solve/contact_machine.h"
+#include "src/solve/pace.h"
 
 typedef struct corrected_run {
     recording *recording;
@@ -13,10 +14,7 @@ typedef struct corrected_run {
     double stop;       // where it ends at the latest, 0 before the first [s]
     double last_event; // in it, -1 if none [s]
     int at_once;       // events in a row without time passing
-
-    // the pace, looked at every so many strides
-    long strides;       // since the last look
-    double looked_from; // instant of the last look, -1 before the first stride [s]
+    pace pace;         // of the whole run
 } corrected_run;
 
 // Takes note of the energy that the ledger does not account for. STATUS_UNSTABLE if the run makes

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "src/solve/contact_machine.h"
+#include "src/solve/pace.h"
 #include "src/base/instant.h"
 #include "src/base/plain_math.h"
 
@@ -158,6 +159,10 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
                            fault *f)
 {
     double end = duration;
+    pace strides = pace_begin();
+
+    // steps that resolve the modes are asked for, shorter ones are not
+    const double resolved = RESOLVING / fmax(a->highest_frequency, 1);
     while (m->state[SLOT_TIME] < end) {
         motion_report report;
         if (run_monitor_stops(w->monitor)) {
@@ -177,6 +182,10 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
         }
 
         watch_stride(w, m);
+        code = pace_keep(&strides, a, m, duration, resolved, f);
+        if (code != STATUS_OK) {
+            return code;
+        }
         if (report.event == MOTION_REACHED) {
             continue;
         }

@@ -1,0 +1,75 @@
+#include "src/solve/pace.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "src/base/numbers.h"
+
+// A run is given up where its strides are shorter than this, as a share of its duration or of a
+// second, whichever is less: it would take fifty million of them, hours with many links. Steps that
+// method.step asks for are none of these.
+#define SLOWEST_PACE 2e-8
+#define ASKED_FOR    1e-3 // share of method.step
+
+enum { STRIDES_A_LOOK = 1 << 16 }; // more than anything brief takes
+
+// Says what of the arm or the wall makes strides short, and what would make them longer.
+static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
+{
+    const double *w = state_velocities(m, m->state);
+    int fastest = 0;
+    for (int i = 1; i < m->dof; i++) {
+        fastest = fabs(w[i]) > fabs(w[fastest]) ? i : fastest;
+    }
+
+    const bool electric = m->electric && a->motor.inductance > 0;
+    const double current = electric ? a->motor.resistance / a->motor.inductance : 0;
+    if (fabs(w[fastest]) >= a->fastest_rate) {
+        decimal_print(text, size, "its angle %d turns at %.3g rad/s, too fast to follow",
+                      fastest + 1, w[fastest]);
+    } else if (!motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0) {
+        decimal_print(text, size,
+                      "it is in contact with a wall that gives, and a smaller wall.damping or "
+                      "wall.stiffness has longer strides");
+    } else if (current >= a->fastest_rate) {
+        decimal_print(text, size,
+                      "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "
+                      "none, has longer strides",
+                      current);
+    } else {
+        decimal_print(text, size,
+                      "the fastest mode of the arm changes at %.3g 1/s, and softer joints with "
+                      "less damping have longer strides",
+                      a->fastest_rate);
+    }
+}
+
+pace pace_begin(void)
+{
+    return (pace){.looked_from = -1};
+}
+
+status pace_keep(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
+{
+    assert(p != NULL && a != NULL && m != NULL && duration > 0 && asked > 0);
+    const double now = m->state[SLOT_TIME], from = p->looked_from;
+    if (from >= 0 && ++p->strides < STRIDES_A_LOOK) {
+        return STATUS_OK;
+    }
+
+    // the first stride only begins to count
+    const double least = STRIDES_A_LOOK * fmin(SLOWEST_PACE * fmin(duration, 1), ASKED_FOR * asked);
+    const bool passes = from < 0 || now - from >= least;
+    p->strides = 0;
+    p->looked_from = now;
+    if (passes) {
+        return STATUS_OK;
+    }
+
+    char cause[200];
+    tell_cause(a, m, cause, sizeof cause);
+    return fault_set(f, STATUS_NO_PROGRESS,
+                     "at t = %.9g s of %g s: %d strides by %s passed %.3g s, at which the run is "
+                     "given up: %s",
+                     now, duration, STRIDES_A_LOOK, m->engine->name, now - from, cause);
+}

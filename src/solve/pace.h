@@ -1,0 +1,18 @@
+// The pace of a motion: whether its strides are so short that it has no end.
+#pragma once
+
+#include "src/base/fault.h"
+#include "src/solve/motion.h"
+
+typedef struct pace {
+    long strides;       // since the last look
+    double looked_from; // instant of the last look, -1 before the first stride [s]
+} pace;
+
+// That of a motion that is yet to make its first stride.
+pace pace_begin(void);
+
+// Counts a stride that was just made. Every so many of them STATUS_NO_PROGRESS, with a sentence
+// that names the cause, if a run of that duration [s] would take tens of millions; but not where
+// they are those that a time step of the length asked for [s] is cut into.
+status pace_keep(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f);
