@@ -4,7 +4,8 @@
 //
 // A stride of the modes is LONGEST at most, and so short that its points show all vibrations but
 // those that have next to no energy (modal_stride_shown). It is halved where Picard's sweeps do not
-// converge or its ledger does not close. Where that leaves it shorter than ADVANTAGE strides of the
+// converge, its ledger does not close or its first event is none of the exact functions. Where that
+// leaves it shorter than ADVANTAGE strides of the
 // series, which are exact and cost a fraction, the series go on, and the modes are asked again
 // after PATIENCE of their strides. What happens within a stride is found as modal_watch.h or
 // dense_location.h says.
@@ -34,6 +35,9 @@
 #define SHOWN          12
 #define SHOWN_BOUNCING 4
 
+#define TRUSTED_GAP    1e-10 // [m]
+#define TRUSTED_RATE   1e-8  // [rad/s], and share of the fastest link's
+
 enum { MOST_TRIES = 24, FEW_SWEEPS = 5, PATIENCE = 16 };
 
 typedef struct modal_memory {
@@ -42,6 +46,9 @@ typedef struct modal_memory {
     modal_stride *stride;        // or that of the modes
     modal_function contact, hub; // gap or force; hub's velocity or friction
     bool fitted;                 // `contact` is that of the stride
+    bool any;                    // an event ends it,
+    watch first;                 // this one,
+    double event;                // then [s]
 } modal_memory;
 
 // Bytes of the modes' part, to a whole number of doubles.
@@ -83,6 +90,66 @@ static double power_of_two(double x)
     return ldexp(1, exponent - 1);
 }
 
+// The gap's or the force's function on the stride.
+static modal_function *contact_function(const arm *a, motion *m)
+{
+    modal_memory *memory = m->memory;
+    if (!memory->fitted) {
+        watch kind = m->state[SLOT_CONTACT] != 0 ? WATCH_FORCE : WATCH_GAP;
+        modal_function_fit(&memory->contact, kind, memory->stride, a, m);
+        memory->fitted = true;
+    }
+    return &memory->contact;
+}
+
+// How far the exact gap [m] or hub's velocity [rad/s] may be from where the functions have it at an
+// event, or beyond its edge where they have none. Force and friction are judged anew at their
+// events anyway.
+static double trusted(const motion *m, watch w)
+{
+    const double *rate = state_velocities(m, m->state);
+    double fastest = 0;
+    for (int i = 0; i < m->dof; i++) {
+        fastest = fmax(fastest, fabs(rate[i]));
+    }
+    return w == WATCH_GAP ? TRUSTED_GAP : w == WATCH_HUB ? TRUSTED_RATE * (1 + fastest) : HUGE_VAL;
+}
+
+// Looks for the first event in the stride in hand, up to h. False where the exact functions deny
+// what was found or was not: the modes do not follow what happens here.
+static bool find_event(const arm *a, motion *m, double h)
+{
+    modal_memory *memory = m->memory;
+    memory->any = memory->fitted = false;
+    memory->event = h;
+
+    // each finds only what comes before the events found so far
+    for (watch w = WATCH_GAP; w <= WATCH_STICTION; w++) {
+        if (!watch_active(a, m, w)) {
+            continue;
+        }
+        modal_function *f = &memory->hub;
+        if (w == WATCH_GAP || w == WATCH_FORCE) {
+            f = contact_function(a, m);
+        } else {
+            modal_function_fit(f, w, memory->stride, a, m);
+        }
+        const bool falls = modal_function_falls(f, memory->stride, a, m, &memory->event);
+        if (falls) {
+            memory->any = true;
+            memory->first = w;
+        }
+
+        const double limit = trusted(m, w);
+        const double exact =
+            limit < HUGE_VAL ? modal_function_exact(f, memory->stride, a, m, memory->event) : 0;
+        if (!(exact >= -limit) || (falls && exact > limit)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 // A stride of the modes, or 0 where the series are better: their strides are `series` [s].
 static double begin_modes(const arm *a, motion *m, double remaining, double series)
 {
@@ -109,7 +176,7 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
         if (fit.change < SETTLED) {
             memcpy(m->between, m->state, SLOT_COUNT * sizeof *m->between);
             const double open = fabs(modal_state_at(s, a, m, h, m->between));
-            if (open < OPEN * energy) {
+            if (open < OPEN * energy && find_event(a, m, fmin(h, remaining))) {
                 const double growth = fit.sweeps <= FEW_SWEEPS ? GROWTH : 2;
                 s->next = i == 0 ? fmin(fmax(longest, growth * h), LONGEST) : h;
                 return fmin(h, remaining);
@@ -164,18 +231,6 @@ static status state_at(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
-// The gap's or the force's function on the stride.
-static modal_function *contact_function(const arm *a, motion *m)
-{
-    modal_memory *memory = m->memory;
-    if (!memory->fitted) {
-        watch kind = m->state[SLOT_CONTACT] != 0 ? WATCH_FORCE : WATCH_GAP;
-        modal_function_fit(&memory->contact, kind, memory->stride, a, m);
-        memory->fitted = true;
-    }
-    return &memory->contact;
-}
-
 static void first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
 {
     modal_memory *memory = m->memory;
@@ -183,25 +238,10 @@ static void first_event(const arm *a, motion *m, double *h, watch *first, bool *
         dense_search_event(a, m, h, first, any);
         return;
     }
-    *any = false;
-    *first = WATCH_GAP;
-
-    // each finds only what comes before the events found so far
-    for (watch w = WATCH_GAP; w <= WATCH_STICTION; w++) {
-        if (!watch_active(a, m, w)) {
-            continue;
-        }
-        modal_function *f = &memory->hub;
-        if (w == WATCH_GAP || w == WATCH_FORCE) {
-            f = contact_function(a, m);
-        } else {
-            modal_function_fit(f, w, memory->stride, a, m);
-        }
-        if (modal_function_falls(f, memory->stride, a, m, h)) {
-            *any = true;
-            *first = w;
-        }
-    }
+    // found when the stride was begun
+    *any = memory->any && memory->event <= *h;
+    *first = *any ? memory->first : WATCH_GAP;
+    *h = *any ? memory->event : *h;
 }
 
 static void peak(const arm *a, motion *m, double h)

@@ -72,9 +72,8 @@ static look_at least_of(const modal_function *f, const arm *a, look_at lo, look_
     return best;
 }
 
-// The exact function at t, of the state that a stride to there ends in.
-static double exact_value(const modal_function *f, modal_stride *s, const arm *a, motion *m,
-                          double t)
+double modal_function_exact(const modal_function *f, modal_stride *s, const arm *a, motion *m,
+                            double t)
 {
     double *state = m->between;
     if (f->kind == WATCH_GAP) {
@@ -114,7 +113,7 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
     // what the functional leaves out moves the root by little
     double target = far_side[f->kind];
     for (int i = 0; i < MOST_POLISHING && slope < 0; i++) {
-        double value = exact_value(f, s, a, m, t);
+        double value = modal_function_exact(f, s, a, m, t);
         double next = t - (value + target) / slope;
         if ((value <= 0 && value >= -2 * target) || !(next > lo.time) || !(next <= s->length)) {
             break;
@@ -170,7 +169,7 @@ static bool falls_between(const modal_function *f, modal_stride *s, const arm *a
     }
     look_at least = least_of(f, a, lo, hi);
     if (least.at.value >= 0 && least.at.value < f->slack) {
-        least.at.value = exact_value(f, s, a, m, least.time);
+        least.at.value = modal_function_exact(f, s, a, m, least.time);
     }
     if (least.at.value >= 0) {
         return false;
