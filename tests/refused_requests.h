@@ -44,6 +44,7 @@ static bool refuses(void)
 REFUSABLE(void *, malloc, NULL, ENOMEM, (size_t size), (size))
 REFUSABLE(void *, calloc, NULL, ENOMEM, (size_t count, size_t size), (count, size))
 REFUSABLE(void *, realloc, NULL, ENOMEM, (void *old, size_t size), (old, size))
+REFUSABLE(void *, aligned_alloc, NULL, ENOMEM, (size_t alignment, size_t size), (alignment, size))
 REFUSABLE(char *, strdup, NULL, ENOMEM, (const char *text), (text))
 REFUSABLE(char *, strndup, NULL, ENOMEM, (const char *text, size_t most), (text, most))
 REFUSABLE(int, vasprintf, -1, ENOMEM, (char **text, const char *format, va_list list),

@@ -18,11 +18,13 @@
 
 enum { SEPARATION_BISECTIONS = 30, MOST_PIECES = 64 };
 
-status corrected_audit(corrected_run *c)
+// corrected_audit for a state that holds that energy.
+static status audit(corrected_run *c, state_energy has)
 {
     const motion *m = c->motion;
     summary *s = &c->recording->result->summary;
-    double residual = motion_energy_residual(&c->arm, m, m->state);
+    const double held = motion_wall_energy(&c->arm, m, m->state);
+    double residual = motion_unaccounted(m, m->state, has.kinetic + has.strain + held);
     s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
 
     double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
@@ -33,6 +35,11 @@ status corrected_audit(corrected_run *c)
         return STATUS_NOT_FINITE;
     }
     return wrong > WRONG_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
+}
+
+status corrected_audit(corrected_run *c)
+{
+    return audit(c, motion_energy(&c->arm, c->motion, c->motion->state));
 }
 
 // The row of a state that holds that energy.
@@ -233,7 +240,13 @@ static int pieces_of_step(const corrected_run *c, double length, double reach)
     if (!(pieces > 1) || !engine_is_dense(m->engine) || motion_held_still(m)) {
         return 1;
     }
-    return (int)smaller(ceil(pieces), MOST_PIECES);
+    const int whole = pieces < MOST_PIECES ? (int)pieces : MOST_PIECES;
+    return whole < MOST_PIECES ? whole + (whole < pieces) : MOST_PIECES;
+}
+
+int corrected_force_pieces(const corrected_run *c, double length)
+{
+    return pieces_of_step(c, length, FORCE_REACH);
 }
 
 // Keeps the force over the step just made, in pieces that are parabolas to sight.
@@ -241,30 +254,43 @@ static status record_force(corrected_run *c, const force_step *whole)
 {
     recording *r = c->recording;
     const motion *m = c->motion;
-    const double length = whole->end - whole->start;
     const bool contact = m->trial[SLOT_CONTACT] != 0;
-    const int pieces = contact ? pieces_of_step(c, length, FORCE_REACH) : 1;
+    const int pieces = contact ? corrected_force_pieces(c, m->made) : 1;
+    glance ends[MOST_PIECES];
+    force_step *kept = recording_add_steps(r, pieces);
 
+    if (kept == NULL) {
+        return STATUS_NO_MEMORY;
+    }
     if (pieces == 1) {
-        return recording_add_step(r, *whole);
+        *kept = *whole;
+        return STATUS_OK;
     }
 
-    // the mean of the cubic through both ends' values and slopes
-    status s = STATUS_OK;
-    const double width = length / pieces;
-    glance last = m->engine->force_at(&c->arm, m, 0);
-    for (int i = 1; i <= pieces && s == STATUS_OK; i++) {
-        glance first = last;
-        last = m->engine->force_at(&c->arm, m, i * width);
-        double mean = (first.value + last.value) / 2 + width * (first.slope - last.slope) / 12;
-        force_step piece = {.start = whole->start + (i - 1) * width,
-                            .end = i < pieces ? whole->start + i * width : whole->end,
-                            .first = first.value,
-                            .last = last.value,
-                            .mean = mean};
-        s = recording_add_step(r, piece);
+    // the force at the ends of all pieces
+    const double width = m->made / pieces;
+    if (m->engine->forces_at != NULL) {
+        m->engine->forces_at(&c->arm, m, m->made, pieces, ends);
+    } else {
+        for (int i = 0; i < pieces; i++) {
+            ends[i] = m->engine->force_at(&c->arm, m, (i + 1) * width);
+        }
     }
-    return s;
+
+    // its mean over each is that of the cubic through both ends' values and slopes
+    glance first = m->engine->force_at(&c->arm, m, 0);
+    double start = whole->start;
+    for (int i = 0; i < pieces; i++) {
+        const glance last = ends[i];
+        const double end = i < pieces - 1 ? whole->start + (i + 1) * width : whole->end;
+        const double mean =
+            (first.value + last.value) / 2 + width * (first.slope - last.slope) / 12;
+        kept[i] = (force_step){
+            .start = start, .end = end, .first = first.value, .last = last.value, .mean = mean};
+        start = end;
+        first = last;
+    }
+    return STATUS_OK;
 }
 
 // Lets the sensors follow the arm over the step just made.
@@ -313,7 +339,8 @@ status corrected_record_step(corrected_run *c, bool at_event)
     r->state.energy_put_in += fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial));
 
     // an arm held still has the energy it had
-    status s = motion_held_still(m) ? STATUS_OK : corrected_audit(c);
+    const bool known = m->reached.kinetic >= 0;
+    status s = motion_held_still(m) ? STATUS_OK : known ? audit(c, m->reached) : corrected_audit(c);
 
     // the sensors lag behind what they are fixed to
     if (s == STATUS_OK && r->rig != NULL) {

@@ -32,5 +32,9 @@ status corrected_record_row(corrected_run *c, double *state, double impulse);
 // it; of one at its end only if there is no event, which records rows of its own.
 status corrected_record_step(corrected_run *c, bool at_event);
 
+// In how many pieces the force over a step of this length [s] is kept that the motion makes in
+// contact.
+int corrected_force_pieces(const corrected_run *c, double length);
+
 // What the sensors are fixed to, in a state of the motion.
 sensed_motion corrected_sensed_motion(const corrected_run *c, double *state);

@@ -27,12 +27,23 @@ void force_history_finish(force_history *h)
     memset(h, 0, sizeof *h);
 }
 
+force_step *force_history_extend(force_history *h, size_t count)
+{
+    if (h->count + count > h->array.capacity && !shared_array_grow(&h->array, h->count + count)) {
+        return NULL;
+    }
+    force_step *added = (force_step *)h->array.base + h->count;
+    h->count += count;
+    return added;
+}
+
 status force_history_add(force_history *h, force_step step)
 {
-    if (h->count == h->array.capacity && !shared_array_grow(&h->array, h->count + 1)) {
+    force_step *added = force_history_extend(h, 1);
+    if (added == NULL) {
         return STATUS_NO_MEMORY;
     }
-    ((force_step *)h->array.base)[h->count++] = step;
+    *added = step;
     return STATUS_OK;
 }
 

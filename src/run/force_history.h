@@ -57,6 +57,9 @@ static inline const force_step *force_steps(const force_history *h)
 // Appends a step. STATUS_NO_MEMORY.
 status force_history_add(force_history *h, force_step step);
 
+// Appends `count` steps that the caller fills in at once. NULL without memory.
+force_step *force_history_extend(force_history *h, size_t count);
+
 // The instant [s] after which the force stays within SETTLED_BAND round `final` [N] for good, each
 // step taken as the parabola through its ends that has its mean; NaN if the run ends outside, or
 // has no step.

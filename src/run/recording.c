@@ -62,6 +62,11 @@ status recording_add_step(recording *r, force_step step)
     return force_history_add(&r->result->history.forces, step);
 }
 
+force_step *recording_add_steps(recording *r, int count)
+{
+    return force_history_extend(&r->result->history.forces, (size_t)count);
+}
+
 void recording_finish_summary(recording *r, double force_integral)
 {
     assert(r != NULL);

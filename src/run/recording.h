@@ -56,6 +56,9 @@ status recording_add_row(recording *r, const sample *row, const double *angles,
 // Keeps the force over a step. STATUS_NO_MEMORY.
 status recording_add_step(recording *r, force_step step);
 
+// Room for the force over `count` steps, which the caller fills in. NULL without memory.
+force_step *recording_add_steps(recording *r, int count);
+
 // Fills in steady force, overshoot and settling time; force_integral is that of the force over the
 // last STEADY_WINDOW of the run [N s].
 void recording_finish_summary(recording *r, double force_integral);

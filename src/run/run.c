@@ -8,6 +8,7 @@
 #include "src/base/numbers.h"
 #include "src/run/recording_frame.h"
 #include "src/run/stepped.h"
+#include "src/solve/contact_machine.h"
 #include "src/solve/taylor_engine.h"
 
 status run_scenario(const scenario *s, bool keep_trace, run_result *result)
@@ -41,7 +42,7 @@ typedef struct side_run {
     recording recording;
     corrected_run run;
     fault fault;
-    taylor_request request; // of the stride it is to make
+    taylor_lane *lane; // its part in the series of the stride it is to make
 } side_run;
 
 typedef struct side_by_side {
@@ -52,6 +53,7 @@ typedef struct side_by_side {
     int waiting[IN_HAND]; // places of those in hand, all of which wait for their series
     int waiting_count;
     side_run in_hand[IN_HAND];
+    taylor_group series; // of those whose strides are being made
 } side_by_side;
 
 // Goes on with a run until it waits for series that can be computed together with others'. False
@@ -67,7 +69,8 @@ static bool go_on(side_by_side *group, int place)
         failed = corrected_approach_stride(&one->run, &ended, &one->fault);
         if (failed == STATUS_OK && !ended) {
             double remaining = one->run.stop - one->run.motion->state[SLOT_TIME];
-            if (taylor_prepare(&one->run.arm, one->run.motion, remaining, &one->request)) {
+            one->lane = taylor_prepare(&one->run.arm, one->run.motion, remaining);
+            if (one->lane != NULL) {
                 group->waiting[group->waiting_count++] = place;
                 return true;
             }
@@ -123,12 +126,6 @@ static void begin_next(side_by_side *group, int place)
     }
 }
 
-static bool same_form(taylor_form a, taylor_form b)
-{
-    return a.contact == b.contact && a.point == b.point && a.hub_spring == b.hub_spring &&
-           a.damped == b.damped && a.order == b.order;
-}
-
 // Takes as many of those that wait as fit into the vectors and are of the form that most of the
 // first few have, computes their series, and lets them make their strides.
 static void serve(side_by_side *group)
@@ -141,21 +138,21 @@ static void serve(side_by_side *group)
     for (int i = 0; i < group->waiting_count && i < LOOKED_AT && most < width; i++) {
         int alike = 0;
         for (int j = 0; j < group->waiting_count && alike < width; j++) {
-            alike += same_form(group->in_hand[group->waiting[i]].request.form,
-                               group->in_hand[group->waiting[j]].request.form);
+            alike += taylor_alike(group->in_hand[group->waiting[i]].lane->form,
+                                  group->in_hand[group->waiting[j]].lane->form);
         }
         best = alike > most ? i : best;
         most = alike > most ? alike : most;
     }
 
     // out of the queue, whose order stays
-    const taylor_form form = group->in_hand[group->waiting[best]].request.form;
-    taylor_request requests[TAYLOR_WIDEST];
+    const taylor_form form = group->in_hand[group->waiting[best]].lane->form;
+    taylor_lane *lanes[TAYLOR_WIDEST];
     int left = 0;
     for (int i = 0; i < group->waiting_count; i++) {
         const int place = group->waiting[i];
-        if (count < width && same_form(group->in_hand[place].request.form, form)) {
-            requests[count] = group->in_hand[place].request;
+        if (count < width && taylor_alike(group->in_hand[place].lane->form, form)) {
+            lanes[count] = group->in_hand[place].lane;
             chosen[count++] = place;
         } else {
             group->waiting[left++] = place;
@@ -163,8 +160,19 @@ static void serve(side_by_side *group)
     }
     group->waiting_count = left;
 
-    // side by side, then each goes on by itself or makes room
-    taylor_compute(requests, count);
+    // side by side to the ends of their strides
+    taylor_end ends[TAYLOR_WIDEST];
+    taylor_compute(&group->series, lanes, count);
+    for (int i = 0; i < count; i++) {
+        const corrected_run *run = &group->in_hand[chosen[i]].run;
+        motion_look_ahead(&run->arm, run->motion, run->stop, run->recording->now.method.step);
+        const double length = run->motion->ahead.length;
+        const int pieces = lanes[i]->form.contact ? corrected_force_pieces(run, length) : 0;
+        ends[i] = (taylor_end){length, pieces};
+    }
+    taylor_finish(&group->series, lanes, ends, count);
+
+    // then each goes on by itself or makes room
     for (int i = 0; i < count; i++) {
         if (!stride_and_go_on(group, chosen[i])) {
             begin_next(group, chosen[i]);
@@ -176,7 +184,7 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
                   run_result *results)
 {
     assert(scenarios != NULL && results != NULL && count >= 0);
-    side_by_side *group = calloc(1, sizeof *group);
+    side_by_side *group = aligned_alloc(_Alignof(side_by_side), sizeof *group);
     const run_options options = {.abandon = abandon};
     const time_used start = time_now();
     if (group == NULL || taylor_width() == 1) {
@@ -191,6 +199,7 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
     group->options = options;
     group->results = results;
     group->count = count;
+    group->next = group->waiting_count = 0;
     for (int place = 0; place < IN_HAND; place++) {
         begin_next(group, place);
     }

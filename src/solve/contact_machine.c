@@ -136,7 +136,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
                                                                            : 0;
     const double rounding = FORCE_TOLERANCE * (accelerates ? motion_rounding(a, m) : 1);
     double least = 0;
-    contact_state best = {false, sliding};
+    contact_state best = {false, sliding}, tried = best;
 
     // at a release the released arm is tried first, else the one in contact
     for (int i = 0; i < ways * choices; i++) {
@@ -145,6 +145,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
         state[SLOT_FRICTION] = hub_rests ? at_rest[i % choices] : sliding;
         motion_evaluate(a, m, state);
         double v = violation(a, m, state, touching, hub_rests);
+        tried = contact_state_of(state);
         if (i == 0 || v < least) {
             least = v;
             best = contact_state_of(state);
@@ -155,12 +156,15 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
         }
     }
 
+    // the state under it, unless the last one tried was that
     state[SLOT_CONTACT] = best.contact;
     state[SLOT_FRICTION] = best.friction;
     if (motion_held_still(m)) {
         memset(state_velocities(m, state), 0, (size_t)m->dof * sizeof(double));
+        motion_evaluate(a, m, state);
+    } else if (tried.contact != best.contact || tried.friction != best.friction) {
+        motion_evaluate(a, m, state);
     }
-    motion_evaluate(a, m, state);
     if (motion_held_still(m)) {
         memset(state_accelerations(m, state), 0, (size_t)m->dof * sizeof(double));
     }

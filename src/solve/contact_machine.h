@@ -53,6 +53,11 @@ void motion_start(const arm *a, motion *m, double angle, double velocity);
 // the state is that one, and no step leads on.
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
 
+// Finds out how far the step will go that motion_step(a, m, until, step, ...) is to make next, in
+// m->ahead, and raises the recorded peak for it. For a dense engine and an arm that is not held
+// still; motion_step does it by itself where nobody has. An arm that is held folded has no step.
+void motion_look_ahead(const arm *a, motion *m, double until, double step);
+
 // Steps until `until` or the first event.
 status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report);
 

@@ -75,6 +75,10 @@ typedef struct engine {
     // Dense engines: the contact force [N] and its slope [N/s], never divided by anything.
     glance (*force_at)(const arm *a, const motion *m, double h);
 
+    // Dense engines, or NULL: force_at at the ends of `count` equal pieces of a stride of length h
+    // [s].
+    void (*forces_at)(const arm *a, const motion *m, double h, int count, glance *at);
+
     // Dense engines, or NULL: state_at, to the last bit, for several h at once and from the
     // stride's start in `start`, into states[count], whose other slots are set already, with the
     // energy that each holds. Up to MOTION_TOGETHER; false if the arm's state has to be taken one

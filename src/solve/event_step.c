@@ -21,8 +21,11 @@ static void accept(motion *m, double step)
     double *previous = m->state;
     m->state = m->trial;
     m->trial = previous;
+    m->reached = m->holds;
     double passed = m->state[SLOT_TIME] - previous[SLOT_TIME];
-    m->steps += (long)larger(ceil(passed / step - 1e-6), 1);
+    const double steps = passed / step - 1e-6;
+    const long whole = (long)steps; // rounded up, and one at least
+    m->steps += steps > 0 ? whole + ((double)whole < steps) : 1;
     m->largest_penetration = larger(-state_rest_gap(m->state), m->largest_penetration);
     if (!motion_wall_is_rigid(m)) {
         m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
@@ -105,22 +108,6 @@ static status rest(const arm *a, motion *m, double wanted, double *h)
     return motion_try_step(a, m, *h);
 }
 
-// A stride of a dense engine, which looks for events within it: to the first of them, to the cut or
-// to its end, h [s].
-static status dense_stride(const arm *a, motion *m, double *h, watch *first, bool *any)
-{
-    dense_first_event(a, m, h, first, any);
-    double left = m->cut - m->state[SLOT_TIME];
-    if (*h > left) {
-        *h = left;
-        *any = false;
-    }
-    if (m->state[SLOT_CONTACT] != 0) {
-        dense_peak(a, m, *h);
-    }
-    return motion_try_step(a, m, *h);
-}
-
 // A step of a stepping engine, which steps again for all that may be within.
 static status tried_step(const arm *a, motion *m, double step, double wanted, double *h,
                          watch *first, bool *any)
@@ -140,6 +127,55 @@ static bool held_folded(const arm *a, motion *m)
            chain_is_folded(a, state_angles(m, m->state));
 }
 
+// What motion_look_ahead finds out, of an arm that can go on.
+static void look_ahead(const arm *a, motion *m, double until, double step)
+{
+    double h = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step);
+    const bool begun = h > 0;
+    watch first = WATCH_GAP;
+    bool any = false;
+
+    // to the first event, the cut or the stride's end
+    if (begun) {
+        dense_first_event(a, m, &h, &first, &any);
+        const double left = m->cut - m->state[SLOT_TIME];
+        if (h > left) {
+            h = left;
+            any = false;
+        }
+        if (m->state[SLOT_CONTACT] != 0) {
+            dense_peak(a, m, h);
+        }
+    }
+    m->ahead.known = true;
+    m->ahead.begun = begun;
+    m->ahead.length = h;
+    m->ahead.any = any;
+    m->ahead.first = first;
+}
+
+void motion_look_ahead(const arm *a, motion *m, double until, double step)
+{
+    assert(a != NULL && m != NULL && step > 0 && engine_is_dense(m->engine));
+    if (!m->starved && !held_folded(a, m)) {
+        look_ahead(a, m, until, step);
+    }
+}
+
+// The stride of a dense engine.
+static status dense_stride(const arm *a, motion *m, double until, double step, double *h,
+                           watch *first, bool *any)
+{
+    if (!m->ahead.known) {
+        look_ahead(a, m, until, step);
+    }
+    m->ahead.known = false;
+    *h = m->ahead.length;
+    *any = m->ahead.any;
+    *first = m->ahead.first;
+    return m->ahead.begun ? motion_try_step(a, m, *h) : STATUS_NO_PROGRESS;
+}
+
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL && step > 0);
@@ -150,15 +186,17 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
 
     // as far as accuracy allows, the cut, or the first event
-    double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step), h = wanted;
+    double h;
     watch first = WATCH_GAP;
     bool any = false;
-    status s = STATUS_NO_PROGRESS;
+    status s;
     if (motion_held_still(m)) {
-        s = rest(a, m, wanted, &h);
+        s = rest(a, m, until - m->state[SLOT_TIME], &h);
     } else if (engine_is_dense(m->engine)) {
-        s = wanted > 0 ? dense_stride(a, m, &h, &first, &any) : s;
+        s = dense_stride(a, m, until, step, &h, &first, &any);
     } else {
+        double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step);
+        h = wanted;
         s = tried_step(a, m, step, wanted, &h, &first, &any);
     }
     if (s != STATUS_OK) {
@@ -167,6 +205,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
 
     accept(m, step);
+    m->made = h;
     if (any && first == WATCH_GAP && motion_wall_is_rigid(m) &&
         chain_is_folded(a, state_angles(m, m->state))) {
         m->failure_time = m->state[SLOT_TIME];

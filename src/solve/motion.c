@@ -61,40 +61,65 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     }
 }
 
-// Frees what belongs to the engine.
-static void close_engine(motion *m)
+// Parts of one block of memory, each on cache lines of its own: as many as are added while there is
+// no block say how long it is to be.
+typedef struct layout {
+    char *block;   // NULL: there is none yet
+    size_t length; // [bytes]
+} layout;
+
+static void *add_part(layout *l, size_t size)
 {
-    free(m->between);
-    free(m->stages);
-    free(m->sweeps);
-    free(m->memory);
-    m->between = m->stages = NULL;
-    m->sweeps = m->memory = NULL;
+    void *part = l->block != NULL ? l->block + l->length : NULL;
+    l->length += (size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    return part;
+}
+
+// A block of so many bytes, zeroed; NULL if out of memory.
+static char *zeroed_block(size_t length)
+{
+    char *block = aligned_alloc(CACHE_LINE, length);
+    if (block != NULL) {
+        memset(block, 0, length);
+    }
+    return block;
+}
+
+// Lays out what belongs to the engine.
+static void lay_out_engine(const arm *a, motion *m, layout *l)
+{
+    const engine *e = m->engine;
+    const size_t state = (size_t)m->size * sizeof(double), links = (size_t)a->links;
+    const size_t stage = (size_t)smooth_length(m) * sizeof(double);
+    m->memory = add_part(l, e->memory_for != NULL ? e->memory_for(a) : e->memory_size);
+    m->between = add_part(l, e->states_at != NULL ? MOTION_TOGETHER * state : state);
+    m->stages = add_part(l, (size_t)(e->scratch_vectors + 1) * stage);
+    m->sweeps = add_part(l, links * e->link_scratch);
+}
+
+// And the rest.
+static void lay_out_motion(const arm *a, motion *m, layout *l)
+{
+    const size_t state = (size_t)m->size * sizeof(double);
+    m->state = add_part(l, state);
+    m->trial = add_part(l, state);
+    m->scratch = add_part(l, 4 * (size_t)a->dof * sizeof(double));
+    m->links = add_part(l, (size_t)a->links * sizeof(chain_link));
 }
 
 // The engine's storage; false, and none of it, if out of memory.
 static bool open_engine(const arm *a, motion *m)
 {
-    const engine *e = m->engine;
-    const size_t size = (size_t)m->size, sweeps = (size_t)a->links * e->link_scratch;
-    const size_t memory = e->memory_for != NULL ? e->memory_for(a) : e->memory_size;
-    m->between = calloc(e->states_at != NULL ? MOTION_TOGETHER * size : size, sizeof(double));
-    m->stages = calloc((size_t)(e->scratch_vectors + 1) * (size_t)smooth_length(m), sizeof(double));
-    m->sweeps = sweeps > 0 ? calloc(1, sweeps) : NULL;
-    m->memory = memory > 0
-                    ? aligned_alloc(CACHE_LINE, (memory + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE)
-                    : NULL;
-
-    // all of it or none
-    if (!m->between || !m->stages || (sweeps > 0 && !m->sweeps) || (memory > 0 && !m->memory)) {
-        close_engine(m);
+    layout l = {0};
+    lay_out_engine(a, m, &l);
+    m->engine_block = l.block = zeroed_block(l.length);
+    if (l.block == NULL) {
         return false;
     }
-    if (m->memory != NULL) {
-        memset(m->memory, 0, memory);
-    }
-    if (e->open != NULL) {
-        e->open(a, m);
+    l.length = 0;
+    lay_out_engine(a, m, &l);
+    if (m->engine->open != NULL) {
+        m->engine->open(a, m);
     }
     return true;
 }
@@ -113,12 +138,14 @@ motion *motion_create(const arm *a, const method_parameters *method)
     choose_engine(a, m, method);
 
     // its storage: all of it or none
-    size_t size = (size_t)m->size, n = (size_t)a->dof;
-    m->state = calloc(size, sizeof(double));
-    m->trial = calloc(size, sizeof(double));
-    m->scratch = calloc(4 * n, sizeof(double));
-    m->links = calloc((size_t)a->links, sizeof(chain_link));
-    if (!m->state || !m->trial || !m->scratch || !m->links || !open_engine(a, m)) {
+    layout l = {0};
+    lay_out_motion(a, m, &l);
+    m->block = l.block = zeroed_block(l.length);
+    l.length = 0;
+    if (l.block != NULL) {
+        lay_out_motion(a, m, &l);
+    }
+    if (l.block == NULL || !open_engine(a, m)) {
         motion_destroy(m);
         return NULL;
     }
@@ -128,11 +155,8 @@ motion *motion_create(const arm *a, const method_parameters *method)
 void motion_destroy(motion *m)
 {
     if (m != NULL) {
-        close_engine(m);
-        free(m->state);
-        free(m->trial);
-        free(m->scratch);
-        free(m->links);
+        free(m->engine_block);
+        free(m->block);
         free(m);
     }
 }
@@ -144,7 +168,8 @@ void motion_follow_arm(const arm *a, motion *m)
     if (wanted == m->engine && !m->starved) {
         return;
     }
-    close_engine(m);
+    free(m->engine_block);
+    m->ahead.known = false;
     m->engine = wanted;
     m->starved = !open_engine(a, m);
     m->state[SLOT_STRIDE] = 0;
@@ -313,6 +338,7 @@ static bool is_finite(const motion *m, double *state)
 status motion_try_step(const arm *a, motion *m, double h)
 {
     double *trial = m->trial;
+    m->holds = unknown_energy;
     if (motion_held_still(m)) {
         let_time_pass(m, h);
         return STATUS_OK;

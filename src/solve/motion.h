@@ -57,6 +57,9 @@ enum motion_quadrature {
     QUADRATURE_COUNT
 };
 
+// No state's.
+static const state_energy unknown_energy = {-1, -1};
+
 struct motion {
     // A checkpoint is a copy of `state`, size doubles:
     // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n].
@@ -84,6 +87,23 @@ struct motion {
     chain_link *links;
     void *sweeps; // the implicit solver's scratch, one element a link
     void *memory; // the engine's own: the stride it is in
+
+    // what m->trial holds, and m->state as motion_step left it, where the engine has found it with
+    // the state, else unknown_energy
+    state_energy holds, reached;
+
+    double made; // length of the step that motion_step made, to its end as the engine met it [s]
+
+    // the stride to come, where motion_look_ahead has looked at it
+    struct {
+        bool known;
+        bool begun;    // else it cannot be made
+        double length; // to its end, the cut or the first event [s]
+        bool any;      // an event ends it
+        watch first;   // that event's
+    } ahead;
+
+    void *block, *engine_block; // where all of that lies
 
     // records since motion_watch
     long steps;                 // time steps taken: `step` long, or cut short by an event or a stop

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "src/base/sincos.h"
+#include "src/solve/dense_location.h"
 #include "src/solve/motion.h"
 #include "src/solve/taylor_engine.h"
 
@@ -37,11 +37,10 @@ typedef struct polynomial {
 } polynomial;
 
 typedef struct taylor_stride {
-    double block[TAYLOR_PLACES];
-    taylor_form form;
-    polynomial watched[WATCH_STICTION + 1]; // those of the contact state; stiction: nearer limit
+    taylor_lane lane;                       // the series
+    polynomial watched[WATCH_STICTION + 1]; // as far as they were asked for; stiction: nearer limit
     polynomial far_limit;                   // of stiction
-    double force_most, force_until;         // the force's bound, for times up to the second [N, s]
+    unsigned known;                         // which of them are, a bit each
     bool ready;                             // the series of the next stride were computed apart
 } taylor_stride;
 
@@ -78,16 +77,6 @@ static inline pair terms_at(const double *terms, int n)
     return p;
 }
 
-static inline double value_at(const double *terms, int count, double t)
-{
-    const double u = t * t;
-    pair value = terms_at(terms, count - 2);
-    for (int n = count - 4; n >= 0; n -= 2) {
-        value = value * u + terms_at(terms, n);
-    }
-    return value[0] + t * value[1];
-}
-
 // p' = O + 2 t (E' + t O'), the dashes on the right by u.
 static inline glance glance_at(const double *terms, int count, double t)
 {
@@ -98,38 +87,6 @@ static inline glance glance_at(const double *terms, int count, double t)
         value = value * u + terms_at(terms, n);
     }
     return (glance){value[0] + t * value[1], value[1] + 2 * t * (slope[0] + t * slope[1])};
-}
-
-// Value, first and second derivative, p'' = 2 E' + 6 t O' + 4 u (E'' + t O'').
-static inline void derivatives_at(const double *terms, int count, double t, double result[3])
-{
-    const double u = t * t;
-    pair value = terms_at(terms, count - 2), slope = {0, 0}, half = {0, 0};
-    for (int n = count - 4; n >= 0; n -= 2) {
-        half = half * u + slope;
-        slope = slope * u + value;
-        value = value * u + terms_at(terms, n);
-    }
-    result[0] = value[0] + t * value[1];
-    result[1] = value[1] + 2 * t * (slope[0] + t * slope[1]);
-    result[2] = 2 * slope[0] + 6 * t * slope[1] + 8 * u * (half[0] + t * half[1]);
-}
-
-// 1/1, 1/2, ...
-static const double share[TAYLOR_MOST] = {1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,
-                                          1. / 7,  1. / 8,  1. / 9,  1. / 10, 1. / 11, 1. / 12,
-                                          1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17, 1. / 18,
-                                          1. / 19, 1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24};
-
-// Integral from 0 to t.
-static inline double integral_to(const double *terms, int count, double t)
-{
-    const double u = t * t;
-    pair value = terms_at(terms, count - 2) * terms_at(share, count - 2);
-    for (int n = count - 4; n >= 0; n -= 2) {
-        value = value * u + terms_at(terms, n) * terms_at(share, n);
-    }
-    return t * (value[0] + t * value[1]);
 }
 
 // n (n - 1)
@@ -148,25 +105,19 @@ static double bend_of(const polynomial *p, double t)
     return bound[0] + t * bound[1];
 }
 
-typedef struct range {
-    double low, high;
-} range;
-
-// Between what the function stays for times from 0 to t: its straight part takes its extremes at
-// the ends, what bends it adds a little more than the sum of its terms' magnitudes at most.
-static range range_of(const double *terms, int count, double t)
+// What the function stays above for times from 0 to t: its straight part is least at an end, what
+// bends it takes a little more than the sum of its terms' magnitudes at most.
+static double low_of(const polynomial *p, double t)
 {
-    const double u = t * t;
+    const double u = t * t, *terms = p->terms;
     pair sum = {0, 0};
-    for (int n = count - 2; n >= 2; n -= 2) {
+    for (int n = p->count - 2; n >= 2; n -= 2) {
         sum = sum * u + magnitudes(terms_at(terms, n));
     }
     sum *= u;
-    const double bends =
-        (sum[0] + t * sum[1] + fabs(terms[0]) + fabs(terms[1]) * t) * 1e-12 + (sum[0] + t * sum[1]);
+    const double bent = sum[0] + t * sum[1];
     const double straight = terms[0] + t * terms[1];
-    return straight < terms[0] ? (range){straight - bends, terms[0] + bends}
-                               : (range){terms[0] - bends, straight + bends};
+    return fmin(terms[0], straight) - ((bent + fabs(terms[0]) + fabs(terms[1]) * t) * 1e-12 + bent);
 }
 
 // Divides the function by the time as often as its first coefficients are nothing but rounding,
@@ -195,29 +146,26 @@ static void leave_edge(polynomial *p, const double limits[3])
 
 static void put_inputs(const arm *a, motion *m, double wanted, double *block)
 {
-    const double l = a->link_length, mass = a->link_mass;
-    const double own = a->link_inertia + mass * l * l / 4;
-    const contact_state now = contact_state_of(m->state);
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     const bool point = a->wall.kind == WALL_POINT;
 
-    // the arm, its motor and its wall
-    block[AT_M11] = own + mass * l * l + (a->hub_spring ? 0 : a->hub_inertia);
-    block[AT_M22] = own;
-    block[AT_M12] = mass * l * l / 2;
+    // the arm, its wall and its motor
+    block[AT_MASS] = a->link_mass;
+    block[AT_INERTIA] = a->link_inertia;
+    block[AT_LENGTH] = a->link_length;
     block[AT_STIFFNESS] = a->joint_stiffness;
     block[AT_DAMPING] = a->joint_damping;
-    block[AT_LENGTH] = l;
-    block[AT_REACH_X] = point ? a->wall.x : l * a->wall.cosine;
-    block[AT_REACH_Y] = point ? a->wall.y : l * a->wall.sine;
-    block[AT_DRIVE] = a->motor.torque - now.friction * a->motor.stiction;
+    block[AT_WALL_X] = point ? a->wall.x : a->wall.cosine;
+    block[AT_WALL_Y] = point ? a->wall.y : a->wall.sine;
+    block[AT_TORQUE] = a->motor.torque;
+    block[AT_STICTION] = a->motor.stiction;
     block[AT_VISCOUS] = a->motor.damping;
+    block[AT_HUB_INERTIA] = a->hub_inertia;
     block[AT_HUB_STIFFNESS] = a->hub_stiffness;
     block[AT_HUB_DAMPING] = a->hub_joint_damping;
-    block[AT_HUB_INERTIA] = a->hub_inertia;
-    block[AT_STUCK] = now.friction == HUB_STICK;
 
     // the state
+    block[AT_FRICTION] = m->state[SLOT_FRICTION];
     block[AT_START_ANGLE] = q[0];
     block[AT_START_ANGLE + 1] = q[a->first];
     block[AT_START_ANGLE + 2] = q[a->first + 1];
@@ -270,56 +218,58 @@ static void set_polynomial(polynomial *p, const double *terms, int count, double
     }
 }
 
-// The functions that say when this contact state ends.
-static void prepare_watched(const arm *a, const motion *m, taylor_stride *s)
+// A function that is to be watched, from the series: only where it comes near zero is it asked for.
+// Just after an event it may begin at zero, as the gap does after a bounce cut short.
+static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, watch w)
 {
-    const int order = s->form.order;
+    const int order = s->lane.form.order;
     const bool jumped = m->state[SLOT_JUMPED] != 0;
-    bool wall_at_edge = jumped;
-    const contact_state now = contact_state_of(m->state);
-    const double stiction = a->motor.stiction;
+    const double friction = m->state[SLOT_FRICTION], stiction = a->motor.stiction;
+    polynomial *p = &s->watched[w];
+    s->known |= 1u << w;
 
     // the wall
-    if (now.contact) {
-        set_polynomial(&s->watched[WATCH_FORCE], s->block + AT_FORCE, order, 1);
-    } else {
-        polynomial *distance = &s->watched[WATCH_GAP];
-        set_polynomial(distance, s->block + AT_GAP, order + 2, 1);
-        if (distance->terms[0] < 0 && distance->terms[0] > -EDGE_DEPTH && distance->terms[1] > 0) {
-            distance->terms[0] = 0;
-            wall_at_edge = true;
+    if (w == WATCH_FORCE) {
+        const double edge[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
+        set_polynomial(p, taylor_terms(&s->lane, AT_FORCE, order), order, 1);
+        if (jumped) {
+            leave_edge(p, edge);
+        }
+    } else if (w == WATCH_GAP) {
+        set_polynomial(p, taylor_terms(&s->lane, AT_GAP, order + 2), order + 2, 1);
+        const bool inside = p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
+        p->terms[0] = inside ? 0 : p->terms[0];
+        if (jumped || inside) {
+            const double rounding = EDGE_RATE * motion_rounding(a, m);
+            leave_edge(p, (double[]){EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, rounding)});
         }
     }
 
-    // the hub
-    if (now.friction != HUB_STICK) {
-        const double *rate = s->block + (a->hub_spring ? AT_RATE_0 : AT_RATE_1);
-        set_polynomial(&s->watched[WATCH_HUB], rate, order + 1, now.friction);
-    } else {
-        const double sign = s->block[AT_HOLD] < 0 ? -1 : 1;
-        set_polynomial(&s->watched[WATCH_STICTION], s->block + AT_HOLD, order, -sign);
-        set_polynomial(&s->far_limit, s->block + AT_HOLD, order, sign);
-        s->watched[WATCH_STICTION].terms[0] += stiction;
+    // the hub; what holds a stuck one may hold a little more just after an event
+    if (w == WATCH_HUB) {
+        const int place = a->hub_spring ? AT_RATE_0 : AT_RATE_1;
+        set_polynomial(p, taylor_terms(&s->lane, place, order + 1), order + 1, friction);
+        if (jumped) {
+            leave_edge(p, (double[]){0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE});
+        }
+    } else if (w == WATCH_STICTION) {
+        const double *hold = taylor_terms(&s->lane, AT_HOLD, order);
+        const double sign = hold[0] < 0 ? -1 : 1;
+        set_polynomial(p, hold, order, -sign);
+        set_polynomial(&s->far_limit, hold, order, sign);
+        p->terms[0] += stiction;
         s->far_limit.terms[0] += stiction;
+        p->terms[0] = jumped && fabs(p->terms[0]) <= EDGE_VALUE ? EDGE_VALUE : p->terms[0];
     }
+}
 
-    // just after an event they may begin at zero, as the gap does after a bounce cut short
-    const double acceleration = EDGE_RATE * (wall_at_edge || jumped ? motion_rounding(a, m) : 0);
-    const double reaction[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
-    const double gap[] = {EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, acceleration)};
-    const double hub_rate[] = {0, acceleration, EDGE_MORE};
-    if (wall_at_edge) {
-        leave_edge(&s->watched[now.contact ? WATCH_FORCE : WATCH_GAP],
-                   now.contact ? reaction : gap);
+static const polynomial *watched(const arm *a, const motion *m, watch w)
+{
+    taylor_stride *s = m->memory;
+    if (!(s->known & 1u << w)) {
+        prepare_watched(a, m, s, w);
     }
-    if (jumped) {
-        const bool stuck = now.friction == HUB_STICK;
-        if (!stuck) {
-            leave_edge(&s->watched[WATCH_HUB], hub_rate);
-        } else if (fabs(s->watched[WATCH_STICTION].terms[0]) <= EDGE_VALUE) {
-            s->watched[WATCH_STICTION].terms[0] = EDGE_VALUE; // what holds it may hold as much more
-        }
-    }
+    return &s->watched[w];
 }
 
 static void prepare(const arm *a, motion *m, double remaining)
@@ -327,12 +277,12 @@ static void prepare(const arm *a, motion *m, double remaining)
     taylor_stride *s = m->memory;
     int order;
     double wanted = wanted_stride(a, m, remaining, &order);
-    put_inputs(a, m, wanted, s->block);
-    s->form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
-                            .point = a->wall.kind == WALL_POINT,
-                            .hub_spring = a->hub_spring,
-                            .damped = a->joint_damping > 0 || a->hub_joint_damping > 0,
-                            .order = order};
+    put_inputs(a, m, wanted, s->lane.block);
+    s->lane.form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
+                                 .point = a->wall.kind == WALL_POINT,
+                                 .hub_spring = a->hub_spring,
+                                 .damped = a->joint_damping > 0 || a->hub_joint_damping > 0,
+                                 .order = order};
 }
 
 static double begin(const arm *a, motion *m, double remaining, double step)
@@ -341,104 +291,27 @@ static double begin(const arm *a, motion *m, double remaining, double step)
     (void)step;
     if (!s->ready) {
         prepare(a, m, remaining);
-        taylor_compute_one(s->block, s->form);
+        taylor_compute_one(&s->lane);
     }
     s->ready = false;
-    s->force_until = -1;
-    prepare_watched(a, m, s);
-    return s->block[AT_ALLOWED];
+    s->known = 0;
+    return s->lane.block[AT_ALLOWED];
 }
 
-bool taylor_prepare(const arm *a, motion *m, double remaining, taylor_request *request)
+taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
 {
-    assert(a != NULL && m != NULL && request != NULL);
+    assert(a != NULL && m != NULL);
     taylor_stride *s = m->memory;
-    if (m->engine != &taylor_engine || motion_held_still(m)) {
-        return false;
+    if (m->engine != &taylor_engine || m->starved || motion_held_still(m)) {
+        return NULL;
     }
     prepare(a, m, remaining);
     s->ready = true;
-    *request = (taylor_request){.form = s->form, .block = s->block};
-    return true;
+    return &s->lane;
 }
 
-// Gap, velocity and acceleration of it from angles, velocities and accelerations; in contact all
-// three ought to be zero, and the last one is taken so.
-static void measure_gap(const arm *a, const motion *m, double *state)
-{
-    const double *q = state_angles(m, state) + a->first, *w = state_velocities(m, state) + a->first;
-    const double l = a->link_length;
-
-    // where the tip is, and how it moves
-    double s1, c1, s2, c2;
-    inline_sincos(q[0], &s1, &c1);
-    inline_sincos(q[1], &s2, &c2);
-    const double vx = -l * s1 * w[0], vy = l * c1 * w[0];
-    wall_contact at = wall_contact_at(&a->wall, l, l * c1, l * s1, vx, vy, c2, s2, w[1]);
-
-    state[SLOT_GAP] = -at.penetration;
-    const double lever = wall_last_lever(&at, l, c2, s2);
-    state[SLOT_GAP_VELOCITY] = -wall_penetration_rate(&at, vx, vy, lever, w[1]);
-
-    // what follows from the accelerations
-    if (state[SLOT_CONTACT] != 0) {
-        state[SLOT_GAP_ACCELERATION] = 0;
-        return;
-    }
-    const double *al = state_accelerations(m, state) + a->first;
-    const double ax = -l * (s1 * al[0] + c1 * w[0] * w[0]);
-    const double ay = l * (c1 * al[0] - s1 * w[0] * w[0]);
-    state[SLOT_GAP_ACCELERATION] = -(at.ex * ax + at.ey * ay + lever * al[1] + at.convective);
-}
-
-static status state_at(const arm *a, motion *m, double h)
-{
-    const taylor_stride *s = m->memory;
-    const int order = s->form.order;
-    const double *block = s->block, *before = state_quadratures(m, m->state);
-    double *state = m->trial, *quadrature = state_quadratures(m, state);
-    double *q = state_angles(m, state), *w = state_velocities(m, state);
-    double *acceleration = state_accelerations(m, state);
-
-    // the motion
-    for (int i = 0; i < m->dof; i++) {
-        double d[3];
-        derivatives_at(block + AT_ANGLE_0 + (i + 1 - a->first) * MOST_TERMS, order + 2, h, d);
-        q[i] = d[0];
-        w[i] = d[1];
-        acceleration[i] = state_algorithmic(m, state)[i] = d[2];
-    }
-    if (state[SLOT_FRICTION] == HUB_STICK) {
-        w[0] = acceleration[0] = 0;
-    }
-
-    // what it has lost and pressed
-    quadrature[QUADRATURE_VISCOUS] =
-        before[QUADRATURE_VISCOUS] +
-        a->motor.damping * integral_to(block + AT_HUB_SQUARE, order, h);
-    quadrature[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
-    if (s->form.damped) {
-        quadrature[QUADRATURE_DAMPING] += integral_to(block + AT_DISSIPATION, order, h);
-        state[SLOT_DAMPING_POWER] = value_at(block + AT_DISSIPATION, order, h);
-    }
-    quadrature[QUADRATURE_FORCE] = before[QUADRATURE_FORCE];
-    state[SLOT_VISCOUS_POWER] = a->motor.damping * w[0] * w[0];
-
-    // friction and wall
-    state[SLOT_FRICTION_TORQUE] = state[SLOT_FRICTION] == HUB_STICK
-                                      ? value_at(block + AT_HOLD, order, h)
-                                      : -state[SLOT_FRICTION] * a->motor.stiction;
-    if (s->form.contact) {
-        state[SLOT_FORCE] = value_at(block + AT_FORCE, order, h);
-        quadrature[QUADRATURE_FORCE] += integral_to(block + AT_FORCE, order, h);
-        measure_gap(a, m, state);
-        motion_project(a, m, state);
-    } else if (wall_stands(&a->wall)) {
-        measure_gap(a, m, state);
-    }
-    return STATUS_OK;
-}
-
+// What one of the instants comes to, into `state`; in contact the gap and its derivatives ought to
+// be zero, and the second one is taken so.
 static void take_instant(const arm *a, const motion *m, double *start, const taylor_instants *at,
                          int i, double *state)
 {
@@ -460,7 +333,7 @@ static void take_instant(const arm *a, const motion *m, double *start, const tay
     quadrature[QUADRATURE_VISCOUS] =
         before[QUADRATURE_VISCOUS] + a->motor.damping * at->hub_square[i];
     quadrature[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
-    if (s->form.damped) {
+    if (s->lane.form.damped) {
         quadrature[QUADRATURE_DAMPING] += at->dissipated[i];
         state[SLOT_DAMPING_POWER] = at->dissipation[i];
     }
@@ -470,38 +343,55 @@ static void take_instant(const arm *a, const motion *m, double *start, const tay
     // friction and wall
     const bool stuck = state[SLOT_FRICTION] == HUB_STICK;
     state[SLOT_FRICTION_TORQUE] = stuck ? at->hold[i] : -state[SLOT_FRICTION] * a->motor.stiction;
-    if (s->form.contact) {
+    if (s->lane.form.contact) {
         state[SLOT_FORCE] = at->force[i];
         quadrature[QUADRATURE_FORCE] += at->pressed[i];
     }
     if (wall_stands(&a->wall)) {
         state[SLOT_GAP] = at->gap[i];
         state[SLOT_GAP_VELOCITY] = at->gap_velocity[i];
-        state[SLOT_GAP_ACCELERATION] = s->form.contact ? 0 : at->gap_acceleration[i];
+        state[SLOT_GAP_ACCELERATION] = s->lane.form.contact ? 0 : at->gap_acceleration[i];
     }
+}
+
+static status state_at(const arm *a, motion *m, double h)
+{
+    taylor_stride *s = m->memory;
+    taylor_instants one;
+    const taylor_instants *at = &one;
+    int place = 0;
+
+    // evaluated with others', or here
+    if (s->lane.end == h) {
+        at = &s->lane.group->ends;
+        place = s->lane.number;
+    } else {
+        one.time[0] = h;
+        taylor_evaluate(&s->lane, 1, &one);
+    }
+    take_instant(a, m, m->state, at, place, m->trial);
+    m->holds = (state_energy){at->kinetic[place], at->strain[place]};
+    if (s->lane.form.contact && motion_project(a, m, m->trial)) {
+        m->holds = unknown_energy;
+    }
+    return STATUS_OK;
 }
 
 static bool states_at(const arm *a, motion *m, double *start, const double *h, int count,
                       double *const *states, state_energy *energies)
 {
-    const taylor_stride *s = m->memory;
+    taylor_stride *s = m->memory;
     const int width = taylor_width();
-    for (int i = 0; i < m->dof; i++) {
-        if (!(fabs(state_angles(m, start)[i]) < MOST_TURNED)) {
-            return false;
-        }
-    }
-
     for (int done = 0; done < count; done += width) {
         taylor_instants at;
         const int more = count - done < width ? count - done : width;
         memcpy(at.time, h + done, (size_t)more * sizeof *h);
-        taylor_evaluate(a, s->block, s->form, more, &at);
+        taylor_evaluate(&s->lane, more, &at);
         for (int i = 0; i < more; i++) {
             double *state = states[done + i];
             take_instant(a, m, start, &at, i, state);
             energies[done + i] = (state_energy){at.kinetic[i], at.strain[i]};
-            if (s->form.contact && motion_project(a, m, state)) {
+            if (s->lane.form.contact && motion_project(a, m, state)) {
                 energies[done + i] = motion_energy(a, m, state);
             }
         }
@@ -514,8 +404,7 @@ static bool states_at(const arm *a, motion *m, double *start, const double *h, i
 static glance look(const arm *a, const motion *m, watch w, double h)
 {
     const taylor_stride *s = m->memory;
-    const polynomial *p = &s->watched[w];
-    (void)a;
+    const polynomial *p = watched(a, m, w);
     glance near = h > 0 ? glance_at(p->terms, p->count, h) : (glance){p->terms[0], p->terms[1]};
     if (w != WATCH_STICTION) {
         return near;
@@ -526,13 +415,15 @@ static glance look(const arm *a, const motion *m, watch w, double h)
 
 static double bend(const arm *a, const motion *m, watch w, double from, double to)
 {
-    const taylor_stride *s = m->memory;
-    (void)a, (void)from;
-    double near = bend_of(&s->watched[w], to);
-    if (w == WATCH_FORCE && s->watched[w].divided) {
+    taylor_stride *s = m->memory;
+    const polynomial *p = watched(a, m, w);
+    double near = bend_of(p, to);
+    (void)from;
+    if (w == WATCH_FORCE && p->divided) {
         // divided by the time: the force itself may bend more
+        const int order = s->lane.form.order;
         polynomial force;
-        set_polynomial(&force, s->block + AT_FORCE, s->form.order, 1);
+        set_polynomial(&force, taylor_terms(&s->lane, AT_FORCE, order), order, 1);
         return fmax(near, bend_of(&force, to));
     }
     return w == WATCH_STICTION ? fmax(near, bend_of(&s->far_limit, to)) : near;
@@ -540,33 +431,76 @@ static double bend(const arm *a, const motion *m, watch w, double from, double t
 
 static glance force_at(const arm *a, const motion *m, double h)
 {
-    const taylor_stride *s = m->memory;
+    taylor_stride *s = m->memory;
     (void)a;
-    const double *force = s->block + AT_FORCE;
-    return h > 0 ? glance_at(force, s->form.order, h) : (glance){force[0], force[1]};
+    const int order = s->lane.form.order;
+    const double *force = taylor_terms(&s->lane, AT_FORCE, order);
+    return h > 0 ? glance_at(force, order, h) : (glance){force[0], force[1]};
+}
+
+static void forces_at(const arm *a, const motion *m, double h, int count, glance *at)
+{
+    const taylor_stride *s = m->memory;
+    const double width = h / count;
+    const taylor_lane *lane = &s->lane;
+
+    // evaluated with others', or here
+    if (lane->pieces == count && lane->end == h) {
+        const taylor_pieces *pieces = &lane->group->pieces;
+        for (int i = 0; i < count; i++) {
+            at[i] = (glance){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
+        }
+    } else {
+        for (int i = 0; i < count; i++) {
+            at[i] = force_at(a, m, (i + 1) * width);
+        }
+    }
+}
+
+// Whether the watched function is off its edge from the start, and above zero all over the stride.
+static bool clear_throughout(const motion *m, watch w)
+{
+    const taylor_stride *s = m->memory;
+    const bool jumped = m->state[SLOT_JUMPED] != 0, wall = w == WATCH_GAP || w == WATCH_FORCE;
+    const double edge = w == WATCH_GAP ? EDGE_GAP : w == WATCH_HUB ? 0 : EDGE_VALUE;
+    return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > (jumped ? edge : 0);
+}
+
+static void first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    // of most strides the bounds rule all events out
+    const contact_state now = contact_state_of(m->state);
+    const bool stuck = now.friction == HUB_STICK;
+    const watch wall = now.contact ? WATCH_FORCE : WATCH_GAP;
+    const watch hub = stuck ? WATCH_STICTION : WATCH_HUB;
+    const bool wall_clear = clear_throughout(m, wall) || (!now.contact && !wall_stands(&a->wall));
+    const bool hub_clear = clear_throughout(m, hub) || (!stuck && a->motor.stiction == 0);
+
+    *first = WATCH_GAP;
+    *any = false;
+    if (!wall_clear || !hub_clear) {
+        dense_search_event(a, m, h, first, any);
+    }
 }
 
 static bool clear(const arm *a, motion *m, watch w, double h)
 {
-    taylor_stride *s = m->memory;
-    const polynomial *p = &s->watched[w];
-    range within = range_of(p->terms, p->count, h);
-    (void)a;
-    if (w == WATCH_FORCE && !p->divided) {
-        s->force_most = within.high;
-        s->force_until = h;
-    } else if (w == WATCH_STICTION) {
-        const range far = range_of(s->far_limit.terms, s->far_limit.count, h);
-        within.low = far.low < within.low ? far.low : within.low;
+    const taylor_stride *s = m->memory;
+    if (clear_throughout(m, w)) {
+        return true;
     }
-    return within.low > 0;
+
+    // what begins on the edge, or is not asked for as far as the stride goes
+    const polynomial *p = watched(a, m, w);
+    double low = low_of(p, h);
+    return w == WATCH_STICTION ? fmin(low, low_of(&s->far_limit, h)) > 0 : low > 0;
 }
 
 static bool bounded(const arm *a, motion *m, double h, double most)
 {
     const taylor_stride *s = m->memory;
-    (void)a;
-    return h <= s->force_until && s->force_most <= most;
+    (void)a, (void)h;
+    return s->lane.block[AT_FORCE_MOST] <= most;
 }
 
 const engine taylor_engine = {.name = "Taylor series",
@@ -578,4 +512,7 @@ const engine taylor_engine = {.name = "Taylor series",
                               .clear = clear,
                               .bounded = bounded,
                               .force_at = force_at,
+                              .forces_at = forces_at,
+                              .first_event = first_event,
+                              .peak = dense_search_peak,
                               .memory_size = sizeof(taylor_stride)};

@@ -1,32 +1,70 @@
-// Strides of several two-link arms side by side: the series, which are most of a run's work, are
-// computed for as many arms at once as the processor's vectors hold. Every arm gets the bits that
-// it gets alone.
+// Strides of several two-link arms side by side: what most of a run's work is, the series and the
+// states at the ends of strides, is computed for as many arms at once as the processor's vectors
+// hold. Every arm gets the bits that it gets alone.
 //
-//     prepare each motion -> compute those of one form together -> motion_step each
+//     taylor_prepare each motion
+//     taylor_compute those of one form
+//     motion_look_ahead each motion        (contact_machine.h)
+//     taylor_finish them, each to where its stride ends
+//     motion_step each
 #pragma once
 
 #include "src/solve/motion.h"
 #include "src/solve/taylor_series.h"
 
-// A stride that is prepared: what its series start from, and where they go.
-typedef struct taylor_request {
+// Series of several arms, and what they come to at the ends of their strides.
+typedef struct taylor_group {
+    _Alignas(64) double block[TAYLOR_PLACES * TAYLOR_WIDEST];
+    taylor_instants ends;
+    taylor_pieces pieces; // of those in contact, to each's count
     taylor_form form;
-    double *block; // the motion's own, TAYLOR_PLACES
-} taylor_request;
+    int width;
+} taylor_group;
+
+// A motion's part in it: its stride. Good until the group computes other series.
+typedef struct taylor_lane {
+    taylor_form form;
+    const taylor_group *group; // NULL: the series are its own, in `block`
+    int number;                // of its lane in the group
+    double end;                // where its stride ends, once that is evaluated; else -1 [s]
+    int pieces;                // so many pieces of the stride have their force in the group
+    unsigned fetched;          // which arrays are in `block`, too
+    double block[TAYLOR_PLACES];
+} taylor_lane;
 
 // Prepares the stride that motion_step(a, m, until, ...) is going to begin, with `remaining` to go
-// [s]. False if that stride asks for no series: another engine, or an arm that is held still.
-bool taylor_prepare(const arm *a, motion *m, double remaining, taylor_request *request);
+// [s]. NULL if that stride asks for no series: another engine, or an arm that is held still.
+taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining);
 
-// Computes up to taylor_width() requests of one form; the motions take the series from there.
-void taylor_compute(const taylor_request *requests, int count);
+// Whether two strides can go side by side.
+static inline bool taylor_alike(taylor_form a, taylor_form b)
+{
+    return a.order == b.order && a.contact == b.contact && a.point == b.point &&
+           a.hub_spring == b.hub_spring && a.damped == b.damped;
+}
 
-// Computes the series of one arm, in the widest vectors that help it; the same bits in all of them.
-void taylor_compute_one(double *block, taylor_form form);
+// Computes up to taylor_width() prepared strides of one form; the motions take the series from
+// there.
+void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count);
+
+// Where a stride ends, since its start [s], and in how many pieces its force will be asked for.
+typedef struct taylor_end {
+    double time;
+    int pieces;
+} taylor_end;
+
+// Evaluates these strides at their ends.
+void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_end *ends,
+                   int count);
+
+// Computes the series of one arm in the widest vectors that help it; the same bits in all of them.
+void taylor_compute_one(taylor_lane *lane);
+
+// The first `count` terms of the array of the lane's series that begins at a place.
+const double *taylor_terms(taylor_lane *lane, int place, int count);
 
 // Evaluates the series of one arm at `count` instants of the stride, up to taylor_width().
-void taylor_evaluate(const arm *a, const double *block, taylor_form form, int count,
-                     taylor_instants *at);
+void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at);
 
 // How many arms the widest vectors of this processor hold, 1 to TAYLOR_WIDEST.
 int taylor_width(void);

@@ -33,18 +33,15 @@
 #endif
 
 // Sums of products go four, or two, side by side. Those of a single arm fill a vector so; with
-// several arms each is a vector of its own. In a factor on the left two numbers may stand for four:
-// `halves` are low, low, high, high; and one for two.
+// several arms each is a vector of its own.
 #if LANES == 1
 typedef double two __attribute__((vector_size(16)));
 typedef double four __attribute__((vector_size(32)));
 typedef two both;
-typedef four halves;
-#define TWO(a, b)         ((two){a, b})
-#define FOUR(a, b, c, d)  ((four){a, b, c, d})
-#define BOTH(x)           ((both){x, x})
-#define HALVES(low, high) ((halves){low, low, high, high})
-#define PART(x, i)        ((x)[i])
+typedef four halves; // low, low, high, high
+#define TWO(a, b)        ((two){a, b})
+#define FOUR(a, b, c, d) ((four){a, b, c, d})
+#define PART(x, i)       ((x)[i])
 #else
 typedef struct two {
     real part[2];
@@ -52,13 +49,9 @@ typedef struct two {
 typedef struct four {
     real part[4];
 } four;
-typedef real both;
-typedef two halves;
-#define TWO(a, b)         ((two){{a, b}})
-#define FOUR(a, b, c, d)  ((four){{a, b, c, d}})
-#define BOTH(x)           (x)
-#define HALVES(low, high) ((halves){{low, high}})
-#define PART(x, i)        ((x).part[i])
+#define TWO(a, b)        ((two){{a, b}})
+#define FOUR(a, b, c, d) ((four){{a, b, c, d}})
+#define PART(x, i)       ((x).part[i])
 #endif
 
 // The last terms of the velocities stay below this share of 1 rad/s or the largest velocity; the
@@ -73,21 +66,17 @@ typedef two halves;
 // The products of a coefficient are summed up in two turns, even and odd, and those of the newest
 // factors added at last: so additions wait neither for each other nor for what is being computed.
 
-#if LANES == 1
-#define ADD_FOUR(sum, x, y)   ((sum) += (x) * (y))
-#define ADD_HALVES(sum, x, y) ((sum) += (x) * (y))
-#define ADD_BOTH(sum, x, y)   ((sum) += (x) * (y))
-#else
-#define ADD_FOUR(sum, x, y)                                                                        \
-    ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[1] * (y).part[1],       \
-     (sum).part[2] += (x).part[2] * (y).part[2], (sum).part[3] += (x).part[3] * (y).part[3])
-#define ADD_HALVES(sum, x, y)                                                                      \
-    ((sum).part[0] += (x).part[0] * (y).part[0], (sum).part[1] += (x).part[0] * (y).part[1],       \
-     (sum).part[2] += (x).part[1] * (y).part[2], (sum).part[3] += (x).part[1] * (y).part[3])
-#define ADD_BOTH(sum, x, y) ((sum).part[0] += (x) * (y).part[0], (sum).part[1] += (x) * (y).part[1])
-#endif
+typedef struct sums {
+    four turning;  // v c, v s, w2 C2, w2 S2; of the next coefficient
+    four products; // c w2 of the next coefficient, w1 w2, s w1 w2, the hub's square
+    two levered;   // in contact: f c, f C2; plane: f C1, f C2
+    two turning1;  // plane: w1 C1, w1 S1; of the next coefficient
+} sums;
+
+static const sums no_sums;
 
 // Factors of the products, by coefficient.
+#if LANES == 1
 typedef struct factors {
     halves rates[TAYLOR_MOST + 2];    // v, w2
     four directions[TAYLOR_MOST + 2]; // c, s of the bend; C2, S2
@@ -97,23 +86,39 @@ typedef struct factors {
     two levers[TAYLOR_MOST + 2];      // in contact: c, C2; plane: C1, C2
     both rate1[TAYLOR_MOST + 2];      // plane: w1
     two direction1[TAYLOR_MOST + 2];  // plane: C1, S1
+    real v[TAYLOR_MOST + 2];          // of the bend
 } factors;
 
-typedef struct sums {
-    four turning;  // v c, v s, w2 C2, w2 S2; of the next coefficient
-    four products; // of left and right
-    two levered;   // of forces and levers
-    two turning1;  // w1 C1, w1 S1; of the next coefficient
-} sums;
-
-static const sums no_sums;
+#define ADD_TURNING(s, x, j, n)  ((s).turning += (x)->rates[j] * (x)->directions[(n) + 1 - (j)])
+#define ADD_PRODUCTS(s, x, j, n) ((s).products += (x)->left[j] * (x)->right[(n) - (j)])
+#define ADD_LEVERED(s, x, j, n)  ((s).levered += (x)->forces[j] * (x)->levers[(n) - (j)])
+#define ADD_TURNING1(s, x, j, n) ((s).turning1 += (x)->rate1[j] * (x)->direction1[(n) + 1 - (j)])
+#else
+typedef struct factors {
+    four directions[TAYLOR_MOST + 2];
+    two direction1[TAYLOR_MOST + 2];
+    real v[TAYLOR_MOST + 2], coupled[TAYLOR_MOST + 2]; // of the bend; (w1 w2)_(n-1)
+    const real *w1, *w2, *hub, *f;                     // in the block
+} factors;
 
 #define ADD_TURNING(s, x, j, n)                                                                    \
-    ADD_HALVES((s).turning, (x)->rates[j], (x)->directions[(n) + 1 - (j)])
-#define ADD_PRODUCTS(s, x, j, n) ADD_FOUR((s).products, (x)->left[j], (x)->right[(n) - (j)])
-#define ADD_LEVERED(s, x, j, n)  ADD_BOTH((s).levered, (x)->forces[j], (x)->levers[(n) - (j)])
+    ((s).turning.part[0] += (x)->v[j] * (x)->directions[(n) + 1 - (j)].part[0],                    \
+     (s).turning.part[1] += (x)->v[j] * (x)->directions[(n) + 1 - (j)].part[1],                    \
+     (s).turning.part[2] += (x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[2],                   \
+     (s).turning.part[3] += (x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[3])
+#define ADD_PRODUCTS(s, x, j, n)                                                                   \
+    ((s).products.part[0] += (x)->directions[(j) + 1].part[0] * (x)->w2[(n) - (j)],                \
+     (s).products.part[1] += (x)->w1[j] * (x)->w2[(n) - (j)],                                      \
+     (s).products.part[2] += (x)->directions[(j) + 1].part[1] * (x)->coupled[(n) - (j)],           \
+     (s).products.part[3] += (x)->hub[j] * (x)->hub[(n) - (j)])
+#define ADD_LEVERED(s, x, j, n)                                                                    \
+    ((s).levered.part[0] += (x)->f[j] * (point ? (x)->directions[(n) - (j)].part[0]                \
+                                               : (x)->direction1[(n) - (j)].part[0]),              \
+     (s).levered.part[1] += (x)->f[j] * (x)->directions[(n) - (j)].part[2])
 #define ADD_TURNING1(s, x, j, n)                                                                   \
-    ADD_BOTH((s).turning1, (x)->rate1[j], (x)->direction1[(n) + 1 - (j)])
+    ((s).turning1.part[0] += (x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[0],                  \
+     (s).turning1.part[1] += (x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[1])
+#endif
 
 // Sums for the n-th coefficient from j = 1 to n - 1: the first and the last are left to be added.
 #define IN_TURNS(ADD)                                                                              \
@@ -131,7 +136,7 @@ static const sums no_sums;
 KERNEL void inner_sums(const factors *x, int n, const int contact, const int point, sums *result)
 {
     sums even = no_sums, odd = no_sums;
-#if LANES == 1
+#if LANES == 1 || LANES == 8
     // all together, as a processor has registers enough
 #define ADD_ALL(s, x, j, n)                                                                        \
     do {                                                                                           \
@@ -175,6 +180,53 @@ KERNEL real square(const real *x, int n)
     sum += sum;
     return n % 2 == 0 ? sum + x[n / 2] * x[n / 2] : sum;
 }
+
+// What the newest coefficients are to the products, where that is not read from the series.
+#if LANES == 1
+KERNEL void keep_rates(factors *x, int n, real w1, real w2)
+{
+    x->rates[n] = FOUR(x->v[n], x->v[n], w2, w2);
+    x->rate1[n] = TWO(w1, w1);
+}
+
+KERNEL void keep_products(factors *x, int n, real w1, real w2, real coupled, real hub)
+{
+    const four next = x->directions[n + 1];
+    x->left[n] = FOUR(next[0], w1, next[1], hub);
+    x->right[n] = FOUR(w2, w2, coupled, hub);
+}
+
+KERNEL void keep_levers(factors *x, int n, const int point)
+{
+    x->levers[n] = TWO(point ? x->directions[n][0] : x->direction1[n][0], x->directions[n][2]);
+}
+
+KERNEL void keep_force(factors *x, int n, real f)
+{
+    x->forces[n] = TWO(f, f);
+}
+#else
+KERNEL void keep_rates(factors *x, int n, real w1, real w2)
+{
+    (void)x, (void)n, (void)w1, (void)w2;
+}
+
+KERNEL void keep_products(factors *x, int n, real w1, real w2, real coupled, real hub)
+{
+    (void)w1, (void)w2, (void)hub;
+    x->coupled[n] = coupled;
+}
+
+KERNEL void keep_levers(factors *x, int n, const int point)
+{
+    (void)x, (void)n, (void)point;
+}
+
+KERNEL void keep_force(factors *x, int n, real f)
+{
+    (void)x, (void)n, (void)f;
+}
+#endif
 
 // --- series -----------------------------------------------------------------------------------
 
@@ -229,14 +281,40 @@ KERNEL real allowed_stride(real wanted, real before_last, real last, real scale,
     return h;
 }
 
+typedef struct range {
+    real low, high;
+} range;
+
+// Between what a function stays for times from 0 to t: it leaves the chord between its ends by its
+// largest second derivative times t^2/8 at most. Rounding is allowed for.
+KERNEL range range_of(const real *terms, int count, real t)
+{
+    const real u = t * t;
+    const int last = count - 1 - count % 2; // of the odd terms
+    real even = count % 2 == 0 ? (real){0} : terms[count - 1], odd = (real){0};
+    real even2 = count % 2 == 0 ? (real){0} : magnitude(terms[count - 1]) * falling[count - 1];
+    real odd2 = (real){0};
+    for (int n = last; n >= 3; n -= 2) {
+        even = even * u + terms[n - 1];
+        odd = odd * u + terms[n];
+        even2 = even2 * u + magnitude(terms[n - 1]) * falling[n - 1];
+        odd2 = odd2 * u + magnitude(terms[n]) * falling[n];
+    }
+
+    const real end = (even * u + terms[0]) + t * (odd * u + terms[1]);
+    const real sag = (even2 + t * odd2) * u * 0.125;
+    const real off = sag + 1e-12 * (sag + magnitude(terms[0]) + magnitude(end));
+    const mask falls = MASK(end < terms[0]);
+    return (range){choose(falls, end, terms[0]) - off, choose(falls, terms[0], end) + off};
+}
+
 KERNEL void series(real *block, const int contact, const int point, const int hub_spring,
                    bool damped, const int order)
 {
     const real zero = (real){0};
-    const mask stuck = MASK(block[AT_STUCK] != 0);
-    const real m11 = block[AT_M11], m22 = block[AT_M22], m12 = block[AT_M12];
-    const real k = block[AT_STIFFNESS], kd = block[AT_DAMPING], l = block[AT_LENGTH];
-    const real reach_x = block[AT_REACH_X], reach_y = block[AT_REACH_Y];
+    const mask stuck = MASK(block[AT_FRICTION] == 0);
+    const real mass = block[AT_MASS], l = block[AT_LENGTH];
+    const real k = block[AT_STIFFNESS], kd = block[AT_DAMPING];
     const real kh = block[AT_HUB_STIFFNESS], khd = block[AT_HUB_DAMPING];
     const real viscous = block[AT_VISCOUS];
     real *q0 = block + AT_ANGLE_0, *q1 = block + AT_ANGLE_1, *q2 = block + AT_ANGLE_2;
@@ -245,7 +323,19 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     real *hub_square = block + AT_HUB_SQUARE, *dissipation = block + AT_DISSIPATION;
     factors x;
     sums sum = no_sums;
-    real v[TAYLOR_MOST + 2], hub_rate[TAYLOR_MOST + 1]; // of the bend and the hub spring
+    real *v = x.v, hub_rate[TAYLOR_MOST + 1]; // of the bend and the hub spring
+
+    // inertias of the links about their bases, the first carrying the second, and what couples them
+    const real m22 = block[AT_INERTIA] + mass * l * l / 4, m12 = mass * l * l / 2;
+    const real m11 = m22 + mass * l * l + (hub_spring ? zero : block[AT_HUB_INERTIA]);
+    const real drive = block[AT_TORQUE] - block[AT_FRICTION] * block[AT_STICTION];
+
+#if LANES > 1
+    x.w1 = w1;
+    x.w2 = w2;
+    x.hub = hub_spring ? w0 : w1;
+    x.f = f;
+#endif
 
     // the state at the start, and the angles' sines and cosines there
     q1[0] = block[AT_START_ANGLE + 1];
@@ -259,6 +349,8 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     real sine, cosine, s0, c0;
     sine_cosine(q2[0] - q1[0], &s0, &c0);
     sine_cosine(q2[0], &sine, &cosine);
+    const real reach_x = point ? block[AT_WALL_X] : l * block[AT_WALL_X];
+    const real reach_y = point ? block[AT_WALL_Y] : l * block[AT_WALL_Y];
     const real S20 = reach_x * sine - reach_y * cosine;
     const real C20 = reach_x * cosine + reach_y * sine;
     x.directions[0] = FOUR(c0, s0, C20, S20);
@@ -289,23 +381,19 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     for (int n = 0; n < order; n++) {
         // directions of the next order end what the last pass has left open
         v[n] = w2[n] - w1[n];
-        x.rates[n] = HALVES(v[n], w2[n]);
+        keep_rates(&x, n, w1[n], w2[n]);
         ADD_TURNING(sum, &x, n, n - 1);
         turn(&sum.turning, inverse[n + 1], &x.directions[n + 1]);
         if (!point) {
-            x.rate1[n] = BOTH(w1[n]);
             ADD_TURNING1(sum, &x, n, n - 1);
             turn_one(&sum.turning1, inverse[n + 1], &x.direction1[n + 1]);
         }
 
         // products: what is known of (c w2)_(n+1), (w1 w2)_n, (s w1 w2)_n, the hub's square; of the
         // turning of the order after next
-        const real hub_turn = hub_spring ? w0[n] : w1[n];
-        const four next = x.directions[n + 1], now = x.directions[n];
-        x.left[n] = FOUR(PART(next, 0), w1[n], PART(next, 1), hub_turn);
-        x.right[n] = FOUR(w2[n], w2[n], product, hub_turn);
+        keep_products(&x, n, w1[n], w2[n], product, hub_spring ? w0[n] : w1[n]);
         if (contact) {
-            x.levers[n] = TWO(point ? PART(now, 0) : PART(x.direction1[n], 0), PART(now, 2));
+            keep_levers(&x, n, point);
         }
         inner_sums(&x, n, contact, point, &sum);
         ADD_PRODUCTS(sum, &x, 0, n);
@@ -327,18 +415,18 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
         // derivatives of the momenta, without what f_n gives
         const real pull =
             m12 * (s0 * product + PART(sum.products, 2)) + k * (q2[n] - q1[n]) + kd * v[n];
-        const real drive = n == 0 ? block[AT_DRIVE] : zero;
+        const real driven = n == 0 ? drive : zero;
         real push1 = pull, push2 = -pull;
         if (hub_spring) {
             hub_rate[n] = w1[n] - w0[n];
             const real hub_pull = kh * (q1[n] - q0[n]) + khd * hub_rate[n];
-            const real moment = drive - viscous * w0[n] + hub_pull;
+            const real moment = driven - viscous * w0[n] + hub_pull;
             push1 -= hub_pull;
             hold[n] = -moment;
             w0[n + 1] = moment * inverse_hub * inverse[n + 1];
             q0[n + 1] = w0[n] * inverse[n + 1];
         } else {
-            push1 += drive - viscous * w1[n];
+            push1 += driven - viscous * w1[n];
         }
         if (contact && n > 0) {
             ADD_LEVERED(sum, &x, 0, n);
@@ -356,7 +444,7 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
                                        : PART(sum.turning1, 0) + PART(sum.turning, 2);
             const real share = (y1 * b1 + y2 * b2 + closing) * per_force;
             f[n] = share * (n + 1);
-            x.forces[n] = BOTH(f[n]);
+            keep_force(&x, n, f[n]);
             x1 -= y1 * share;
             x2 -= y2 * share;
         }
@@ -391,11 +479,11 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
 
     // the gap, as far as the angles are known
     if (!contact) {
-        x.rates[order] = HALVES(w2[order] - w1[order], w2[order]);
+        v[order] = w2[order] - w1[order];
+        keep_rates(&x, order, w1[order], w2[order]);
         ADD_TURNING(sum, &x, order, order - 1);
         turn(&sum.turning, inverse[order + 1], &x.directions[order + 1]);
         if (!point) {
-            x.rate1[order] = BOTH(w1[order]);
             ADD_TURNING1(sum, &x, order, order - 1);
             turn_one(&sum.turning1, inverse[order + 1], &x.direction1[order + 1]);
         }
@@ -406,7 +494,21 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     }
 
     const real scale = greater(greater(magnitude(w1[0]), magnitude(w2[0])), zero + 1.0);
-    block[AT_ALLOWED] = allowed_stride(block[AT_WANTED], before_last, last, scale, order);
+    const real h = allowed_stride(block[AT_WANTED], before_last, last, scale, order);
+    block[AT_ALLOWED] = h;
+
+    // what the stride leaves of the wall's function and the hub's
+    const range wall = contact ? range_of(f, order, h) : range_of(gap, order + 2, h);
+    block[AT_WALL_LEAST] = wall.low;
+    block[AT_FORCE_MOST] = wall.high;
+    const range rate = range_of(hub_spring ? w0 : w1, order + 1, h);
+    real left = choose(MASK(block[AT_FRICTION] > 0), rate.low, -rate.high);
+    if (any(stuck)) {
+        const range torque = range_of(hold, order, h);
+        const real most = greater(torque.high, -torque.low);
+        left = choose(stuck, block[AT_STICTION] - most, left);
+    }
+    block[AT_HUB_LEAST] = left;
 }
 
 // --- entries ----------------------------------------------------------------------------------

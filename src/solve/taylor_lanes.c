@@ -33,134 +33,147 @@ int taylor_limit_width(int width)
     return taylor_width();
 }
 
-void taylor_compute_one(double *block, taylor_form form)
+void taylor_compute_one(taylor_lane *lane)
 {
+    lane->group = NULL;
+    lane->end = -1;
+    lane->pieces = 0;
 #if defined __x86_64__
     if (taylor_width() >= 4) {
-        taylor_series_1_avx2(block, form);
+        taylor_series_1_avx2(lane->block, lane->form);
         return;
     }
 #endif
-    taylor_series_1(block, form);
+    taylor_series_1(lane->block, lane->form);
 }
 
-void taylor_evaluate(const arm *a, const double *block, taylor_form form, int count,
-                     taylor_instants *at)
+// --- by width ---------------------------------------------------------------------------------
+
+// The routine of a name for vectors of a width.
+#if defined __x86_64__
+#define OF_WIDTH(name, width)                                                                      \
+    ((width) == 8 ? name##8 : (width) == 4 ? name##4 : (width) == 2 ? name##2 : name##1)
+#else
+#define OF_WIDTH(name, width) ((void)(width), name##1)
+#endif
+
+// Copies the first AT_INPUTS places of the arms' own blocks into lanes; those left over repeat the
+// first, and nobody reads what comes of them.
+static inline __attribute__((always_inline)) void put_inputs(taylor_lane *const *lanes, int count,
+                                                             int width, double *block)
 {
-    const int width = taylor_width();
-    assert(a != NULL && block != NULL && at != NULL && count >= 1 && count <= width);
+    const double *from[TAYLOR_WIDEST];
+    for (int i = 0; i < width; i++) {
+        from[i] = lanes[i < count ? i : 0]->block;
+    }
+    for (int place = 0; place < AT_INPUTS; place++) {
+        for (int i = 0; i < width; i++) {
+            block[place * width + i] = from[i][place];
+        }
+    }
+}
+
+void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
+{
+    assert(group != NULL && lanes != NULL && count >= 1 && count <= taylor_width());
+    if (count == 1) {
+        taylor_compute_one(lanes[0]);
+        return;
+    }
+
+    group->width = taylor_width();
+    group->form = lanes[0]->form;
+    if (group->width == 8) {
+        put_inputs(lanes, count, 8, group->block);
+    } else if (group->width == 4) {
+        put_inputs(lanes, count, 4, group->block);
+    } else {
+        put_inputs(lanes, count, 2, group->block);
+    }
+    OF_WIDTH(taylor_series_, group->width)(group->block, group->form);
+
+    // each knows where its own are, and what its stride leaves
+    for (int i = 0; i < count; i++) {
+        lanes[i]->group = group;
+        lanes[i]->number = i;
+        lanes[i]->end = -1;
+        lanes[i]->pieces = 0;
+        lanes[i]->fetched = 0;
+        for (int place = AT_ALLOWED; place <= AT_FORCE_MOST; place++) {
+            lanes[i]->block[place] = group->block[place * group->width + i];
+        }
+    }
+}
+
+void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_end *ends,
+                   int count)
+{
+    assert(group != NULL && lanes != NULL && ends != NULL && count >= 1);
+    if (lanes[0]->group != group) {
+        return; // it is alone
+    }
+
+    // the states
+    for (int i = 0; i < group->width; i++) {
+        group->ends.time[i] = ends[i < count ? i : 0].time;
+    }
+    OF_WIDTH(taylor_ends_, group->width)(group->block, group->form, &group->ends);
+
+    // the force on the way there
+    int most = 0;
+    for (int i = 0; i < group->width; i++) {
+        const taylor_end *end = &ends[i < count ? i : 0];
+        const int pieces = end->pieces <= TAYLOR_PIECES ? end->pieces : 0;
+        group->pieces.width[i] = end->time / (pieces > 0 ? pieces : 1);
+        most = pieces > most ? pieces : most;
+        if (i < count) {
+            lanes[i]->end = end->time;
+            lanes[i]->pieces = pieces;
+        }
+    }
+    if (group->form.contact && most > 1) {
+        OF_WIDTH(taylor_pieces_, group->width)
+        (group->block, group->form.order, most, &group->pieces);
+    }
+}
+
+const double *taylor_terms(taylor_lane *lane, int place, int count)
+{
+    // arrays are nowhere shorter, and little longer
+    const unsigned bit = 1u << (place - AT_ANGLE_0) / TAYLOR_MOST;
+    if (lane->group != NULL && !(lane->fetched & bit)) {
+        const int width = lane->group->width;
+        const double *from = lane->group->block + place * width + lane->number;
+        for (int n = 0; n < count; n++) {
+            lane->block[place + n] = from[n * width];
+        }
+        lane->fetched |= bit;
+    }
+    return lane->block + place;
+}
+
+void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at)
+{
+    const taylor_form form = lane->form;
+    const int width = count == 1 ? 1 : taylor_width();
+    assert(lane != NULL && at != NULL && count >= 1 && count <= width);
     for (int i = count; i < width; i++) {
         at->time[i] = at->time[0];
     }
 
-    switch (width) {
-#if defined __x86_64__
-    case 8:
-        taylor_instants_8(a, block, form, at);
-        break;
-    case 4:
-        taylor_instants_4(a, block, form, at);
-        break;
-    case 2:
-        taylor_instants_2(a, block, form, at);
-        break;
-#endif
-    default:
-        taylor_instants_1(a, block, form, at);
-        break;
-    }
-}
-
-static void compute_block(double *block, int width, taylor_form form)
-{
-    switch (width) {
-#if defined __x86_64__
-    case 8:
-        taylor_series_8(block, form);
-        break;
-    case 4:
-        taylor_series_4(block, form);
-        break;
-    case 2:
-        taylor_series_2(block, form);
-        break;
-#endif
-
-    // what every processor can do
-    default:
-        taylor_series_1(block, form);
-        break;
-    }
-}
-
-// Copies `count` places of the blocks' lanes from the one after `place` on to the arms' own blocks.
-static inline __attribute__((always_inline)) void
-spread_places(double *const *to, const double *block, int width, int place, int count)
-{
-    for (int n = place; n < place + count; n++) {
-        for (int lane = 0; lane < width; lane++) {
-            to[lane][n] = block[n * width + lane];
+    // what it takes of the series of a group
+    if (lane->group != NULL) {
+        for (int body = form.hub_spring ? 0 : 1; body < 3; body++) {
+            taylor_terms(lane, AT_ANGLE_0 + body * (TAYLOR_MOST + 2), form.order + 2);
+        }
+        taylor_terms(lane, AT_HOLD, form.order);
+        taylor_terms(lane, AT_HUB_SQUARE, form.order);
+        if (form.contact) {
+            taylor_terms(lane, AT_FORCE, form.order);
+        }
+        if (form.damped) {
+            taylor_terms(lane, AT_DISSIPATION, form.order);
         }
     }
-}
-
-// What the series of a form have come to, as far as their order goes.
-static inline __attribute__((always_inline)) void
-spread_results(double *const *to, const double *block, int width, taylor_form form)
-{
-    const int links[] = {AT_ANGLE_1, AT_ANGLE_2};
-    spread_places(to, block, width, AT_ALLOWED, 1);
-    for (int i = 0; i < 2; i++) {
-        spread_places(to, block, width, links[i], form.order + 2);
-    }
-    if (form.hub_spring) {
-        spread_places(to, block, width, AT_ANGLE_0, form.order + 2);
-    }
-    spread_places(to, block, width, form.hub_spring ? AT_RATE_0 : AT_RATE_1, form.order + 1);
-
-    // reactions and losses
-    if (form.contact) {
-        spread_places(to, block, width, AT_FORCE, form.order);
-    } else {
-        spread_places(to, block, width, AT_GAP, form.order + 2);
-    }
-    spread_places(to, block, width, AT_HOLD, form.order);
-    spread_places(to, block, width, AT_HUB_SQUARE, form.order);
-    if (form.damped) {
-        spread_places(to, block, width, AT_DISSIPATION, form.order);
-    }
-}
-
-void taylor_compute(const taylor_request *requests, int count)
-{
-    const int width = count == 1 ? 1 : taylor_width();
-
-    const taylor_form form = requests[0].form;
-    assert(count >= 1 && count <= taylor_width());
-
-    if (width == 1) {
-        taylor_compute_one(requests[0].block, form);
-        return;
-    }
-
-    // arms into lanes; those left over repeat the first, and nobody reads what comes of them
-    _Alignas(64) double block[TAYLOR_PLACES * TAYLOR_WIDEST], unread[TAYLOR_PLACES];
-    double *to[TAYLOR_WIDEST];
-    for (int lane = 0; lane < width; lane++) {
-        const double *from = requests[lane < count ? lane : 0].block;
-        to[lane] = lane < count ? requests[lane].block : unread;
-        for (int place = 0; place < AT_INPUTS; place++) {
-            block[place * width + lane] = from[place];
-        }
-    }
-    compute_block(block, width, form);
-
-    // and back
-    if (width == 8) {
-        spread_results(to, block, 8, form);
-    } else if (width == 4) {
-        spread_results(to, block, 4, form);
-    } else {
-        spread_results(to, block, 2, form);
-    }
+    OF_WIDTH(taylor_instants_, width)(lane->block, form, at);
 }

@@ -6,8 +6,6 @@
 
 #include <stdbool.h>
 
-#include "src/arm/arm.h"
-
 // Highest order of the velocities' series; strides that something cuts short take less.
 enum { TAYLOR_MOST = 24, TAYLOR_WIDEST = 8 };
 
@@ -15,27 +13,32 @@ enum { TAYLOR_MOST = 24, TAYLOR_WIDEST = 8 };
 // lane and place, lanes side by side. An array of places begins at the constant of its name.
 enum taylor_place {
     // constants of the arm
-    AT_M11,       // inertia of the first link about its base, the second carried [kg m2]
-    AT_M22,       // of the second about its base [kg m2]
-    AT_M12,       // m12 = AT_M12 cos(bend) couples them [kg m2]
+    AT_MASS,      // of a link [kg]
+    AT_INERTIA,   // of a link, about its centre of mass [kg m2]
+    AT_LENGTH,    // of a link [m]
     AT_STIFFNESS, // of the joint [N m/rad]
     AT_DAMPING,   // of the joint [N m s/rad]
-    AT_LENGTH,    // of a link [m]
-    AT_REACH_X,   // point wall: the contact point; plane: a link's length along the wall [m]
-    AT_REACH_Y,
-    AT_DRIVE,         // motor and sliding friction at the hub [N m]
+    AT_WALL_X,    // point wall: the contact point [m]; plane: its direction
+    AT_WALL_Y,
+    AT_TORQUE,        // of the motor [N m]
+    AT_STICTION,      // of the hub [N m]
     AT_VISCOUS,       // viscous friction and back EMF [N m s/rad]
+    AT_HUB_INERTIA,   // [kg m2]
     AT_HUB_STIFFNESS, // of the hub spring [N m/rad]
     AT_HUB_DAMPING,   // [N m s/rad]
-    AT_HUB_INERTIA,   // with a hub spring [kg m2]
-    AT_STUCK,         // 1 with a stuck hub, else 0
     // the state at the stride's start
+    AT_FRICTION,                            // hub_friction: 0 with a stuck hub, else its sign
     AT_START_ANGLE,                         // hub (with a spring), first, second link [rad]
     AT_START_VELOCITY = AT_START_ANGLE + 3, // [rad/s]
     AT_WANTED = AT_START_VELOCITY + 3,      // length of the stride that is wanted [s]
     AT_INPUTS,                              // how many of the above
     // what comes of it: powers of the time, from the zeroth
-    AT_ALLOWED = AT_INPUTS,                    // length that the series are good for [s]
+    AT_ALLOWED = AT_INPUTS, // length that the series are good for [s]
+    // within it no less than this: the gap [m], or in contact the force [N]; the hub's velocity in
+    // the direction it slides [rad/s], or what friction has left for a stuck hub [N m]
+    AT_WALL_LEAST,
+    AT_HUB_LEAST,
+    AT_FORCE_MOST,                             // and in contact no more than this force [N]
     AT_ANGLE_0,                                // of the hub, with a spring [rad]
     AT_ANGLE_1 = AT_ANGLE_0 + TAYLOR_MOST + 2, // of the links; orders to TAYLOR_MOST + 1
     AT_ANGLE_2 = AT_ANGLE_1 + TAYLOR_MOST + 2,
@@ -68,14 +71,14 @@ void taylor_series_2(double *block, taylor_form form);
 void taylor_series_4(double *block, taylor_form form);
 void taylor_series_8(double *block, taylor_form form);
 
-// What the series of one arm come to at instants of the stride, side by side. Bodies are the hub
-// (with a spring), the first and the second link.
+// What series come to at instants of their strides, side by side. Bodies are the hub (with a
+// spring), the first and the second link.
 typedef struct taylor_instants {
     double time[TAYLOR_WIDEST];             // given: since its start [s]
     double angle[3][TAYLOR_WIDEST];         // [rad]
     double velocity[3][TAYLOR_WIDEST];      // [rad/s]
     double acceleration[3][TAYLOR_WIDEST];  // [rad/s2]
-    double gap[TAYLOR_WIDEST];              // [m]; with a wall
+    double gap[TAYLOR_WIDEST];              // to the wall [m]
     double gap_velocity[TAYLOR_WIDEST];     // [m/s]
     double gap_acceleration[TAYLOR_WIDEST]; // [m/s2]
     double force[TAYLOR_WIDEST];            // in contact [N]
@@ -89,7 +92,28 @@ typedef struct taylor_instants {
 } taylor_instants;
 
 // Evaluates the series of the arm, a block of its own, at as many instants as the name says.
-void taylor_instants_1(const arm *a, const double *block, taylor_form form, taylor_instants *at);
-void taylor_instants_2(const arm *a, const double *block, taylor_form form, taylor_instants *at);
-void taylor_instants_4(const arm *a, const double *block, taylor_form form, taylor_instants *at);
-void taylor_instants_8(const arm *a, const double *block, taylor_form form, taylor_instants *at);
+void taylor_instants_1(const double *block, taylor_form form, taylor_instants *at);
+void taylor_instants_2(const double *block, taylor_form form, taylor_instants *at);
+void taylor_instants_4(const double *block, taylor_form form, taylor_instants *at);
+void taylor_instants_8(const double *block, taylor_form form, taylor_instants *at);
+
+// Evaluates the series of as many arms, each in its lane of the block at its own instant.
+void taylor_ends_1(const double *block, taylor_form form, taylor_instants *at);
+void taylor_ends_2(const double *block, taylor_form form, taylor_instants *at);
+void taylor_ends_4(const double *block, taylor_form form, taylor_instants *at);
+void taylor_ends_8(const double *block, taylor_form form, taylor_instants *at);
+
+// The contact force at the ends of equal pieces of a stride, TAYLOR_PIECES at most: a lane has them
+// at `width`, 2 `width`, and so on.
+enum { TAYLOR_PIECES = 8 };
+typedef struct taylor_pieces {
+    double width[TAYLOR_WIDEST];                // given [s]
+    double force[TAYLOR_PIECES][TAYLOR_WIDEST]; // [N]
+    double slope[TAYLOR_PIECES][TAYLOR_WIDEST]; // [N/s]
+} taylor_pieces;
+
+// Evaluates the first `count` of them for each arm of the block.
+void taylor_pieces_1(const double *block, int order, int count, taylor_pieces *pieces);
+void taylor_pieces_2(const double *block, int order, int count, taylor_pieces *pieces);
+void taylor_pieces_4(const double *block, int order, int count, taylor_pieces *pieces);
+void taylor_pieces_8(const double *block, int order, int count, taylor_pieces *pieces);
