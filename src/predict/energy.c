@@ -124,10 +124,7 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     assert(p != NULL && s != NULL && out != NULL);
     bool printed = p->arm.model == ARM_PRINTED;
     two_link touch;
-    *out = (prediction){.force = (double)NAN,
-                        .delay = (double)NAN,
-                        .impulse = (double)NAN,
-                        .restitution = (double)NAN};
+    *out = prediction_none();
     status result = three_body_state_check(s, f);
     if (result != STATUS_OK) {
         return result;

@@ -302,10 +302,7 @@ static double earliest_delay(const double c[3])
 static status start(const parameters *p, const three_body_state *s, two_link *t,
                     integrated_motion *g, prediction *out, double after[3], fault *f)
 {
-    *out = (prediction){.force = (double)NAN,
-                        .delay = (double)NAN,
-                        .impulse = (double)NAN,
-                        .restitution = (double)NAN};
+    *out = prediction_none();
 
     // a bad state ends here, with nothing predicted
     status result = three_body_state_check(s, f);

@@ -1,6 +1,8 @@
 // Predictors of the peak force, usable in free flight: "if it touched now, how hard would it hit?"
 #pragma once
 
+#include <math.h>
+
 #include "src/quantities/parameters.h"
 #include "src/base/fault.h"
 
@@ -33,6 +35,14 @@ typedef struct prediction {
     double restitution;     // e_eq of 4.1.1 [-]; NaN where the method gives none
     prediction_doubt doubt; // not DOUBT_NONE: force and delay are NaN, and it does not hold
 } prediction;
+
+// One that says nothing yet.
+static inline prediction prediction_none(void)
+{
+    const double unknown = (double)NAN;
+    return (prediction){
+        .force = unknown, .delay = unknown, .impulse = unknown, .restitution = unknown};
+}
 
 // Commands of the motor after the touch, each in force from its time on: v(t) of the remark in 4.2.
 typedef struct voltage_profile {
