@@ -170,9 +170,8 @@ LOOP void loop_products(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_torques(const chain_rows *rows, const chain_order *o)
+LOOP void loop_torques(chain_rows *r, const chain_order *o)
 {
-    const chain_rows own = *rows, *r = &own;
     const int last = r->blocks - 1;
     const block stiffness = all(o->stiffness), damping = all(o->damping);
 
@@ -197,9 +196,8 @@ LOOP void loop_torques(const chain_rows *rows, const chain_order *o)
     }
 }
 
-LOOP void loop_prepare(const chain_rows *rows, const chain_order *o)
+LOOP void loop_prepare(chain_rows *r, const chain_order *o)
 {
-    const chain_rows own = *rows, *r = &own;
     const block turns = all(o->n + 1);
     for (int b = 0; b < r->blocks; b++) {
         const block x = -turns * AT(r->known_s, b), y = turns * AT(r->known_c, b);
@@ -213,10 +211,9 @@ LOOP void loop_prepare(const chain_rows *rows, const chain_order *o)
     }
 }
 
-LOOP void loop_sweep(chain_rows *rows, const chain_order *o)
+LOOP void loop_sweep(chain_rows *r, const chain_order *o)
 {
-    const chain_rows own = *rows, *r = &own;
-    double *const *m = r->matrix, *const *in = r->inwards, *const *out = r->outwards;
+    double **m = r->matrix, **in = r->inwards, **out = r->outwards;
     const int last = r->blocks - 1;
     block x = all(0), y = all(0), begin_x = all(0), begin_y = all(0);
 
@@ -268,9 +265,8 @@ LOOP void loop_sweep(chain_rows *rows, const chain_order *o)
     }
 }
 
-LOOP void loop_finish(const chain_rows *rows, const chain_order *o)
+LOOP void loop_finish(chain_rows *r, const chain_order *o)
 {
-    const chain_rows own = *rows, *r = &own;
     const int n = o->n;
     const block per_rate = all(1.0 / (n + 1)), per_angle = all(1.0 / (n + 2)), push = all(o->force);
     for (int b = 0; b < r->blocks; b++) {
@@ -290,9 +286,8 @@ LOOP void loop_finish(const chain_rows *rows, const chain_order *o)
     }
 }
 
-LOOP void loop_hand(const chain_rows *rows, const chain_order *o)
+LOOP void loop_hand(chain_rows *r, const chain_order *o)
 {
-    const chain_rows own = *rows, *r = &own;
     const int last = r->blocks - 1;
     const block half = all(o->length / 2);
     for (int b = 0; b <= last; b++) {

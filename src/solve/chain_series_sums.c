@@ -1,24 +1,17 @@
 #include "src/solve/chain_series_parts.h"
 
-static double sum_of(const double lane[SERIES_LANES])
-{
-    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
-           ((lane[4] + lane[5]) + (lane[6] + lane[7]));
-}
-
 void chain_series_reach_point(chain_series *s, const arm *a, int n)
 {
     const chain_rows *r = &s->rows;
-    double all_x[SERIES_LANES] = {0}, all_y[SERIES_LANES] = {0}, along = 0;
+    double x = 0, y = 0, along = 0;
     for (int b = 0; b < r->blocks; b++) {
         const double *cosine = r->cosine + chain_term(n, (size_t)b * SERIES_LANES);
         const double *sine = r->sine + chain_term(n, (size_t)b * SERIES_LANES);
-        for (int j = 0; j < SERIES_LANES; j++) {
-            all_x[j] += cosine[j];
-            all_y[j] += sine[j];
-        }
+        x += ((cosine[0] + cosine[1]) + (cosine[2] + cosine[3])) +
+             ((cosine[4] + cosine[5]) + (cosine[6] + cosine[7]));
+        y += ((sine[0] + sine[1]) + (sine[2] + sine[3])) +
+             ((sine[4] + sine[5]) + (sine[6] + sine[7]));
     }
-    double x = sum_of(all_x), y = sum_of(all_y);
     s->tip_x.term[n] = x;
     s->tip_y.term[n] = y;
     x -= last_of(s, r->cosine, n);
@@ -73,7 +66,8 @@ void chain_series_sum_losses(chain_series *s, const arm *a)
                     }
                 }
             }
-            inner = sum_of(sum);
+            inner =
+                ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
         }
         s->hub_square.term[n] = hub;
         s->dissipation.term[n] = a->joint_damping * inner + a->hub_joint_damping * root;
