@@ -374,9 +374,14 @@ code=0
 wait $interrupted || code=$?
 [ "$code" = 143 ] || fail "robust ended by a signal has status $code, expected 143"
 says err "are done and kept in 'long-hybrid.sqlite'"
+printf 'belief.k2_factor=0.9:1.1\ncase Thrown: push=1e300@0.1\n' >thrown.set
+expect 1 robust compare/bang-bang-rigid --over thrown.set --runs 2 --quiet
+says err "2 of 2 runs failed; run 1: at t = 0.1 s: a push of 1e+300 N s"
 expect 2 robust compare/observer --laws nonsense
 expect 2 robust compare/observer --over press.yaml
 expect 2 robust corrected/first-impact
+expect 2 run nosuch
+says err "impactlab: 'nosuch' is neither a scenario nor a file"
 expect 2 run press.yaml --set "control.k2_table=1:0"
 says err "expected FORCE:K2"
 expect 0 compare press.yaml table.yaml --against press.yaml --vary control.force=1,2 \

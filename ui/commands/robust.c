@@ -173,7 +173,8 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
 
     // all of them are there, or what there is stays in the store
     bool stopped = code == STATUS_OK && !computes && progress.done < progress.total;
-    if (code == STATUS_OK && !computes && progress.failed > 0 && !a->quiet) {
+    const bool tell = progress.failed > 0 && (!a->quiet || progress.failed == progress.total);
+    if (code == STATUS_OK && !computes && tell) {
         many_runs_tell_failure(&progress);
     }
     if (code == STATUS_OK && !stopped && !computes) {
