@@ -155,6 +155,9 @@ try r.csv run hit.yaml --quiet --csv r.csv
 try s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
 try p.svg run hit.yaml --quiet --plot p.svg
 try c.json compare hit.yaml --columns peak_force_N --quiet --json c.json
+# threads of their own paint every second frame; the encoder runs out of memory, too
+! command -v ffmpeg >/dev/null ||
+    try f.webp animate hit.yaml --size 320x240 --fps 4 --seconds 0.5 --gl cairo --quiet -o f.webp
 kill_at_random r.csv run hit.yaml --quiet --csv r.csv
 kill_at_random s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
 kills=$(((most + 3) / 4))

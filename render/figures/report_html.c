@@ -212,10 +212,10 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
         figure_report *seen = g_new0(figure_report, 1);
         cairo_surface_t *nowhere = cairo_recording_surface_create(CAIRO_CONTENT_COLOR, NULL);
         cairo_t *cr = cairo_create(nowhere);
-        if (drawn->paint(cr, drawn->what, seen, NULL) == STATUS_OK) {
+        status code = drawn->paint(cr, drawn->what, seen, NULL);
+        if (picture_end_drawing(cr, code, NULL) == STATUS_OK) {
             add_panels(html, drawn->plotted, seen);
         }
-        cairo_destroy(cr);
         cairo_surface_destroy(nowhere);
         g_free(seen);
     }

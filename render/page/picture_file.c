@@ -61,25 +61,34 @@ static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsign
                                                       : CAIRO_STATUS_WRITE_ERROR;
 }
 
-// Draws on a surface and finishes it. A write error is left to whoever closes the stream.
+// What cairo met on the way, where drawing itself came to `code`.
+static status drawn(status code, cairo_status_t state, fault *f)
+{
+    const bool well = state == CAIRO_STATUS_SUCCESS || state == CAIRO_STATUS_WRITE_ERROR ||
+                      state == CAIRO_STATUS_SURFACE_FINISHED;
+    return code != STATUS_OK || well
+               ? code
+               : fault_set(f, STATUS_NO_MEMORY, "a picture could not be drawn: %s",
+                           cairo_status_to_string(state));
+}
+
+status picture_end_drawing(cairo_t *cr, status code, fault *f)
+{
+    assert(cr != NULL);
+    code = drawn(code, cairo_status(cr), f);
+    cairo_destroy(cr);
+    return code;
+}
+
+// Draws on a surface and finishes it.
 static status paint_surface(cairo_surface_t *surface, const picture *p, bool finish, fault *f)
 {
     cairo_t *cr = cairo_create(surface);
-
-    status code = p->paint(cr, p->what, f);
-    cairo_destroy(cr);
+    status code = picture_end_drawing(cr, p->paint(cr, p->what, f), f);
     if (finish) {
         cairo_surface_finish(surface);
     }
-
-    // what cairo met on the way
-    cairo_status_t state = cairo_surface_status(surface);
-    if (code == STATUS_OK && state != CAIRO_STATUS_SUCCESS && state != CAIRO_STATUS_WRITE_ERROR &&
-        state != CAIRO_STATUS_SURFACE_FINISHED) {
-        code = fault_set(f, STATUS_NO_MEMORY, "a picture could not be drawn: %s",
-                         cairo_status_to_string(state));
-    }
-    return code;
+    return drawn(code, cairo_surface_status(surface), f);
 }
 
 static status write_png(FILE *stream, const picture *p, fault *f)

@@ -23,6 +23,11 @@ typedef struct picture {
     const void *what; // for paint
 } picture;
 
+// Ends a drawing: destroys cr and returns `code`, what drawing came to, or STATUS_NO_MEMORY if
+// cairo met an error and from then on drew nothing. An error of writing is left to whoever closes
+// the stream.
+status picture_end_drawing(cairo_t *cr, status code, fault *f);
+
 // The format that a path's extension (.png, .pdf, .svg) or a bare word (png) names.
 picture_format picture_format_of(const char *path);
 

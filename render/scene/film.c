@@ -3,13 +3,13 @@
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 
 #include "render/plot/opened_run.h"
 #include "render/scene/film_file.h"
 #include "render/scene/film_frame.h"
 #include "src/base/version.h"
+#include "src/base/worker_signals.h"
 
 enum { MOST_THREADS = 2, BUFFERS = 2 };
 
@@ -46,9 +46,7 @@ static gpointer help(gpointer data)
     film_painter *painter;
 
     // signals are for the thread that writes: they end its waiting
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, NULL);
+    worker_signals_block(NULL);
 
     status code = film_painter_create(&painter, h->plan, &f);
     for (;;) {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "render/plot/trace_plot.h"
 #include "render/scene/labels.h"
@@ -105,8 +106,7 @@ static status paint_traces(film_plan *plan, fault *f)
     set_colour(cr, page_of(plan));
     cairo_paint(cr);
     cairo_scale(cr, plan->trace_scale, plan->trace_scale);
-    code = figure_paint(cr, &t.figure, plan->report, f);
-    cairo_destroy(cr);
+    code = picture_end_drawing(cr, figure_paint(cr, &t.figure, plan->report, f), f);
     trace_figure_finish(&t);
     return code;
 }
@@ -325,8 +325,7 @@ static status paint_frame(film_painter *p, double time, double present, double s
         draw_traces(plan, cr, present);
         draw_speed(p, cr, speed);
     }
-    cairo_destroy(cr);
-    return code;
+    return picture_end_drawing(cr, code, f);
 }
 
 status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *onto, fault *f)

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/page/picture_file.h"
+
 enum {
     MAP = 640,       // cells along each edge of the shadow's map
     BLUR = 4,        // half width of a smoothing pass [cells]
@@ -176,9 +178,9 @@ static int within_map(double cell)
     return cell < 0 ? 0 : cell > MAP ? MAP : (int)cell;
 }
 
-// Draws the mesh's triangles, thrown onto the floor along the light, into the map. Returns what
+// Draws the mesh's triangles, thrown onto the floor along the light, into the map. *covered is what
 // they and their soft edge may cover.
-static map_box cast_shadow(scene_floor *floor, const mesh *m)
+static status cast_shadow(scene_floor *floor, const mesh *m, map_box *covered, fault *f)
 {
     double left = MAP, right = 0, low = MAP, high = 0;
     memset(floor->mask, 0, (size_t)MAP * MAP);
@@ -210,7 +212,7 @@ static map_box cast_shadow(scene_floor *floor, const mesh *m)
         cairo_fill(cr);
     }
 
-    cairo_destroy(cr);
+    status code = picture_end_drawing(cr, STATUS_OK, f);
     cairo_surface_destroy(map);
 
     // a soft edge, as of a wide lamp
@@ -222,7 +224,8 @@ static map_box cast_shadow(scene_floor *floor, const mesh *m)
         blur_turned(floor->mask, floor->spare, cells);
         blur_turned(floor->spare, floor->mask, turned);
     }
-    return cells;
+    *covered = cells;
+    return code;
 }
 
 // The shadow at a place of the floor, 0 to 255, between the map's cells.
@@ -277,10 +280,14 @@ static uint32_t darkened(uint32_t rgb, float shadow, uint32_t threshold)
     return 0xFF000000U | red << 16 | green << 8 | ((rgb & 255) * light + threshold) >> 16;
 }
 
-void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
+status scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto, fault *f)
 {
     assert(floor != NULL && m != NULL && onto != NULL);
-    const map_box shade = cast_shadow(floor, m);
+    map_box shade;
+    status code = cast_shadow(floor, m, &shade, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
     const pixel_box seen = seen_box(floor, shade);
 
     cairo_surface_flush(onto);
@@ -309,4 +316,5 @@ void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto)
         }
     }
     cairo_surface_mark_dirty(onto);
+    return STATUS_OK;
 }

@@ -26,5 +26,5 @@ status scene_floor_init(scene_floor *floor, const camera *c, fault *f);
 void scene_floor_finish(scene_floor *floor);
 
 // Paints the floor with the mesh's shadow over the whole image surface (RGB24, of the picture's
-// size).
-void scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto);
+// size). STATUS_NO_MEMORY if cairo had none.
+status scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto, fault *f);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "render/scene/labels.h"
 #include "render/scene/scene_parts.h"
@@ -171,8 +172,8 @@ static double letter_scale(const scene *sc)
                                    : fmin(sc->camera.height / 720, sc->camera.width / 800);
 }
 
-static void draw_labels(scene *sc, const double *times, const colour *inks, int count,
-                        cairo_surface_t *onto)
+static status draw_labels(scene *sc, const double *times, const colour *inks, int count,
+                          cairo_surface_t *onto, fault *f)
 {
     labels l = {.cr = cairo_create(onto),
                 .context = sc->context,
@@ -207,20 +208,19 @@ static void draw_labels(scene *sc, const double *times, const colour *inks, int 
             labels_instants(&l, times, inks, count);
         }
     }
-    cairo_destroy(l.cr);
+    return picture_end_drawing(l.cr, STATUS_OK, f);
 }
 
 // The ground on which all else is painted, with the shadow of what does not hover.
-static void paint_ground(scene *sc, cairo_surface_t *onto)
+static status paint_ground(scene *sc, cairo_surface_t *onto, fault *f)
 {
     if (!sc->options.transparent) {
-        scene_floor_paint(&sc->floor, &sc->mesh, onto);
-        return;
+        return scene_floor_paint(&sc->floor, &sc->mesh, onto, f);
     }
     cairo_t *cr = cairo_create(onto);
     cairo_set_operator(cr, CAIRO_OPERATOR_CLEAR);
     cairo_paint(cr);
-    cairo_destroy(cr);
+    return picture_end_drawing(cr, STATUS_OK, f);
 }
 
 // The contact from near by, framed, in the upper right corner.
@@ -253,7 +253,7 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
         if (!sc->options.plain) {
             labels_inset(&l, left, margin + height, larger);
         }
-        cairo_destroy(l.cr);
+        code = picture_end_drawing(l.cr, STATUS_OK, f);
     }
     cairo_surface_destroy(view);
     return code;
@@ -273,7 +273,7 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
     sample last = scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
     scene_build_hub(sc, last.hub_angle);
     scene_build_wall(sc);
-    paint_ground(sc, onto);
+    code = paint_ground(sc, onto, f);
 
     // ghosts of earlier instants behind it
     for (int i = 0; i < count && code == STATUS_OK; i++) {
@@ -295,7 +295,7 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
         code = scene_painter_paint(sc->painter, &full, onto, f);
     }
     if (code == STATUS_OK) {
-        draw_labels(sc, times, inks, count, onto);
+        code = draw_labels(sc, times, inks, count, onto, f);
     }
     return code == STATUS_OK && sc->tip != NULL ? paint_inset(sc, times, count, onto, f) : code;
 }

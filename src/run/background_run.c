@@ -3,10 +3,10 @@
 #include <assert.h>
 #include <math.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 
 #include "src/base/clock.h"
+#include "src/base/worker_signals.h"
 #include "src/run/resume.h"
 
 struct background_run {
@@ -35,19 +35,12 @@ static void *compute(void *argument)
     return NULL;
 }
 
-// Starts the thread with all signals blocked but those that a crash raises in it: the others are
-// for the thread that waits for input.
+// Starts the thread; signals are for the one that waits for input.
 static bool start_thread(background_run *c)
 {
-    static const int own[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL};
-    sigset_t blocked, before;
-
     // a new thread inherits the mask of the one that starts it
-    sigfillset(&blocked);
-    for (size_t i = 0; i < sizeof own / sizeof own[0]; i++) {
-        sigdelset(&blocked, own[i]);
-    }
-    pthread_sigmask(SIG_SETMASK, &blocked, &before);
+    sigset_t before;
+    worker_signals_block(&before);
     bool started = pthread_create(&c->thread, NULL, compute, c) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return started;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/base/clock.h"
+#include "src/base/worker_signals.h"
 
 #define TICK_INTERVAL 0.1 // [s]
 
@@ -145,14 +146,12 @@ static status work_alone(pool *p, pool_thread *self, fault *f)
     return code == STATUS_OK && w->tick != NULL ? w->tick(w->context, true, f) : code;
 }
 
-// Starts up to `wanted` threads, with all signals blocked, which are for the calling one. Returns
-// how many there are.
+// Starts up to `wanted` threads; signals are for the calling one. Returns how many there are.
 static int start_threads(pool *p, pool_thread *threads, int wanted)
 {
-    sigset_t all, before;
+    sigset_t before;
     int started = 0;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
+    worker_signals_block(&before);
 
     // none ends before their number is known
     pthread_mutex_lock(&p->mutex);
