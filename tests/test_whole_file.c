@@ -369,7 +369,20 @@ static void a_signal_leaves_no_temporaries(void **state)
     assert_int_equal(whole_file_open(&one, "one", NULL), STATUS_OK);
     assert_int_equal(whole_file_open(&two, "two", NULL), STATUS_OK);
     assert_int_equal(files(), before + 3);
+
+    // a process that writes one of them ends before it could make its file again
+    int ended = 0;
+    const pid_t writer = fork();
+    assert_true(writer >= 0);
+    if (writer == 0) {
+        pause();
+        _exit(0);
+    }
+    whole_file_set_writer(writer);
     whole_file_remove_unfinished();
+    whole_file_set_writer(0);
+    assert_int_equal(waitpid(writer, &ended, 0), writer);
+    assert_true(WIFSIGNALED(ended) && WTERMSIG(ended) == SIGKILL);
     assert_int_equal(files(), before + 1);
     assert_holds("one", "old");
     whole_file_abandon(&one);

@@ -13,6 +13,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "src/base/whole_file.h"
+
 extern char **environ;
 
 enum {
@@ -180,6 +182,7 @@ static status spawn(film_encoder *e, char **words, int input, fault *f)
         return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
                          strerror(failed));
     }
+    whole_file_set_writer(e->process);
     return STATUS_OK;
 }
 
@@ -226,6 +229,7 @@ static int wait_for_encoder(film_encoder *e)
         }
         nanosleep(&moment, NULL);
     }
+    whole_file_set_writer(0);
     e->process = 0;
     return result;
 }

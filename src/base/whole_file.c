@@ -7,6 +7,7 @@
 #include <limits.h>
 #include <poll.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -50,8 +51,21 @@ static void forget_unfinished(char *name)
     }
 }
 
+// The process that writes one of them, 0 for none.
+static atomic_int writer;
+
+void whole_file_set_writer(pid_t process)
+{
+    atomic_store(&writer, process);
+}
+
 void whole_file_remove_unfinished(void)
 {
+    // it would make its file once more
+    const pid_t process = atomic_load(&writer);
+    if (process > 0) {
+        kill(process, SIGKILL);
+    }
     for (int i = 0; i < MOST_UNFINISHED; i++) {
         char *name = atomic_load(&unfinished[i]);
         if (name != NULL) {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <stdio.h>
+#include <sys/types.h>
 
 #include "src/base/fault.h"
 
@@ -48,6 +49,10 @@ void whole_file_clean_folder(const char *path);
 // Removes the temporaries of all files that are open just now. Safe in a signal handler that is
 // about to end the program.
 void whole_file_remove_unfinished(void);
+
+// Names another process that writes an unfinished file, 0 where there is none any more: it is
+// killed before the files are removed.
+void whole_file_set_writer(pid_t process);
 
 // Flushes a stream and tells whether all that was ever written to it arrived: 0, or an errno (EPIPE
 // if the reader of a pipe went away).
