@@ -18,16 +18,20 @@
 
 enum { MOST_EVENTS_AT_ONCE = 100 }; // events without time passing before the run is given up
 
+// What would help where the ledger does not close: dense engines choose their strides themselves.
+static const char *advice(const motion *m)
+{
+    return engine_is_dense(m->engine) ? "" : ", a shorter method.step may help";
+}
+
 // Says when and how the run failed, with the method's name.
 static status explain(const corrected_run *c, status s, fault *f)
 {
     const motion *m = c->motion;
     if (s == STATUS_UNSTABLE) {
-        return fault_set(f, s,
-                         "at t = %.9g s: %s (residual %.3g J); the method was %s, a "
-                         "shorter method.step may help",
+        return fault_set(f, s, "at t = %.9g s: %s (residual %.3g J); the method was %s%s",
                          m->state[SLOT_TIME], status_text(s),
-                         motion_energy_residual(&c->arm, m, m->state), m->engine->name);
+                         motion_energy_residual(&c->arm, m, m->state), m->engine->name, advice(m));
     }
     return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
 }
@@ -222,9 +226,8 @@ static void judge(const corrected_run *c)
     if (s->inaccurate) {
         remark(s,
                "the energy ledger lacks up to %.3g J of the %.3g J put in, more than "
-               "method.residual_bound = %g allows: the method was %s, a shorter method.step may "
-               "help",
-               s->energy_residual_J, energy, bound, m->engine->name);
+               "method.residual_bound = %g allows: the method was %s%s",
+               s->energy_residual_J, energy, bound, m->engine->name, advice(m));
     }
 }
 
