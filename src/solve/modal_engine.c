@@ -29,10 +29,10 @@
 #define TURN       0.05   // of the fastest link in a stride [rad]
 #define LAST_TERMS 1e-9   // of the series between the modes' strides
 
-// Turn up to which a stride's points show a vibration [rad]: 50 ms of free flight are then right to
-// some 1e-7 of the velocities, as what FAINT leaves out allows. An arm that bounces passes on what
-// is lost a thousand times enlarged, and more: its strides are exact to 1e-10.
-#define SHOWN          12
+// Turn up to which a stride's points show a vibration [rad]: a stride is then exact to 1e-7 of the
+// velocities, with the second one to 1e-10. An arm that bounces passes on what is lost a thousand
+// times enlarged, and more. 12 would do in most arms and not in all.
+#define SHOWN          8
 #define SHOWN_BOUNCING 4
 
 #define TRUSTED_GAP    1e-10 // [m]
