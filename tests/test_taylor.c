@@ -91,6 +91,7 @@ static void the_series_solve_the_equations_all_over_the_stride(void **state)
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
         // strides that something cuts short take lower orders
         for (double remaining = 0.1; remaining > 1e-4; remaining /= 3) {
+            motion_end_stride(moving.motion);
             double h = motion_begin_stride(&moving.arm, moving.motion, remaining, 1e-3);
             assert_true(h > 0 && h <= remaining);
             for (int k = 0; k <= PLACES; k++) {
@@ -155,7 +156,7 @@ static void orders_agree_and_the_ledger_closes(void **state)
         m->start_energy = chain_kinetic_energy(&moving.arm, q, state_velocities(m, m->state)) +
                           chain_strain_energy(&moving.arm, q);
         double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3),
-               whole[SLOT_COUNT + 4 * 3 + QUADRATURE_COUNT];
+               whole[SLOT_COUNT + 4 * 3 + QUADRATURE_COUNT + KEPT_COUNT];
         assert_int_equal(motion_try_step(&moving.arm, m, h), STATUS_OK);
         check_below(fabs(motion_energy_residual(&moving.arm, m, m->trial)), 1e-12);
         memcpy(whole, m->trial, (size_t)m->size * sizeof(double));
@@ -164,6 +165,7 @@ static void orders_agree_and_the_ledger_closes(void **state)
         for (int k = 1; k <= 8; k++) {
             while (m->state[SLOT_TIME] < h * k / 8 - 1e-15) {
                 double left = h * k / 8 - m->state[SLOT_TIME];
+                motion_end_stride(m);
                 double step = motion_begin_stride(&moving.arm, m, left, 1e-3);
                 assert_int_equal(motion_try_step(&moving.arm, m, step), STATUS_OK);
                 memcpy(m->state, m->trial, (size_t)m->size * sizeof(double));
@@ -175,6 +177,66 @@ static void orders_agree_and_the_ledger_closes(void **state)
             check_close(m->state[SLOT_COUNT + k], whole[SLOT_COUNT + k], 1e-12);
         }
         motion_destroy(m);
+    }
+}
+
+// A step of a motion that is to be cut before the stride ends.
+static motion_event step_cut(const moving_arm *moving, double until, double after)
+{
+    motion_report report;
+    motion *m = moving->motion;
+    m->cut = m->state[SLOT_TIME] + after;
+    assert_int_equal(motion_step(&moving->arm, m, until, 1e-3, &report), STATUS_OK);
+    m->cut = HUGE_VAL;
+    return report.event;
+}
+
+// A motion that is cut where nothing happens goes on in the same stride: it comes to where one does
+// that nobody cuts, but for rounding. One that is handed over at each cut, to a motion that knows
+// the state alone, comes there to the last bit.
+static void cut_strides_go_on(void **state)
+{
+    (void)state;
+    enum { UNTIL = 1 };
+    random_generator g;
+    random_seed(&g, 7);
+    for (int i = 0; i < ARM_COUNT * STATES; i++) {
+        moving_arm made[4]; // whole, cut, and two that take turns
+        const random_generator before = g;
+        for (int k = 0; k < 4; k++) {
+            g = before;
+            made[k] = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
+        }
+        motion *whole = made[0].motion, *cut = made[1].motion;
+        const size_t size = (size_t)cut->size * sizeof(double);
+
+        // to the first event
+        motion_report report;
+        motion_event met = MOTION_REACHED, handed = MOTION_REACHED;
+        int turn = 2;
+        assert_int_equal(motion_advance(&made[0].arm, whole, UNTIL, 1e-3, &report), STATUS_OK);
+        while (met == MOTION_REACHED && cut->state[SLOT_TIME] < UNTIL) {
+            const double after = 1e-4 + 0.01 * random_uniform(&g);
+            const long steps = cut->steps;
+            met = step_cut(&made[1], UNTIL, after);
+            handed = step_cut(&made[turn], UNTIL, after);
+            assert_true(cut->steps > steps);
+            memcpy(made[5 - turn].motion->state, made[turn].motion->state, size);
+            motion_forget_stride(made[5 - turn].motion);
+            turn = 5 - turn;
+        }
+
+        // the same event, in the same state
+        assert_int_equal(met, report.event);
+        assert_int_equal(handed, report.event);
+        assert_memory_equal(cut->state, made[turn].motion->state, size);
+        for (int k = 0; k < smooth_length(cut); k++) {
+            const double scale = 1 + fabs(whole->state[SLOT_COUNT + k]);
+            check_close(cut->state[SLOT_COUNT + k], whole->state[SLOT_COUNT + k], 1e-12 * scale);
+        }
+        for (int k = 0; k < 4; k++) {
+            motion_destroy(made[k].motion);
+        }
     }
 }
 
@@ -305,6 +367,7 @@ int main(void)
         cmocka_unit_test(the_series_solve_the_equations_all_over_the_stride),
         cmocka_unit_test(instants_together_are_those_one_by_one),
         cmocka_unit_test(orders_agree_and_the_ledger_closes),
+        cmocka_unit_test(cut_strides_go_on),
         cmocka_unit_test(the_bounds_hold),
         cmocka_unit_test(peaks_are_the_largest_force_there_is),
         cmocka_unit_test(rows_change_nothing),

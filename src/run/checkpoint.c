@@ -108,6 +108,7 @@ void checkpoint_restore(recording *r, arm *a, motion *m)
     // and the motion
     motion_follow_arm(a, m);
     memcpy(m->state, kept->state, (size_t)m->size * sizeof(double));
+    motion_forget_stride(m);
     m->steps = kept->steps;
     m->start_energy = kept->start_energy;
     m->pulse_peak = kept->pulse_peak;

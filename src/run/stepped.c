@@ -111,6 +111,7 @@ static void corrected_restore(stepped_run *run, const void *bytes)
     motion_follow_arm(&c->arm, m);
     memcpy(&saved, bytes, sizeof saved);
     memcpy(m->state, (const char *)bytes + sizeof saved, (size_t)m->size * sizeof(double));
+    motion_forget_stride(m);
     c->stop = saved.stop;
     c->last_event = saved.last_event;
     c->at_once = saved.at_once;

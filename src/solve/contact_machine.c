@@ -400,6 +400,7 @@ void motion_retorque(const arm *a, motion *m, double before)
     double friction = state[SLOT_FRICTION_TORQUE] - (a->motor.torque - before);
     if (sticks && !m->electric && m->dof > 1 && fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
         state[SLOT_FRICTION_TORQUE] = friction;
+        motion_end_stride(m); // that was with the other torque
         return;
     }
 

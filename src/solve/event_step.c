@@ -42,6 +42,9 @@ static void come_to_rest(motion *m)
     for (int i = 0; i < m->dof && !fading; i++) {
         fading = fabs(w[i]) < FADED && (w[i] != 0 || acceleration[i] != 0);
     }
+    if (fading) {
+        motion_end_stride(m);
+    }
     for (int i = SLOT_COUNT; fading && i < m->size; i++) {
         m->state[i] = fabs(m->state[i]) < FADED ? 0 : m->state[i];
     }

@@ -134,7 +134,7 @@ motion *motion_create(const arm *a, const method_parameters *method)
     m->dof = a->dof;
     m->nominal_step = method->step;
     m->cut = HUGE_VAL;
-    m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT;
+    m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT + KEPT_COUNT;
     choose_engine(a, m, method);
 
     // its storage: all of it or none
@@ -212,9 +212,13 @@ void motion_watch(motion *m)
 
 double motion_rounding(const arm *a, const motion *m)
 {
-    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    return motion_rounding_at(a, m->dof, state_angles(m, m->state), state_velocities(m, m->state));
+}
+
+double motion_rounding_at(const arm *a, int dof, const double *q, const double *w)
+{
     double angle = 0, rate = 0;
-    for (int i = 0; i < m->dof; i++) {
+    for (int i = 0; i < dof; i++) {
         angle = fmax(angle, fabs(q[i]));
         rate = fmax(rate, fabs(w[i]));
     }

@@ -60,9 +60,24 @@ enum motion_quadrature {
 // No state's.
 static const state_energy unknown_energy = {-1, -1};
 
+// The stride that a state lies in, behind everything else, of an engine whose strides outlive the
+// steps they are cut into: where it began and how much of it is used up. A motion that goes on from
+// a copy of its state goes on in that stride.
+enum motion_kept {
+    KEPT_LENGTH,                        // of the stride, 0 if there is none to go on with [s]
+    KEPT_USED,                          // of it, up to this state [s]
+    KEPT_WANTED,                        // length that was asked for [s]
+    KEPT_JUMPED,                        // 1 if it began just after an event
+    KEPT_QUADRATURES,                   // at its start, up to QUADRATURE_FORCE
+    KEPT_ANGLES = KEPT_QUADRATURES + 3, // [rad]
+    KEPT_VELOCITIES = KEPT_ANGLES + 3,  // [rad/s]
+    KEPT_COUNT = KEPT_VELOCITIES + 3
+};
+
 struct motion {
     // A checkpoint is a copy of `state`, size doubles:
-    // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n].
+    // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n], what is
+    // kept of the stride.
     double *state;
     int size;
     int dof;
@@ -87,6 +102,8 @@ struct motion {
     chain_link *links;
     void *sweeps; // the implicit solver's scratch, one element a link
     void *memory; // the engine's own: the stride it is in
+    bool forgets; // that stride may be another arm's: what is kept of it in the state is all to go
+                  // by
 
     // what m->trial holds, and m->state as motion_step left it, where the engine has found it with
     // the state, else unknown_energy
@@ -135,6 +152,10 @@ static inline double *state_algorithmic(const motion *m, double *state)
 {
     return state + SLOT_COUNT + 3 * m->dof + QUADRATURE_COUNT;
 }
+static inline double *state_kept(const motion *m, double *state)
+{
+    return state + SLOT_COUNT + 4 * m->dof + QUADRATURE_COUNT;
+}
 static inline contact_state contact_state_of(const double *state)
 {
     return (contact_state){state[SLOT_CONTACT] != 0, (hub_friction)(int)state[SLOT_FRICTION],
@@ -172,6 +193,19 @@ void motion_destroy(motion *m); // m may be NULL
 // right, which is the one that motion_create would choose. It has no stride in hand then. Where
 // there is no memory for it, the next step fails with STATUS_NO_MEMORY.
 void motion_follow_arm(const arm *a, motion *m);
+
+// To be called after m->state became a copy of an earlier state, whatever the arm was in between.
+static inline void motion_forget_stride(motion *m)
+{
+    m->forgets = true;
+}
+
+// To be called after anything changed that a stride follows from and that is no jump: what comes
+// next is a stride of its own.
+static inline void motion_end_stride(motion *m)
+{
+    state_kept(m, m->state)[KEPT_LENGTH] = 0;
+}
 
 // Forgets the recorded peak: the next one counts from the present state.
 void motion_watch(motion *m);
@@ -235,6 +269,8 @@ bool motion_project(const arm *a, motion *m, double *state);
 // (k/I) q 2^-52, where k/I is the square of the arm's highest frequency at most, and what turns at
 // w has accelerations of w^2, to their last bit.
 double motion_rounding(const arm *a, const motion *m);
+// The same for dof angles q [rad] and velocities w [rad/s].
+double motion_rounding_at(const arm *a, int dof, const double *q, const double *w);
 
 // Whether the motion's steps are those of an implicit method.
 static inline bool motion_is_implicit(const motion *m)

@@ -3,11 +3,16 @@
 // The stride goes as far as the fastest mode and the rotation let a series of the highest order
 // reach, and is shortened until its last terms are small; where something else ends it sooner a
 // lower order does. Everything within it (events, rows, peaks, quadratures) is a polynomial.
+//
+// Steps that cut a stride without an event (a sample whose command stays, an instant that a program
+// stops at) go on in it: the state says where it began, the engine's memory holds its series. While
+// commands stay, a stride is made for twice as long as the one before.
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
+#include "src/base/extremes.h"
 #include "src/solve/dense_location.h"
 #include "src/solve/motion.h"
 #include "src/solve/taylor_engine.h"
@@ -27,6 +32,8 @@
 #define EDGE_DEPTH 1e-6 // [m]
 // Angles beyond it are reduced as one number only [rad].
 #define MOST_TURNED 9e4
+// Less of a stride left than this share of it is rounding.
+#define LEAST_LEFT 1e-9
 
 enum { MOST_TERMS = TAYLOR_MOST + 2, ANGLES = 3 };
 
@@ -42,6 +49,9 @@ typedef struct taylor_stride {
     polynomial far_limit;                   // of stiction
     unsigned known;                         // which of them are, a bit each
     bool ready;                             // the series of the next stride were computed apart
+    double kept[KEPT_COUNT];                // the stride that the series are of
+    double used;                            // of it before the step in hand [s]
+    bool own;                               // the lane's block has all of them
 } taylor_stride;
 
 bool taylor_engine_suits(const arm *a)
@@ -144,9 +154,10 @@ static void leave_edge(polynomial *p, const double limits[3])
 
 // --- a stride -----------------------------------------------------------------------------------
 
-static void put_inputs(const arm *a, motion *m, double wanted, double *block)
+// From angles q and velocities w on.
+static void put_inputs(const arm *a, const motion *m, const double *q, const double *w,
+                       double wanted, double *block)
 {
-    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     const bool point = a->wall.kind == WALL_POINT;
 
     // the arm, its wall and its motor
@@ -175,8 +186,8 @@ static void put_inputs(const arm *a, motion *m, double wanted, double *block)
     block[AT_WANTED] = wanted;
 }
 
-// The length that is tried, and the order that is enough for it.
-static double wanted_stride(const arm *a, const motion *m, double remaining, int *order)
+// The length that is tried from velocities w on, up to `most`, and the order that is enough for it.
+static double wanted_stride(const arm *a, const motion *m, const double *w, double most, int *order)
 {
     // how far a series of each order reaches with small last terms, in units of the fastest rate
     static const struct {
@@ -187,7 +198,6 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
     enum { ORDERS = sizeof orders / sizeof orders[0] };
 
     // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
-    const double *w = state_velocities(m, m->state);
     double rate = a->highest_frequency > 1e-3 ? a->highest_frequency : 1e-3;
     for (int i = 0; i < m->dof; i++) {
         rate = rate < 1.2 * fabs(w[i]) ? 1.2 * fabs(w[i]) : rate;
@@ -195,7 +205,7 @@ static double wanted_stride(const arm *a, const motion *m, double remaining, int
     const double turning = 1.2 * fabs(w[a->first + 1] - w[a->first]); // the bend turns, too
     rate = rate < turning ? turning : rate;
     double wanted = LONGEST_REACH / rate;
-    wanted = remaining < wanted ? remaining : wanted;
+    wanted = most < wanted ? most : wanted;
     if (a->fastest_decay * wanted > LONGEST_DECAY) {
         wanted = LONGEST_DECAY / a->fastest_decay;
     }
@@ -218,12 +228,17 @@ static void set_polynomial(polynomial *p, const double *terms, int count, double
     }
 }
 
+static double rounding_of(const arm *a, const motion *m, const taylor_stride *s)
+{
+    return motion_rounding_at(a, m->dof, s->kept + KEPT_ANGLES, s->kept + KEPT_VELOCITIES);
+}
+
 // A function that is to be watched, from the series: only where it comes near zero is it asked for.
 // Just after an event it may begin at zero, as the gap does after a bounce cut short.
 static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, watch w)
 {
     const int order = s->lane.form.order;
-    const bool jumped = m->state[SLOT_JUMPED] != 0;
+    const bool jumped = s->kept[KEPT_JUMPED] != 0;
     const double friction = m->state[SLOT_FRICTION], stiction = a->motor.stiction;
     polynomial *p = &s->watched[w];
     s->known |= 1u << w;
@@ -240,7 +255,7 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, wat
         const bool inside = p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
         p->terms[0] = inside ? 0 : p->terms[0];
         if (jumped || inside) {
-            const double rounding = EDGE_RATE * motion_rounding(a, m);
+            const double rounding = EDGE_RATE * rounding_of(a, m, s);
             leave_edge(p, (double[]){EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, rounding)});
         }
     }
@@ -250,7 +265,7 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, wat
         const int place = a->hub_spring ? AT_RATE_0 : AT_RATE_1;
         set_polynomial(p, taylor_terms(&s->lane, place, order + 1), order + 1, friction);
         if (jumped) {
-            leave_edge(p, (double[]){0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE});
+            leave_edge(p, (double[]){0, EDGE_RATE * rounding_of(a, m, s), EDGE_MORE});
         }
     } else if (w == WATCH_STICTION) {
         const double *hold = taylor_terms(&s->lane, AT_HOLD, order);
@@ -272,12 +287,28 @@ static const polynomial *watched(const arm *a, const motion *m, watch w)
     return &s->watched[w];
 }
 
-static void prepare(const arm *a, motion *m, double remaining)
+// Notes down in the state the stride that begins there, to be as long as `most` [s] if it may.
+static void keep(motion *m, double most)
+{
+    double *kept = state_kept(m, m->state);
+    const size_t size = (size_t)m->dof * sizeof *kept;
+    kept[KEPT_LENGTH] = kept[KEPT_USED] = 0;
+    kept[KEPT_WANTED] = most;
+    kept[KEPT_JUMPED] = m->state[SLOT_JUMPED];
+    memcpy(kept + KEPT_QUADRATURES, state_quadratures(m, m->state), 3 * sizeof *kept);
+    memcpy(kept + KEPT_ANGLES, state_angles(m, m->state), size);
+    memcpy(kept + KEPT_VELOCITIES, state_velocities(m, m->state), size);
+}
+
+// What the series of the stride that the state keeps start from.
+static void prepare(const arm *a, motion *m)
 {
     taylor_stride *s = m->memory;
+    const double *kept = state_kept(m, m->state);
+    const double *q = kept + KEPT_ANGLES, *w = kept + KEPT_VELOCITIES;
     int order;
-    double wanted = wanted_stride(a, m, remaining, &order);
-    put_inputs(a, m, wanted, s->lane.block);
+    double wanted = wanted_stride(a, m, w, kept[KEPT_WANTED], &order);
+    put_inputs(a, m, q, w, wanted, s->lane.block);
     s->lane.form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
                                  .point = a->wall.kind == WALL_POINT,
                                  .hub_spring = a->hub_spring,
@@ -285,39 +316,100 @@ static void prepare(const arm *a, motion *m, double remaining)
                                  .order = order};
 }
 
+// Whether the state's stride goes on: to the end of what remains, or, where it was not made for
+// less than that, to its own.
+static bool goes_on(motion *m, double remaining)
+{
+    const double *kept = state_kept(m, m->state);
+    const double length = kept[KEPT_LENGTH], left = length - kept[KEPT_USED];
+    return m->state[SLOT_JUMPED] == 0 && left > LEAST_LEFT * length &&
+           (left >= remaining || length <= remaining);
+}
+
+// How long a new stride is to be at most: what remains, or twice the stride that has been used up
+// since where nothing has changed but the instant to go to.
+static double most_of_stride(motion *m, double remaining)
+{
+    const double *kept = state_kept(m, m->state);
+    const double before = kept[KEPT_LENGTH], ahead = kept[KEPT_WANTED] - kept[KEPT_USED];
+    const bool same = m->state[SLOT_JUMPED] == 0 && before > 0;
+    return same && fabs(ahead - remaining) > LEAST_LEFT * remaining ? larger(2 * before, remaining)
+                                                                    : remaining;
+}
+
+// Goes on in the state's stride, whose series may be to be computed again.
+static void take_up(const arm *a, motion *m)
+{
+    taylor_stride *s = m->memory;
+    double *kept = state_kept(m, m->state);
+    const size_t start = KEPT_WANTED * sizeof *kept, size = sizeof s->kept - start;
+    if (m->forgets || !s->own || memcmp(s->kept + KEPT_WANTED, kept + KEPT_WANTED, size) != 0) {
+        prepare(a, m);
+        taylor_compute_one(&s->lane);
+        s->known = 0;
+    }
+    s->lane.group = NULL;
+    s->lane.end = -1;
+    s->lane.pieces = 0;
+    s->own = true;
+}
+
 static double begin(const arm *a, motion *m, double remaining, double step)
 {
     taylor_stride *s = m->memory;
+    double *kept = state_kept(m, m->state);
     (void)step;
-    if (!s->ready) {
-        prepare(a, m, remaining);
-        taylor_compute_one(&s->lane);
+    if (!s->ready && goes_on(m, remaining)) {
+        take_up(a, m);
+    } else {
+        if (!s->ready) {
+            keep(m, most_of_stride(m, remaining));
+            prepare(a, m);
+            taylor_compute_one(&s->lane);
+        }
+        kept[KEPT_LENGTH] = s->lane.block[AT_ALLOWED];
+        s->known = 0;
+
+        // series of a group that are to be gone on with
+        const double way = smaller(m->cut - m->state[SLOT_TIME], remaining);
+        s->own = s->lane.group == NULL || kept[KEPT_LENGTH] > way;
+        if (s->own && s->lane.group != NULL) {
+            taylor_fetch(&s->lane);
+        }
     }
+
     s->ready = false;
-    s->known = 0;
-    return s->lane.block[AT_ALLOWED];
+    m->forgets = false;
+    memcpy(s->kept, kept, sizeof s->kept);
+    s->used = kept[KEPT_USED];
+    return smaller(kept[KEPT_LENGTH] - s->used, remaining);
 }
 
 taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
 {
     assert(a != NULL && m != NULL);
     taylor_stride *s = m->memory;
-    if (m->engine != &taylor_engine || m->starved || motion_held_still(m)) {
+    if (m->engine != &taylor_engine || motion_held_still(m) || goes_on(m, remaining)) {
         return NULL;
     }
-    prepare(a, m, remaining);
+    keep(m, most_of_stride(m, remaining));
+    prepare(a, m);
     s->ready = true;
     return &s->lane;
 }
 
 // What one of the instants comes to, into `state`; in contact the gap and its derivatives ought to
 // be zero, and the second one is taken so.
-static void take_instant(const arm *a, const motion *m, double *start, const taylor_instants *at,
-                         int i, double *state)
+static void take_instant(const arm *a, const motion *m, const taylor_instants *at, int i,
+                         double *state)
 {
     const taylor_stride *s = m->memory;
-    const double *before = state_quadratures(m, start);
+    const double *before = s->kept + KEPT_QUADRATURES;
     double *quadrature = state_quadratures(m, state);
+
+    // where in the stride it is
+    memcpy(state_kept(m, state), s->kept, sizeof s->kept);
+    state_kept(m, state)[KEPT_USED] = at->time[i];
 
     // the motion
     for (int k = 0; k < m->dof; k++) {
@@ -366,10 +458,10 @@ static status state_at(const arm *a, motion *m, double h)
         at = &s->lane.group->ends;
         place = s->lane.number;
     } else {
-        one.time[0] = h;
+        one.time[0] = s->used + h;
         taylor_evaluate(&s->lane, 1, &one);
     }
-    take_instant(a, m, m->state, at, place, m->trial);
+    take_instant(a, m, at, place, m->trial);
     m->holds = (state_energy){at->kinetic[place], at->strain[place]};
     if (s->lane.form.contact && motion_project(a, m, m->trial)) {
         m->holds = unknown_energy;
@@ -382,14 +474,17 @@ static bool states_at(const arm *a, motion *m, double *start, const double *h, i
 {
     taylor_stride *s = m->memory;
     const int width = taylor_width();
+    (void)start;
     for (int done = 0; done < count; done += width) {
         taylor_instants at;
         const int more = count - done < width ? count - done : width;
-        memcpy(at.time, h + done, (size_t)more * sizeof *h);
+        for (int i = 0; i < more; i++) {
+            at.time[i] = s->used + h[done + i];
+        }
         taylor_evaluate(&s->lane, more, &at);
         for (int i = 0; i < more; i++) {
             double *state = states[done + i];
-            take_instant(a, m, start, &at, i, state);
+            take_instant(a, m, &at, i, state);
             energies[done + i] = (state_energy){at.kinetic[i], at.strain[i]};
             if (s->lane.form.contact && motion_project(a, m, state)) {
                 energies[done + i] = motion_energy(a, m, state);
@@ -405,11 +500,12 @@ static glance look(const arm *a, const motion *m, watch w, double h)
 {
     const taylor_stride *s = m->memory;
     const polynomial *p = watched(a, m, w);
-    glance near = h > 0 ? glance_at(p->terms, p->count, h) : (glance){p->terms[0], p->terms[1]};
+    const double t = s->used + h;
+    glance near = t > 0 ? glance_at(p->terms, p->count, t) : (glance){p->terms[0], p->terms[1]};
     if (w != WATCH_STICTION) {
         return near;
     }
-    glance far = glance_at(s->far_limit.terms, s->far_limit.count, h);
+    glance far = glance_at(s->far_limit.terms, s->far_limit.count, t);
     return near.value < far.value ? near : far;
 }
 
@@ -417,16 +513,17 @@ static double bend(const arm *a, const motion *m, watch w, double from, double t
 {
     taylor_stride *s = m->memory;
     const polynomial *p = watched(a, m, w);
-    double near = bend_of(p, to);
+    const double t = s->used + to;
+    double near = bend_of(p, t);
     (void)from;
     if (w == WATCH_FORCE && p->divided) {
         // divided by the time: the force itself may bend more
         const int order = s->lane.form.order;
         polynomial force;
         set_polynomial(&force, taylor_terms(&s->lane, AT_FORCE, order), order, 1);
-        return fmax(near, bend_of(&force, to));
+        return fmax(near, bend_of(&force, t));
     }
-    return w == WATCH_STICTION ? fmax(near, bend_of(&s->far_limit, to)) : near;
+    return w == WATCH_STICTION ? fmax(near, bend_of(&s->far_limit, t)) : near;
 }
 
 static glance force_at(const arm *a, const motion *m, double h)
@@ -434,8 +531,8 @@ static glance force_at(const arm *a, const motion *m, double h)
     taylor_stride *s = m->memory;
     (void)a;
     const int order = s->lane.form.order;
-    const double *force = taylor_terms(&s->lane, AT_FORCE, order);
-    return h > 0 ? glance_at(force, order, h) : (glance){force[0], force[1]};
+    const double *force = taylor_terms(&s->lane, AT_FORCE, order), t = s->used + h;
+    return t > 0 ? glance_at(force, order, t) : (glance){force[0], force[1]};
 }
 
 static void forces_at(const arm *a, const motion *m, double h, int count, glance *at)
@@ -461,7 +558,7 @@ static void forces_at(const arm *a, const motion *m, double h, int count, glance
 static bool clear_throughout(const motion *m, watch w)
 {
     const taylor_stride *s = m->memory;
-    const bool jumped = m->state[SLOT_JUMPED] != 0, wall = w == WATCH_GAP || w == WATCH_FORCE;
+    const bool jumped = s->kept[KEPT_JUMPED] != 0, wall = w == WATCH_GAP || w == WATCH_FORCE;
     const double edge = w == WATCH_GAP ? EDGE_GAP : w == WATCH_HUB ? 0 : EDGE_VALUE;
     return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > (jumped ? edge : 0);
 }
@@ -492,8 +589,9 @@ static bool clear(const arm *a, motion *m, watch w, double h)
 
     // what begins on the edge, or is not asked for as far as the stride goes
     const polynomial *p = watched(a, m, w);
-    double low = low_of(p, h);
-    return w == WATCH_STICTION ? fmin(low, low_of(&s->far_limit, h)) > 0 : low > 0;
+    const double t = s->used + h;
+    double low = low_of(p, t);
+    return w == WATCH_STICTION ? fmin(low, low_of(&s->far_limit, t)) > 0 : low > 0;
 }
 
 static bool bounded(const arm *a, motion *m, double h, double most)

@@ -63,6 +63,10 @@ void taylor_compute_one(taylor_lane *lane);
 // The first `count` terms of the array of the lane's series that begins at a place.
 const double *taylor_terms(taylor_lane *lane, int place, int count);
 
+// Copies all that a stride may ask of the lane's series into its own block: they then outlive the
+// group's.
+void taylor_fetch(taylor_lane *lane);
+
 // Evaluates the series of one arm at `count` instants of the stride, up to taylor_width().
 void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at);
 

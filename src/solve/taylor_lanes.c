@@ -152,6 +152,34 @@ const double *taylor_terms(taylor_lane *lane, int place, int count)
     return lane->block + place;
 }
 
+// What evaluating the series takes of a group.
+static void fetch_motion(taylor_lane *lane)
+{
+    const taylor_form form = lane->form;
+    for (int body = form.hub_spring ? 0 : 1; body < 3; body++) {
+        taylor_terms(lane, AT_ANGLE_0 + body * (TAYLOR_MOST + 2), form.order + 2);
+    }
+    taylor_terms(lane, AT_HOLD, form.order);
+    taylor_terms(lane, AT_HUB_SQUARE, form.order);
+    if (form.contact) {
+        taylor_terms(lane, AT_FORCE, form.order);
+    }
+    if (form.damped) {
+        taylor_terms(lane, AT_DISSIPATION, form.order);
+    }
+}
+
+void taylor_fetch(taylor_lane *lane)
+{
+    assert(lane != NULL);
+    const taylor_form form = lane->form;
+    fetch_motion(lane);
+    if (!form.contact) {
+        taylor_terms(lane, AT_GAP, form.order + 2);
+    }
+    taylor_terms(lane, form.hub_spring ? AT_RATE_0 : AT_RATE_1, form.order + 1);
+}
+
 void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at)
 {
     const taylor_form form = lane->form;
@@ -163,17 +191,7 @@ void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at)
 
     // what it takes of the series of a group
     if (lane->group != NULL) {
-        for (int body = form.hub_spring ? 0 : 1; body < 3; body++) {
-            taylor_terms(lane, AT_ANGLE_0 + body * (TAYLOR_MOST + 2), form.order + 2);
-        }
-        taylor_terms(lane, AT_HOLD, form.order);
-        taylor_terms(lane, AT_HUB_SQUARE, form.order);
-        if (form.contact) {
-            taylor_terms(lane, AT_FORCE, form.order);
-        }
-        if (form.damped) {
-            taylor_terms(lane, AT_DISSIPATION, form.order);
-        }
+        fetch_motion(lane);
     }
     OF_WIDTH(taylor_instants_, width)(lane->block, form, at);
 }
