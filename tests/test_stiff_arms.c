@@ -182,6 +182,26 @@ static void an_impact_is_one_of_the_exact_gap(void **state)
     check_below(modes.open, 1e-7);
 }
 
+// A chain with decays of 8e6 1/s that bounces and then presses on the wall, bent and at rest: what
+// small changes mean there is told by its energy, not by velocities of next to nothing.
+static void an_arm_at_rest_takes_few_strides(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(SETTINGS(
+        "wall.kind=plane", "arm.links=17", "arm.hub_joint=spring",
+        "motor.voltage=6.7365767390474254", "motor.amplifier_gain=14.453409212005569",
+        "motor.torque_constant=6.1153868614456117", "motor.back_emf=0.26887346231218617",
+        "motor.resistance=8.0031000871345093", "motor.viscous_friction=0.020549187441489439",
+        "motor.stiction=0.18169370328427453", "wall.angle=-0.17752419360221161",
+        "wall.restitution=1", "arm.length=1.4657183229289217",
+        "arm.hub_inertia=0.021138195229693537", "arm.k1=94477.653277027581",
+        "arm.k2=13673.25777524287", "arm.damping_ratio=0.040977110363111233",
+        "initial.angle=-0.4"));
+    passage modes = passage_of(&p, -0.35592624390555305, 1.7913204322644631, 0.3, 3000);
+    assert_true(modes.impacts > 100);
+    check_below(modes.open, 1e-6);
+}
+
 // x' K y by the bends.
 static double strain(const arm *a, const double *x, const double *y)
 {
@@ -230,6 +250,7 @@ int main(void)
                                        cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
                                        cmocka_unit_test(a_run_that_could_not_end_says_so),
                                        cmocka_unit_test(an_impact_is_one_of_the_exact_gap),
+                                       cmocka_unit_test(an_arm_at_rest_takes_few_strides),
                                        cmocka_unit_test(slow_modes_of_many_links_keep_their_digits),
                                        cmocka_unit_test(an_arm_that_starts_on_the_wall_strikes_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -211,14 +211,11 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
     s->length = length;
 
     // first guess: what holds at the start
-    double speed = 1e-30;
+    const double most = sqrt(2 * s->start_energy + 1e-30); // of all momenta, were it all kinetic
     take_tables(s, length);
     for (int i = 1; i < MODAL_NODES; i++) {
         memcpy(s->drifts[i], s->drifts[0], size);
         memcpy(s->forces[i], s->forces[0], size);
-    }
-    for (int k = 0; k < s->count; k++) {
-        speed += s->start[k] * s->start[k];
     }
 
     // sweeps until nothing changes
@@ -227,7 +224,7 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
     for (int i = 0; i < MOST_SWEEPS; i++) {
         evaluate_points(s, a, links, q);
         const double last = fit.change;
-        fit.change = fit_polynomials(s, length) / sqrt(speed);
+        fit.change = fit_polynomials(s, length) / most;
         fit.sweeps = i + 1;
         bool idle = i >= FEW_SWEEPS && fit.change > SLOW_SWEEPS * last;
         if (!(fit.change < 1e3) || fit.change < CONVERGED || idle) {

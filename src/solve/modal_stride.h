@@ -90,9 +90,10 @@ void modal_stride_place(modal_stride *s, const arm *a);
 status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, contact_state mode,
                           const double *q, const double *w);
 
-// Fits r and s to a stride of the given length.
+// Fits r and s to a stride of the given length, s->start_energy being set.
 typedef struct modal_fit {
-    double change; // by the last of the sweeps, as a share of all momenta
+    double change; // by the last of the sweeps, as a share of the momenta that start_energy
+                   // would have
     int sweeps;    // that were made
 } modal_fit;
 modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
