@@ -173,6 +173,7 @@ void motion_follow_arm(const arm *a, motion *m)
     m->engine = wanted;
     m->starved = !open_engine(a, m);
     m->state[SLOT_STRIDE] = 0;
+    motion_end_stride(m);
 }
 
 void motion_evaluate(const arm *a, motion *m, double *state)
