@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "src/base/sincos.h"
 #include "src/solve/taylor_series.h"
 
 #define GLUE_(a, b) a##b
@@ -22,17 +23,6 @@ typedef double real __attribute__((vector_size(8 * LANES)));
 typedef int64_t mask __attribute__((vector_size(8 * LANES)));
 #define MASK(condition) ((mask)(condition))
 #endif
-
-// 1/n
-static const double inverse[TAYLOR_MOST + 2] = {
-    0,       1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,  1. / 7,  1. / 8,
-    1. / 9,  1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17,
-    1. / 18, 1. / 19, 1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24, 1. / 25};
-
-// n (n - 1)
-static const double falling[TAYLOR_MOST + 2] = {0,   0,   2,   6,   12,  20,  30,  42,  56,
-                                                72,  90,  110, 132, 156, 182, 210, 240, 272,
-                                                306, 342, 380, 420, 462, 506, 552, 600};
 
 KERNEL mask bits_of(real x)
 {
@@ -76,7 +66,7 @@ KERNEL bool any(mask m)
 #endif
 }
 
-// inline_sincos (src/base/sincos.h) to the last bit, for |x| < 1e5.
+// What inline_sincos gives, for |x| < 1e5.
 KERNEL void sine_cosine(real x, real *sine, real *cosine)
 {
     real r = x;
@@ -84,30 +74,15 @@ KERNEL void sine_cosine(real x, real *sine, real *cosine)
     const mask large = ~MASK(magnitude(x) <= 0.78539816339744831);
     const bool reduced = any(large);
     if (reduced) {
-        // adding and taking away 1.5 * 2^52 rounds to a whole number
-        const real shifted = x * 6.36619772367581382433e-01 + 6755399441055744.0;
-        const real n = choose(large, shifted - 6755399441055744.0, (real){0});
-        const real part2 = n * 6.07710050630396597660e-11;
-        const real part3 = n * 2.02226624879595063154e-21;
+        const real shifted = SINCOS_QUARTERS(x) + SINCOS_ROUND;
+        const real n = choose(large, shifted - SINCOS_ROUND, (real){0});
         quadrant = large & bits_of(shifted) & 3;
-        r = x - n * 1.57079632673412561417e+00;
-        const real high = r - part2;
-        r = choose(large, high - (part3 - ((r - high) - part2)), x);
+        SINCOS_REDUCE(real, x, n, r);
+        r = choose(large, r, x);
     }
 
-    const real z = r * r, zz = z * z;
-    const real s_tail = (8.33333333332248946124e-03 + z * -1.98412698298579493134e-04) +
-                        zz * ((2.75573137070700676789e-06 + z * -2.50507602534068634195e-08) +
-                              zz * 1.58969099521155010221e-10);
-    const real s = r + z * r * (-1.66666666666666324348e-01 + z * s_tail);
-
-    const real c_tail =
-        zz * ((4.16666666666666019037e-02 + z * -1.38888888888741095749e-03) +
-              zz * ((2.48015872894767294178e-05 + z * -2.75573143513906633035e-07) +
-                    zz * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)));
-    const real half = 0.5 * z, w = 1 - half;
-    const real c = w + (((1 - w) - half) + c_tail);
-
+    real s, c;
+    SINCOS_NEAR_ZERO(real, r, s, c);
     *sine = s;
     *cosine = c;
     if (reduced) {

@@ -9,6 +9,17 @@
 // Highest order of the velocities' series; strides that something cuts short take less.
 enum { TAYLOR_MOST = 24, TAYLOR_WIDEST = 8 };
 
+// 1/n
+static const double inverse[TAYLOR_MOST + 2] = {
+    0,       1,       1. / 2,  1. / 3,  1. / 4,  1. / 5,  1. / 6,  1. / 7,  1. / 8,
+    1. / 9,  1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17,
+    1. / 18, 1. / 19, 1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24, 1. / 25};
+
+// n (n - 1)
+static const double falling[TAYLOR_MOST + 2] = {0,   0,   2,   6,   12,  20,  30,  42,  56,
+                                                72,  90,  110, 132, 156, 182, 210, 240, 272,
+                                                306, 342, 380, 420, 462, 506, 552, 600};
+
 // A block holds what the series of an arm start from and the series themselves: one number per
 // lane and place, lanes side by side. An array of places begins at the constant of its name.
 enum taylor_place {

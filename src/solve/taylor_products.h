@@ -1,0 +1,218 @@
+// The products of which the series of two links are made (taylor_kernel.h), summed up by
+// coefficient.
+//
+// The products of a coefficient are summed up in two turns, even and odd, and those of the newest
+// factors added at last: so additions wait neither for each other nor for what is being computed.
+#pragma once
+
+#include "src/solve/taylor_numbers.h"
+#include "src/solve/taylor_series.h"
+
+// Sums of products go four, or two, side by side. Those of a single arm fill a vector so; with
+// several arms each is a vector of its own.
+#if LANES == 1
+typedef double two __attribute__((vector_size(16)));
+typedef double four __attribute__((vector_size(32)));
+typedef two both;
+typedef four halves; // low, low, high, high
+#define TWO(a, b)        ((two){a, b})
+#define FOUR(a, b, c, d) ((four){a, b, c, d})
+#define PART(x, i)       ((x)[i])
+#else
+typedef struct two {
+    real part[2];
+} two;
+typedef struct four {
+    real part[4];
+} four;
+#define TWO(a, b)        ((two){{a, b}})
+#define FOUR(a, b, c, d) ((four){{a, b, c, d}})
+#define PART(x, i)       ((x).part[i])
+#endif
+
+typedef struct sums {
+    four turning;  // v c, v s, w2 C2, w2 S2; of the next coefficient
+    four products; // c w2 of the next coefficient, w1 w2, s w1 w2, the hub's square
+    two levered;   // in contact: f c, f C2; plane: f C1, f C2
+    two turning1;  // plane: w1 C1, w1 S1; of the next coefficient
+} sums;
+
+static const sums no_sums;
+
+// Factors of the products, by coefficient.
+#if LANES == 1
+typedef struct factors {
+    halves rates[TAYLOR_MOST + 2];    // v, w2
+    four directions[TAYLOR_MOST + 2]; // c, s of the bend; C2, S2
+    four left[TAYLOR_MOST + 2];       // c_(n+1), w1_n, s_(n+1), the hub's velocity
+    four right[TAYLOR_MOST + 2];      // w2_n, w2_n, (w1 w2)_(n-1), the hub's velocity
+    both forces[TAYLOR_MOST + 2];     // in contact: f
+    two levers[TAYLOR_MOST + 2];      // in contact: c, C2; plane: C1, C2
+    both rate1[TAYLOR_MOST + 2];      // plane: w1
+    two direction1[TAYLOR_MOST + 2];  // plane: C1, S1
+    real v[TAYLOR_MOST + 2];          // of the bend
+} factors;
+
+#define ADD_TURNING(s, x, j, n)  ((s).turning += (x)->rates[j] * (x)->directions[(n) + 1 - (j)])
+#define ADD_PRODUCTS(s, x, j, n) ((s).products += (x)->left[j] * (x)->right[(n) - (j)])
+#define ADD_LEVERED(s, x, j, n)  ((s).levered += (x)->forces[j] * (x)->levers[(n) - (j)])
+#define ADD_TURNING1(s, x, j, n) ((s).turning1 += (x)->rate1[j] * (x)->direction1[(n) + 1 - (j)])
+#else
+typedef struct factors {
+    four directions[TAYLOR_MOST + 2];
+    two direction1[TAYLOR_MOST + 2];
+    real v[TAYLOR_MOST + 2], coupled[TAYLOR_MOST + 2]; // of the bend; (w1 w2)_(n-1)
+    const real *w1, *w2, *hub, *f;                     // in the block
+} factors;
+
+#define ADD_TURNING(s, x, j, n)                                                                    \
+    ((s).turning.part[0] += (x)->v[j] * (x)->directions[(n) + 1 - (j)].part[0],                    \
+     (s).turning.part[1] += (x)->v[j] * (x)->directions[(n) + 1 - (j)].part[1],                    \
+     (s).turning.part[2] += (x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[2],                   \
+     (s).turning.part[3] += (x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[3])
+#define ADD_PRODUCTS(s, x, j, n)                                                                   \
+    ((s).products.part[0] += (x)->directions[(j) + 1].part[0] * (x)->w2[(n) - (j)],                \
+     (s).products.part[1] += (x)->w1[j] * (x)->w2[(n) - (j)],                                      \
+     (s).products.part[2] += (x)->directions[(j) + 1].part[1] * (x)->coupled[(n) - (j)],           \
+     (s).products.part[3] += (x)->hub[j] * (x)->hub[(n) - (j)])
+#define ADD_LEVERED(s, x, j, n)                                                                    \
+    ((s).levered.part[0] += (x)->f[j] * (point ? (x)->directions[(n) - (j)].part[0]                \
+                                               : (x)->direction1[(n) - (j)].part[0]),              \
+     (s).levered.part[1] += (x)->f[j] * (x)->directions[(n) - (j)].part[2])
+#define ADD_TURNING1(s, x, j, n)                                                                   \
+    ((s).turning1.part[0] += (x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[0],                  \
+     (s).turning1.part[1] += (x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[1])
+#endif
+
+// Sums for the n-th coefficient from j = 1 to n - 1: the first and the last are left to be added.
+#define IN_TURNS(ADD)                                                                              \
+    do {                                                                                           \
+        int j = 1;                                                                                 \
+        for (; j + 1 < n; j += 2) {                                                                \
+            ADD(even, x, j, n);                                                                    \
+            ADD(odd, x, j + 1, n);                                                                 \
+        }                                                                                          \
+        if (j < n) {                                                                               \
+            ADD(even, x, j, n);                                                                    \
+        }                                                                                          \
+    } while (0)
+
+KERNEL void inner_sums(const factors *x, int n, const int contact, const int point, sums *result)
+{
+    sums even = no_sums, odd = no_sums;
+#if LANES == 1 || LANES == 8
+    // all together, as a processor has registers enough
+#define ADD_ALL(s, x, j, n)                                                                        \
+    do {                                                                                           \
+        ADD_TURNING(s, x, j, n);                                                                   \
+        ADD_PRODUCTS(s, x, j, n);                                                                  \
+        if (contact) {                                                                             \
+            ADD_LEVERED(s, x, j, n);                                                               \
+        }                                                                                          \
+        if (!point) {                                                                              \
+            ADD_TURNING1(s, x, j, n);                                                              \
+        }                                                                                          \
+    } while (0)
+    IN_TURNS(ADD_ALL);
+#else
+    IN_TURNS(ADD_TURNING);
+    IN_TURNS(ADD_PRODUCTS);
+    if (contact) {
+        IN_TURNS(ADD_LEVERED);
+    }
+    if (!point) {
+        IN_TURNS(ADD_TURNING1);
+    }
+#endif
+    for (int i = 0; i < 4; i++) {
+        PART(result->turning, i) = PART(even.turning, i) + PART(odd.turning, i);
+        PART(result->products, i) = PART(even.products, i) + PART(odd.products, i);
+    }
+    for (int i = 0; i < 2; i++) {
+        PART(result->levered, i) = PART(even.levered, i) + PART(odd.levered, i);
+        PART(result->turning1, i) = PART(even.turning1, i) + PART(odd.turning1, i);
+    }
+}
+
+// (x^2)_n: twice the half of the sum.
+KERNEL real square(const real *x, int n)
+{
+    real sum = (real){0};
+    for (int j = (n + 1) / 2 - 1; j >= 0; j--) {
+        sum += x[j] * x[n - j];
+    }
+    sum += sum;
+    return n % 2 == 0 ? sum + x[n / 2] * x[n / 2] : sum;
+}
+
+// What the newest coefficients are to the products, where that is not read from the series.
+#if LANES == 1
+KERNEL void keep_rates(factors *x, int n, real w1, real w2)
+{
+    x->rates[n] = FOUR(x->v[n], x->v[n], w2, w2);
+    x->rate1[n] = TWO(w1, w1);
+}
+
+KERNEL void keep_products(factors *x, int n, real w1, real w2, real coupled, real hub)
+{
+    const four next = x->directions[n + 1];
+    x->left[n] = FOUR(next[0], w1, next[1], hub);
+    x->right[n] = FOUR(w2, w2, coupled, hub);
+}
+
+KERNEL void keep_levers(factors *x, int n, const int point)
+{
+    x->levers[n] = TWO(point ? x->directions[n][0] : x->direction1[n][0], x->directions[n][2]);
+}
+
+KERNEL void keep_force(factors *x, int n, real f)
+{
+    x->forces[n] = TWO(f, f);
+}
+#else
+KERNEL void keep_rates(factors *x, int n, real w1, real w2)
+{
+    (void)x, (void)n, (void)w1, (void)w2;
+}
+
+KERNEL void keep_products(factors *x, int n, real w1, real w2, real coupled, real hub)
+{
+    (void)w1, (void)w2, (void)hub;
+    x->coupled[n] = coupled;
+}
+
+KERNEL void keep_levers(factors *x, int n, const int point)
+{
+    (void)x, (void)n, (void)point;
+}
+
+KERNEL void keep_force(factors *x, int n, real f)
+{
+    (void)x, (void)n, (void)f;
+}
+#endif
+
+// Cosines and sines of two angles, and of one, from the sums of the order before, v c and v s.
+#if LANES == 1
+KERNEL void turn(const four *sum, double share, four *direction)
+{
+    *direction =
+        __builtin_shufflevector(*sum, *sum, 1, 0, 3, 2) * FOUR(-share, share, -share, share);
+}
+
+KERNEL void turn_one(const two *sum, double share, two *direction)
+{
+    *direction = __builtin_shufflevector(*sum, *sum, 1, 0) * TWO(-share, share);
+}
+#else
+KERNEL void turn(const four *sum, double share, four *direction)
+{
+    *direction = FOUR(PART(*sum, 1) * -share, PART(*sum, 0) * share, PART(*sum, 3) * -share,
+                      PART(*sum, 2) * share);
+}
+
+KERNEL void turn_one(const two *sum, double share, two *direction)
+{
+    *direction = TWO(PART(*sum, 1) * -share, PART(*sum, 0) * share);
+}
+#endif
