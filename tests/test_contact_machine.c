@@ -1,5 +1,7 @@
 // Transitions of the contact machine on one rod, taken one by one: what each event does to the
 // state, and what the state is found to be afterwards. Whole runs are in test_motion.c.
+#include <string.h>
+
 #include "tests/arm_fixture.h"
 
 #include "src/solve/contact_machine.h"
@@ -205,6 +207,28 @@ static void a_cut_changes_nothing_before_it(void **state)
     motion_destroy(cut.motion);
 }
 
+// A motion that was begun anew is the one it was the first time, to the last bit.
+static void a_motion_can_be_started_again(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.voltage=3"));
+    double first[64];
+    const size_t size = (size_t)r.motion->size;
+    assert_true(size <= sizeof first / sizeof first[0]);
+    for (int i = 0; i < 2; i++) {
+        motion_start(&r.arm, r.motion, 0, 0);
+        next_event(&r, 1);
+        assert_true(touches(&r));
+        motion_report report;
+        assert_int_equal(motion_step(&r.arm, r.motion, 1, 1e-3, &report), STATUS_OK);
+        if (i == 0) {
+            memcpy(first, r.motion->state, size * sizeof *first);
+        }
+    }
+    assert_memory_equal(first, r.motion->state, size * sizeof *first);
+    motion_destroy(r.motion);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +242,7 @@ int main(void)
         cmocka_unit_test(a_wall_that_gives_takes_the_rod_at_its_speed),
         cmocka_unit_test(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not),
         cmocka_unit_test(a_cut_changes_nothing_before_it),
+        cmocka_unit_test(a_motion_can_be_started_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

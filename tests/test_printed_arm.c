@@ -281,6 +281,22 @@ static void dense_solve_pivots_and_refuses_the_singular(void **state)
     assert_false(dense_solve(2, bad, more));
 }
 
+// Coulomb friction takes its torque while the hub turns, either way, and none at rest.
+static void a_resting_hub_has_no_friction(void **state)
+{
+    (void)state;
+    printed_arm a = arm_with(4);
+    assert_true(a.motor.stiction > 0);
+    const double q[3] = {0.1, 0.1, 0.1}, alpha[3] = {0};
+    double at_rest[4], forwards[4], backwards[4];
+    printed_residual(&a, q, (const double[3]){0, 0, 0}, alpha, 0, at_rest);
+    printed_residual(&a, q, (const double[3]){1e-4, 0, 0}, alpha, 0, forwards);
+    printed_residual(&a, q, (const double[3]){-1e-4, 0, 0}, alpha, 0, backwards);
+    const double damping = 1e-4 * a.motor.damping;
+    check_close(fabs(forwards[0] - at_rest[0]), a.motor.stiction + damping, 1e-15);
+    check_close(forwards[0] + backwards[0], 2 * at_rest[0], 1e-15);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -294,6 +310,7 @@ int main(void)
         cmocka_unit_test(sign_has_a_dead_band_of_1e_5_either_way_as_listed_too),
         cmocka_unit_test(constants_are_those_of_the_thesis),
         cmocka_unit_test(dense_solve_pivots_and_refuses_the_singular),
+        cmocka_unit_test(a_resting_hub_has_no_friction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

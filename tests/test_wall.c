@@ -126,6 +126,34 @@ static void a_soft_walls_force_has_its_slope_and_energy(void **state)
     }
 }
 
+// A mass that meets the wall: its rate is that of the wall's spring where it is deepest, or of its
+// damper where that is faster; the deepest point is found by following the mass.
+static void the_rate_is_that_at_the_deepest_point(void **state)
+{
+    (void)state;
+    const double mass = 0.04, speeds[] = {0.1, 0.7, 3};
+    for (size_t i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
+        wall_model w =
+            wall_of(SETTINGS("wall.contact=hunt-crossley", "wall.stiffness=1e5", "wall.damping=0"));
+        double depth = 0, speed = speeds[i], step = 1e-7;
+        while (speed > 0) {
+            // the midpoint's force, from energy conserved over half a step
+            const double middle = depth + 0.5 * step * speed;
+            speed -= step * wall_spring_force(&w, middle) / mass;
+            depth = middle + 0.5 * step * speed;
+        }
+        const double stiffness = 1.5 * wall_spring_force(&w, depth) / depth;
+        check_relative(wall_rate(&w, 1 / mass, 0, speeds[i]), sqrt(stiffness / mass), 1e-4);
+
+        // leaving it, it comes no deeper than it is
+        const double left = 1.5 * wall_spring_force(&w, 1e-3) / 1e-3;
+        check_relative(wall_rate(&w, 1 / mass, 1e-3, -speeds[i]), sqrt(left / mass), 1e-12);
+    }
+    wall_model damped =
+        wall_of(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=10", "wall.damping=500"));
+    check_relative(wall_rate(&damped, 1 / mass, 0, 1), 500 / mass, 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -134,6 +162,7 @@ int main(void)
         cmocka_unit_test(rates_are_the_derivatives_of_the_penetration),
         cmocka_unit_test(a_straight_arm_at_the_walls_angle_touches_it),
         cmocka_unit_test(slow_impacts_are_plastic),
+        cmocka_unit_test(the_rate_is_that_at_the_deepest_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

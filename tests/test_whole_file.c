@@ -235,6 +235,19 @@ static void a_reader_that_left_is_told_from_a_full_disk(void **state)
     fclose(stream);
 }
 
+// What failed at once leaves nothing to be flushed, and is a failure all the same.
+static void a_failure_before_the_last_flush_is_one(void **state)
+{
+    (void)state;
+    FILE *stream = fopen("/dev/full", "w");
+    assert_non_null(stream);
+    setvbuf(stream, NULL, _IONBF, 0);
+    fputc('x', stream);
+    assert_int_equal(fflush(stream), 0);
+    assert_int_not_equal(stream_failure(stream), 0);
+    fclose(stream);
+}
+
 // The stream forgets why a write failed that lies far back; whoever closes the file does not.
 static void why_a_write_failed_is_known_at_the_end(void **state)
 {
@@ -480,6 +493,7 @@ int main(void)
         cmocka_unit_test(the_standard_output_is_written_or_said_to_be_full),
         cmocka_unit_test(what_cannot_be_written_is_said_beforehand),
         cmocka_unit_test(a_reader_that_left_is_told_from_a_full_disk),
+        cmocka_unit_test(a_failure_before_the_last_flush_is_one),
         cmocka_unit_test(why_a_write_failed_is_known_at_the_end),
         cmocka_unit_test(what_killed_runs_left_goes),
         cmocka_unit_test(a_strangers_link_is_not_followed),
