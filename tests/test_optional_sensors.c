@@ -229,6 +229,24 @@ static void piezo_rises_and_leaks(void **state)
     check_close(t - tenth, 5e-5, 3e-7);
 }
 
+// What a gain makes larger at the converter is taken back: the reading is the force, and the
+// converter's step is so much finer.
+static void a_gain_is_taken_back(void **state)
+{
+    (void)state;
+    sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.piezo_rise_time=0", "sensor.piezo_gain=4",
+                                       "sensor.accelerometer_rise_time=0",
+                                       "sensor.accelerometer_gain=0.5"));
+    check_relative(piezo(&s, 1.3), 1.3, 1e-14);
+    check_relative(accelerometer(&s, 3), 3.0, 1e-14);
+    s = fresh_sensors(SETTINGS(ALL_FITTED, "sensor.piezo_noise=0", "sensor.piezo_rise_time=0",
+                               "sensor.piezo_gain=4"));
+    const double step = 2 * s.p.adc_range / (double)(1 << s.p.adc_bits) / 4;
+    const double codes = piezo(&s, 1.3) / step;
+    check_close(codes, round(codes), 1e-9);
+    check_close(piezo(&s, 1.3), 1.3, 0.51 * step);
+}
+
 static void piezo_without_leak_stays_and_without_rise_is_instant(void **state)
 {
     (void)state;
@@ -522,6 +540,7 @@ int main(void)
         cmocka_unit_test(controller_gets_what_is_fitted),
         cmocka_unit_test(ideal_force_sensors_are_alike),
         cmocka_unit_test(printed_arm_feeds_the_sensors_too),
+        cmocka_unit_test(a_gain_is_taken_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
