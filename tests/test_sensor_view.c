@@ -59,6 +59,24 @@ static void a_curved_force_is_followed_exactly(void **state)
 }
 
 // Whether a stretch is given whole or in two pieces makes no difference.
+// A force that decays in a nanosecond from a million newtons, in strides that grow with the time
+// since it began: against the closed form of the lag, which hardly tells it from its impulse.
+static void a_spike_in_brief_strides_is_felt_as_its_impulse(void **state)
+{
+    (void)state;
+    const double tau = 1e-3, decay = 1e-9, force = 1e6, end = 1e-4;
+    sensor_lag s;
+    sensor_lag_start(&s, tau, 0);
+    for (double t = 0, next = 1e-13; t < end; t = next, next *= 1.1) {
+        const double first = force * exp(-t / decay), last = force * exp(-next / decay);
+        const double mean = first * -expm1((t - next) / decay) * decay / (next - t);
+        sensor_lag_force(&s, next - t, first, last, mean);
+    }
+    const double fading = force * decay / (tau - decay);
+    check_relative(s.value, fading * exp(-s.time / tau), 1e-5);
+    check_relative(s.peak, fading, 1e-4);
+}
+
 static void pieces_make_the_whole(void **state)
 {
     (void)state;
@@ -212,6 +230,7 @@ int main(void)
         cmocka_unit_test(an_impulse_jumps_and_decays),
         cmocka_unit_test(a_constant_force_is_reached_without_overshoot),
         cmocka_unit_test(a_curved_force_is_followed_exactly),
+        cmocka_unit_test(a_spike_in_brief_strides_is_felt_as_its_impulse),
         cmocka_unit_test(pieces_make_the_whole),
         cmocka_unit_test(the_sensor_converges_where_the_force_does_not),
         cmocka_unit_test(two_links_read_as_one_impulse),

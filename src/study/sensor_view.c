@@ -10,7 +10,9 @@
 
 // A parabola is right to 1e-4 of the fastest mode's force over so much of (fastest rate) x (time).
 #define PARABOLA_REACH 0.25
+#define GRADING        0.2 // of the time since an event, where decays are faster
 
+#define BRIEF_SHARE    1e-3 // of a time constant, below which a force is its mean and its tilt
 #define RESOLVING      20.0 // fastest rate times step, at most: the event method then steps explicitly
 
 const double sensor_constants[SENSOR_CONSTANTS] = {0.5e-3, 1e-3, 2e-3};
@@ -61,10 +63,22 @@ void sensor_lag_force(sensor_lag *s, double length, double first, double last, d
         return;
     }
 
-    // and its response
+    // in a small share of the time constant the polynomials below cancel: mean and tilt are enough,
+    // with an error of the cube of the share
+    const double share = length / s->time_constant;
+    if (share < BRIEF_SHARE) {
+        const double gained = share * (1 - share / 2 * (1 - share / 3 * (1 - share / 4)));
+        s->value += gained * (mean - s->value) + share * share * (last - first) / 12;
+        s->time += length;
+        look(s, s->time, s->value);
+        return;
+    }
+
     // f = first + linear t + square t^2 with the given end and mean
     double square = (3 * (first + last) - 6 * mean) / (length * length);
     double linear = (last - first) / length - square * length, tau = s->time_constant;
+
+    // and its response
     response r = {.c = square, .b = linear - 2 * tau * square, .rate = 1 / tau};
     r.a = first - tau * r.b;
     r.d = s->value - r.a;
@@ -155,10 +169,19 @@ static double next_end(const watching *w, double now, double duration)
     return now < early ? early : w->touched + SENSOR_WINDOW;
 }
 
+// How long the force is a parabola to sight, `since` [s] after an event: strides of dense engines
+// are none. What decays faster than the arm vibrates was set going by the event, and what is left
+// of it changes in a share of the time since.
+static double parabola_length(const arm *a, double since)
+{
+    const double length = PARABOLA_REACH / a->highest_frequency;
+    return fmin(length, fmax(GRADING * since, PARABOLA_REACH / a->fastest_rate));
+}
+
 static status watch_motion(const arm *a, motion *m, double step, double duration, watching *w,
                            fault *f)
 {
-    double end = duration;
+    double end = duration, last = 0; // instant of the last event
     pace strides = pace_begin();
 
     // steps that resolve the modes are asked for, shorter ones are not
@@ -172,8 +195,8 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
         // a stride
         double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
         if (!isnan(w->touched) && engine_is_dense(m->engine)) {
-            // its strides are no parabolas
-            until = fmin(until, m->state[SLOT_TIME] + PARABOLA_REACH / a->highest_frequency);
+            until =
+                fmin(until, m->state[SLOT_TIME] + parabola_length(a, m->state[SLOT_TIME] - last));
         }
         status code = motion_step(a, m, until, step, &report);
         if (code != STATUS_OK) {
@@ -192,6 +215,7 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
 
         // an event at its end; the window opens with the first contact
         motion_apply(a, m, &report);
+        last = m->state[SLOT_TIME];
         if (report.event == MOTION_IMPACT || report.event == MOTION_TOUCH) {
             bool first = isnan(w->touched);
             watch_impact(w, m, &report);
