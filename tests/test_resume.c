@@ -70,6 +70,32 @@ static void a_resumed_run_is_the_run_from_the_start(void **state)
     run_finish(&whole);
 }
 
+// A hub that the script makes so stiff that another engine moves the arm: checkpoints after that
+// are that engine's.
+static void an_arm_made_stiff_is_resumed_as_it_is(void **state)
+{
+    (void)state;
+    for (int links = 2; links <= 3; links++) {
+        action changes[2] = {
+            {.time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k1), .value = 1e8}};
+        scenario s = {.parameters =
+                          fixture_parameters(SETTINGS("run.duration=4", "arm.hub_joint=spring",
+                                                      "arm.k1=500", "arm.damping_ratio=0.02"))};
+        s.parameters.arm.links = links;
+        scenario later = changed_late(&s, &changes[1]);
+        s.actions = later.actions = changes;
+        s.action_count = 1;
+        later.action_count = 2;
+        run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
+        assert_true(whole.summary.steps < 1e5);
+        assert_true(resumed(&old, &s, &later, &result));
+        check_same_run(&result, &whole);
+        run_finish(&old);
+        run_finish(&result);
+        run_finish(&whole);
+    }
+}
+
 static void a_longer_run_goes_on_from_a_shorter_one(void **state)
 {
     (void)state;
@@ -135,6 +161,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_resumed_run_is_the_run_from_the_start),
+        cmocka_unit_test(an_arm_made_stiff_is_resumed_as_it_is),
         cmocka_unit_test(a_longer_run_goes_on_from_a_shorter_one),
         cmocka_unit_test(another_arm_has_nothing_in_common),
         cmocka_unit_test(a_run_without_history_cannot_be_resumed),
