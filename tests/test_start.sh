@@ -1,5 +1,5 @@
 #!/bin/bash
-# A command that draws nothing maps no rendering library; one that draws goes over to the program
+# A command that draws nothing maps no library of pictures or of terminals; one that draws goes over to the program
 # that has them, in the build folder and installed, with the same words, or says what is missing.
 #
 #   test_start.sh PROGRAM DRAWING_PROGRAM BINDIR LIBEXECDIR
@@ -22,7 +22,7 @@ maps() {
     shift
     rm -f linked.*
     LD_DEBUG=files LD_DEBUG_OUTPUT=linked expect "$@"
-    ! grep -qE 'lib(cairo|pango|harfbuzz|fontconfig|glib|png)' linked.* || met=yes
+    ! grep -qE 'lib(cairo|pango|harfbuzz|fontconfig|glib|png|ncurses)' linked.* || met=yes
     [ "$met" = "$wanted" ] || fail "rendering libraries mapped: $met, expected $wanted: $*"
 }
 

@@ -34,7 +34,7 @@ void rendering_needed(void)
     exit(EXIT_FAILURE);
 }
 
-// What the other objects of the program call of rendering, page by page. None of it is reached
+// What the commands call of the lab and of rendering, room by room. None of it is reached
 // where rendering_needed was called in time, and a call that comes first begins anew, too. A
 // function that is missing here links its libraries (tests/test_start.sh).
 #define ABSENT(name)                                                                               \
@@ -45,16 +45,16 @@ void rendering_needed(void)
         abort();                                                                                   \
     }
 
+// the lab (ui/commands/explore.h, ui/terminal/terminal.h)
+ABSENT(explore)
+ABSENT(terminal_usable)
+
 // render/page
 ABSENT(picture_check_path)
 ABSENT(text_check_family)
 
 // render/plot
 ABSENT(owned_figure_destroy)
-ABSENT(pane_curve_paint)
-ABSENT(pane_instant_paint)
-ABSENT(pane_level_paint)
-ABSENT(plot_run_beside)
 ABSENT(robust_figure_create)
 ABSENT(sweep_figure_create)
 ABSENT(sweep_plot_check)
@@ -62,10 +62,6 @@ ABSENT(sweep_plot_check)
 // render/scene
 ABSENT(film_file_check)
 ABSENT(film_write)
-ABSENT(plan_close_up)
-ABSENT(plan_paint)
-ABSENT(plan_x)
-ABSENT(plan_y)
 ABSENT(scene_check_path)
 ABSENT(scene_renderer_find)
 ABSENT(scene_write)
@@ -86,19 +82,7 @@ ABSENT(thesis_figure_at)
 ABSENT(thesis_figure_count)
 ABSENT(thesis_figure_find)
 
-// Cairo and GLib
-ABSENT(cairo_create)
-ABSENT(cairo_destroy)
-ABSENT(cairo_image_surface_create)
-ABSENT(cairo_image_surface_get_data)
-ABSENT(cairo_image_surface_get_height)
-ABSENT(cairo_image_surface_get_stride)
-ABSENT(cairo_image_surface_get_width)
-ABSENT(cairo_paint)
-ABSENT(cairo_set_source_rgb)
-ABSENT(cairo_surface_destroy)
-ABSENT(cairo_surface_flush)
-ABSENT(cairo_surface_status)
+// GLib
 ABSENT(g_free)
 ABSENT(g_malloc0_n)
 ABSENT(g_malloc_n)
