@@ -1,5 +1,6 @@
 // Numbers at the far end of what may be asked for: a run ends in bounded effort, and nothing that
 // is no finite number passes for a result.
+#include <math.h>
 #include <signal.h>
 #include <string.h>
 
@@ -59,6 +60,34 @@ static void strides_that_pass_no_time_end_a_run(void **state)
     assert_int_equal(ends_of_push(1, -1e20), STATUS_NO_PROGRESS);
 }
 
+// The force just after an impact of a chain that is damped beyond all vibration: the last joint's
+// damper, which grows with N, turns at the speed over a link's length, whose lever it has. So the
+// peak grows with N^3, and it is at the first contact.
+static void the_peak_of_a_damped_chain_is_at_its_impact(void **state)
+{
+    (void)state;
+    static const int links[] = {16, 24, 28, 32, 40};
+    double before = 0;
+    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
+        char text[200];
+        run_result result;
+        scenario s;
+        snprintf(text, sizeof text,
+                 "title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
+                 "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
+                 links[i]);
+        read_scenario(&s, text);
+        assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+
+        const double coefficient = result.summary.peak_force_N / pow(links[i], 3);
+        check_close(result.summary.time_to_peak_s, 0, 1e-9);
+        check_relative(coefficient, before > 0 ? before : coefficient, 0.03);
+        before = coefficient;
+        run_finish(&result);
+        scenario_finish(&s);
+    }
+}
+
 static volatile sig_atomic_t stop;
 static atomic_bool abandoned;
 
@@ -103,6 +132,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_push_of_any_size_ends_a_run_or_lets_it_go_on),
         cmocka_unit_test(strides_that_pass_no_time_end_a_run),
+        cmocka_unit_test(the_peak_of_a_damped_chain_is_at_its_impact),
         cmocka_unit_test(runs_without_an_end_are_abandoned_and_not_stored),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

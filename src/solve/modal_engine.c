@@ -19,6 +19,7 @@
 #include "src/solve/modal_watch.h"
 #include "src/solve/series_engine.h"
 
+#define CONFIRMED  0.999  // of a peak of the modes, that the state there has to have
 #define LONGEST    1.8e-2 // [s]
 #define ADVANTAGE  8.0    // strides of the series that one of the modes has to replace
 #define SETTLED    1e-7   // change of the last sweep that is let pass
@@ -244,13 +245,46 @@ static void first_event(const arm *a, motion *m, double *h, watch *first, bool *
     *h = *any ? memory->event : *h;
 }
 
+// Takes a peak within the stride only if the state there has that force: just after an impact,
+// where decays are very fast, the sum of the modes does not show it. Else the largest of the
+// states.
+static void confirm_peak(const arm *a, motion *m, double h, double before, double before_time)
+{
+    const double start = m->state[SLOT_TIME], within = m->pulse_peak_time - start;
+    if (!(m->pulse_peak > before) || within < 0) {
+        return;
+    }
+
+    // the force at both ends and where the peak is said to be
+    const double times[] = {0, within, h}, found = m->pulse_peak;
+    double forces[3];
+    for (int i = 0; i < 3; i++) {
+        const bool known = times[i] == 0;
+        if (!known && motion_try_step(a, m, times[i]) != STATUS_OK) {
+            return;
+        }
+        forces[i] = known ? m->state[SLOT_FORCE] : m->trial[SLOT_FORCE];
+        if (i == 1 && forces[i] > CONFIRMED * found) {
+            return;
+        }
+    }
+
+    m->pulse_peak = before;
+    m->pulse_peak_time = before_time;
+    for (int i = 0; i < 3; i++) {
+        motion_note_force(m, start + times[i], forces[i]);
+    }
+}
+
 static void peak(const arm *a, motion *m, double h)
 {
     const modal_memory *memory = m->memory;
+    const double before = m->pulse_peak, before_time = m->pulse_peak_time;
     if (memory->by_series) {
         dense_search_peak(a, m, h);
     } else {
         modal_function_peak(contact_function(a, m), a, m, h);
+        confirm_peak(a, m, h, before, before_time);
     }
 }
 
