@@ -88,6 +88,27 @@ static void the_peak_of_a_damped_chain_is_at_its_impact(void **state)
     }
 }
 
+// An arm that turns away from a point comes to it with the line behind its last link.
+static void a_touch_behind_the_link_is_told(void **state)
+{
+    (void)state;
+    for (int way = -1; way <= 1; way += 2) {
+        char text[160];
+        run_result result;
+        scenario s;
+        snprintf(text, sizeof text,
+                 "title: Round\nmotor: {voltage: %d V}\nwall: {angle: 2.9 rad}\n"
+                 "run: {duration: 3 s}\n",
+                 way);
+        read_scenario(&s, text);
+        assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+        assert_true(result.summary.impacts > 0);
+        assert_int_equal(result.summary.message[0] != '\0', way < 0);
+        run_finish(&result);
+        scenario_finish(&s);
+    }
+}
+
 static volatile sig_atomic_t stop;
 static atomic_bool abandoned;
 
@@ -133,6 +154,7 @@ int main(void)
         cmocka_unit_test(a_push_of_any_size_ends_a_run_or_lets_it_go_on),
         cmocka_unit_test(strides_that_pass_no_time_end_a_run),
         cmocka_unit_test(the_peak_of_a_damped_chain_is_at_its_impact),
+        cmocka_unit_test(a_touch_behind_the_link_is_told),
         cmocka_unit_test(runs_without_an_end_are_abandoned_and_not_stored),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -222,6 +222,13 @@ static void judge(const corrected_run *c)
                r->state.chatters, MOTION_MOST_SHORT_FLIGHTS);
     }
 
+    if (r->state.from_behind > 0) {
+        remark(s,
+               "a point stops the line of the last link on both sides of its base: %ld of the "
+               "touches were behind it, where no link is",
+               r->state.from_behind);
+    }
+
     s->inaccurate = s->energy_residual_J > bound * energy + LEDGER_ROUNDING;
     if (s->inaccurate) {
         remark(s,

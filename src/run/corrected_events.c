@@ -6,6 +6,7 @@
 
 #include "src/run/rig_recording.h"
 #include "src/base/instant.h"
+#include "src/base/sincos.h"
 
 void corrected_bind_arm(corrected_run *c)
 {
@@ -57,6 +58,20 @@ static event_kind kind_of(const motion *m, const motion_report *report)
     return turns_back ? EVENT_REVERSAL : kinds[report->event];
 }
 
+// Whether it is not the last link that meets a point but its line, on the other side of its base.
+static bool touches_from_behind(const corrected_run *c)
+{
+    const arm *a = &c->arm;
+    if (a->wall.kind != WALL_POINT) {
+        return false;
+    }
+    const double *q = state_angles(c->motion, c->motion->state);
+    const double last = q[a->dof - 1];
+    double x, y;
+    chain_node(a, q, a->links - 1, &x, &y);
+    return (a->wall.x - x) * inline_cos(last) + (a->wall.y - y) * inline_sin(last) < 0;
+}
+
 // Puts an event that has just been applied into trace and summary.
 static status record_applied_event(corrected_run *c, const motion_report *report)
 {
@@ -72,6 +87,7 @@ static status record_applied_event(corrected_run *c, const motion_report *report
 
     // the gap closes: a flight ends, at the first time the pulse begins
     if (closes) {
+        r->state.from_behind += touches_from_behind(c);
         s->separations += r->state.separated;
         r->state.separated = false;
         if (isnan(s->first_contact_s)) {

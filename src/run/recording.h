@@ -17,6 +17,7 @@ typedef struct recording_state {
     bool pulse_open;           // the first pulse has not ended
     double energy_put_in;      // sum of what motor and actions did or took over each step [J]
     long chatters;             // sequences of bounces that ended plastically
+    long from_behind;          // touches of a point by the line behind the last link, not the link
     double integral_at_window; // of the force, where the steady force's window begins [N s]
 } recording_state;
 
