@@ -12,7 +12,8 @@
 //
 // A stride depends on m->state and on what `begin` is given, on nothing else: a motion that goes on
 // from a copy of its state goes on with the same bits. m->cut, where a stride may be broken off, is
-// not to enter it.
+// not to enter it. A stride may outlive the step that it is begun for: what the state keeps of it
+// (motion.h) lets `begin` go on with it.
 #pragma once
 
 #include <stdbool.h>
