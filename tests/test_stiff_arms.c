@@ -202,6 +202,20 @@ static void an_arm_at_rest_takes_few_strides(void **state)
     check_below(modes.open, 1e-6);
 }
 
+// A light hub before a heavy beam: what the hub's own fast vibration loses to back EMF turns twice
+// as far in a stride as the vibration.
+static void what_a_fast_hub_loses_is_all_booked(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(
+        SETTINGS("arm.hub_joint=beam", "arm.length=27.7", "arm.mass=594", "arm.hub_inertia=0.0022",
+                 "arm.k2=176", "motor.back_emf=15", "motor.stiction=0", "motor.voltage=-3"));
+    for (int links = 3; links <= 12; links += 3) {
+        p.arm.links = links;
+        check_below(passage_of(&p, -0.8, 0, 0.3, 1000).open, 1e-9);
+    }
+}
+
 // x' K y by the bends.
 static double strain(const arm *a, const double *x, const double *y)
 {
@@ -251,6 +265,7 @@ int main(void)
                                        cmocka_unit_test(a_run_that_could_not_end_says_so),
                                        cmocka_unit_test(an_impact_is_one_of_the_exact_gap),
                                        cmocka_unit_test(an_arm_at_rest_takes_few_strides),
+                                       cmocka_unit_test(what_a_fast_hub_loses_is_all_booked),
                                        cmocka_unit_test(slow_modes_of_many_links_keep_their_digits),
                                        cmocka_unit_test(an_arm_that_starts_on_the_wall_strikes_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);

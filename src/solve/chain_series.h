@@ -36,6 +36,11 @@ typedef struct series_terms {
     double term[SERIES_TERMS];
 } series_terms;
 
+// The square of such a polynomial, with all its terms: what vibrates turns twice as far in it.
+typedef struct series_square {
+    double term[2 * SERIES_TERMS];
+} series_square;
+
 typedef struct chain_series {
     int links, order; // order: of the velocities
     contact_state mode;
@@ -53,8 +58,9 @@ typedef struct chain_series {
     series_terms gap;                     // in free flight [m]
     series_terms force;                   // in contact, times L^2 [N s2]
     series_terms hold;                    // friction torque on a stuck hub, times L^2 [N m s2]
-    series_terms hub_square;              // of the hub's w
-    series_terms dissipation;             // power lost in the springs, times L^2 [J s]
+    series_square hub_square;             // of the hub's w
+    series_square dissipation;            // power lost in the springs, times L^2 [J s]
+    int square_terms;                     // of these two
     series_terms tip_x, tip_y;            // of the tip, in lengths of a link
     series_terms reach_x, reach_y, along; // from the last link's base to a point wall, and along it
 } chain_series;

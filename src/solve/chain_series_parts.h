@@ -25,7 +25,7 @@ void chain_series_prepare_contact(chain_series *s, const arm *a);
 // wall.
 void chain_series_reach_point(chain_series *s, const arm *a, int n);
 
-// The gap in free flight, to order + 1; powers that are lost, the hub's velocity squared and those
-// of the joints, to order - 1.
+// The gap in free flight, to order + 1; what is lost, squares of the hub's velocity and of the
+// joints', to the last terms of the squares.
 void chain_series_sum_gap(chain_series *s, const arm *a);
 void chain_series_sum_losses(chain_series *s, const arm *a);

@@ -43,33 +43,47 @@ void chain_series_sum_gap(chain_series *s, const arm *a)
     }
 }
 
-void chain_series_sum_losses(chain_series *s, const arm *a)
+// The n-th coefficient of the square of a polynomial of `count` terms.
+static double square_term(const double *x, int count, int n)
+{
+    double sum = 0;
+    for (int i = n < count ? 0 : n - count + 1; 2 * i < n; i++) {
+        sum += x[i] * x[n - i];
+    }
+    return 2 * sum + (n % 2 == 0 ? x[n / 2] * x[n / 2] : 0);
+}
+
+// The same of the bends' rates, summed over all inner joints.
+static double bend_square_term(const chain_series *s, int n)
 {
     const chain_rows *r = &s->rows;
-    for (int n = 0; n < s->order; n++) {
-        double hub = 0, root = 0, inner = 0;
-        for (int i = 0; i <= n; i++) {
-            const double w =
-                a->hub_spring ? s->hub_rate.term[i] : r->rate[chain_term(i, s->first_place)];
-            const double v = a->hub_spring ? s->hub_rate.term[n - i]
-                                           : r->rate[chain_term(n - i, s->first_place)];
-            hub += w * v;
-            root += s->root_rate.term[i] * s->root_rate.term[n - i];
-        }
-        if (s->damped) {
-            double sum[SERIES_LANES] = {0};
-            for (int b = 0; b < r->blocks; b++) {
-                const double *of = r->bend_rate + chain_term(0, (size_t)b * SERIES_LANES);
-                for (int i = 0; i <= n; i++) {
-                    for (int j = 0; j < SERIES_LANES; j++) {
-                        sum[j] += of[i * SERIES_LANES + j] * of[(n - i) * SERIES_LANES + j];
-                    }
-                }
+    double sum[SERIES_LANES] = {0};
+    for (int b = 0; b < r->blocks; b++) {
+        const double *of = r->bend_rate + chain_term(0, (size_t)b * SERIES_LANES);
+        for (int i = n < s->order ? 0 : n - s->order + 1; 2 * i <= n; i++) {
+            const double twice = 2 * i < n ? 2 : 1;
+            for (int j = 0; j < SERIES_LANES; j++) {
+                sum[j] += twice * of[i * SERIES_LANES + j] * of[(n - i) * SERIES_LANES + j];
             }
-            inner =
-                ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
         }
-        s->hub_square.term[n] = hub;
+    }
+    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
+void chain_series_sum_losses(chain_series *s, const arm *a)
+{
+    const int order = s->order;
+    double rate[SERIES_TERMS];
+    for (int i = 0; i < order; i++) {
+        rate[i] = a->hub_spring ? s->hub_rate.term[i] : chain_series_first_rate(s, i);
+    }
+
+    // each square to its last term: where the rates' series has ended, theirs has not
+    s->square_terms = 2 * order - 1;
+    for (int n = 0; n < s->square_terms; n++) {
+        const double inner = s->damped ? bend_square_term(s, n) : 0;
+        const double root = s->damped ? square_term(s->root_rate.term, order, n) : 0;
+        s->hub_square.term[n] = square_term(rate, order, n);
         s->dissipation.term[n] = a->joint_damping * inner + a->hub_joint_damping * root;
     }
 }

@@ -191,10 +191,10 @@ status series_stride_state(const series_stride *s, const arm *a, motion *m, doub
     // what it has lost and pressed
     after[QUADRATURE_VISCOUS] =
         before[QUADRATURE_VISCOUS] +
-        per * a->motor.damping * integral_to(c->hub_square.term, c->order, x);
+        per * a->motor.damping * integral_to(c->hub_square.term, c->square_terms, x);
     after[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
     if (c->damped) {
-        after[QUADRATURE_DAMPING] += per * integral_to(c->dissipation.term, c->order, x);
+        after[QUADRATURE_DAMPING] += per * integral_to(c->dissipation.term, c->square_terms, x);
     }
     after[QUADRATURE_FORCE] = before[QUADRATURE_FORCE];
     if (c->mode.contact) {
