@@ -73,12 +73,25 @@ double parameter_get(const parameters *p, int index)
     return (double)NAN;
 }
 
-void parameter_set_default(parameters *p, int index)
+void parameters_restore_defaults(parameters *p)
 {
     assert(p != NULL);
-    const parameter_info *info = row_of(index);
-    store(p, info, p->arm.model == ARM_PRINTED ? info->default_printed : info->default_corrected);
-    p->set[index] = 0;
+    const bool printed = p->arm.model == ARM_PRINTED;
+    const int model = PARAMETER_INDEX(arm.model);
+
+    // most are real numbers, which need no look at their type
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        const double value = printed ? info->default_printed : info->default_corrected;
+        if (p->set[i] || i == model) {
+            continue;
+        }
+        if (info->type == PARAMETER_REAL) {
+            memcpy((char *)p + info->offset, &value, sizeof value);
+        } else {
+            store(p, info, value);
+        }
+    }
 }
 
 void parameters_defaults(parameters *p, arm_model_kind model)
@@ -86,9 +99,7 @@ void parameters_defaults(parameters *p, arm_model_kind model)
     assert(p != NULL);
     memset(p, 0, sizeof *p);
     p->arm.model = (int)model;
-    for (int i = 0; i < parameter_count; i++) {
-        parameter_set_default(p, i);
-    }
+    parameters_restore_defaults(p);
 }
 
 // Whether a number may be the value of a parameter, or one of a list's.

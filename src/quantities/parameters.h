@@ -290,8 +290,8 @@ const char *parameter_suggest(const char *path);
 // All defaults of the given model (arm_model_kind), nothing marked as set.
 void parameters_defaults(parameters *p, arm_model_kind model);
 
-// The default of one parameter under p->arm.model, not marked as set.
-void parameter_set_default(parameters *p, int index);
+// The defaults under p->arm.model of all parameters that are not marked as set, but that one.
+void parameters_restore_defaults(parameters *p);
 
 // Parses text as a value of parameter `index` and stores it, marked as set. A trailing unit equal
 // to the parameter's own is accepted ("0.1 rad"); the numbers of a list stand between commas, in

@@ -12,11 +12,7 @@
 // What was not given follows the model, and the inertia of a link its shape.
 static void resolve_defaults(parameters *p)
 {
-    for (int i = 0; i < parameter_count; i++) {
-        if (!p->set[i] && i != PARAMETER_INDEX(arm.model)) {
-            parameter_set_default(p, i);
-        }
-    }
+    parameters_restore_defaults(p);
     if (!IS_SET(p, method.residual_bound) && p->method.name != METHOD_EVENT) {
         p->method.residual_bound = STUDY_RESIDUAL_BOUND;
     }
