@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/run/loop.h"
 #include "src/run/run.h"
 #include "src/solve/contact_machine.h"
 #include "src/solve/modal_basis.h"
@@ -139,6 +140,48 @@ static void a_run_that_could_not_end_says_so(void **state)
     run_finish(&r);
 }
 
+// A program that goes back to a state a thousand times, or asks for instants a nanosecond apart,
+// has as many strides as it asks for.
+static void a_loop_makes_as_many_strides_as_are_asked_for(void **state)
+{
+    (void)state;
+    enum { EPISODES = 750, STEPS = 100, INSTANTS = 70000 };
+    char name[] = "rewound", none[] = "";
+    scenario s = {.name = name, .file = none, .title = none, .description = none};
+    s.parameters = fixture_parameters(SETTINGS("run.duration=1"));
+    const loop_options options = {0};
+    run_loop *l;
+    fault f;
+    assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+    const size_t size = loop_saved_size(l);
+    char *kept = malloc(2 * size);
+    assert_non_null(kept);
+    loop_save(l, kept);
+    assert_int_equal(loop_until(l, 0.5, &f), STATUS_OK);
+    loop_save(l, kept + size);
+    loop_destroy(l);
+
+    // a first stride late, then the first tenth of a second again and again
+    assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+    assert_int_equal(loop_restore(l, kept + size, size, &f), STATUS_OK);
+    assert_int_equal(loop_until(l, 1, &f), STATUS_OK);
+    for (int i = 0; i < EPISODES; i++) {
+        assert_int_equal(loop_restore(l, kept, size, &f), STATUS_OK);
+        for (int k = 1; k <= STEPS; k++) {
+            assert_int_equal(loop_until(l, k * 1e-3, &f), STATUS_OK);
+        }
+    }
+
+    // and on by less than any run is to take
+    assert_int_equal(loop_restore(l, kept, size, &f), STATUS_OK);
+    for (int i = 1; i <= INSTANTS; i++) {
+        assert_int_equal(loop_until(l, i * 1e-9, &f), STATUS_OK);
+    }
+    check_close(loop_time(l), INSTANTS * 1e-9, 0);
+    free(kept);
+    loop_destroy(l);
+}
+
 // On the wall from the start and going into it: an impact at once, whatever rounding makes of the
 // gap, and then flights of less than 1e-15 m, which Runge-Kutta cannot tell from rounding.
 static void an_arm_that_starts_on_the_wall_strikes_it(void **state)
@@ -259,14 +302,16 @@ static void slow_modes_of_many_links_keep_their_digits(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_stiff_hub_takes_few_strides),
-                                       cmocka_unit_test(a_stiff_pair_moves_as_by_the_formula),
-                                       cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
-                                       cmocka_unit_test(a_run_that_could_not_end_says_so),
-                                       cmocka_unit_test(an_impact_is_one_of_the_exact_gap),
-                                       cmocka_unit_test(an_arm_at_rest_takes_few_strides),
-                                       cmocka_unit_test(what_a_fast_hub_loses_is_all_booked),
-                                       cmocka_unit_test(slow_modes_of_many_links_keep_their_digits),
-                                       cmocka_unit_test(an_arm_that_starts_on_the_wall_strikes_it)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_stiff_hub_takes_few_strides),
+        cmocka_unit_test(a_stiff_pair_moves_as_by_the_formula),
+        cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
+        cmocka_unit_test(a_run_that_could_not_end_says_so),
+        cmocka_unit_test(a_loop_makes_as_many_strides_as_are_asked_for),
+        cmocka_unit_test(an_impact_is_one_of_the_exact_gap),
+        cmocka_unit_test(an_arm_at_rest_takes_few_strides),
+        cmocka_unit_test(what_a_fast_hub_loses_is_all_booked),
+        cmocka_unit_test(slow_modes_of_many_links_keep_their_digits),
+        cmocka_unit_test(an_arm_that_starts_on_the_wall_strikes_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

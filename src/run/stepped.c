@@ -45,7 +45,13 @@ static status corrected_stride_until(stepped_run *run, double until, fault *f)
     if (until < c->stop) {
         c->motion->cut = fmin(c->motion->cut, until);
     }
-    return corrected_stride(c, f);
+    const status s = corrected_stride(c, f);
+
+    // the pace is that of strides which the motion chose, not of instants a program asks for
+    if (!(c->motion->state[SLOT_TIME] < until)) {
+        c->pace = pace_begin();
+    }
+    return s;
 }
 
 static status corrected_act_now(stepped_run *run, const action *todo, fault *f)
@@ -115,6 +121,7 @@ static void corrected_restore(stepped_run *run, const void *bytes)
     c->stop = saved.stop;
     c->last_event = saved.last_event;
     c->at_once = saved.at_once;
+    c->pace = pace_begin();
     m->steps = saved.steps;
     m->start_energy = saved.start_energy;
     m->cut = saved.cut;
