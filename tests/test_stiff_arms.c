@@ -300,6 +300,109 @@ static void slow_modes_of_many_links_keep_their_digits(void **state)
     free(scratch);
 }
 
+// What a motion met, in order, and the largest force of its last pulse.
+enum { MOST_MEETINGS = 40 };
+typedef struct meetings {
+    int count;
+    motion_event event[MOST_MEETINGS];
+    double time[MOST_MEETINGS]; // [s]
+    double peak, peak_time;     // [N], [s]
+} meetings;
+
+static meetings meetings_of(const parameters *p, double angle, double velocity, double until)
+{
+    arm a;
+    arm_init(&a, p);
+    motion *m = motion_create(&a, &p->method);
+    assert_non_null(m);
+    motion_start(&a, m, angle, velocity);
+
+    meetings all = {0};
+    while (m->state[SLOT_TIME] < until) {
+        motion_report r;
+        assert_int_equal(motion_step(&a, m, until, p->method.step, &r), STATUS_OK);
+        if (r.event != MOTION_REACHED) {
+            assert_in_range(all.count, 0, MOST_MEETINGS - 1);
+            all.event[all.count] = r.event;
+            all.time[all.count++] = m->state[SLOT_TIME];
+        }
+        motion_apply(&a, m, &r);
+    }
+
+    all.peak = m->pulse_peak;
+    all.peak_time = m->pulse_peak_time;
+    motion_destroy(m);
+    return all;
+}
+
+// Strides of the modes hold many vibrations: what happens within one is what the explicit formula
+// finds at steps a thousand times shorter.
+static void events_within_a_stride_are_the_formulas(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *what;
+        int links;
+        const char *settings[7];
+        double angle, velocity, until;
+        int events;
+        double tolerance; // of an event's time [s]
+    } cases[] = {
+        // two links of which the tip dips into the wall by 0.4 um between two instants in front
+        {"a dip of the gap",
+         2,
+         {"arm.hub_inertia=5.95407e-4", "arm.damping_ratio=0.00442391", "motor.voltage=0.188705",
+          "arm.k1=675394", "wall.restitution=0.765163", "motor.stiction=0"},
+         0.0961408,
+         0.295296,
+         0.18,
+         3,
+         1e-8},
+        // bounces that each begin on the wall, and a hub that turns back for 1 ms of a stride
+        {"bounces and a dip of the hub's velocity",
+         4,
+         {"arm.hub_inertia=2.29663e-4", "arm.damping_ratio=7.92665e-4", "motor.voltage=1",
+          "arm.k1=169468", "wall.restitution=0.518344"},
+         0.0882041,
+         0.478145,
+         0.17,
+         22,
+         1e-7},
+        // the arm pressed to the wall, whose force has summits within strides
+        {"summits of the force",
+         4,
+         {"arm.hub_inertia=1.21604e-6", "arm.damping_ratio=1.31537e-4", "motor.voltage=1.55163",
+          "arm.k1=169468", "motor.stiction=0"},
+         0.098874,
+         0.160059,
+         0.03,
+         1,
+         1e-8},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fixture_parameters(cases[i].settings);
+        p.arm.links = cases[i].links; // with the springs of the default arm
+        p.arm.hub_joint = HUB_SPRING;
+        p.wall.kind = WALL_POINT;
+        meetings modes = meetings_of(&p, cases[i].angle, cases[i].velocity, cases[i].until);
+        p.arm.tip_mass = 1e-18; // the formula alone takes it
+        p.method.step = 1e-5;
+        meetings formula = meetings_of(&p, cases[i].angle, cases[i].velocity, cases[i].until);
+
+        // the same events at the same times
+        if (modes.count != cases[i].events || formula.count != cases[i].events) {
+            fail_msg("%s: %d events by modes, %d by the formula", cases[i].what, modes.count,
+                     formula.count);
+        }
+        for (int k = 0; k < modes.count; k++) {
+            assert_int_equal(modes.event[k], formula.event[k]);
+            check_close(modes.time[k], formula.time[k], cases[i].tolerance);
+        }
+        check_close(modes.peak, formula.peak, 1e-6 * fabs(formula.peak));
+        check_close(modes.peak_time, formula.peak_time, 1e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -308,6 +411,7 @@ int main(void)
         cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
         cmocka_unit_test(a_run_that_could_not_end_says_so),
         cmocka_unit_test(a_loop_makes_as_many_strides_as_are_asked_for),
+        cmocka_unit_test(events_within_a_stride_are_the_formulas),
         cmocka_unit_test(an_impact_is_one_of_the_exact_gap),
         cmocka_unit_test(an_arm_at_rest_takes_few_strides),
         cmocka_unit_test(what_a_fast_hub_loses_is_all_booked),
