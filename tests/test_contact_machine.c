@@ -94,6 +94,24 @@ static void an_elastic_impact_turns_the_rod_back(void **state)
     motion_destroy(r.motion);
 }
 
+// Stiction is a limit without a margin: a torque beyond it by a hundred millionth moves the rod.
+static void a_torque_just_beyond_stiction_moves_the_rod(void **state)
+{
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.voltage=0.05"));
+        assert_int_equal(contact_state_of(r.motion->state).friction, HUB_STICK);
+        const double per_volt = r.arm.motor.torque / 0.05, stiction = r.arm.motor.stiction;
+        arm_set_voltage(&r.arm, sign * (1 + 1e-8) * stiction / per_volt);
+        motion_start(&r.arm, r.motion, 0, 0);
+        assert_int_equal(contact_state_of(r.motion->state).friction,
+                         sign < 0 ? HUB_BACKWARD : HUB_FORWARD);
+        check_relative(state_accelerations(r.motion, r.motion->state)[0],
+                       sign * 1e-8 * stiction / r.inertia, 1e-6);
+        motion_destroy(r.motion);
+    }
+}
+
 static void a_push_in_flight_adds_its_impulse(void **state)
 {
     (void)state;
@@ -235,6 +253,7 @@ int main(void)
         cmocka_unit_test(the_state_at_the_start_follows_from_where_the_arm_is),
         cmocka_unit_test(a_plastic_impact_stops_the_rod_and_holds_it),
         cmocka_unit_test(an_elastic_impact_turns_the_rod_back),
+        cmocka_unit_test(a_torque_just_beyond_stiction_moves_the_rod),
         cmocka_unit_test(a_push_in_flight_adds_its_impulse),
         cmocka_unit_test(a_push_into_the_wall_is_answered_by_it),
         cmocka_unit_test(a_push_away_ends_the_contact),
