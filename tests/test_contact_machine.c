@@ -112,6 +112,37 @@ static void a_torque_just_beyond_stiction_moves_the_rod(void **state)
     }
 }
 
+// Where the engine steps, a summit of the force is found by stepping again from the step's start;
+// the step then ends as if it had not been looked for. The series of the same arm have no need to.
+static void a_located_peak_leaves_the_step_as_it_was(void **state)
+{
+    (void)state;
+    moving_rod steps = start_rod(SETTINGS("arm.tip_mass=1e-18")), series = start_rod(NULL);
+    assert_ptr_not_equal(steps.motion->engine, series.motion->engine);
+    moving_rod *const both[] = {&steps, &series};
+    for (int i = 0; i < 2; i++) {
+        motion *m = both[i]->motion;
+        while (m->state[SLOT_TIME] < 0.4) {
+            motion_report report;
+            const double start = m->state[SLOT_TIME];
+            assert_int_equal(motion_step(&both[i]->arm, m, 0.4, 1e-3, &report), STATUS_OK);
+            check_close(m->state[SLOT_TIME], start + m->made, 1e-14);
+            motion_apply(&both[i]->arm, m, &report);
+        }
+    }
+
+    // after its first pulses
+    assert_true(series.motion->pulse_peak > 1);
+    check_relative(steps.motion->pulse_peak, series.motion->pulse_peak, 1e-9);
+    check_close(steps.motion->pulse_peak_time, series.motion->pulse_peak_time, 1e-5);
+    for (int i = 0; i < smooth_length(series.motion); i++) {
+        check_close(steps.motion->state[SLOT_COUNT + i], series.motion->state[SLOT_COUNT + i],
+                    1e-8);
+    }
+    motion_destroy(steps.motion);
+    motion_destroy(series.motion);
+}
+
 static void a_push_in_flight_adds_its_impulse(void **state)
 {
     (void)state;
@@ -254,6 +285,7 @@ int main(void)
         cmocka_unit_test(a_plastic_impact_stops_the_rod_and_holds_it),
         cmocka_unit_test(an_elastic_impact_turns_the_rod_back),
         cmocka_unit_test(a_torque_just_beyond_stiction_moves_the_rod),
+        cmocka_unit_test(a_located_peak_leaves_the_step_as_it_was),
         cmocka_unit_test(a_push_in_flight_adds_its_impulse),
         cmocka_unit_test(a_push_into_the_wall_is_answered_by_it),
         cmocka_unit_test(a_push_away_ends_the_contact),
