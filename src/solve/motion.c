@@ -8,8 +8,9 @@
 // The event method takes the modes of the straight chain where the arm's fastest rate or decay is
 // beyond this [1/s]: a stride of theirs then replaces dozens of the series.
 #define STIFF 3e4
-// The two-link series are so cheap that decays, which alone can be fast there, pay from here on.
-#define STIFF_PAIR      2e5
+// The two-link series are so cheap (half a million strides in a third of a second) that decays,
+// which alone can be fast there, pay from here on; in fast rotation the modes are dearer.
+#define STIFF_PAIR      2e6
 
 #define CACHE_LINE      64 // [bytes]
 
