@@ -157,6 +157,42 @@ static void the_list_is_complete_and_sorted(void **state)
     free(before);
 }
 
+// However many folders are named, the last one counts too.
+static void every_folder_is_looked_into(void **state)
+{
+    (void)state;
+    enum { FOLDERS = 100 };
+    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    char *all = NULL;
+    size_t length;
+    FILE *list = open_memstream(&all, &length);
+    for (int i = 1; i < FOLDERS; i++) {
+        fprintf(list, "%s/deep:", folder);
+    }
+    fprintf(list, "%s", folder);
+    fclose(list);
+    setenv("IMPACTLAB_SCENARIOS", all, 1);
+
+    // listed once each, and opened
+    char **names;
+    int count, found = 0;
+    fault f;
+    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        found += strcmp(names[i], "beta") == 0 || strcmp(names[i], "alpha-9") == 0;
+        free(names[i]);
+    }
+    free(names);
+    assert_int_equal(found, 2);
+    scenario s;
+    sentences told = {0};
+    assert_int_equal(scenario_open(&s, "deep/alpha-9", keep_sentence, &told), STATUS_OK);
+
+    setenv("IMPACTLAB_SCENARIOS", before, 1);
+    free(before);
+    free(all);
+}
+
 static void every_shipped_scenario_reads_clean(void **state)
 {
     (void)state;
@@ -375,6 +411,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(files_that_cannot_be_read, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(the_list_is_complete_and_sorted, make_folder,
                                         remove_folder),
+        cmocka_unit_test_setup_teardown(every_folder_is_looked_into, make_folder, remove_folder),
         cmocka_unit_test(every_shipped_scenario_reads_clean),
         cmocka_unit_test(every_figure_and_table_of_the_thesis_has_its_scenario),
         cmocka_unit_test(an_override_sets_and_resolves),

@@ -13,14 +13,11 @@
 #include "src/scenario/yaml_tree.h"
 #include "src/base/words.h"
 
-enum {
-    MAX_FOLDER_DEPTH = 8, // stops at links that lead in a circle
-    MAX_FOLDERS = 32      // of IMPACTLAB_SCENARIOS and the one that ships
-};
+enum { MAX_FOLDER_DEPTH = 8 }; // stops at links that lead in a circle
 
 static const char suffix[] = ".yaml";
 
-// A growing list of names.
+// A growing list of names, of scenarios or folders.
 typedef struct name_list {
     char **names;
     int count;
@@ -104,69 +101,6 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
 
 // ---- the folder ---------------------------------------------------------------------------------
 
-// The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that ship.
-typedef struct folder_list {
-    char *folders[MAX_FOLDERS];
-    int count;
-} folder_list;
-
-static void close_folders(folder_list *all)
-{
-    for (int i = 0; i < all->count; i++) {
-        free(all->folders[i]);
-    }
-    all->count = 0;
-}
-
-// False without memory: a folder less would be another scenario of the same name.
-static bool open_folders(folder_list *all)
-{
-    const char *chosen = getenv("IMPACTLAB_SCENARIOS");
-    bool good = true;
-    all->count = 0;
-
-    // the user's folders; one place is left for the shipped one
-    while (good && chosen != NULL && *chosen != '\0' && all->count < MAX_FOLDERS - 1) {
-        size_t length = strcspn(chosen, ":");
-        if (length > 0) {
-            all->folders[all->count] = strndup(chosen, length);
-            good = all->folders[all->count] != NULL;
-            all->count += good;
-        }
-        chosen += length + (chosen[length] == ':');
-    }
-
-    // it comes last, behind all that the user has
-    all->folders[all->count] = good ? shipped_path(SHIPPED_SCENARIOS) : NULL;
-    good = all->folders[all->count] != NULL;
-    all->count += good;
-    if (!good) {
-        close_folders(all);
-    }
-    return good;
-}
-
-// The file of that name in the first folder that has it, else in the last; NULL without memory.
-static char *find_file(const char *name, const char *ending)
-{
-    folder_list all;
-    char *path = NULL;
-    bool found = !open_folders(&all); // or nothing to look in
-    for (int i = 0; !found && i < all.count; i++) {
-        free(path);
-        path = text_of("%s/%s%s", all.folders[i], name, ending);
-        found = path == NULL || is_file(path);
-    }
-    close_folders(&all);
-    return path;
-}
-
-char *scenario_folder_file(const char *name)
-{
-    assert(name != NULL);
-    return find_file(name, "");
-}
-
 static bool add_name(name_list *list, const char *name, size_t length)
 {
     char **grown = realloc(list->names, (size_t)(list->count + 1) * sizeof *grown);
@@ -180,6 +114,61 @@ static bool add_name(name_list *list, const char *name, size_t length)
     }
     list->count++;
     return true;
+}
+
+static void free_names(char **names, int count)
+{
+    for (int i = 0; i < count; i++) {
+        free(names[i]);
+    }
+    free(names);
+}
+
+// The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that ship. False
+// without memory: a folder less would be another scenario of the same name.
+static bool open_folders(name_list *all)
+{
+    const char *chosen = getenv("IMPACTLAB_SCENARIOS");
+    bool good = true;
+    *all = (name_list){0};
+
+    // the user's
+    while (good && chosen != NULL && *chosen != '\0') {
+        size_t length = strcspn(chosen, ":");
+        good = length == 0 || add_name(all, chosen, length);
+        chosen += length + (chosen[length] == ':');
+    }
+
+    // the one that ships comes last, behind all that the user has
+    char *shipped = good ? shipped_path(SHIPPED_SCENARIOS) : NULL;
+    good = shipped != NULL && add_name(all, shipped, strlen(shipped));
+    free(shipped);
+    if (!good) {
+        free_names(all->names, all->count);
+        *all = (name_list){0};
+    }
+    return good;
+}
+
+// The file of that name in the first folder that has it, else in the last; NULL without memory.
+static char *find_file(const char *name, const char *ending)
+{
+    name_list all;
+    char *path = NULL;
+    bool found = !open_folders(&all); // or nothing to look in
+    for (int i = 0; !found && i < all.count; i++) {
+        free(path);
+        path = text_of("%s/%s%s", all.names[i], name, ending);
+        found = path == NULL || is_file(path);
+    }
+    free_names(all.names, all.count);
+    return path;
+}
+
+char *scenario_folder_file(const char *name)
+{
+    assert(name != NULL);
+    return find_file(name, "");
 }
 
 static bool walk(name_list *list, const char *folder, const char *prefix, int depth);
@@ -256,14 +245,6 @@ static void sort_once(name_list *list)
     list->count = kept;
 }
 
-static void free_names(char **names, int count)
-{
-    for (int i = 0; i < count; i++) {
-        free(names[i]);
-    }
-    free(names);
-}
-
 status scenario_list(char ***names, int *count, fault *f)
 {
     assert(names != NULL && count != NULL);
@@ -272,23 +253,23 @@ status scenario_list(char ***names, int *count, fault *f)
     *count = 0;
 
     // those of every folder
-    folder_list all;
+    name_list all;
     status result = open_folders(&all) ? STATUS_OK : fault_no_memory(f);
     for (int i = 0; i < all.count && result == STATUS_OK; i++) {
         const bool shipped = i == all.count - 1;
-        if (shipped && i > 0 && !is_folder(all.folders[i])) {
+        if (shipped && i > 0 && !is_folder(all.names[i])) {
             break; // those that were named are enough
         }
-        if (!is_folder(all.folders[i])) {
+        if (!is_folder(all.names[i])) {
             result = fault_set(f, STATUS_CANNOT_READ,
                                "%.500s: no such folder, expected the scenarios there "
                                "(IMPACTLAB_SCENARIOS adds folders, separated by colons)",
-                               all.folders[i]);
-        } else if (!walk(&list, all.folders[i], "", 0)) {
+                               all.names[i]);
+        } else if (!walk(&list, all.names[i], "", 0)) {
             result = fault_no_memory(f);
         }
     }
-    close_folders(&all);
+    free_names(all.names, all.count);
     if (result != STATUS_OK) {
         free_names(list.names, list.count);
         return result;
