@@ -148,6 +148,26 @@ static void runs_without_an_end_are_abandoned_and_not_stored(void **state)
     scenario_finish(&base);
 }
 
+static void runs_abandoned_before_they_begin_are_not_set_up(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"title: Corrected\n",
+                                        "title: Printed\narm: {model: printed}\n",
+                                        "title: Under a law\ncontrol: {law: hybrid}\n"};
+    const atomic_bool already = true;
+    for (int i = 0; i < 3; i++) {
+        scenario s;
+        run_result result;
+        read_scenario(&s, texts[i]);
+        run_together(&s, 1, &already, &result);
+        assert_int_equal(result.summary.status, STATUS_STOPPED);
+        assert_true(isnan(result.summary.steps) || result.summary.steps == 0);
+        assert_int_equal(result.trace.event_count, 0);
+        run_finish(&result);
+        scenario_finish(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -156,6 +176,7 @@ int main(void)
         cmocka_unit_test(the_peak_of_a_damped_chain_is_at_its_impact),
         cmocka_unit_test(a_touch_behind_the_link_is_told),
         cmocka_unit_test(runs_without_an_end_are_abandoned_and_not_stored),
+        cmocka_unit_test(runs_abandoned_before_they_begin_are_not_set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

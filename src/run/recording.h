@@ -44,7 +44,10 @@ size_t recording_most_rows(size_t expected);
 // Sets up an empty trace of the kind that is asked for. STATUS_NO_MEMORY, with a sentence in f.
 status recording_open_trace(recording *r, int angle_count, fault *f);
 
-// Whether whoever watches the run wants it to stop.
+// Whether the run is to end at once.
+bool recording_is_abandoned(const recording *r);
+
+// Whether that, or whoever watches it wants it to stop.
 bool recording_asked_to_stop(const recording *r);
 
 // Tells those who look on how far the run is: what they count is complete.

@@ -12,7 +12,8 @@ time_used time_now(void);
 time_used time_since(time_used start);
 
 // Begins to record a run of the scenario into result: an empty summary, and the rig if a law is
-// chosen or given. f holds no fault or why it cannot begin; recording_end is due in either case.
+// chosen or given. f holds no fault or why it cannot begin; STATUS_STOPPED where options->abandon
+// is true already. recording_end is due in any case.
 status recording_begin(recording *r, const scenario *s, const run_options *options,
                        run_result *result, fault *f);
 
