@@ -13,6 +13,7 @@ typedef struct pace {
 pace pace_begin(void);
 
 // Counts a stride that was just made. Every so many of them STATUS_NO_PROGRESS, with a sentence
-// that names the cause, if a run of that duration [s] would take tens of millions; but not where
-// they are those that a time step of the length asked for [s] is cut into.
+// that names the cause, if a run of that duration [s], or a second of it, would take tens of
+// millions; but not where a time step of the length asked for [s] is cut into fewer than a
+// thousand.
 status pace_keep(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f);
