@@ -1,8 +1,10 @@
 // The sampled loop.
+#include <math.h>
 #include <string.h>
 
 #include "src/rig/rig.h"
 #include "src/run/loop.h"
+#include "src/solve/contact_machine.h"
 #include "tests/rig_fixture.h"
 
 static void command_holds_between_samples(void **state)
@@ -182,6 +184,87 @@ static void a_command_that_alternates_passes_time(void **state)
     }
 }
 
+// What a lag of that time constant [s] makes of the motion without a rig, `after` the first contact
+// [s]: its impulses, and its force in strides that grow by a twentieth of the time since.
+static double lagged_force(const parameters *p, double time_constant, double after)
+{
+    arm a;
+    arm_init(&a, p);
+    motion *m = motion_create(&a, &p->method);
+    assert_non_null(m);
+    motion_start(&a, m, p->initial.angle, p->initial.velocity);
+
+    double felt = 0, touched = -1, last = 0, end = p->run.duration;
+    while (m->state[SLOT_TIME] < end) {
+        motion_report report;
+        const double from = m->state[SLOT_TIME],
+                     had = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+        const double until =
+            touched < 0 ? end : fmin(end, from + fmin(2e-6, fmax(1e-11, (from - last) / 20)));
+        assert_int_equal(motion_step(&a, m, until, 1e-3, &report), STATUS_OK);
+        const double length = m->state[SLOT_TIME] - from;
+        const double gained = state_quadratures(m, m->state)[QUADRATURE_FORCE] - had;
+        felt *= exp(-length / time_constant);
+        felt += gained / time_constant * exp(-length / 2 / time_constant);
+        if (report.event == MOTION_REACHED) {
+            continue;
+        }
+        motion_apply(&a, m, &report);
+        last = m->state[SLOT_TIME];
+        if (report.event == MOTION_IMPACT) {
+            felt += report.impulse / time_constant;
+            end = touched < 0 ? last + after : end;
+            touched = touched < 0 ? last : touched;
+        }
+    }
+    motion_destroy(m);
+    return touched < 0 ? (double)NAN : felt;
+}
+
+// The modes of a strongly damped chain decay within nanoseconds of an impact, in which they press
+// with thousands of newtons: a force sensor reads their impulse.
+static void sensors_feel_the_spike_of_a_damped_chain(void **state)
+{
+    (void)state;
+    static const char *const ratios[] = {"arm.damping_ratio=0.3", "arm.damping_ratio=1"};
+    static const char *const links[] = {"arm.links=8", "arm.links=32"};
+    for (int i = 0; i < 4; i++) {
+        const char *const settings[] = {ratios[i % 2],
+                                        links[i / 2],
+                                        "control.law=open-loop",
+                                        "control.rate=20000",
+                                        "method.step=5e-5",
+                                        "initial.angle=-0.001",
+                                        "initial.velocity=1",
+                                        "run.duration=0.0015",
+                                        "sensor.piezo=true",
+                                        "sensor.piezo_gain=1e-3",
+                                        "sensor.piezo_leak_time=0",
+                                        "sensor.piezo_range=0",
+                                        "sensor.piezo_noise=0",
+                                        "sensor.adc_bits=0",
+                                        "sensor.dac_bits=0",
+                                        NULL};
+        const parameters p = rig_parameters(settings);
+        run_result run = rig_run(settings, true);
+
+        // the first readings after the touch
+        const double touch = run.summary.first_contact_s;
+        double compared = 0;
+        for (size_t k = 0; k < run.trace.row_count && compared < 3; k++) {
+            const sample *row = &run.trace.rows[k];
+            const double after = row->time - touch - p.method.step; // read a sample before
+            if (after > 4e-6 + compared * 5e-5) {
+                const double rise = p.sensor.piezo_rise_time / log(9);
+                check_relative(row->piezo_force, lagged_force(&p, rise, after), 2e-3);
+                compared++;
+            }
+        }
+        assert_true(compared == 3);
+        run_finish(&run);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -190,6 +273,7 @@ int main(void)
         cmocka_unit_test(a_command_a_period_late_goes_out_with_the_next_sample),
         cmocka_unit_test(a_delay_is_at_most_a_period),
         cmocka_unit_test(jitter_stays_within_its_width),
+        cmocka_unit_test(sensors_feel_the_spike_of_a_damped_chain),
         cmocka_unit_test(rig_changes_the_bare_arm_only_by_its_converter),
         cmocka_unit_test(same_seed_same_bytes),
         cmocka_unit_test(many_links_want_their_own_stiffness),

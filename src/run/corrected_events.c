@@ -155,6 +155,7 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
 
     // and after it
     motion_apply(&c->arm, m, report);
+    c->recording->state.last_jump = m->state[SLOT_TIME];
     add_impulse_to_sensors(c, report);
     failed = record_applied_event(c, report);
     if (failed == STATUS_OK) {
@@ -217,6 +218,7 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
                                m->state[SLOT_TIME], todo->value);
         }
     }
+    r->state.last_jump = m->state[SLOT_TIME];
     r->state.energy_put_in += fabs(m->state[SLOT_EXTERNAL_WORK] - work);
     if (failed == STATUS_OK) {
         failed = trace_add_event(&r->result->trace, e);

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "src/base/extremes.h"
+#include "src/base/instant.h"
 #include "src/run/rig_recording.h"
 
 #define SHORTEST_MEAN  1e-9 // a step shorter than this has the mean of its ends [s]
@@ -293,35 +294,74 @@ static status record_force(corrected_run *c, const force_step *whole)
     return STATUS_OK;
 }
 
+// A way along the step just made, and what the sensors are fixed to where it has come.
+typedef struct way {
+    double time; // [s]
+    sensed_motion at;
+    double integral; // of the force [N s]
+} way;
+
+// Lets the sensors follow the arm on to an instant within the step, a stretch of this length [s].
+static status follow_to(corrected_run *c, way *w, double time, double length)
+{
+    motion *m = c->motion;
+    double *state = motion_between(&c->arm, m, time);
+    if (state == NULL) {
+        return STATUS_NOT_FINITE;
+    }
+    const sensed_motion here = corrected_sensed_motion(c, state);
+    const double pressed = state_quadratures(m, state)[QUADRATURE_FORCE];
+    const double mean = (pressed - w->integral) / length;
+    sensors_follow(&c->recording->rig->sensors, length, &w->at, &here, mean);
+    *w = (way){time, here, pressed};
+    return STATUS_OK;
+}
+
+// Lets them follow what an event set going that decays faster than the arm vibrates.
+static status follow_decays(corrected_run *c, way *w, double end)
+{
+    const motion *m = c->motion;
+    const double widest = SENSOR_REACH / c->arm.highest_frequency;
+    if (!engine_is_dense(m->engine) || motion_held_still(m)) {
+        return STATUS_OK;
+    }
+    for (;;) {
+        const double since = w->time - c->recording->state.last_jump;
+        const double length = motion_parabola_length(&c->arm, SENSOR_REACH, since);
+        const double next = w->time + larger(length, instant_tolerance(w->time));
+        if (!(length < widest) || !(next < end)) {
+            return STATUS_OK;
+        }
+        if (follow_to(c, w, next, next - w->time) != STATUS_OK) {
+            return STATUS_NOT_FINITE;
+        }
+    }
+}
+
 // Lets the sensors follow the arm over the step just made.
 static status follow_with_sensors(corrected_run *c, const force_step *whole)
 {
     motion *m = c->motion;
-    sensors *on = &c->recording->rig->sensors;
-    const double length = whole->end - whole->start;
-    const int pieces = pieces_of_step(c, length, SENSOR_REACH);
-    sensed_motion first = corrected_sensed_motion(c, m->trial);
-    double integral = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    way w = {whole->start, corrected_sensed_motion(c, m->trial),
+             state_quadratures(m, m->trial)[QUADRATURE_FORCE]};
+    status s = follow_decays(c, &w, whole->end);
 
     // from piece to piece
-    for (int i = 1; i < pieces; i++) {
-        double *state = motion_between(&c->arm, m, whole->start + length * i / pieces);
-        if (state == NULL) {
-            return STATUS_NOT_FINITE;
-        }
-        sensed_motion here = corrected_sensed_motion(c, state);
-        double pressed = state_quadratures(m, state)[QUADRATURE_FORCE];
-        double mean = (pressed - integral) / (length / pieces);
-        sensors_follow(on, length / pieces, &first, &here, mean);
-        first = here;
-        integral = pressed;
+    const double start = w.time, length = whole->end - start;
+    const int pieces = pieces_of_step(c, length, SENSOR_REACH);
+    for (int i = 1; i < pieces && s == STATUS_OK; i++) {
+        s = follow_to(c, &w, start + length * i / pieces, length / pieces);
+    }
+    if (s != STATUS_OK) {
+        return s;
     }
 
     // the last piece ends where the step does
-    sensed_motion last = corrected_sensed_motion(c, m->state);
-    double pressed = state_quadratures(m, m->state)[QUADRATURE_FORCE];
-    double mean = pieces > 1 ? (pressed - integral) / (length / pieces) : whole->mean;
-    sensors_follow(on, length / pieces, &first, &last, mean);
+    const sensed_motion last = corrected_sensed_motion(c, m->state);
+    const double pressed = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    const bool part = w.time > whole->start;
+    const double mean = part ? (pressed - w.integral) / (length / pieces) : whole->mean;
+    sensors_follow(&c->recording->rig->sensors, length / pieces, &w.at, &last, mean);
     return STATUS_OK;
 }
 

@@ -18,6 +18,7 @@ typedef struct recording_state {
     double energy_put_in;      // sum of what motor and actions did or took over each step [J]
     long chatters;             // sequences of bounces that ended plastically
     long from_behind;          // touches of a point by the line behind the last link, not the link
+    double last_jump;          // instant of the last event, action or start [s]
     double integral_at_window; // of the force, where the steady force's window begins [N s]
 } recording_state;
 

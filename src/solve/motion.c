@@ -10,7 +10,10 @@
 #define STIFF 3e4
 // The two-link series are so cheap (half a million strides in a third of a second) that decays,
 // which alone can be fast there, pay from here on; in fast rotation the modes are dearer.
-#define STIFF_PAIR      2e6
+#define STIFF_PAIR 2e6
+
+// Share of the time since an event in which what is left of decays changes little.
+#define GRADING         0.2
 
 #define CACHE_LINE      64 // [bytes]
 
@@ -225,6 +228,13 @@ double motion_rounding_at(const arm *a, int dof, const double *q, const double *
         rate = fmax(rate, fabs(w[i]));
     }
     return 1 + LAST_BITS * (a->highest_frequency * a->highest_frequency * angle + rate * rate);
+}
+
+double motion_parabola_length(const arm *a, double reach, double since)
+{
+    const double length = reach / a->highest_frequency;
+    return fmin(length,
+                fmax(GRADING * since, reach / fmax(a->highest_frequency, a->fastest_decay)));
 }
 
 double motion_wall_energy(const arm *a, const motion *m, const double *state)

@@ -10,7 +10,6 @@
 
 // A parabola is right to 1e-4 of the fastest mode's force over so much of (fastest rate) x (time).
 #define PARABOLA_REACH 0.25
-#define GRADING        0.2 // of the time since an event, where decays are faster
 
 #define BRIEF_SHARE    1e-3 // of a time constant, below which a force is its mean and its tilt
 #define RESOLVING      20.0 // fastest rate times step, at most: the event method then steps explicitly
@@ -169,15 +168,6 @@ static double next_end(const watching *w, double now, double duration)
     return now < early ? early : w->touched + SENSOR_WINDOW;
 }
 
-// How long the force is a parabola to sight, `since` [s] after an event: strides of dense engines
-// are none. What decays faster than the arm vibrates was set going by the event, and what is left
-// of it changes in a share of the time since.
-static double parabola_length(const arm *a, double since)
-{
-    const double length = PARABOLA_REACH / a->highest_frequency;
-    return fmin(length, fmax(GRADING * since, PARABOLA_REACH / a->fastest_rate));
-}
-
 static status watch_motion(const arm *a, motion *m, double step, double duration, watching *w,
                            fault *f)
 {
@@ -195,8 +185,8 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
         // a stride
         double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
         if (!isnan(w->touched) && engine_is_dense(m->engine)) {
-            until =
-                fmin(until, m->state[SLOT_TIME] + parabola_length(a, m->state[SLOT_TIME] - last));
+            const double now = m->state[SLOT_TIME]; // its strides are no parabolas
+            until = fmin(until, now + motion_parabola_length(a, PARABOLA_REACH, now - last));
         }
         status code = motion_step(a, m, until, step, &report);
         if (code != STATUS_OK) {
