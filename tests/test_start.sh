@@ -53,6 +53,13 @@ done
 expect 0 run hit.yaml --plot figure.svg
 [ "$(grep -c '^hit.yaml: An impact' out)" = 1 ] || fail "the report is not there once"
 
+# both programs copied into one folder, as with a build folder that was moved
+mkdir copied
+cp "$program" copied/impactlab
+cp "$drawing" copied/impactlab-draw
+(program=copied/impactlab && expect 0 run hit.yaml --quiet --plot copied.svg) || fail "a copy does not draw"
+[ -s copied.svg ] || fail "a copy draws nothing"
+
 # an installation in a place of any name, called through the path and through a link
 case $bin$libexec in
 /* | */*..*) echo "skipped: these folders of programs are not below the prefix" ;;

@@ -12,13 +12,15 @@
 
 static const struct {
     const char *in_tree, *in_prefix, *configured;
+    const char *beside; // its name beside the program, where it may lie, too; NULL if it may not
 } places[] = {
     [SHIPPED_SCENARIOS] = {IMPACTLAB_SOURCE_SCENARIOS, IMPACTLAB_SCENARIOS_IN_PREFIX,
                            IMPACTLAB_SCENARIOS},
     [SHIPPED_PROGRAM] = {IMPACTLAB_BUILD_FOLDER "/impactlab", IMPACTLAB_PROGRAM_IN_PREFIX,
                          IMPACTLAB_PROGRAM},
     [SHIPPED_DRAWING_PROGRAM] = {IMPACTLAB_BUILD_FOLDER "/impactlab-draw",
-                                 IMPACTLAB_DRAWING_PROGRAM_IN_PREFIX, IMPACTLAB_DRAWING_PROGRAM},
+                                 IMPACTLAB_DRAWING_PROGRAM_IN_PREFIX, IMPACTLAB_DRAWING_PROGRAM,
+                                 "impactlab-draw"},
 };
 
 // The file that this very code was loaded from: the program, or the shared library in another one.
@@ -35,8 +37,24 @@ static bool own_file(char *path)
     return length > 0;
 }
 
+// FOLDER/NAME if it is there, to be freed. True unless there is no memory; *path is NULL if there
+// is no such file.
+static bool path_in(const char *folder, const char *name, char **path)
+{
+    if (asprintf(path, "%s/%s", folder, name) < 0) {
+        *path = NULL;
+        return false;
+    }
+    if (access(*path, F_OK) != 0) {
+        free(*path);
+        *path = NULL;
+    }
+    return true;
+}
+
 char *shipped_path(shipped_part part)
 {
+    char *path;
     char own[PATH_MAX];
     const size_t build = strlen(IMPACTLAB_BUILD_FOLDER);
     bool known = own_file(own);
@@ -44,18 +62,22 @@ char *shipped_path(shipped_part part)
         return strdup(places[part].in_tree);
     }
 
-    // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1
+    // a build folder that was moved, or programs that were copied together
     char *end = known ? strrchr(own, '/') : NULL;
-    for (int above = 0; above < 4 && end != NULL && end != own; above++) {
+    if (end != NULL && end != own && places[part].beside != NULL) {
         *end = '\0';
-        char *path;
-        if (asprintf(&path, "%s/%s", own, places[part].in_prefix) < 0) {
-            return NULL;
-        }
-        if (access(path, F_OK) == 0) {
+        if (!path_in(own, places[part].beside, &path) || path != NULL) {
             return path;
         }
-        free(path);
+        *end = '/';
+    }
+
+    // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1
+    for (int above = 0; above < 4 && end != NULL && end != own; above++) {
+        *end = '\0';
+        if (!path_in(own, places[part].in_prefix, &path) || path != NULL) {
+            return path;
+        }
         end = strrchr(own, '/');
     }
     return strdup(places[part].configured);

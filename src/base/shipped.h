@@ -9,6 +9,7 @@ typedef enum shipped_part {
 } shipped_part;
 
 // The part's path, to be freed, whether it is there or not; NULL without memory. What was built in
-// a tree has the tree's; else the prefix is looked for above the file that this code was loaded
-// from, and where no prefix has the part it is the place that the build was set up for.
+// a tree has the tree's; else the drawing program may lie beside the file that this code was loaded
+// from; else the prefix is looked for above that file, and where no prefix has the part it is the
+// place that the build was set up for.
 char *shipped_path(shipped_part part);

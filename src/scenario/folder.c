@@ -291,7 +291,8 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     size_t length = strlen(wanted), tail = sizeof suffix - 1;
     bool has_suffix = length > tail && strcmp(wanted + length - tail, suffix) == 0;
     char *stem = strndup(wanted, has_suffix ? length - tail : length);
-    if (stem == NULL || scenario_list(&names, &count, NULL) == STATUS_NO_MEMORY) {
+    fault unread = {0};
+    if (stem == NULL || scenario_list(&names, &count, &unread) == STATUS_NO_MEMORY) {
         free(stem);
         return report_no_memory(report, context);
     }
@@ -302,12 +303,18 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
         nearest_try(&near, names[i]);
     }
 
-    char *sentence = near.best != NULL
-                         ? text_of("'%s' is neither a scenario nor a file, did you mean '%s'?",
-                                   wanted, near.best)
-                         : text_of("'%s' is neither a scenario nor a file, expected a name that "
-                                   "'impactlab list' shows or the path of a file",
-                                   wanted);
+    char *sentence;
+    if (unread.text[0] != '\0') {
+        sentence =
+            text_of("'%s' is no file, and no scenario can be found: %s", wanted, unread.text);
+    } else if (near.best != NULL) {
+        sentence =
+            text_of("'%s' is neither a scenario nor a file, did you mean '%s'?", wanted, near.best);
+    } else {
+        sentence = text_of("'%s' is neither a scenario nor a file, expected a name that "
+                           "'impactlab list' shows or the path of a file",
+                           wanted);
+    }
     free_names(names, count);
     free(stem);
 

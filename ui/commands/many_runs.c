@@ -41,7 +41,11 @@ void many_runs_catch_signals(sweep_options *o)
     sigemptyset(&caught.sa_mask);
     sigaction(SIGINT, &caught, NULL);
     sigaction(SIGTERM, &caught, NULL);
+
+    // the alarm is ours: what is being written then goes on
+    caught.sa_flags = SA_RESTART;
     sigaction(SIGALRM, &caught, NULL);
+
     o->stop = &signal_caught;
     o->abandon = &abandoned;
 }
