@@ -153,6 +153,13 @@ static void the_list_is_complete_and_sorted(void **state)
     assert_non_null(strstr(f.text, "/nonexistent: no such folder"));
     assert_int_equal(count, 0);
     assert_null(names);
+
+    // whoever asks for a scenario hears it, too
+    scenario s;
+    sentences all = {0};
+    assert_int_equal(scenario_open(&s, "corrected/first-impact", keep_sentence, &all),
+                     STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(all.text, "/nonexistent: no such folder"));
     setenv("IMPACTLAB_SCENARIOS", before, 1);
     free(before);
 }
