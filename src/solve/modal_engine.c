@@ -19,16 +19,17 @@
 #include "src/solve/modal_watch.h"
 #include "src/solve/series_engine.h"
 
-#define CONFIRMED  0.999  // of a peak of the modes, that the state there has to have
-#define LONGEST    1.8e-2 // [s]
-#define ADVANTAGE  8.0    // strides of the series that one of the modes has to replace
-#define SETTLED    1e-7   // change of the last sweep that is let pass
-#define OPEN       1e-8   // share of the energy that a stride's ledger may lack
-#define FAINT      1e-8   // share of it that vibrations may have to be left out of the points
-#define GROWTH     16     // from stride to stride
-#define FIRST_TURN 3      // of the fastest vibration in the stride after an event [rad]
-#define TURN       0.05   // of the fastest link in a stride [rad]
-#define LAST_TERMS 1e-9   // of the series between the modes' strides
+#define CONFIRMED    0.999  // of a peak of the modes, that the state there has to have
+#define STATES_ALONG 32     // of a stride where it has not
+#define LONGEST      1.8e-2 // [s]
+#define ADVANTAGE    8.0    // strides of the series that one of the modes has to replace
+#define SETTLED      1e-7   // change of the last sweep that is let pass
+#define OPEN         1e-8   // share of the energy that a stride's ledger may lack
+#define FAINT        1e-8   // share of it that vibrations may have to be left out of the points
+#define GROWTH       16     // from stride to stride
+#define FIRST_TURN   3      // of the fastest vibration in the stride after an event [rad]
+#define TURN         0.05   // of the fastest link in a stride [rad]
+#define LAST_TERMS   1e-9   // of the series between the modes' strides
 
 // Turn up to which a stride's points show a vibration [rad]: a stride is then exact to 1e-7 of the
 // velocities, with the second one to 1e-10. An arm that bounces passes on what is lost a thousand
@@ -246,8 +247,8 @@ static void first_event(const arm *a, motion *m, double *h, watch *first, bool *
 }
 
 // Takes a peak within the stride only if the state there has that force: just after an impact,
-// where decays are very fast, the sum of the modes does not show it. Else the largest of the
-// states.
+// where decays are very fast, the sum of the modes does not show it. Else the largest of states
+// along the stride, closer at its beginning.
 static void confirm_peak(const arm *a, motion *m, double h, double before, double before_time)
 {
     const double start = m->state[SLOT_TIME], within = m->pulse_peak_time - start;
@@ -255,24 +256,26 @@ static void confirm_peak(const arm *a, motion *m, double h, double before, doubl
         return;
     }
 
-    // the force at both ends and where the peak is said to be
-    const double times[] = {0, within, h}, found = m->pulse_peak;
-    double forces[3];
-    for (int i = 0; i < 3; i++) {
-        const bool known = times[i] == 0;
-        if (!known && motion_try_step(a, m, times[i]) != STATUS_OK) {
-            return;
-        }
-        forces[i] = known ? m->state[SLOT_FORCE] : m->trial[SLOT_FORCE];
-        if (i == 1 && forces[i] > CONFIRMED * found) {
-            return;
-        }
+    // the force where the peak is said to be
+    const bool begins = within == 0;
+    if (!begins && motion_try_step(a, m, within) != STATUS_OK) {
+        return;
+    }
+    const double force = begins ? m->state[SLOT_FORCE] : m->trial[SLOT_FORCE];
+    if (force > CONFIRMED * m->pulse_peak) {
+        return;
     }
 
+    // denied: what the states show instead
     m->pulse_peak = before;
     m->pulse_peak_time = before_time;
-    for (int i = 0; i < 3; i++) {
-        motion_note_force(m, start + times[i], forces[i]);
+    motion_note_force(m, start, m->state[SLOT_FORCE]);
+    motion_note_force(m, start + within, force);
+    for (int i = 1; i <= STATES_ALONG; i++) {
+        const double part = (double)i / STATES_ALONG, at = part * part * h;
+        if (motion_try_step(a, m, at) == STATUS_OK) {
+            motion_note_force(m, start + at, m->trial[SLOT_FORCE]);
+        }
     }
 }
 
