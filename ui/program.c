@@ -126,11 +126,12 @@ static void end_cleanly(int number)
     raise(number);
 }
 
-// GLib found no memory for a picture: our sentence, no half-written file, no signal.
-static void end_without_memory(const char *reason)
+// GLib found no memory for a picture, or Pango no font: our sentence, no half-written file, no
+// signal.
+static void end_without_picture(const char *reason)
 {
     whole_file_remove_unfinished();
-    complain("out of memory for a picture: %s", reason);
+    complain("a picture cannot be drawn: %s", reason);
     _exit(EXIT_FAILED);
 }
 
@@ -200,6 +201,6 @@ int program_run(int argc, char **argv, const rank_group *ranks)
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     catch_endings();
-    rendering_begin(argv, end_without_memory);
+    rendering_begin(argv, end_without_picture);
     return close_output(dispatch(argc, argv, ranks));
 }

@@ -6,8 +6,8 @@
 
 #include <stdbool.h>
 
-// To be called first: the words that the program was called with, and what ends it where GLib finds
-// no memory for a picture, which is given a reason and must not return.
+// To be called first: the words that the program was called with, and what ends it where a picture
+// cannot be drawn for want of memory or of a font, which is given a reason and must not return.
 void rendering_begin(char **argv, void (*end)(const char *reason));
 
 // Begins anew as the program that draws unless this one does. To be called before anything is

@@ -485,11 +485,29 @@ static void on_log(const char *domain, GLogLevelFlags level, const char *reason,
     g_log_default_handler(domain, level, reason, context);
 }
 
+// Pango warns where it draws text as well as it can, without the font or letters elsewhere: such a
+// picture is none.
+static GLogWriterOutput on_warning(GLogLevelFlags level, const GLogField *fields, gsize count,
+                                   void *context)
+{
+    const char *domain = "", *reason = "";
+    for (gsize i = 0; i < count; i++) {
+        domain = strcmp(fields[i].key, "GLIB_DOMAIN") == 0 ? fields[i].value : domain;
+        reason = strcmp(fields[i].key, "MESSAGE") == 0 ? fields[i].value : reason;
+    }
+    if ((level & (G_LOG_LEVEL_CRITICAL | G_LOG_LEVEL_WARNING)) != 0 &&
+        strcmp(domain, "Pango") == 0) {
+        end_of_program(reason);
+    }
+    return g_log_writer_default(level, fields, count, context);
+}
+
 void text_when_giving_up(void (*end)(const char *reason))
 {
     assert(end != NULL);
     end_of_program = end;
     g_log_set_default_handler(on_log, NULL);
+    g_log_set_writer_func(on_warning, NULL, NULL);
 }
 
 void text_release(void)

@@ -85,8 +85,9 @@ char *text_escape(const char *bytes);
 char *text_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void text_append(GString *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// What happens where GLib, and so Pango, gives up, mostly for want of memory: `end` is called with
-// its reason and must not return. Otherwise GLib ends the program by a signal.
+// What happens where GLib gives up, mostly for want of memory, or Pango warns that it cannot draw a
+// text as it should: `end` is called with its reason and must not return. Otherwise GLib ends the
+// program by a signal, and Pango draws what it can.
 void text_when_giving_up(void (*end)(const char *reason));
 
 // Whether this thread is at work in fontconfig or Pango, which crash where they find no memory, or
