@@ -194,6 +194,7 @@ static void every_folder_is_looked_into(void **state)
     scenario s;
     sentences told = {0};
     assert_int_equal(scenario_open(&s, "deep/alpha-9", keep_sentence, &told), STATUS_OK);
+    scenario_finish(&s);
 
     setenv("IMPACTLAB_SCENARIOS", before, 1);
     free(before);
