@@ -199,6 +199,24 @@ static void impulses_do_not_touch_the_force_axis(void **state)
     synthetic_finish(&s);
 }
 
+// The unit of small impulses, a power of ten and all, is wider than their name: it has its place.
+static void the_unit_of_small_impulses_is_on_the_page(void **state)
+{
+    (void)state;
+    static figure_report r;
+    synthetic s;
+    synthetic_init(&s, run_panels, 1);
+    figure_impulse small[] = {{0.31, 4.02e-3}};
+    s.figure.panels[0].impulses = small;
+    s.figure.panels[0].impulse_count = 1;
+    record(&s.figure.figure, &r);
+    expect_text(&r, "4.02");
+    for (int i = 0; i < r.text_count; i++) {
+        expect_inside(&r.texts[i].place, &r.page, r.texts[i].text);
+    }
+    synthetic_finish(&s);
+}
+
 // ---- curves
 
 static void a_spike_of_one_sample_is_visible(void **state)
@@ -459,6 +477,7 @@ int main(void)
         cmocka_unit_test(many_marks_and_impulses_stay_readable),
         cmocka_unit_test(layout_is_the_same_on_every_surface),
         cmocka_unit_test(impulses_do_not_touch_the_force_axis),
+        cmocka_unit_test(the_unit_of_small_impulses_is_on_the_page),
         cmocka_unit_test(a_spike_of_one_sample_is_visible),
         cmocka_unit_test(points_that_are_not_finite_leave_a_gap),
         cmocka_unit_test(one_lone_point_is_visible),

@@ -179,6 +179,9 @@ bool place_marks_inside(drawing *d, placement *grid);
 
 void draw_impulses(drawing *d, const panel_layout *l);
 
+// What the strip shows and its unit, in two lines, to be freed; the panel has an impulse_label.
+char *impulse_strip_label(const figure_panel *panel);
+
 // --- legends: legend.c
 
 bool has_end_labels(const figure_panel *panel);

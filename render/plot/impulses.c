@@ -1,4 +1,5 @@
 // Impulses: arrows with their sizes in a strip above a panel.
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +42,15 @@ static int impulse_exponent(const figure_panel *panel)
 {
     double largest = largest_impulse(panel);
     return largest > 0 && largest < 1e-2 ? 3 * (int)floor(log10(largest) / 3) : 0;
+}
+
+char *impulse_strip_label(const figure_panel *panel)
+{
+    assert(panel != NULL && panel->impulse_label != NULL);
+    char *unit = axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
+    char *label = g_strconcat(panel->impulse_label, "\n", unit, NULL);
+    g_free(unit);
+    return label;
 }
 
 enum { IMPULSES_LABELLED = 24 };
@@ -145,13 +155,11 @@ void draw_impulses(drawing *d, const panel_layout *l)
 
     // what they are, with their unit, at the left
     if (panel->impulse_label != NULL) {
-        char *unit = axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
-        char *label = g_strconcat(panel->impulse_label, "\n", unit, NULL);
+        char *label = impulse_strip_label(panel);
         text_block t = figure_text_of(d, label, d->style.small);
         t.align = TEXT_RIGHT;
         draw_text(d, t, left - TICK_LENGTH - TICK_SPACE, base + 1.5, (anchor){1, 1},
                   d->style.colours->text);
         g_free(label);
-        g_free(unit);
     }
 }

@@ -124,7 +124,9 @@ static double left_space(const drawing *d, const panel_layout *l)
     double left = axis_title_height(d, &l->y, l->plane.box.height + PANEL_SPACE) + LABEL_SPACE +
                   widest_tick(d, &l->y, d->style.tick) + TICK_SPACE + TICK_LENGTH;
     if (l->panel->impulse_count > 0 && l->panel->impulse_label != NULL) {
-        left = fmax(left, width_of(d, l->panel->impulse_label, d->style.small) + LABEL_SPACE);
+        char *label = impulse_strip_label(l->panel);
+        left = fmax(left, width_of(d, label, d->style.small) + TICK_SPACE + TICK_LENGTH);
+        g_free(label);
     }
 
     return left;
