@@ -20,22 +20,55 @@ motor: {voltage: 1 V}
 run: {duration: 0.4 s}
 END
 
-# interrupted ARGUMENT...: begins the command in a job of its own, whose signals nobody ignores, and
-# interrupts it once it computes, which is when it has used some time of the processor
-interrupted() {
-    local job status ticks=0 i
+# a run whose controller, a program, lets the first question wait for 40 seconds
+cat >sleeper.yaml <<'END'
+title: A controller that sleeps
+control: {law: process, command: "read question; echo $$ >asked; exec sleep 1000", answer_time: 40 s}
+run: {duration: 0.4 s}
+END
+
+computes() { # JOB: it has used some time of the processor
+    [ "$(awk '{ print $14 + $15 }' "/proc/$1/stat")" -ge 15 ]
+}
+asks() { # whoever does: the controller that sleeps was asked
+    [ -s asked ]
+}
+
+# interrupted_once READY ARGUMENT...: begins the command in a job of its own, whose signals nobody
+# ignores, and interrupts it once `READY JOB` succeeds
+interrupted_once() {
+    local job status ready=$1 i
+    shift
     (set -m; exec "$program" "$@" >out 2>err </dev/null) &
     job=$!
-    for ((i = 0; i < 6000 && ticks < 15; i++)); do
+    for ((i = 0; i < 6000; i++)); do
         sleep 0.02
-        ticks=$(awk '{ print $14 + $15 }' "/proc/$job/stat" 2>/dev/null) || break
+        [ -e "/proc/$job/stat" ] && ! "$ready" $job || break
     done
     kill -INT $job 2>/dev/null || fail "impactlab $*: ended by itself"
     wait $job
     status=$?
     [ $status = 130 ] || fail "impactlab $*: status $status after an interrupt"
-    [ -s err ] || fail "impactlab $*: no sentence after an interrupt"
     [ -z "$(find . -name '*.part')" ] || fail "impactlab $*: a temporary stays"
+}
+
+# interrupted ARGUMENT...: once it computes
+interrupted() {
+    interrupted_once computes "$@"
+    [ -s err ] || fail "impactlab $*: no sentence after an interrupt"
+}
+
+# interrupted_asleep ARGUMENT...: while the controller that sleeps is to answer, for which nobody
+# waits then: who did would end by its silence, with status 1. Nothing is left of it.
+interrupted_asleep() {
+    rm -f asked
+    interrupted_once asks "$@" --allow-code
+    ! grep -q 'gave no answer' err || fail "impactlab $*: waited for the controller"
+    for ((i = 0; i < 500; i++)); do
+        kill -0 "$(cat asked)" 2>/dev/null || return 0
+        sleep 0.02
+    done
+    fail "impactlab $*: the controller is left"
 }
 
 # the rows before it are kept
@@ -56,6 +89,24 @@ says err "stopped before its end"
 interrupted run endless.yaml --csv trace.csv
 says err "stopped before its end"
 [ "$(wc -l <trace.csv)" -gt 100 ] || fail "rows of a run that was stopped are not kept"
+
+# a program that is to answer is not waited for
+interrupted_asleep run sleeper.yaml --json rows.json
+says err "stopped before its end"
+grep -q '"message": "stopped before its end"' rows.json || fail "a run that was stopped while it waited does not say so"
+interrupted_asleep compare sleeper.yaml
+says err "0 of 1 runs"
+interrupted_asleep converge sleeper.yaml
+says err "0 of 3 runs"
+interrupted_asleep predict sleeper.yaml
+says err "stopped before its end"
+interrupted_asleep study methods sleeper.yaml
+says err "0 of 40 runs"
+interrupted_asleep animate sleeper.yaml -o film.webm
+interrupted_asleep sweep sleeper.yaml --vary motor.voltage=1:2:4 --db asleep.sqlite
+says err "0 of 4 runs"
+interrupted_asleep robust sleeper.yaml
+says err "0 of 200 runs"
 
 # a calibration's table is that of the commands it had; a scenario wants the whole table
 interrupted calibrate compare/hybrid --set run.duration=90000 --csv presses.csv -o calibrated.yaml

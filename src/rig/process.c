@@ -21,12 +21,14 @@ enum {
     MOST_LINE = 65536,  // of an answer [bytes]
     LAST_ERRORS = 160,  // of what the program wrote to its standard error last [bytes]
     SHOWN_OF_LINE = 60, // of an answer that is none [bytes]
-    READ_AT_ONCE = 4096
+    READ_AT_ONCE = 4096,
+    LOOK_UP = 100 // from waiting for an answer, whether the run is to end [ms]
 };
 
 struct process {
     kept_program program;
     process_tape *tape;       // of the questions, NULL for none; somebody else's
+    process_ends ends;        // of the run
     int at;                   // the place on it that the running program has come to
     long asked;               // questions it has been asked
     int started;              // how many times it was started
@@ -51,12 +53,13 @@ typedef struct process_memory {
     control_parameters control;
 } process_memory;
 
-process *process_create(const control_parameters *control, process_tape *tape)
+process *process_create(const control_parameters *control, process_tape *tape, process_ends ends)
 {
     assert(control != NULL);
     process *p = calloc(1, sizeof *p);
     if (p != NULL) {
         p->tape = tape;
+        p->ends = ends;
         p->begun = *control;
     }
     return p;
@@ -154,6 +157,22 @@ static bool fail_without_memory(process *p)
     return false;
 }
 
+// Ends the program where the run does. Always false.
+static bool stop_waiting(process *p)
+{
+    kept_program_end(&p->program);
+    p->failure[0] = '\0';
+    p->code = STATUS_STOPPED;
+    return false;
+}
+
+static bool run_is_to_end(const process *p)
+{
+    const process_ends *e = &p->ends;
+    return (e->stop != NULL && atomic_load_explicit(e->stop, memory_order_relaxed)) ||
+           (e->abandon != NULL && atomic_load_explicit(e->abandon, memory_order_relaxed));
+}
+
 // --- an answer --------------------------------------------------------------------------------
 
 static double now(void)
@@ -161,11 +180,11 @@ static double now(void)
     return clock_seconds(CLOCK_MONOTONIC);
 }
 
-// What is left until a deadline, for poll [ms].
+// What is left until a deadline, or until the run is to be looked at, for poll [ms].
 static int left_until(double deadline)
 {
     double left = deadline - now();
-    return left > 0 ? (int)ceil(fmin(left, 1e6) * 1e3) : 0;
+    return left > 0 ? (int)ceil(fmin(left * 1e3, LOOK_UP)) : 0;
 }
 
 // Reads what has come of the answer. False, with a failure, if there will be none.
@@ -190,7 +209,8 @@ static bool take_in(process *p)
     return true;
 }
 
-// Writes the question and waits for a whole line. False, with a failure, if none came in time.
+// Writes the question and waits for a whole line. False, with a failure, if none came in time or
+// the run is to end.
 static bool exchange(process *p, const char *text)
 {
     const double deadline = now() + p->answer_time;
@@ -210,6 +230,9 @@ static bool exchange(process *p, const char *text)
         int ready = poll(ends, 3, left_until(deadline));
         if (now() >= deadline) {
             return fail(p, "gave no answer within control.answer_time = %g s", p->answer_time);
+        }
+        if (run_is_to_end(p)) {
+            return stop_waiting(p);
         }
         if (ready <= 0) {
             continue;

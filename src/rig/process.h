@@ -2,11 +2,14 @@
 //
 // The program is started by a shell and answers each line on its standard input by one line on its
 // standard output, both JSON objects, in lock step with simulated time (docs/library.md). Nothing
-// waits longer for it than control.answer_time, and nothing of it outlives the rig.
+// waits longer for it than control.answer_time, or after the run was asked to end, and nothing of
+// it outlives the rig.
 //
 // With a tape the program is started only when it is asked what the tape does not know, and is then
 // asked all that leads there once more: it must answer as before, or the run fails with a sentence.
 #pragma once
+
+#include <stdatomic.h>
 
 #include "src/quantities/parameters.h"
 #include "src/rig/controller.h"
@@ -14,11 +17,16 @@
 
 typedef struct process process;
 
+// Who may ask the run of a process to end: each becomes true from outside, or is NULL.
+typedef struct process_ends {
+    const atomic_bool *stop, *abandon;
+} process_ends;
+
 // The controller that asks the program; it is given with a process as its context.
 extern const controller process_law;
 
 // A process that is yet to be started, with a tape of somebody else's or NULL. NULL without memory.
-process *process_create(const control_parameters *control, process_tape *tape);
+process *process_create(const control_parameters *control, process_tape *tape, process_ends ends);
 
 // Ends the program and everything it started, however it goes about it; p may be NULL.
 void process_destroy(process *p);
@@ -26,6 +34,7 @@ void process_destroy(process *p);
 // What the program is told of control.* from the next sample on; `memory` is the controller's.
 void process_tell(void *memory, const control_parameters *control);
 
-// STATUS_OK as long as the program can be asked. Else STATUS_CONTROLLER_FAILED, or STATUS_NO_MEMORY
-// where that is not the program's doing, and *why is a sentence that begins with "the process".
+// STATUS_OK as long as the program can be asked. STATUS_STOPPED where the run was asked to end
+// before the program answered. Else STATUS_CONTROLLER_FAILED, or STATUS_NO_MEMORY where that is not
+// the program's doing, and *why is a sentence that begins with "the process".
 status process_failure(const process *p, const char **why);

@@ -149,7 +149,7 @@ static status explain_withheld(const rig *r, fault *f)
 // --- beginning and end ------------------------------------------------------------------------
 
 // Finds the controller that control.law names; one from outside only if the user allows it.
-static status open_law(rig *r, const parameters *p, process_tape *tape, fault *f)
+static status open_law(rig *r, const parameters *p, const rig_options *o, fault *f)
 {
     const control_parameters *c = &p->control;
     r->law = controller_of(c->law);
@@ -167,20 +167,21 @@ static status open_law(rig *r, const parameters *p, process_tape *tape, fault *f
         r->law = r->plugin.law;
         return s;
     }
-    r->process = process_create(c, tape);
+    r->process = process_create(c, o->tape, o->ends);
     r->law = &process_law;
     return r->process != NULL ? STATUS_OK : fault_no_memory(f);
 }
 
 status rig_create(rig **created, const parameters *p, fault *f)
 {
-    return rig_create_with(created, p, NULL, NULL, f);
+    const rig_options none = {.law = NULL};
+    return rig_create_with(created, p, &none, f);
 }
 
-status rig_create_with(rig **created, const parameters *p, const given_law *given,
-                       process_tape *tape, fault *f)
+status rig_create_with(rig **created, const parameters *p, const rig_options *o, fault *f)
 {
-    assert(created != NULL && p != NULL && p->control.rate > 0);
+    assert(created != NULL && p != NULL && o != NULL && p->control.rate > 0);
+    const given_law *given = o->law;
     assert(given != NULL || p->control.law != LAW_NONE);
     rig *r = calloc(1, sizeof *r);
     *created = NULL;
@@ -209,7 +210,7 @@ status rig_create_with(rig **created, const parameters *p, const given_law *give
     if (given != NULL) {
         r->law = given->law;
     } else {
-        s = open_law(r, p, tape, f);
+        s = open_law(r, p, o, f);
         asked = (given_law){r->law, r->process};
         given = r->process != NULL ? &asked : NULL;
     }
@@ -296,6 +297,9 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     r->law->sample(r->memory, &input, out);
     const char *why = "";
     status failed = r->process != NULL ? process_failure(r->process, &why) : STATUS_OK;
+    if (failed == STATUS_STOPPED) {
+        return failed;
+    }
     if (failed != STATUS_OK) {
         return fault_set_at(f, failed, "control.command", "at t = %.9g s %s", time, why);
     }

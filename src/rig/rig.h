@@ -19,6 +19,13 @@ typedef struct given_law {
     void *context;
 } given_law;
 
+// What a run gives its rig besides parameters; all zero for none.
+typedef struct rig_options {
+    const given_law *law; // in the place of control.law
+    process_tape *tape;   // of a process, which must outlive the rig
+    process_ends ends;    // of the run: a process is not waited for after that
+} rig_options;
+
 typedef struct rig {
     const controller *law;
     bool withheld;    // the law may not be loaded or started: the first sample fails
@@ -56,10 +63,8 @@ typedef struct rig {
 // nothing is to be freed. A plug-in or program that the user has not allowed (code_allowed) is
 // withheld: the rig is there, and its first sample fails with STATUS_NOT_ALLOWED.
 status rig_create(rig **created, const parameters *p, fault *f);
-// The same with a law that a program gives (NULL: that of control.law) and a tape for a process
-// (NULL: none), which must outlive the rig.
-status rig_create_with(rig **created, const parameters *p, const given_law *given,
-                       process_tape *tape, fault *f);
+// The same with what the run gives.
+status rig_create_with(rig **created, const parameters *p, const rig_options *o, fault *f);
 void rig_destroy(rig *r); // r may be NULL
 
 // The index of the mode that a value of control.lock names, -1 for "none". STATUS_BAD_SCENARIO,
@@ -93,7 +98,8 @@ double rig_next_time(const rig *r);
 
 // What is due at `time` [s], with the sensors seeing `now`. *changed: another command took effect,
 // r->voltage, or the controller went into another mode. STATUS_NOT_FINITE, with a sentence in f, if
-// the controller answers with a command that is not finite.
+// the controller answers with a command that is not finite; STATUS_STOPPED, without one, where the
+// run was asked to end while a process was to answer.
 status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f);
 
 // Takes the reading of the sample that is due at `time` [s] before the sample itself, which then

@@ -24,7 +24,13 @@ status recording_start_rig(recording *r, fault *f)
     if (p->arm.model != ARM_PRINTED) { // whose listing has no rate of the gap
         r->result->summary.approach_speed_m_s = r->result->summary.return_speed_m_s = 0;
     }
-    status s = rig_create_with(&r->rig, p, r->options->law, r->options->tape, f);
+    const run_options *o = r->options;
+    const rig_options given = {
+        .law = o->law,
+        .tape = o->tape,
+        .ends = {o->monitor != NULL ? &o->monitor->stop : NULL, o->abandon},
+    };
+    status s = rig_create_with(&r->rig, p, &given, f);
     return s == STATUS_OK && !r->rig->withheld ? scenario_check_locks(r->scenario, r->rig->law, f)
                                                : s;
 }
