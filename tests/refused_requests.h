@@ -14,6 +14,7 @@
 #include <sys/mman.h>
 
 #include "src/base/json.h"
+#include "src/scenario/scenario.h"
 #include "tests/check.h"
 
 // --- who refuses --------------------------------------------------------------------------------
@@ -97,8 +98,10 @@ static int use_refusing_allocators(void **state)
 
 // --- what is tried ------------------------------------------------------------------------------
 
-// Some work of the library: writes what came of it to `out`. The status is the library's.
-typedef status work(const char *settings, FILE *out);
+// Some work of the library, on something of which `about` tells, or on a scenario that is made for
+// it: writes what came of it to `out`. The status is the library's.
+typedef status work(const char *about, FILE *out);
+typedef status scenario_work(scenario *s, FILE *out);
 
 // Whether a status is one that a refused request may lead to. A law that cannot start has a
 // sentence and no code of its own: the scenario that asks for it is refused.
@@ -110,45 +113,7 @@ static bool tells_of_refusal(status code)
 
 static long tries = 12; // requests that are refused of a piece of work, at most
 
-// The work with no request refused is the measure; then each k-th, or every n-th where there are
-// many, alone and with all that follow.
-static void try_all(work *does, const char *settings)
-{
-    char *expected = NULL, *found = NULL;
-    size_t size = 0;
-    refused_at = 0;
-    for (int i = 0; i < 2; i++) { // what is asked for once in a program's life is there then
-        free(expected);
-        FILE *out = open_memstream(&expected, &size);
-        atomic_store(&requests, 0);
-        assert_int_equal(does(settings, out), STATUS_OK);
-        fclose(out);
-    }
-    const long all = atomic_load(&requests), step = (all + tries - 1) / tries;
-    assert_true(all > 0);
-
-    for (int later = 0; later < 2; later++) {
-        for (long k = 1; k <= all; k += step) {
-            FILE *out = open_memstream(&found, &size);
-            atomic_store(&requests, 0);
-            refused_later = later;
-            refused_at = k;
-            const status code = does(settings, out);
-            refused_at = 0;
-            fclose(out);
-            if (code == STATUS_OK && strcmp(found, expected) != 0) {
-                fail_msg("%s: request %ld of %ld refused%s: another result, and no failure",
-                         settings, k, all, later ? ", and all after it" : "");
-            } else if (!tells_of_refusal(code)) {
-                fail_msg("%s: request %ld of %ld refused%s: '%s'", settings, k, all,
-                         later ? ", and all after it" : "", status_text(code));
-            }
-            free(found);
-        }
-    }
-    free(expected);
-}
-
+// Refusals are told by a sentence; without any there is nothing to say.
 static void keep_nothing(void *context, const char *sentence)
 {
     (void)context;
@@ -156,4 +121,104 @@ static void keep_nothing(void *context, const char *sentence)
     if (refused_at == 0) {
         fail_msg("%s", sentence);
     }
+}
+
+static const char *scenario_text = "{}"; // of which the scenarios of a test are made
+
+// The test's scenario with settings, separated by blanks.
+static status make_scenario(scenario *s, const char *settings)
+{
+    char all[256], *rest = NULL;
+    status code =
+        scenario_parse(s, scenario_text, strlen(scenario_text), "t.yaml", NULL, keep_nothing, NULL);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    snprintf(all, sizeof all, "%s", settings);
+    for (char *one = strtok_r(all, " ", &rest); one != NULL && code == STATUS_OK;
+         one = strtok_r(NULL, " ", &rest)) {
+        fault f = {0};
+        code = scenario_override(s, one, &f);
+        if (code != STATUS_OK) {
+            keep_nothing(NULL, f.text);
+            scenario_finish(s);
+        }
+    }
+    return code;
+}
+
+// What is done again and again: one of both kinds of work.
+typedef struct attempt {
+    work *plain;
+    scenario_work *on_scenario; // NULL: the plain one
+    const char *about;          // settings of the scenario
+} attempt;
+
+static status carry_out(const attempt *a, FILE *out)
+{
+    scenario s;
+    if (a->on_scenario == NULL) {
+        return a->plain(a->about, out);
+    }
+    status code = make_scenario(&s, a->about);
+    if (code == STATUS_OK) {
+        code = a->on_scenario(&s, out);
+        scenario_finish(&s);
+    }
+    return code;
+}
+
+// What came of the work with the k-th request refused, and all after it if `later`; 0: none. The
+// text is to be freed.
+static status carry_out_refused(const attempt *a, long k, bool later, char **text)
+{
+    size_t size;
+    FILE *out = open_memstream(text, &size);
+    assert_non_null(out);
+    atomic_store(&requests, 0);
+    refused_later = later;
+    refused_at = k;
+    const status code = carry_out(a, out);
+    refused_at = 0;
+    fclose(out);
+    return code;
+}
+
+// The work with no request refused is the measure; then each k-th, or every n-th where there are
+// many, alone and with all that follow.
+static void try_each(const attempt *a)
+{
+    char *expected = NULL, *found = NULL;
+    for (int i = 0; i < 2; i++) { // what is asked for once in a program's life is there then
+        free(expected);
+        assert_int_equal(carry_out_refused(a, 0, false, &expected), STATUS_OK);
+    }
+    const long all = atomic_load(&requests), step = (all + tries - 1) / tries;
+    assert_true(all > 0);
+
+    for (int later = 0; later < 2; later++) {
+        for (long k = 1; k <= all; k += step) {
+            const status code = carry_out_refused(a, k, later, &found);
+            const char *also = later ? ", and all after it" : "";
+            if (code == STATUS_OK && strcmp(found, expected) != 0) {
+                fail_msg("%s: request %ld of %ld refused%s: another result, and no failure",
+                         a->about, k, all, also);
+            } else if (!tells_of_refusal(code)) {
+                fail_msg("%s: request %ld of %ld refused%s: '%s'", a->about, k, all, also,
+                         status_text(code));
+            }
+            free(found);
+        }
+    }
+    free(expected);
+}
+
+static void try_all(work *does, const char *about)
+{
+    try_each(&(attempt){.plain = does, .about = about});
+}
+
+static void try_with_scenario(scenario_work *does, const char *settings)
+{
+    try_each(&(attempt){.on_scenario = does, .about = settings});
 }

@@ -15,56 +15,30 @@
 #include "src/study/sweep_run.h"
 #include "tests/refused_requests.h"
 
-static status made(scenario *s, const char *settings)
-{
-    static const char text[] =
-        "title: t\n"
-        "description: some\n"
-        "run: {duration: 0.12 s}\n"
-        "initial: {angle: -0.01 rad}\n"
-        "script:\n"
-        "  - {at: 0.05, set: {motor.voltage: 2 V}}\n"
-        "  - {at: 0.06, push: -0.01 N s}\n"
-        "expect: {impacts: {value: 1, tolerance: 9}}\n"
-        "panes: [force, gap]\n"
-        "lesson:\n"
-        "  parameters: [arm.k2]\n"
-        "  steps:\n"
-        "  - {say: one, value: {arm.k2: 5}, hint: h, then: right, do: [seek 0]}\n";
-    status code = scenario_parse(s, text, strlen(text), "t.yaml", NULL, keep_nothing, NULL);
-    if (code != STATUS_OK) {
-        return code;
-    }
+// Of all that a scenario may hold.
+static const char whole_scenario[] =
+    "title: t\n"
+    "description: some\n"
+    "run: {duration: 0.12 s}\n"
+    "initial: {angle: -0.01 rad}\n"
+    "script:\n"
+    "  - {at: 0.05, set: {motor.voltage: 2 V}}\n"
+    "  - {at: 0.06, push: -0.01 N s}\n"
+    "expect: {impacts: {value: 1, tolerance: 9}}\n"
+    "panes: [force, gap]\n"
+    "lesson:\n"
+    "  parameters: [arm.k2]\n"
+    "  steps:\n"
+    "  - {say: one, value: {arm.k2: 5}, hint: h, then: right, do: [seek 0]}\n";
 
-    // each of the settings, separated by blanks
-    char all[256], *rest = NULL;
-    snprintf(all, sizeof all, "%s", settings);
-    for (char *one = strtok_r(all, " ", &rest); one != NULL; one = strtok_r(NULL, " ", &rest)) {
-        fault f = {0};
-        code = code == STATUS_OK ? scenario_override(s, one, &f) : code;
-        if (code != STATUS_OK && refused_at == 0) {
-            fail_msg("%s", f.text);
-        }
-    }
-    if (code != STATUS_OK) {
-        scenario_finish(s);
-    }
-    return code;
-}
-
-static status read_and_write(const char *settings, FILE *out)
+static status read_and_write(scenario *s, FILE *out)
 {
-    scenario s, copy;
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = scenario_copy(&copy, &s);
+    scenario copy;
+    status code = scenario_copy(&copy, s);
     if (code == STATUS_OK) {
         scenario_write(out, &copy);
         scenario_finish(&copy);
     }
-    scenario_finish(&s);
     return code;
 }
 
@@ -86,42 +60,27 @@ static status show(const scenario *s, run_result *result, FILE *out)
     return STATUS_OK;
 }
 
-static status run(const char *settings, FILE *out)
+static status run(scenario *s, FILE *out)
 {
-    scenario s;
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-
     // with rows that can be shared, as a session keeps them
     run_result result;
     run_options options = {.keep_trace = true, .rows_expected = 1000};
-    code = run_scenario_with(&s, &options, &result);
-    code = code == STATUS_OK ? show(&s, &result, out) : code;
+    status code = run_scenario_with(s, &options, &result);
+    code = code == STATUS_OK ? show(s, &result, out) : code;
     run_finish(&result);
-    scenario_finish(&s);
     return code;
 }
 
-static status predict(const char *settings, FILE *out)
+static status predict(scenario *s, FILE *out)
 {
-    parameters p;
-    scenario s;
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    p = s.parameters;
-    scenario_finish(&s);
-
     // a straight arm that turns into the wall
+    status code = STATUS_OK;
     double q[40] = {0}, w[40];
     for (size_t i = 0; i < sizeof w / sizeof w[0]; i++) {
         w[i] = 0.5;
     }
     prediction_answer answers[PREDICTOR_COUNT];
-    prediction_question question = {.parameters = &p,
+    prediction_question question = {.parameters = &s->parameters,
                                     .bodies = {.velocity = {0.5, 0.5, 0.5}},
                                     .angles = q,
                                     .velocities = w,
@@ -134,13 +93,13 @@ static status predict(const char *settings, FILE *out)
     return code;
 }
 
-static status change_on_the_way(const char *settings, FILE *out)
+static status change_on_the_way(scenario *s, FILE *out)
 {
-    scenario s;
+    scenario own;
     session made_session;
     fault f = {0};
-    status code = made(&s, settings);
-    code = code == STATUS_OK ? session_init(&made_session, &s, &f) : code;
+    status code = scenario_copy(&own, s);
+    code = code == STATUS_OK ? session_init(&made_session, &own, &f) : code;
     if (code != STATUS_OK) {
         return code;
     }
@@ -165,18 +124,12 @@ static status change_on_the_way(const char *settings, FILE *out)
     return code;
 }
 
-static status step_as_a_loop(const char *settings, FILE *out)
+static status step_as_a_loop(scenario *s, FILE *out)
 {
-    scenario s;
     run_loop *loop = NULL;
     fault f = {0};
     const loop_options options = {.keep_trace = true};
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = loop_create(&loop, &s, &options, &f);
-    scenario_finish(&s);
+    status code = loop_create(&loop, s, &options, &f);
     for (int i = 1; i <= 4 && code == STATUS_OK; i++) {
         code = loop_until(loop, 0.03 * i, &f);
         code = code == STATUS_OK && i == 2
@@ -191,31 +144,25 @@ static status step_as_a_loop(const char *settings, FILE *out)
     return code;
 }
 
-static void make_one(void *context, size_t i, scenario *made_one)
+static void make_one(void *context, size_t i, scenario *made)
 {
-    *made_one = *(const scenario *)context;
-    made_one->parameters.motor.voltage = 1 + (double)i;
+    *made = *(const scenario *)context;
+    made->parameters.motor.voltage = 1 + (double)i;
 }
 
-static status run_many(const char *settings, FILE *out)
+static status run_many(scenario *s, FILE *out)
 {
     enum { RUNS = 6 };
-    scenario s;
     summary all[RUNS];
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = batch_run(make_one, &s, RUNS, 2, all);
+    status code = batch_run(make_one, s, RUNS, 2, all);
     for (int i = 0; i < RUNS && code == STATUS_OK; i++) {
         fprintf(out, "%a\n", all[i].peak_force_N);
         code = all[i].status;
     }
-    scenario_finish(&s);
     return code;
 }
 
-static status sweep_over(const char *settings, FILE *out)
+static status sweep_over(scenario *s, FILE *out)
 {
     char *vary[] = {(char[]){"motor.voltage=1:3:3"}, (char[]){"arm.k2=5,10"}};
     sweep_request request = {.vary = vary, .vary_count = 2};
@@ -224,14 +171,9 @@ static status sweep_over(const char *settings, FILE *out)
     sweep_progress progress;
     robust_law law = {0};
     fault f = {0};
-    scenario s;
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
 
     // into a database in memory, and out again
-    code = sweep_init(&made_sweep, &s, &request, &f);
+    status code = sweep_init(&made_sweep, s, &request, &f);
     if (code == STATUS_OK) {
         const sweep_options options = {.jobs = 1};
         code = sweep_store_open(&store, NULL, &made_sweep, &f);
@@ -243,21 +185,15 @@ static status sweep_over(const char *settings, FILE *out)
         sweep_store_close(store);
         sweep_finish(&made_sweep);
     }
-    scenario_finish(&s);
     return code;
 }
 
-static status put_side_by_side(const char *settings, FILE *out)
+static status put_side_by_side(scenario *s, FILE *out)
 {
-    scenario s;
     run_result result;
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = run_scenario(&s, false, &result);
+    status code = run_scenario(s, false, &result);
     if (code == STATUS_OK) {
-        compare_row row = compare_row_of(&s, &result);
+        compare_row row = compare_row_of(s, &result);
         compare_table table = {.rows = &row, .count = 1, .group = 1};
         json_t *object = compare_json(&table);
         code = json_lost_something() || object == NULL ? STATUS_NO_MEMORY : STATUS_OK;
@@ -268,7 +204,6 @@ static status put_side_by_side(const char *settings, FILE *out)
         json_decref(object);
     }
     run_finish(&result);
-    scenario_finish(&s);
     return code;
 }
 
@@ -302,7 +237,7 @@ static status write_whole_file(const char *path, FILE *out)
 static void scenarios_are_read_copied_and_written(void **state)
 {
     (void)state;
-    try_all(read_and_write, "arm.links=4 arm.joint_stiffness=4,5,6");
+    try_with_scenario(read_and_write, "arm.links=4 arm.joint_stiffness=4,5,6");
 }
 
 static void runs_of_every_engine(void **state)
@@ -315,7 +250,7 @@ static void runs_of_every_engine(void **state)
                                            "wall.contact=kelvin-voigt wall.stiffness=1e4",
                                            "arm.hub_joint=spring arm.k1=100"};
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
-        try_all(run, settings[i]);
+        try_with_scenario(run, settings[i]);
     }
 }
 
@@ -325,34 +260,34 @@ static void runs_of_the_rig(void **state)
     static const char *const settings[] = {"control.law=hybrid", "control.law=optimal",
                                            "control.law=observer", "control.law=inverse-dynamics"};
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
-        try_all(run, settings[i]);
+        try_with_scenario(run, settings[i]);
     }
 }
 
 static void predictions(void **state)
 {
     (void)state;
-    try_all(predict, "");
-    try_all(predict, "arm.links=6 arm.damping_ratio=0.01");
-    try_all(predict, "wall.contact=kelvin-voigt wall.stiffness=1e4");
+    try_with_scenario(predict, "");
+    try_with_scenario(predict, "arm.links=6 arm.damping_ratio=0.01");
+    try_with_scenario(predict, "wall.contact=kelvin-voigt wall.stiffness=1e4");
 }
 
 static void sessions_and_loops(void **state)
 {
     (void)state;
-    try_all(change_on_the_way, "");
-    try_all(change_on_the_way, "control.law=hybrid");
-    try_all(step_as_a_loop, "");
-    try_all(step_as_a_loop, "control.law=hybrid");
+    try_with_scenario(change_on_the_way, "");
+    try_with_scenario(change_on_the_way, "control.law=hybrid");
+    try_with_scenario(step_as_a_loop, "");
+    try_with_scenario(step_as_a_loop, "control.law=hybrid");
 }
 
 static void many_runs(void **state)
 {
     (void)state;
-    try_all(run_many, "");
-    try_all(run_many, "arm.links=3");
-    try_all(sweep_over, "control.law=hybrid");
-    try_all(put_side_by_side, "");
+    try_with_scenario(run_many, "");
+    try_with_scenario(run_many, "arm.links=3");
+    try_with_scenario(sweep_over, "control.law=hybrid");
+    try_with_scenario(put_side_by_side, "");
 }
 
 static void whole_files(void **state)
@@ -374,6 +309,7 @@ static void whole_files(void **state)
 int main(int argc, char **argv)
 {
     tries = argc > 1 ? atol(argv[1]) : tries;
+    scenario_text = whole_scenario;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenarios_are_read_copied_and_written),
         cmocka_unit_test(runs_of_every_engine),

@@ -72,36 +72,19 @@ static status place_of(const char *name, FILE *out)
 
 // --- studies ------------------------------------------------------------------------------------
 
-static status made(scenario *s, const char *settings)
-{
-    static const char text[] = "title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\n"
-                               "run: {duration: 0.12 s}\ninitial: {angle: -0.01 rad}\n";
-    status code = scenario_parse(s, text, strlen(text), "t.yaml", NULL, keep_nothing, NULL);
-    char all[256], *rest = NULL;
-    snprintf(all, sizeof all, "%s", settings);
-    for (char *one = strtok_r(all, " ", &rest); one != NULL && code == STATUS_OK;
-         one = strtok_r(NULL, " ", &rest)) {
-        fault f = {0};
-        code = scenario_override(s, one, &f);
-        if (code != STATUS_OK) {
-            scenario_finish(s);
-        }
-    }
-    return code;
-}
+static const char short_run[] = "title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\n"
+                                "run: {duration: 0.12 s}\ninitial: {angle: -0.01 rad}\n";
 
-static status draw_cases(const char *path, FILE *out)
+static char set_path[64]; // of the file with the cases
+
+static status draw_cases(scenario *s, FILE *out)
 {
     robust_set set;
     fault f = {0};
-    scenario s, derived;
-    status code = made(&s, "");
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = robust_set_read(&set, path, &f);
+    scenario derived;
+    status code = robust_set_read(&set, set_path, &f);
     for (int i = 0; code == STATUS_OK && i < set.case_count; i++) {
-        code = robust_case_scenario(&derived, &s, &set.cases[i], &f);
+        code = robust_case_scenario(&derived, s, &set.cases[i], &f);
         if (code == STATUS_OK) {
             fprintf(out, "%s %g %d\n", set.cases[i].title, derived.parameters.arm.k2,
                     derived.action_count);
@@ -111,7 +94,6 @@ static status draw_cases(const char *path, FILE *out)
         }
     }
     robust_set_finish(&set);
-    scenario_finish(&s);
     return code;
 }
 
@@ -127,82 +109,59 @@ static status thesis(const char *ignored, FILE *out)
     return code;
 }
 
-static status sensor(const char *settings, FILE *out)
+static status sensor(scenario *s, FILE *out)
 {
-    scenario s;
     sensor_view view;
     fault f = {0};
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = sensor_view_compute(&s, 4, NULL, &view, &f);
+    const status code = sensor_view_compute(s, 4, NULL, &view, &f);
     fprintf(out, "%a %a %a\n", view.peak, view.momentum, view.sensed[0]);
-    scenario_finish(&s);
     return code;
 }
 
-static status converge(const char *settings, FILE *out)
+static status converge(scenario *s, FILE *out)
 {
-    scenario s;
     convergence_panel panel;
     fault f = {0};
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = convergence_compute(&s, NULL, &panel, &f);
+    const status code = convergence_compute(s, NULL, &panel, &f);
     for (int i = 0; i < panel.row_count && code == STATUS_OK; i++) {
         fprintf(out, "%s %a\n", panel.rows[i].key, panel.rows[i].value[0]);
     }
-    scenario_finish(&s);
     return code;
 }
 
-static status measure_stiffness(const char *settings, FILE *out)
+static status measure_stiffness(scenario *s, FILE *out)
 {
-    scenario s;
     calibration c;
     const double commands[] = {1};
     fault f = {0};
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = calibrate(&s, commands, 1, NULL, &c, &f);
+    status code = calibrate(s, commands, 1, NULL, &c, &f);
     if (code == STATUS_OK) {
-        json_t *object = calibration_json(&c, &s, "");
+        json_t *object = calibration_json(&c, s, "");
         code = json_lost_something() || object == NULL ? STATUS_NO_MEMORY : STATUS_OK;
         fprintf(out, "%a\n", c.points[0].k2);
         json_decref(object);
     }
-    scenario_finish(&s);
     return code;
 }
 
 // --- parts of a sweep ---------------------------------------------------------------------------
 
 // Two parts into files, together into a third, and read as columns.
-static status sweep_in_parts(const char *settings, FILE *out)
+static status sweep_in_parts(scenario *s, FILE *out)
 {
     char paths[3][64], *files[] = {paths[0], paths[1]};
     char *vary[] = {(char[]){"motor.voltage=1:3"}};
     sweep_request request = {
         .vary = vary, .vary_count = 1, .sampling = SWEEP_LATIN, .runs = 4, .seed = 1};
     sweep w;
-    scenario s;
     fault f = {0};
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
     for (int i = 0; i < 3; i++) {
         snprintf(paths[i], sizeof paths[i], "%s/%d.sqlite", folder, i);
         unlink(paths[i]);
     }
 
     // the parts
-    code = sweep_init(&w, &s, &request, &f);
+    status code = sweep_init(&w, s, &request, &f);
     const bool begun = code == STATUS_OK;
     for (int i = 0; i < 2 && code == STATUS_OK; i++) {
         sweep_store *store = NULL;
@@ -231,7 +190,6 @@ static status sweep_in_parts(const char *settings, FILE *out)
     if (begun) {
         sweep_finish(&w);
     }
-    scenario_finish(&s);
 
     // a database that could not be read in full may seem to be none
     return code == STATUS_CANNOT_READ && refused_at > 0 ? STATUS_NO_MEMORY : code;
@@ -248,41 +206,35 @@ static status show_rows(const run_result *result, FILE *out)
     return result->summary.status;
 }
 
-static status run(const char *settings, FILE *out)
+static status run(scenario *s, FILE *out)
 {
-    scenario s;
     run_result result;
-    status code = made(&s, settings);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    code = run_scenario(&s, true, &result);
+    const status code = run_scenario(s, true, &result);
     show_rows(&result, out);
     run_finish(&result);
-    scenario_finish(&s);
     return code;
 }
 
 // A program in the shell that is asked, and asked again after a change.
-static status ask_a_program(const char *command, FILE *out)
+static status ask_a_program(scenario *s, FILE *out)
 {
-    scenario s;
+    scenario own;
     session t;
     fault f = {0};
-    status code = made(&s, "");
+    status code = scenario_copy(&own, s);
     if (code != STATUS_OK) {
         return code;
     }
-    char law[] = "control.law=process", rate[] = "control.rate=100", said[128];
-    snprintf(said, sizeof said, "%s", command);
-    char *const settings[] = {said, law, rate};
-    code = scenario_override_all(&s, settings, 3, keep_nothing, NULL);
+    char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
+    char law[] = "control.law=process";
+    char *const settings[] = {command, law};
+    code = scenario_override_all(&own, settings, 2, keep_nothing, NULL);
     if (code != STATUS_OK) {
-        scenario_finish(&s);
+        scenario_finish(&own);
         return refused_at > 0 ? STATUS_NO_MEMORY : code;
     }
-    s.parameters.code_allowed = true;
-    code = session_init(&t, &s, &f);
+    own.parameters.code_allowed = true;
+    code = session_init(&t, &own, &f);
     if (code != STATUS_OK) {
         return code;
     }
@@ -295,8 +247,6 @@ static status ask_a_program(const char *command, FILE *out)
     session_finish(&t);
 
     // without a tape the program cannot go on from the past
-    if (code != STATUS_OK && refused_at == 0)
-        fprintf(stderr, "%s\n", f.text);
     return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
 }
 
@@ -323,33 +273,32 @@ static void a_name_means_the_same_scenario(void **state)
 static void sets_and_studies(void **state)
 {
     (void)state;
-    char path[64];
     put_file("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
-    snprintf(path, sizeof path, "%s/set", folder);
-    try_all(draw_cases, path);
+    snprintf(set_path, sizeof set_path, "%s/set", folder);
+    try_with_scenario(draw_cases, "");
     try_all(thesis, "");
-    try_all(sensor, "");
-    try_all(converge, "");
-    try_all(measure_stiffness, "");
+    try_with_scenario(sensor, "");
+    try_with_scenario(converge, "");
+    try_with_scenario(measure_stiffness, "");
 }
 
 static void parts_of_a_sweep(void **state)
 {
     (void)state;
-    try_all(sweep_in_parts, "");
+    try_with_scenario(sweep_in_parts, "");
 }
 
 static void runs_of_the_printed_model(void **state)
 {
     (void)state;
-    try_all(run, "arm.model=printed");
-    try_all(run, "arm.model=printed control.law=hybrid");
+    try_with_scenario(run, "arm.model=printed");
+    try_with_scenario(run, "arm.model=printed control.law=hybrid");
 }
 
 static void programs_as_controllers(void **state)
 {
     (void)state;
-    try_all(ask_a_program, "control.command=while read -r line; do echo '{\"command\": 1}'; done");
+    try_with_scenario(ask_a_program, "control.rate=100");
 }
 
 static int make_folder(void **state)
@@ -373,6 +322,7 @@ static int remove_folder(void **state)
 int main(int argc, char **argv)
 {
     tries = argc > 1 ? atol(argv[1]) : tries;
+    scenario_text = short_run;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_name_means_the_same_scenario),
         cmocka_unit_test(sets_and_studies),
