@@ -1,9 +1,5 @@
 // The library's own work with every request for memory, descriptors and threads refused in turn:
-// reading, runs of every engine and of the rig, predictions, sessions, loops, batches, sweeps and
-// whole files.
-#include <unistd.h>
-
-#include "src/base/whole_file.h"
+// reading, runs of every engine and of the rig, predictions, sessions, loops, batches and sweeps.
 #include "src/predict/predictors.h"
 #include "src/run/export.h"
 #include "src/run/loop.h"
@@ -207,31 +203,6 @@ static status put_side_by_side(scenario *s, FILE *out)
     return code;
 }
 
-static status write_whole_file(const char *path, FILE *out)
-{
-    whole_file w;
-    fault f = {0};
-    FILE *old = fopen(path, "w");
-    fputs("old", old);
-    fclose(old);
-    status code = whole_file_check(path, &f);
-    code = code == STATUS_OK ? whole_file_open(&w, path, &f) : code;
-    if (code == STATUS_OK) {
-        fputs("new", w.stream);
-        code = whole_file_commit(&w, &f);
-    }
-
-    // the file of before, or the whole new one
-    char now[8] = "";
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    assert_non_null(fgets(now, sizeof now, file));
-    fclose(file);
-    assert_string_equal(now, code == STATUS_OK ? "new" : "old");
-    fputs(now, out);
-    return code;
-}
-
 // --- the tests ----------------------------------------------------------------------------------
 
 static void scenarios_are_read_copied_and_written(void **state)
@@ -290,21 +261,6 @@ static void many_runs(void **state)
     try_with_scenario(put_side_by_side, "");
 }
 
-static void whole_files(void **state)
-{
-    (void)state;
-    char folder[] = "/tmp/no-memory-XXXXXX", path[64], link[64];
-    assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/file", folder);
-    snprintf(link, sizeof link, "%s/link", folder);
-    assert_int_equal(symlink("file", link), 0);
-    try_all(write_whole_file, path);
-    try_all(write_whole_file, link);
-    unlink(link);
-    unlink(path);
-    assert_int_equal(rmdir(folder), 0); // no temporary stays
-}
-
 // argument: how many requests are refused, spread over those of a piece of work
 int main(int argc, char **argv)
 {
@@ -317,7 +273,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(predictions),
         cmocka_unit_test(sessions_and_loops),
         cmocka_unit_test(many_runs),
-        cmocka_unit_test(whole_files),
     };
     return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;
 }

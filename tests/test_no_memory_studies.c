@@ -1,9 +1,8 @@
 // As test_no_memory, for what stands around a run: scenarios by name, sets of cases, studies, parts
-// of a sweep, the printed model, and programs that are controllers.
+// of a sweep, and the printed model.
 #include <unistd.h>
 
 #include "src/run/export.h"
-#include "src/session/session.h"
 #include "src/study/calibrate.h"
 #include "src/study/convergence.h"
 #include "src/study/robust.h"
@@ -215,41 +214,6 @@ static status run(scenario *s, FILE *out)
     return code;
 }
 
-// A program in the shell that is asked, and asked again after a change.
-static status ask_a_program(scenario *s, FILE *out)
-{
-    scenario own;
-    session t;
-    fault f = {0};
-    status code = scenario_copy(&own, s);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
-    char law[] = "control.law=process";
-    char *const settings[] = {command, law};
-    code = scenario_override_all(&own, settings, 2, keep_nothing, NULL);
-    if (code != STATUS_OK) {
-        scenario_finish(&own);
-        return refused_at > 0 ? STATUS_NO_MEMORY : code;
-    }
-    own.parameters.code_allowed = true;
-    code = session_init(&t, &own, &f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    // what is asked after the change follows what was asked before it
-    code = t.run.summary.status;
-    session_seek(&t, 0.05);
-    code = code == STATUS_OK ? session_change(&t, PARAMETER_INDEX(control.force), "2", &f) : code;
-    code = code == STATUS_OK ? show_rows(&t.run, out) : code;
-    session_finish(&t);
-
-    // without a tape the program cannot go on from the past
-    return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
-}
-
 // --- the tests ----------------------------------------------------------------------------------
 
 static void a_name_means_the_same_scenario(void **state)
@@ -295,12 +259,6 @@ static void runs_of_the_printed_model(void **state)
     try_with_scenario(run, "arm.model=printed control.law=hybrid");
 }
 
-static void programs_as_controllers(void **state)
-{
-    (void)state;
-    try_with_scenario(ask_a_program, "control.rate=100");
-}
-
 static int make_folder(void **state)
 {
     return use_refusing_allocators(state) != 0 || mkdtemp(folder) == NULL;
@@ -328,7 +286,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(sets_and_studies),
         cmocka_unit_test(parts_of_a_sweep),
         cmocka_unit_test(runs_of_the_printed_model),
-        cmocka_unit_test(programs_as_controllers),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder) != 0;
 }

@@ -137,11 +137,13 @@ static char *target_of(const char *path)
 // --- what killed runs left ------------------------------------------------------------------
 
 // A temporary is locked as long as its run lives, and the lock goes with the run however that ends.
+// False if another run has taken it for one left behind, in the moment before; where the file
+// system has no locks none does.
 static bool lock_temporary(int descriptor)
 {
     struct stat about;
-    return flock(descriptor, LOCK_EX | LOCK_NB) == 0 && fstat(descriptor, &about) == 0 &&
-           about.st_nlink > 0;
+    const bool held = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    return !held && (fstat(descriptor, &about) != 0 || about.st_nlink > 0);
 }
 
 // Whether a name is that of a temporary, ".impactlab-PROCESS-NUMBER.part".
@@ -319,7 +321,6 @@ static int create_temporary(whole_file *w, mode_t mode)
         // creating it tells whether the name is free
         int descriptor = open(w->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0 && !lock_temporary(descriptor)) {
-            // taken for one left behind, in the moment before the lock
             close(descriptor);
             errno = EEXIST;
         } else if (descriptor >= 0) {

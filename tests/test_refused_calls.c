@@ -1,0 +1,174 @@
+// Calls of the system refused in turn, and requests for memory with them: whole files are those of
+// before or the whole new ones, programs that are controllers answer or the run says why not, and
+// what measures says that it cannot.
+#include "src/base/whole_file.h"
+#include "src/rig/keeper.h"
+#include "src/session/session.h"
+#include "src/study/bench.h"
+#include "tests/refused_calls.h"
+
+// --- whole files --------------------------------------------------------------------------------
+
+static void assert_holds(const char *path, const char *expected)
+{
+    char now[8] = "";
+    FILE *file = __real_fopen64(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(now, sizeof now, file));
+    fclose(file);
+    assert_string_equal(now, expected);
+}
+
+static status write_whole_file(const char *path, FILE *out)
+{
+    whole_file w;
+    fault f = {0};
+    FILE *old = __real_fopen64(path, "w");
+    fputs("old", old);
+    fclose(old);
+    status code = whole_file_check(path, &f);
+    code = code == STATUS_OK ? whole_file_open(&w, path, &f) : code;
+    if (code == STATUS_OK) {
+        fputs("new", w.stream);
+        code = whole_file_commit(&w, &f);
+    }
+
+    // the file of before, or the whole new one; whatever is refused is said
+    assert_holds(path, code == STATUS_OK ? "new" : "old");
+    assert_true(code == STATUS_OK || strstr(f.text, "cannot be written: ") != NULL);
+    fputs(code == STATUS_OK ? "new" : "old", out);
+    return code;
+}
+
+// --- programs -----------------------------------------------------------------------------------
+
+// A program that hears a line, answers it and ends with a status of its own.
+static status ask_once(const char *command, FILE *out)
+{
+    kept_program p;
+    char answer[16] = "";
+    const int reason = kept_program_start(&p, command);
+    if (reason != 0) {
+        return STATUS_NO_MEMORY;
+    }
+    const bool asked = __real_send(p.input, "5\n", 2, MSG_NOSIGNAL) == 2;
+    struct pollfd watched = {.fd = p.output, .events = POLLIN};
+    assert_int_equal(__real_poll(&watched, 1, 60000), 1);
+    const ssize_t length = __real_read(p.output, answer, sizeof answer - 1);
+    const int ended = kept_program_end(&p);
+    fprintf(out, "%s%d\n", answer, ended);
+
+    // one that never came to its work shows that in its answer or in how it ended
+    return asked && length > 0 && ended == 7 ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+// A program in the shell that is asked, and asked again after a change.
+static status ask_a_program(scenario *s, FILE *out)
+{
+    scenario own;
+    session t;
+    fault f = {0};
+    status code = scenario_copy(&own, s);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
+    char law[] = "control.law=process";
+    char *const settings[] = {command, law};
+    code = scenario_override_all(&own, settings, 2, keep_nothing, NULL);
+    if (code != STATUS_OK) {
+        scenario_finish(&own);
+        return refused_at > 0 ? STATUS_NO_MEMORY : code;
+    }
+    own.parameters.code_allowed = true;
+    code = session_init(&t, &own, &f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // what is asked after the change follows what was asked before it
+    code = t.run.summary.status;
+    session_seek(&t, 0.05);
+    code = code == STATUS_OK ? session_change(&t, PARAMETER_INDEX(control.force), "2", &f) : code;
+    code = code == STATUS_OK ? t.run.summary.status : code;
+    for (size_t i = 0; i < t.run.trace.row_count && code == STATUS_OK; i++) {
+        fprintf(out, "%a %a\n", t.run.trace.rows[i].force, t.run.trace.rows[i].hub_angle);
+    }
+    session_finish(&t);
+
+    // without a tape the program cannot go on from the past
+    return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
+}
+
+// --- measurements -------------------------------------------------------------------------------
+
+// A number, or a sentence that says why there is none.
+static status measure(const char *name, FILE *out)
+{
+    double value = -1;
+    fault f = {0};
+    status code = STATUS_BAD_ARGUMENT;
+    for (int i = 0; i < bench_count; i++) {
+        if (strcmp(bench_table[i].name, name) == 0) {
+            code = bench_table[i].measure(&value, &f);
+        }
+    }
+    assert_true(code == STATUS_OK ? value > 0 && isfinite(value) : f.text[0] != '\0');
+    fputs("measured", out);
+    return code;
+}
+
+// --- the tests ----------------------------------------------------------------------------------
+
+static void whole_files(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/refused-XXXXXX", path[64], link[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/file", folder);
+    snprintf(link, sizeof link, "%s/link", folder);
+    assert_int_equal(symlink("file", link), 0);
+    try_all(write_whole_file, path);
+    try_all(write_whole_file, link);
+    unlink(link);
+    unlink(path);
+    assert_int_equal(rmdir(folder), 0); // no temporary stays
+}
+
+static void programs_as_controllers(void **state)
+{
+    (void)state;
+    memory_is_given = true;
+    try_all(ask_once, "read x; echo \"$x\"; exit 7");
+    try_with_scenario(ask_a_program, "control.rate=100");
+    memory_is_given = false;
+    try_with_scenario(ask_a_program, "control.rate=100");
+}
+
+static void measurements(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"arm_n2_us_per_ms",     "csv_us_per_row",
+                                        "struck_n8_us_per_ms",  "predict_us",
+                                        "batch_n2_steps_per_s", "batch_width_4_us_per_run",
+                                        "sweep_us_per_run",     "arm_n128_free_us_per_ms"};
+    bench_window = 1e-9;
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        try_all(measure, names[i]);
+    }
+}
+
+// argument: how many requests are refused, spread over those of a piece of work
+int main(int argc, char **argv)
+{
+    static const char short_run[] = "title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\n"
+                                    "run: {duration: 0.12 s}\ninitial: {angle: -0.01 rad}\n";
+    tries = argc > 1 ? atol(argv[1]) : tries;
+    scenario_text = short_run;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(whole_files),
+        cmocka_unit_test(programs_as_controllers),
+        cmocka_unit_test(measurements),
+    };
+    return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;
+}
