@@ -206,6 +206,10 @@ says err "did you mean 'voltage'?"
 printf 'script: [{at: 99 s, set: {motor.voltage: 1}}]\nrun: {duration: -1}\nwall: {knd: 3}\n' >order.yaml
 expect 2 check order.yaml
 sed 's/^[^:]*:\([0-9]*\):.*/\1/' err | sort -nc || fail "faults are not told line by line"
+# a name that is none has no place in a file
+expect 2 check nonesuch hit.yaml
+says err "impactlab: 'nonesuch' is neither a scenario nor a file"
+says out "hit.yaml: no fault"
 # every scenario that ships is sound
 mapfile -t shipped < <(find "$IMPACTLAB_SCENARIOS" -name '*.yaml' -not -path '*/recipes/*')
 expect 0 check "${shipped[@]}"

@@ -60,12 +60,6 @@ static void finish_filmed(filmed *m)
     }
 }
 
-static void complain_sentence(void *context, const char *sentence)
-{
-    (void)context;
-    complain("%s", sentence);
-}
-
 // Opens the scenarios, then the first once more with each --beside. Returns the exit status.
 static int open_all(filmed *m, const arguments *a)
 {

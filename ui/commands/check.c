@@ -8,23 +8,23 @@
 typedef struct checking {
     json_t *files;  // an object each
     json_t *faults; // the sentences of the file in hand
-    int count;      // of them
+    told_faults told;
 } checking;
 
 // Tells and keeps a fault.
 static void take_fault(void *context, const char *sentence)
 {
     checking *c = context;
-    c->count++;
-    report_to_stderr(NULL, sentence);
+    tell_fault(&c->told, sentence);
     json_add(c->faults, json_text(sentence));
 }
 
-// Reads one file (or a scenario by its name). True if it has no fault.
-static bool check_one(const char *file, const arguments *a, checking *c)
+// Reads one file (or a scenario by its name). Returns the exit status.
+static int check_one(const char *file, const arguments *a, checking *c)
 {
     scenario s;
-    c->count = 0;
+    int result = EXIT_DONE;
+    c->told = (told_faults){0};
     c->faults = json_array();
 
     // a file under test, or the name of a scenario
@@ -32,19 +32,22 @@ static bool check_one(const char *file, const arguments *a, checking *c)
                                           : scenario_open(&s, file, take_fault, c);
     if (code == STATUS_OK) {
         scenario_finish(&s);
+        tell_first_fault(&c->told);
         if (summary_wanted(a)) {
             say("%s: no fault\n", file);
         }
-    } else if (c->count == 0) {
-        complain("'%s': %s", file, status_text(code));
-        json_add(c->faults, json_text(status_text(code)));
+    } else {
+        if (c->told.count == 0) {
+            json_add(c->faults, json_text(status_text(code)));
+        }
+        result = tell_unopened(&c->told, code, file);
     }
 
     json_t *object = json_object();
     json_put(object, "file", json_text(file));
     json_put(object, "faults", c->faults);
     json_add(c->files, object);
-    return code == STATUS_OK;
+    return result;
 }
 
 static int check(const arguments *a)
@@ -52,7 +55,7 @@ static int check(const arguments *a)
     checking c = {.files = json_array()};
     int result = EXIT_DONE;
     for (int i = 0; i < a->operand_count; i++) {
-        result = check_one(a->operands[i], a, &c) ? result : EXIT_BAD_ARGUMENTS;
+        result = worse(result, check_one(a->operands[i], a, &c));
     }
     if (a->json != NULL) {
         return worse(result, write_json(a->json, c.files));

@@ -47,15 +47,9 @@ void report_to_stderr(void *context, const char *sentence)
     print_printable(stderr, "%s\n", sentence);
 }
 
-// Counts the faults it passes on, so that none of them goes unsaid. The first one waits until it is
-// known whether it is about a place in a file, which begins the sentence then.
-typedef struct told_faults {
-    int count;
-    char *first; // not told yet, or NULL
-} told_faults;
-
-static void tell_first(told_faults *t)
+void tell_first_fault(told_faults *t)
 {
+    assert(t != NULL);
     if (t->first != NULL) {
         report_to_stderr(NULL, t->first);
     }
@@ -63,19 +57,20 @@ static void tell_first(told_faults *t)
     t->first = NULL;
 }
 
-static void report_and_count(void *context, const char *sentence)
+void tell_fault(void *context, const char *sentence)
 {
     told_faults *t = context;
-    tell_first(t);
+    assert(t != NULL && sentence != NULL);
+    tell_first_fault(t);
     t->first = t->count++ == 0 ? strdup(sentence) : NULL;
     if (t->first == NULL) {
         report_to_stderr(NULL, sentence);
     }
 }
 
-// Tells of a scenario that could not be opened, and how: one that is not there has no place.
-static int explain_scenario(told_faults *t, status code, const char *name_or_file)
+int tell_unopened(told_faults *t, status code, const char *name_or_file)
 {
+    assert(t != NULL && code != STATUS_OK && name_or_file != NULL);
     if (t->count == 0) {
         complain("'%s': %s", name_or_file, status_text(code));
     } else if (t->first != NULL && code == STATUS_BAD_ARGUMENT) {
@@ -83,7 +78,7 @@ static int explain_scenario(told_faults *t, status code, const char *name_or_fil
         free(t->first);
         t->first = NULL;
     }
-    tell_first(t);
+    tell_first_fault(t);
     return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
 }
 
@@ -107,7 +102,7 @@ static int check_keeps_scenario(const scenario *s, const arguments *a)
     return EXIT_DONE;
 }
 
-static void complain_sentence(void *context, const char *sentence)
+void complain_sentence(void *context, const char *sentence)
 {
     (void)context;
     complain("%s", sentence);
@@ -117,11 +112,11 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
 {
     told_faults told = {0};
     assert(s != NULL && name_or_file != NULL && a != NULL);
-    status code = scenario_open(s, name_or_file, report_and_count, &told);
+    status code = scenario_open(s, name_or_file, tell_fault, &told);
     if (code != STATUS_OK) {
-        return explain_scenario(&told, code, name_or_file);
+        return tell_unopened(&told, code, name_or_file);
     }
-    tell_first(&told);
+    tell_first_fault(&told);
 
     // what the command line allows and changes
     s->parameters.code_allowed = a->allow_code;

@@ -132,6 +132,26 @@ void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // A fault_handler that prints the sentence to stderr.
 void report_to_stderr(void *context, const char *sentence);
 
+// The same as the program's complaint.
+void complain_sentence(void *context, const char *sentence);
+
+// Faults of a scenario that is opened, told as they come, so that none goes unsaid. The first one
+// waits until it is known whether it is about a place in a file, which begins the sentence then.
+typedef struct told_faults {
+    int count;
+    char *first; // not told yet, or NULL
+} told_faults;
+
+// Takes one of them: a fault_handler whose context is the told_faults.
+void tell_fault(void *context, const char *sentence);
+
+// Tells the first one if it waits still, as where the scenario was opened all the same.
+void tell_first_fault(told_faults *t);
+
+// Tells why a scenario could not be opened, for which scenario_open returned `code`; what is not
+// there at all has no place and is told as the program's own complaint. Returns the exit status.
+int tell_unopened(told_faults *t, status code, const char *name_or_file);
+
 // Reads argv (argv[0] is the command's name) by the command's rows of options, which may stand
 // before or after the operands, and checks each value by its row. True with `a` filled, to be freed
 // by arguments_finish; false if the command is over (help was asked for, or an argument is wrong
