@@ -338,6 +338,34 @@ static void test_what_lies_over_a_picture_is_seen(void **state)
     explorer_finish(&ex);
 }
 
+// What cairo could not draw is not shown: words stand there, and the next drawing begins anew.
+static void test_a_picture_that_failed_is_words(void **state)
+{
+    (void)state;
+    screen s = {0};
+    picture_layer layer = {.cell_width = 8, .cell_height = 16};
+    picture_region regions[PICTURE_REGIONS];
+    s.pictures = &layer;
+    assert_true(screen_resize(&s, 60, 20));
+
+    picture_end(&s, picture_begin(&s, 0, 0, 50, 5));
+    cairo_t *broken = picture_begin(&s, 10, 6, 40, 7);
+    cairo_restore(broken); // nothing was saved: an error that stays, as that of memory does
+    picture_end(&s, broken);
+    assert_int_equal(pictures_regions(&s, 1000, 1000, regions), 1);
+    assert_int_equal(regions[0].picture, 0);
+    assert_int_equal(s.cells[9 * s.width + 19].glyph, 'n');
+    assert_int_equal(s.cells[9 * s.width + 40].glyph, 's');
+
+    // a surface with an error is not taken again
+    cairo_surface_finish(layer.items[0].surface);
+    cairo_surface_flush(layer.items[0].surface);
+    pictures_clear(&s);
+    picture_end(&s, picture_begin(&s, 0, 0, 50, 5));
+    pictures_finish(&layer);
+    screen_finish(&s);
+}
+
 static void test_a_screen_without_pictures_has_dots(void **state)
 {
     (void)state;
@@ -454,6 +482,7 @@ int main(void)
         cmocka_unit_test(test_few_registers_are_enough),
         cmocka_unit_test(test_arm_and_force_are_in_the_picture),
         cmocka_unit_test(test_what_lies_over_a_picture_is_seen),
+        cmocka_unit_test(test_a_picture_that_failed_is_words),
         cmocka_unit_test(test_a_screen_without_pictures_has_dots),
         cmocka_unit_test(test_pictures_are_drawn_only_where_a_terminal_says_so),
         cmocka_unit_test(test_answers_are_no_keys),

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <stddef.h>
+#include <string.h>
 
 void pictures_finish(picture_layer *layer)
 {
@@ -22,10 +23,11 @@ void pictures_clear(screen *s)
     }
 }
 
-// Makes sure that a picture has a surface of its size; false without memory.
+// Makes sure that a picture has a surface of its size without an error; false without memory.
 static bool fit_surface(screen_picture *p, int width, int height)
 {
-    if (p->surface != NULL && cairo_image_surface_get_width(p->surface) == width &&
+    if (p->surface != NULL && cairo_surface_status(p->surface) == CAIRO_STATUS_SUCCESS &&
+        cairo_image_surface_get_width(p->surface) == width &&
         cairo_image_surface_get_height(p->surface) == height) {
         return true;
     }
@@ -75,6 +77,35 @@ cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
                          layer->ground.blue / 255.0);
     cairo_paint(cr);
     return cr;
+}
+
+// Blanks in the place of a picture, with words in the middle.
+static void put_words(screen *s, int picture, const char *words)
+{
+    const screen_picture *p = &s->pictures->items[picture];
+    const uint32_t glyph = GLYPH_PICTURE + (uint32_t)picture;
+    const int length = (int)strlen(words);
+    const int x = length < p->width ? p->x + (p->width - length) / 2 : p->x;
+    for (int row = p->y; row < p->y + p->height; row++) {
+        for (int column = p->x; column < p->x + p->width; column++) {
+            if (s->cells[(long)row * s->width + column].glyph == glyph) {
+                screen_put(s, column, row, ' ', INK_TEXT);
+            }
+        }
+    }
+    screen_text(s, x, p->y + p->height / 2, p->width, INK_TEXT, words);
+}
+
+void picture_end(screen *s, cairo_t *cr)
+{
+    assert(s != NULL && cr != NULL);
+    picture_layer *layer = s->pictures;
+    const bool drawn = cairo_status(cr) == CAIRO_STATUS_SUCCESS;
+    cairo_destroy(cr);
+    assert(layer != NULL && layer->count > 0);
+    if (!drawn) {
+        put_words(s, layer->count - 1, "no memory to draw this");
+    }
 }
 
 // How many cells from (x, y) on show a picture, in one row.

@@ -36,8 +36,12 @@ void pictures_clear(screen *s);
 
 // Begins a picture that covers a rectangle of cells, kept within the screen: the context has pixels
 // as its unit and its origin in the upper left corner, the ground is painted. NULL if the screen
-// has no pictures, or for want of memory; then the cells are as they were. cairo_destroy ends it.
+// has no pictures, or for want of memory; then the cells are as they were. picture_end is due.
 cairo_t *picture_begin(screen *s, int x, int y, int width, int height);
+
+// Ends the picture that was begun last on that screen. Where cairo could not draw all of it, which
+// only a lack of memory prevents, words in its middle say so in its place.
+void picture_end(screen *s, cairo_t *cr);
 
 // The rectangles in which pictures are seen, at most PICTURE_REGIONS, none wider or higher than
 // `most_width` x `most_height` cells; returns how many.

@@ -278,7 +278,7 @@ static void draw_stage(const explorer_state *st, stage *g)
     if (picture != NULL) {
         g->picture = picture;
         draw_pixels(st, g);
-        cairo_destroy(picture);
+        picture_end(c->screen, picture);
     } else if (c->screen->pictures == NULL) {
         draw_dots(st, g);
     }

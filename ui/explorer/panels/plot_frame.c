@@ -29,7 +29,7 @@ void plot_frame_open(const explorer_state *st, plot_frame *f)
 void plot_frame_close(plot_frame *f)
 {
     if (f->picture != NULL) {
-        cairo_destroy(f->picture);
+        picture_end(f->canvas.screen, f->picture);
         f->picture = NULL;
     }
 }
