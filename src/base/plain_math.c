@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <float.h>
 #include <math.h>
-#include <stdint.h>
-#include <string.h>
+
+#include "src/base/double_bits.h"
 
 // log(2), the first part with so few bits that its product with an exponent is exact
 static const double log2_high = 0x1.62e42feep-1, log2_low = 0x1.a39ef35793c76p-33;
@@ -64,10 +64,7 @@ double plain_exp(double x)
     }
 
     // times 2^power
-    const uint64_t bits = (uint64_t)(power + (DBL_MAX_EXP - 1)) << (DBL_MANT_DIG - 1);
-    double scale;
-    memcpy(&scale, &bits, sizeof scale);
-    return value * scale;
+    return value * double_of_bits((uint64_t)(power + (DBL_MAX_EXP - 1)) << (DBL_MANT_DIG - 1));
 }
 
 // 2 (artanh(s) - s)/s of z = s^2 by its series, the terms left out below 1e-18 for s up to
@@ -88,11 +85,9 @@ static int split_number(double x, double *m)
         return split_number(x * 0x1p54, m) - 54;
     }
 
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
+    const uint64_t bits = double_bits(x);
     int n = (int)(bits >> (DBL_MANT_DIG - 1)) - (DBL_MAX_EXP - 1);
-    bits -= (uint64_t)n << (DBL_MANT_DIG - 1);
-    memcpy(m, &bits, sizeof *m);
+    *m = double_of_bits(bits - ((uint64_t)n << (DBL_MANT_DIG - 1)));
     if (*m > M_SQRT2) {
         *m /= 2;
         n++;
@@ -164,11 +159,7 @@ double plain_log(double x)
     double m;
     const int n = split_number(x, &m), i = (int)(m * 64 + 0.5) - FIRST_SHARE;
     const double c = logarithms[i].share;
-    uint64_t bits;
-    double upper;
-    memcpy(&bits, &m, sizeof bits);
-    bits &= ~UINT64_C(0x7ffffff);
-    memcpy(&upper, &bits, sizeof upper);
+    const double upper = double_of_bits(double_bits(m) & ~UINT64_C(0x7ffffff));
     const double f = (upper * c - 1) + (m - upper) * c, ff = f * f, f4 = ff * ff;
 
     // log(1 + f) by its series, the terms left out below 1e-19

@@ -3,7 +3,8 @@
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
-#include <string.h>
+
+#include "src/base/double_bits.h"
 
 // value = c 2^q: bits of c that are stored, and the exponent that the stored one is counted from.
 enum { STORED_BITS = 52, EXPONENT_OFFSET = 1075 };
@@ -67,8 +68,7 @@ static decimal nearest_within(uint64_t lower, uint64_t value, uint64_t upper, in
 decimal shortest_decimal(double value)
 {
     assert(value > 0 && isfinite(value));
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
+    const uint64_t bits = double_bits(value);
 
     // value = c 2^q; whole numbers are their own digits
     const uint64_t stored = bits & ((UINT64_C(1) << STORED_BITS) - 1);
