@@ -261,7 +261,7 @@ status figure_draw_as(const char *id, const figure_options *o, const char *folde
 }
 
 status figure_draw_into(const char *id, const figure_options *o, const char *folder,
-                        const char *formats, GString *tex, fault *f)
+                        const char *formats, FILE *tex, fault *f)
 {
     assert(id != NULL && o != NULL && folder != NULL && formats != NULL);
     const thesis_figure *which = thesis_figure_find(id);
@@ -285,7 +285,7 @@ status figure_draw_into(const char *id, const figure_options *o, const char *fol
             code = caption_write(&drawn, first, f);
         }
         if (code == STATUS_OK && tex != NULL && o->latex != NULL) {
-            latex_add(tex, &drawn, o->latex, first);
+            latex_print(tex, &drawn, o->latex, first);
         }
         g_free(first);
         artwork_finish(&drawn);

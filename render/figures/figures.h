@@ -54,9 +54,9 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
 status figure_draw_as(const char *id, const figure_options *o, const char *folder,
                       const char *formats, fault *f);
 
-// The same, and the figure environment of the first format's file added to `tex` (NULL: none).
+// The same, and the figure environment of the first format's file printed to `tex` (NULL: none).
 status figure_draw_into(const char *id, const figure_options *o, const char *folder,
-                        const char *formats, GString *tex, fault *f);
+                        const char *formats, FILE *tex, fault *f);
 
 // The same as it comes: in colour, at its own width, 200 dpi.
 status figure_draw(const char *id, const char *folder, const char *formats, fault *f);

@@ -138,14 +138,15 @@ static char *path_from(const char *tex, const char *file)
     return same ? g_path_get_basename(file) : g_strdup(file);
 }
 
-void latex_add(GString *out, const artwork *a, const char *tex, const char *file)
+void latex_print(FILE *stream, const artwork *a, const char *tex, const char *file)
 {
-    assert(out != NULL && a != NULL && tex != NULL && file != NULL);
+    assert(stream != NULL && a != NULL && tex != NULL && file != NULL);
     char *path = path_from(tex, file), *stem = stem_of(file);
     char *title = text_escape(a->title != NULL ? a->title : ""), *heading = latex_of_markup(title);
     char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
     char *alt = latex_escape(a->alternative != NULL ? a->alternative : a->title);
 
+    GString *out = g_string_new(NULL);
     text_append(out,
                 "\\begin{figure}\n"
                 "  \\centering\n"
@@ -155,7 +156,9 @@ void latex_add(GString *out, const artwork *a, const char *tex, const char *file
                 "\\end{figure}\n",
                 a->width * 25.4 / 72, alt, path, heading, caption[0] != '\0' ? ". " : "", caption,
                 stem);
+    fputs(out->str, stream);
 
+    g_string_free(out, TRUE);
     g_free(path);
     g_free(stem);
     g_free(title);
@@ -173,12 +176,6 @@ static status write_text(const char *path, const char *text, fault *f)
         code = whole_file_commit(&out, f);
     }
     return code;
-}
-
-status latex_write(const char *tex, const GString *text, fault *f)
-{
-    assert(tex != NULL && text != NULL);
-    return write_text(tex, text->str, f);
 }
 
 // ---- what stands beside a picture
@@ -223,10 +220,12 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
     }
 
     if (code == STATUS_OK && o->latex != NULL) {
-        GString *text = g_string_new(NULL);
-        latex_add(text, a, o->latex, path);
-        code = latex_write(o->latex, text, f);
-        g_string_free(text, TRUE);
+        whole_file tex;
+        code = whole_file_open(&tex, o->latex, f);
+        if (code == STATUS_OK) {
+            latex_print(tex.stream, a, o->latex, path);
+            code = whole_file_commit(&tex, f);
+        }
     }
     return code;
 }

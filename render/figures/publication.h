@@ -21,9 +21,9 @@ void figure_take_range(figure *fig, const figure_options *o);
 // Writes title and caption as plain text into the .txt beside a picture.
 status caption_write(const artwork *a, const char *file, fault *f);
 
-// Appends a figure environment: the picture as seen from the folder of the .tex file, with its
+// Prints a figure environment: the picture as seen from the folder of the .tex file, with its
 // width, alternative text, caption and the label fig:NAME of the picture's own name.
-void latex_add(GString *out, const artwork *a, const char *tex, const char *file);
+void latex_print(FILE *stream, const artwork *a, const char *tex, const char *file);
 
 // Writes the collected environments. STATUS_CANNOT_WRITE with the path.
 status latex_write(const char *tex, const GString *text, fault *f);

@@ -1,5 +1,6 @@
 #include "ui/commands/command.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/figures/figures.h"
@@ -7,6 +8,8 @@
 #include "src/base/json.h"
 #include "src/base/words.h"
 #include "src/base/numbers.h"
+#include "src/base/text_stream.h"
+#include "src/base/whole_file.h"
 #include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"
 
@@ -36,7 +39,7 @@ static int check_ids(const arguments *a)
 // What came of a figure.
 typedef struct drawn {
     bool over;
-    GString *tex; // its figure environment
+    char *tex; // its figure environment, NULL before
 } drawn;
 
 // Figures in the order in which they were asked for.
@@ -54,7 +57,7 @@ typedef struct figure_list {
 typedef struct figure_result {
     status code;
     fault fault;
-    GString *tex;
+    char *tex;
 } figure_result;
 
 static void draw_one(void *context, size_t i, void *scratch, void *result)
@@ -63,9 +66,16 @@ static void draw_one(void *context, size_t i, void *scratch, void *result)
     const thesis_figure *which = list->figures[list->order[i]];
     figure_result *out = result;
     (void)scratch;
-    *out = (figure_result){.tex = g_string_new(NULL)};
-    out->code = figure_draw_into(which->id, &list->options, list->folder, list->formats, out->tex,
-                                 &out->fault);
+    text_stream tex;
+    *out = (figure_result){.tex = NULL};
+    if (text_stream_open(&tex)) {
+        out->code = figure_draw_into(which->id, &list->options, list->folder, list->formats,
+                                     tex.stream, &out->fault);
+        out->tex = text_stream_close(&tex, NULL);
+    }
+    if (out->code == STATUS_OK && out->tex == NULL) {
+        out->code = fault_no_memory(&out->fault);
+    }
 }
 
 // Keeps a figure's text and tells of every figure whose predecessors are there, too.
@@ -116,13 +126,26 @@ static status draw_list(figure_list *list, int threads, fault *f)
 // The environments of all figures in their order.
 static status write_environments(const figure_list *list, const char *path, fault *f)
 {
-    GString *tex = g_string_new(NULL);
-    for (size_t i = 0; i < list->count; i++) {
-        g_string_append_len(tex, list->drawn[i].tex->str, (gssize)list->drawn[i].tex->len);
+    whole_file out;
+    status code = whole_file_open(&out, path, f);
+    if (code != STATUS_OK) {
+        return code;
     }
-    status code = latex_write(path, tex, f);
-    g_string_free(tex, TRUE);
-    return code;
+    for (size_t i = 0; i < list->count; i++) {
+        fputs(list->drawn[i].tex, out.stream);
+    }
+    return whole_file_commit(&out, f);
+}
+
+// Chooses the figures that were asked for, draws them and writes what else was asked for.
+static status draw_and_write(figure_list *list, const arguments *a, fault *f)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        list->figures[i] =
+            a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : thesis_figure_at((int)i);
+    }
+    const status code = draw_list(list, many_runs_jobs(a), f);
+    return code == STATUS_OK && a->latex != NULL ? write_environments(list, a->latex, f) : code;
 }
 
 // What was drawn, and where it lies.
@@ -156,31 +179,23 @@ static int figures(const arguments *a)
         return code;
     }
 
-    // which ones
-    list.figures = g_new(const thesis_figure *, count);
-    list.order = g_new(size_t, count);
-    list.drawn = g_new0(drawn, count);
-    for (size_t i = 0; i < count; i++) {
-        list.figures[i] =
-            a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : thesis_figure_at((int)i);
-    }
-
-    // drawn, and for LaTeX told of in their order
-    if (draw_list(&list, many_runs_jobs(a), &f) != STATUS_OK ||
-        (a->latex != NULL && write_environments(&list, a->latex, &f) != STATUS_OK)) {
+    // lists of what is to be drawn and of what came of it
+    list.figures = calloc(count, sizeof(const thesis_figure *));
+    list.order = calloc(count, sizeof *list.order);
+    list.drawn = calloc(count, sizeof *list.drawn);
+    const bool room = list.figures != NULL && list.order != NULL && list.drawn != NULL;
+    if ((room ? draw_and_write(&list, a, &f) : fault_no_memory(&f)) != STATUS_OK) {
         code = complain_fault(&f);
     } else if (a->json != NULL) {
         code = write_json(a->json, figures_array(&list));
     }
 
-    for (size_t i = 0; i < count; i++) {
-        if (list.drawn[i].tex != NULL) {
-            g_string_free(list.drawn[i].tex, TRUE);
-        }
+    for (size_t i = 0; list.drawn != NULL && i < count; i++) {
+        free(list.drawn[i].tex);
     }
-    g_free(list.drawn);
-    g_free(list.order);
-    g_free(list.figures);
+    free(list.drawn);
+    free(list.order);
+    free(list.figures);
     return code;
 }
 

@@ -1,21 +1,21 @@
 // impactlab plot: a figure from a recipe.
 #include "ui/commands/command.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/figures/recipe.h"
 #include "ui/commands/pictures.h"
 
-// The recipe's name with .png, in the present folder.
+// The recipe's name with .png, in the present folder; NULL without memory.
 static char *default_name(const char *recipe)
 {
-    char *name = g_path_get_basename(recipe), *dot = strrchr(name, '.');
-    if (dot != NULL && dot != name) {
-        *dot = '\0';
-    }
-    char *path = g_strconcat(name, ".png", NULL);
-    g_free(name);
-    return path;
+    const char *slash = strrchr(recipe, '/'), *name = slash != NULL ? slash + 1 : recipe;
+    const char *dot = strrchr(name, '.');
+    const size_t length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
+    char *path = NULL;
+    return asprintf(&path, "%.*s.png", (int)length, name) < 0 ? NULL : path;
 }
 
 static int plot(const arguments *a)
@@ -30,7 +30,11 @@ static int plot(const arguments *a)
         code = complain("a recipe says itself which signals and data it shows, --%s is for runs",
                         o.overlay != NULL ? "overlay" : "signals");
     }
-    char *path = a->plot != NULL ? g_strdup(a->plot) : default_name(a->operands[0]);
+    char *path = a->plot != NULL ? strdup(a->plot) : default_name(a->operands[0]);
+    if (path == NULL) {
+        fault_no_memory(&f);
+        return complain_fault(&f);
+    }
     if (code == EXIT_DONE && picture_check_path(path, &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
@@ -51,7 +55,7 @@ static int plot(const arguments *a)
     if (code == EXIT_DONE && !a->quiet) {
         say("%s: %s\n", a->operands[0], path);
     }
-    g_free(path);
+    free(path);
     return code;
 }
 
