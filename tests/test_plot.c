@@ -217,6 +217,39 @@ static void the_unit_of_small_impulses_is_on_the_page(void **state)
     synthetic_finish(&s);
 }
 
+// Its raised exponent does not reach the letters of the name above: an empty row is between them.
+static void the_exponent_of_small_impulses_stands_clear_of_their_name(void **state)
+{
+    (void)state;
+    static figure_report r;
+    enum { SCALE = 4, DARK = 128 };
+    synthetic s;
+    synthetic_init(&s, run_panels, 1);
+    figure_impulse small[] = {{0.31, 4.02e-3}};
+    s.figure.panels[0].impulses = small;
+    s.figure.panels[0].impulse_count = 1;
+    cairo_surface_t *image = paint_pixels(&s.figure.figure, SCALE, &r);
+
+    // lines of letters, counted down the text's place
+    int lines = 0;
+    for (int i = 0; i < r.text_count; i++) {
+        const figure_rect p = r.texts[i].place;
+        bool inked = false;
+        for (int y = (int)(SCALE * p.y);
+             strstr(r.texts[i].text, "Impulse") != NULL && y < SCALE * (p.y + p.height); y++) {
+            bool ink = false;
+            for (int x = (int)(SCALE * p.x); x < SCALE * (p.x + p.width); x++) {
+                ink = ink || pixel_at(image, x, y).green < DARK;
+            }
+            lines += ink && !inked;
+            inked = ink;
+        }
+    }
+    assert_int_equal(lines, 2);
+    cairo_surface_destroy(image);
+    synthetic_finish(&s);
+}
+
 // ---- curves
 
 static void a_spike_of_one_sample_is_visible(void **state)
@@ -478,6 +511,7 @@ int main(void)
         cmocka_unit_test(layout_is_the_same_on_every_surface),
         cmocka_unit_test(impulses_do_not_touch_the_force_axis),
         cmocka_unit_test(the_unit_of_small_impulses_is_on_the_page),
+        cmocka_unit_test(the_exponent_of_small_impulses_stands_clear_of_their_name),
         cmocka_unit_test(a_spike_of_one_sample_is_visible),
         cmocka_unit_test(points_that_are_not_finite_leave_a_gap),
         cmocka_unit_test(one_lone_point_is_visible),

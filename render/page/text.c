@@ -261,7 +261,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 
     pango_layout_set_alignment(layout, alignments[t->align]);
     // lines stand alike, with raised letters in them or not
-    pango_layout_set_line_spacing(layout, 1);
+    pango_layout_set_line_spacing(layout, t->leading > 0 ? (float)t->leading : 1);
     if (t->width > 0) {
         pango_layout_set_width(layout, (int)(t->width * PANGO_SCALE));
         pango_layout_set_wrap(layout, PANGO_WRAP_WORD_CHAR);

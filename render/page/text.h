@@ -28,6 +28,7 @@ typedef struct text_block {
     const char *family; // NULL: TEXT_FAMILY
     bool bold;
     text_align align; // of its lines
+    double leading;   // from line to line, of what letters without powers need; 0: 1
     double width;     // at which it is wrapped into lines; 0: never
     bool balanced;    // its lines are about equally long: no word stands alone in the last
     double scale;     // points of the page to one of these, for indices that can be read; 0: 1

@@ -8,6 +8,9 @@
 
 #include "src/base/numbers.h"
 
+// From the name to the unit below it, whose power of ten stands clear of the name's descenders.
+#define STRIP_LEADING 1.25
+
 // An arrow upwards.
 static void draw_arrow(cairo_t *cr, double x, double base, double length)
 {
@@ -158,6 +161,7 @@ void draw_impulses(drawing *d, const panel_layout *l)
         char *label = impulse_strip_label(panel);
         text_block t = figure_text_of(d, label, d->style.small);
         t.align = TEXT_RIGHT;
+        t.leading = impulse_exponent(panel) != 0 ? STRIP_LEADING : 0;
         draw_text(d, t, left - TICK_LENGTH - TICK_SPACE, base + 1.5, (anchor){1, 1},
                   d->style.colours->text);
         g_free(label);
