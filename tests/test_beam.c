@@ -134,6 +134,19 @@ static void first_mode_has_the_damping_asked_for(void **state)
     check_relative(a.hub_joint_damping / a.hub_stiffness, 2 * wanted / frequencies[0], 1e-6);
 }
 
+// A mode that is damped beyond its limit creeps by two decays whose product is the square of its
+// frequency w and whose sum is 2 zeta w; the faster one is what steps have to follow.
+static void an_overdamped_mode_decays_by_the_roots_of_its_equation(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(SETTINGS("arm.links=8", "arm.damping_ratio=0.1"));
+    arm a;
+    arm_init(&a, &p);
+    const double w = a.highest_frequency, fast = a.fastest_decay, slow = w * w / fast;
+    assert_true(fast > 2 * w);
+    check_relative(fast + slow, w * w * a.joint_damping / a.joint_stiffness, 1e-12);
+}
+
 // beta L of the first mode of the clamped beam with a mass [kg] at its tip, mu its share of the
 // beam's mass: 1 + cos cosh + mu x (cos sinh - sin cosh) = 0.
 static double beam_with_mass(double mass)
@@ -260,6 +273,7 @@ int main(void)
         cmocka_unit_test(joints_bent_by_the_moment_balance_the_load),
         cmocka_unit_test(frequencies_converge_at_second_order),
         cmocka_unit_test(first_mode_has_the_damping_asked_for),
+        cmocka_unit_test(an_overdamped_mode_decays_by_the_roots_of_its_equation),
         cmocka_unit_test(a_mass_at_the_tip_lowers_the_frequencies),
         cmocka_unit_test(every_engine_carries_the_mass_of_a_stiff_chain),
         cmocka_unit_test(stiffness_may_be_given_as_the_beams),

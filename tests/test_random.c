@@ -1,3 +1,4 @@
+#include <stdbool.h>
 #include <string.h>
 
 #include "src/base/random.h"
@@ -41,6 +42,31 @@ static void equal_seeds_give_equal_sequences(void **state)
         same += bits == random_bits(&c);
     }
     assert_int_equal(same, 0);
+}
+
+// Which of the 2^64 numbers are drawn again: 2^64 mod bound of them, the smallest.
+static void numbers_that_would_be_uneven_are_drawn_again(void **state)
+{
+    (void)state;
+    const struct {
+        uint64_t bound, again; // 2^64 mod bound
+    } cases[] = {{3, 1}, {10, 6}, {UINT64_C(1) << 32, 0}, {(UINT64_C(1) << 63) + 1, INT64_MAX}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (uint64_t bits = cases[i].again - (cases[i].again > 0); bits <= cases[i].again;
+             bits++) {
+            // a state whose next number is `bits`: nine, the turn by 7 and five undone
+            const uint64_t ninth = bits * UINT64_C(0x8e38e38e38e38e39);
+            const uint64_t turned = ninth >> 7 | ninth << 57;
+            random_generator g = {{1, turned * UINT64_C(0xcccccccccccccccd), 2, 3}}, next = g;
+            assert_true(random_bits(&next) == bits);
+            const uint64_t drawn = random_below(&g, cases[i].bound);
+
+            // taken, it is the only one
+            const bool taken = memcmp(&g, &next, sizeof g) == 0;
+            assert_int_equal(taken, bits >= cases[i].again);
+            assert_true(!taken || drawn == bits % cases[i].bound);
+        }
+    }
 }
 
 static void uniform_numbers_fill_the_unit_interval_evenly(void **state)
@@ -134,6 +160,7 @@ int main(void)
         cmocka_unit_test(xoshiro_gives_its_published_sequence),
         cmocka_unit_test(splitmix_gives_its_published_sequence),
         cmocka_unit_test(equal_seeds_give_equal_sequences),
+        cmocka_unit_test(numbers_that_would_be_uneven_are_drawn_again),
         cmocka_unit_test(uniform_numbers_fill_the_unit_interval_evenly),
         cmocka_unit_test(whole_numbers_are_equally_likely_up_to_the_bound),
         cmocka_unit_test(a_permutation_has_every_number_once),

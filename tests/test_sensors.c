@@ -95,6 +95,28 @@ static void force_sensor_follows_a_stride_exactly(void **state)
     check_close(once.fsr.value, before, 1e-4);
 }
 
+// Over less than a thousandth of its lag a sensor takes of f = slope u + curve u^2, u the share of
+// the stride that is over, x times the integrals of e^-(1-u)x u^n: 1!/2! - x 1!/3! + ..., and so
+// on, to the last digits.
+static void short_strides_lose_no_digits(void **state)
+{
+    (void)state;
+    const double h = 5e-7, slope = 3, curve = -2;
+    sensors s = fresh_sensors(NULL, 1);
+    const double x = h / s.fsr.time_constant;
+    double of_u = 0, of_square = 0, power = x, factorial = 2;
+    assert_true(x > 5e-4 && x < 1e-3);
+    for (int n = 0; n < 8; n++) {
+        of_u += power / factorial;
+        factorial *= n + 3;
+        of_square += 2 * power / factorial;
+        power *= -x;
+    }
+    s.fsr.value = 0;
+    follow_force(&s, h, 0, slope + curve, slope / 2 + curve / 3);
+    check_relative(s.fsr.value, slope * of_u + curve * of_square, 1e-11);
+}
+
 static void impulse_arrives_whole(void **state)
 {
     (void)state;
@@ -176,6 +198,7 @@ int main(void)
         cmocka_unit_test(converter_has_its_bits_and_range),
         cmocka_unit_test(force_sensor_rises_in_its_time),
         cmocka_unit_test(force_sensor_follows_a_stride_exactly),
+        cmocka_unit_test(short_strides_lose_no_digits),
         cmocka_unit_test(impulse_arrives_whole),
         cmocka_unit_test(divider_follows_the_power_law),
         cmocka_unit_test(noise_has_its_spread_and_follows_its_seed),

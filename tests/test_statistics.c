@@ -38,6 +38,11 @@ static void a_ramp_and_a_step(void **state)
     check_close(s.integral, 0.5, 1e-15);
     check_close(s.rms, sqrt((1.5 * 1.5 * 1.5 - 0.5 * 0.5 * 0.5) / 3 / 2 / 0.5), 1e-15);
 
+    // a jump at the end, both of its sides within
+    s = trace_statistics(&t, force, 0, 1);
+    check_close(s.maximum, 5, 0);
+    check_close(s.integral, 1, 1e-15);
+
     // of an instant, beyond the run, and of what has no value
     s = trace_statistics(&t, force, 1.5, 1.5);
     check_close(s.mean, 5, 0);
