@@ -4,7 +4,7 @@
 #include <signal.h>
 #include <string.h>
 
-#include "src/run/run.h"
+#include "src/run/together.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
 
@@ -158,11 +158,13 @@ static void runs_abandoned_before_they_begin_are_not_set_up(void **state)
     for (int i = 0; i < 3; i++) {
         scenario s;
         run_result result;
+        side_by_side *storage = NULL;
         read_scenario(&s, texts[i]);
-        run_together(&s, 1, &already, &result);
+        run_together(&s, 1, &already, &result, &storage);
         assert_int_equal(result.summary.status, STATUS_STOPPED);
         assert_true(isnan(result.summary.steps) || result.summary.steps == 0);
         assert_int_equal(result.trace.event_count, 0);
+        side_by_side_destroy(storage);
         run_finish(&result);
         scenario_finish(&s);
     }

@@ -45,7 +45,9 @@ status checkpoint_open_history(recording *r, const motion *m, fault *f)
         return STATUS_OK; // shared with the run that is resumed
     }
     if (!keeps_history(r)) {
-        force_history_init(&h->forces);
+        if (h->forces.array.base == NULL) {
+            force_history_init(&h->forces); // else it has another run's memory to use
+        }
         return STATUS_OK;
     }
     return checkpoint_reserve(h, size, expected)

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "src/base/numbers.h"
@@ -273,13 +274,16 @@ void corrected_sum_up(corrected_run *c, status failed)
     }
 }
 
-status corrected_open(corrected_run *c, recording *r, fault *f)
+status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
 {
     assert(c != NULL && r != NULL && r->scenario->parameters.arm.model != ARM_PRINTED);
     const parameters *p = &r->scenario->parameters;
-    *c = (corrected_run){.recording = r, .last_event = -1, .pace = pace_begin()};
+    memset(c, 0, offsetof(corrected_run, arm));
+    c->recording = r;
+    c->last_event = -1;
+    c->pace = pace_begin();
     corrected_bind_arm(c);
-    c->motion = motion_create(&c->arm, &p->method);
+    c->motion = motion_renew(spare, &c->arm, &p->method);
     if (c->motion == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links);
     }
@@ -293,10 +297,16 @@ status corrected_open(corrected_run *c, recording *r, fault *f)
     return failed;
 }
 
+motion *corrected_finish(corrected_run *c, status failed)
+{
+    motion *m = c->motion;
+    if (m != NULL) {
+        corrected_sum_up(c, failed);
+    }
+    return m;
+}
+
 void corrected_close(corrected_run *c, status failed)
 {
-    if (c->motion != NULL) {
-        corrected_sum_up(c, failed);
-        motion_destroy(c->motion);
-    }
+    motion_destroy(corrected_finish(c, failed));
 }

@@ -7,8 +7,9 @@
 
 #include "src/run/corrected_rows.h"
 
-// Begins a run, or takes one up. Whatever it returns, corrected_close is due.
-status corrected_open(corrected_run *c, recording *r, fault *f);
+// Begins a run, or takes one up, in the storage of a motion that is over (`spare`, which may be NULL
+// and is used up). Whatever it returns, corrected_close or corrected_finish is due.
+status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f);
 
 // Lets script and rig act where they are due, until a stride is next, to c->stop at most; *ended if
 // the run is through instead.
@@ -23,3 +24,6 @@ void corrected_sum_up(corrected_run *c, status failed);
 
 // Sums the run up and frees it; `failed` is what ended it.
 void corrected_close(corrected_run *c, status failed);
+
+// The same, but for its motion's storage, which it returns: NULL if there is none.
+motion *corrected_finish(corrected_run *c, status failed);

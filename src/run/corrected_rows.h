@@ -7,7 +7,6 @@
 
 typedef struct corrected_run {
     recording *recording;
-    arm arm; // with the command in force
     motion *motion;
 
     // the stretch between two stops of script, rig or window that the motion is in
@@ -15,6 +14,8 @@ typedef struct corrected_run {
     double last_event; // in it, -1 if none [s]
     int at_once;       // events in a row without time passing
     pace pace;         // of the whole run
+
+    arm arm; // with the command in force
 } corrected_run;
 
 // Takes note of the energy that the ledger does not account for. STATUS_UNSTABLE if the run makes

@@ -20,6 +20,14 @@ bool force_history_reserve(force_history *h, size_t least, size_t most)
     return shared_array_reserve(&h->array, sizeof(force_step), least, most);
 }
 
+void force_history_take(force_history *h, force_history *used)
+{
+    assert(h != NULL && used != NULL && h->array.base == NULL && used->array.reserved == 0);
+    *h = *used;
+    h->count = 0;
+    memset(used, 0, sizeof *used);
+}
+
 void force_history_finish(force_history *h)
 {
     assert(h != NULL);

@@ -46,6 +46,10 @@ void force_history_init(force_history *h);
 // address space. False if it cannot be had.
 bool force_history_reserve(force_history *h, size_t least, size_t most);
 
+// Lets an empty plain history use the memory of another one that is not needed any more, which is
+// empty then.
+void force_history_take(force_history *h, force_history *used);
+
 void force_history_finish(force_history *h);
 
 // The steps, oldest first; good until the next one is added to a plain history.

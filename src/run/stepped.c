@@ -10,7 +10,7 @@
 
 static status corrected_begin(stepped_run *run, recording *r, fault *f)
 {
-    return corrected_open(&run->corrected, r, f);
+    return corrected_open(&run->corrected, r, NULL, f);
 }
 
 static void corrected_end(stepped_run *run, status failed)

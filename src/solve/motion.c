@@ -136,6 +136,7 @@ motion *motion_create(const arm *a, const method_parameters *method)
         return NULL;
     }
     m->dof = a->dof;
+    m->link_count = a->links;
     m->nominal_step = method->step;
     m->cut = HUGE_VAL;
     m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT + KEPT_COUNT;
@@ -152,6 +153,43 @@ motion *motion_create(const arm *a, const method_parameters *method)
     if (l.block == NULL || !open_engine(a, m)) {
         motion_destroy(m);
         return NULL;
+    }
+    return m;
+}
+
+motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
+{
+    assert(m == NULL || (a != NULL && method != NULL && method->step > 0));
+    if (m == NULL || m->dof != a->dof || a->links != m->link_count || m->starved) {
+        motion_destroy(m);
+        return motion_create(a, method);
+    }
+
+    // storage whose length depends on nothing else may be used again as it is
+    motion next = {.state = m->state,
+                   .size = m->size,
+                   .dof = m->dof,
+                   .link_count = m->link_count,
+                   .nominal_step = method->step,
+                   .cut = HUGE_VAL,
+                   .trial = m->trial,
+                   .between = m->between,
+                   .stages = m->stages,
+                   .scratch = m->scratch,
+                   .links = m->links,
+                   .sweeps = m->sweeps,
+                   .memory = m->memory,
+                   .forgets = true,
+                   .block = m->block,
+                   .engine_block = m->engine_block};
+    choose_engine(a, &next, method);
+    if (next.engine != m->engine || next.engine->memory_for != NULL) {
+        motion_destroy(m);
+        return motion_create(a, method);
+    }
+    *m = next;
+    if (m->engine->open != NULL) {
+        m->engine->open(a, m);
     }
     return m;
 }

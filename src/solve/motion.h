@@ -81,6 +81,7 @@ struct motion {
     double *state;
     int size;
     int dof;
+    int link_count;
     double start_energy; // kinetic and strain energy at the start [J]
 
     // how the smooth motion is advanced
@@ -188,6 +189,10 @@ static inline int smooth_length(const motion *m)
 // memory.
 motion *motion_create(const arm *a, const method_parameters *method);
 void motion_destroy(motion *m); // m may be NULL
+
+// A motion of the arm as motion_create gives it, in the storage of one that is over where that fits
+// (m may be NULL); m is used up. NULL if out of memory.
+motion *motion_renew(motion *m, const arm *a, const method_parameters *method);
 
 // To be called after the arm's constants changed: the event method takes the engine that is now
 // right, which is the one that motion_create would choose. It has no stride in hand then. Where

@@ -19,7 +19,7 @@
 #include "src/solve/taylor_polynomial.h"
 
 // Strides stay below this over the fastest rate and the angular velocities.
-#define LONGEST_REACH 1.2
+#define LONGEST_REACH 2.0
 // A decay over a stride: the series of the highest order is stable on the negative axis beyond 7.
 #define LONGEST_DECAY 4.0
 
@@ -276,6 +276,14 @@ static double begin(const arm *a, motion *m, double remaining, double step)
     return smaller(kept[KEPT_LENGTH] - s->used, remaining);
 }
 
+// No stride is known yet.
+static void open(const arm *a, motion *m)
+{
+    taylor_stride *s = m->memory;
+    (void)a;
+    s->ready = s->own = false;
+}
+
 taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
 {
     assert(a != NULL && m != NULL);
@@ -505,4 +513,5 @@ const engine taylor_engine = {.name = "Taylor series",
                               .forces_at = forces_at,
                               .first_event = first_event,
                               .peak = dense_search_peak,
+                              .open = open,
                               .memory_size = sizeof(taylor_stride)};

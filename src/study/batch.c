@@ -5,6 +5,13 @@
 
 #include "src/study/pool.h"
 
+// What a thread keeps.
+typedef struct batch_scratch {
+    scenario made[RUN_TOGETHER];
+    run_result runs[RUN_TOGETHER];
+    side_by_side *storage;
+} batch_scratch;
+
 typedef struct batch {
     batch_maker make;
     void *context;
@@ -22,9 +29,10 @@ static size_t piece_length(const batch *b, size_t piece)
 static void compute(void *context, size_t piece, void *scratch, void *result)
 {
     const batch *b = context;
-    scenario *made = scratch;
+    batch_scratch *own = scratch;
+    scenario *made = own->made;
+    run_result *runs = own->runs;
     summary *summaries = result;
-    run_result runs[RUN_TOGETHER];
     const size_t length = piece_length(b, piece);
 
     // each made from the one before
@@ -34,11 +42,17 @@ static void compute(void *context, size_t piece, void *scratch, void *result)
         b->make(b->context, piece * RUN_TOGETHER + i, &made[i]);
     }
 
-    run_together(made, (int)length, NULL, runs);
+    run_together(made, (int)length, NULL, runs, &own->storage);
     for (size_t i = 0; i < length; i++) {
         summaries[i] = runs[i].summary;
         run_finish(&runs[i]);
     }
+}
+
+static void release(void *scratch)
+{
+    batch_scratch *own = scratch;
+    side_by_side_destroy(own->storage);
 }
 
 static status collect(void *context, size_t piece, const void *result, fault *f)
@@ -55,10 +69,11 @@ status batch_run(batch_maker make, void *context, size_t count, int jobs, summar
     batch b = {.make = make, .context = context, .summaries = summaries, .count = count};
     const pool_work work = {.context = &b,
                             .count = (count + RUN_TOGETHER - 1) / RUN_TOGETHER,
-                            .scratch_size = RUN_TOGETHER * sizeof(scenario),
+                            .scratch_size = sizeof(batch_scratch),
                             .result_size = RUN_TOGETHER * sizeof(summary),
                             .compute = compute,
-                            .collect = collect};
+                            .collect = collect,
+                            .release = release};
     jobs = jobs < 1 ? 1 : jobs > POOL_MOST_THREADS ? POOL_MOST_THREADS : jobs;
     return pool_run(&work, jobs, NULL);
 }

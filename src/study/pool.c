@@ -191,11 +191,19 @@ static bool allocate(pool *p, pool_thread *threads, int count)
     return allocated;
 }
 
+void pool_release_scratch(const pool_work *work, void *scratch)
+{
+    if (work->release != NULL && scratch != NULL) {
+        work->release(scratch);
+    }
+    free(scratch);
+}
+
 // Frees what `allocate` gave.
 static void release(pool *p, pool_thread *threads, int count)
 {
     for (int i = 0; i < count; i++) {
-        free(threads[i].scratch);
+        pool_release_scratch(p->work, threads[i].scratch);
         free(threads[i].result);
     }
     free(p->finished.pieces);

@@ -29,6 +29,9 @@ typedef struct pool_work {
     // wants to know. Fails as collect does.
     status (*tick)(void *context, bool over, fault *f);
 
+    // Frees what compute keeps in a thread's scratch; NULL if that is nothing.
+    void (*release)(void *scratch);
+
     const volatile sig_atomic_t *stop; // becomes true to end early; NULL if nothing does
 } pool_work;
 
@@ -36,3 +39,6 @@ typedef struct pool_work {
 // calling one; on the calling one if none can be started. Returns when all threads have ended: what
 // collect or tick returned, STATUS_OK also when stopped, or STATUS_NO_MEMORY.
 status pool_run(const pool_work *work, int threads, fault *f);
+
+// Frees a thread's scratch (may be NULL) and what it keeps.
+void pool_release_scratch(const pool_work *work, void *scratch);

@@ -96,7 +96,7 @@ static status follow(const pool_work *w, const rank_group *g, const char *identi
         }
     }
 
-    free(scratch);
+    pool_release_scratch(w, scratch);
     free(answer);
     return code == STATUS_OK && *g->dismissed ? STATUS_STOPPED : code;
 }
@@ -288,7 +288,7 @@ status pool_run_on_ranks(const pool_work *work, const unsigned char *done, const
         l.code = fault_no_memory(f);
     }
 
-    free(scratch);
+    pool_release_scratch(work, scratch);
     free(result);
     free(l.ranks);
     free(l.buffer);

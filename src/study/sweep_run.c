@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "src/base/clock.h"
-#include "src/run/run.h"
+#include "src/run/together.h"
 #include "src/study/pool_ranks.h"
 #include "src/study/sweep_definition.h"
 #include "src/study/sweep_rows.h"
@@ -32,6 +32,7 @@ typedef struct sweep_execution {
 typedef struct piece_scratch {
     scenario derived[RUN_TOGETHER];
     run_result results[RUN_TOGETHER];
+    side_by_side *storage;
 } piece_scratch;
 
 // The summary of a run that could not begin.
@@ -73,7 +74,7 @@ static void compute_piece(void *context, size_t piece, void *scratch, void *resu
         }
     }
 
-    run_together(own->derived, begun, e->options->abandon, own->results);
+    run_together(own->derived, begun, e->options->abandon, own->results, &own->storage);
     for (int i = 0; i < begun; i++) {
         summaries[place[i]] = own->results[i].summary;
         run_finish(&own->results[i]);
@@ -87,6 +88,12 @@ static void compute_piece(void *context, size_t piece, void *scratch, void *resu
         summaries[i].wall_time_s = wall / (double)length;
         summaries[i].path = NULL; // nobody reads it, and it means nothing to another process
     }
+}
+
+static void release_piece(void *scratch)
+{
+    piece_scratch *own = scratch;
+    side_by_side_destroy(own->storage);
 }
 
 // Keeps what the first of the failed runs says, whichever was computed first.
@@ -248,6 +255,7 @@ static status run_missing(sweep_execution *e, const unsigned char *present, faul
                             .compute = compute_piece,
                             .collect = store_piece,
                             .tick = commit_and_report,
+                            .release = release_piece,
                             .stop = e->options->stop};
 
     // no more threads than pieces

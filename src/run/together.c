@@ -1,0 +1,234 @@
+#include "src/run/together.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/run/corrected.h"
+#include "src/run/recording_frame.h"
+#include "src/run/run.h"
+#include "src/solve/taylor_engine.h"
+
+// So many runs are in hand at once: enough to fill the vectors with strides of one form, few enough
+// to stay in the nearest cache.
+enum { IN_HAND = 16 };
+
+// One of the runs that go side by side.
+typedef struct side_run {
+    recording recording;
+    corrected_run run;
+    fault fault;
+    taylor_lane *lane;    // its part in the series of the stride it is to make
+    motion *motion;       // of the run before, NULL if there was none: its storage is used again
+    force_history forces; // and that run's, if there was one
+} side_run;
+
+struct side_by_side {
+    const scenario *scenarios;
+    run_options options; // of all
+    run_result *results;
+    int count, next;      // of them, and the next one to begin
+    int waiting[IN_HAND]; // places of those in hand, all of which wait for their series
+    int waiting_count;
+    side_run in_hand[IN_HAND];
+    taylor_group series; // of those whose strides are being made
+};
+
+// Ends a run, whose storage is for the next one in its place.
+static void end_run(side_run *one, status failed)
+{
+    force_history *forces = &one->recording.result->history.forces;
+    motion *over = corrected_finish(&one->run, failed);
+    one->motion = over != NULL ? over : one->motion;
+    one->forces = *forces;
+    memset(forces, 0, sizeof *forces);
+    recording_end(&one->recording, failed, &one->fault, (time_used){0});
+}
+
+// Begins a run, in the storage of the one before.
+static status begin_run(side_run *one, const scenario *s, const run_options *options,
+                        run_result *result)
+{
+    one->run.motion = NULL;
+    status failed = recording_begin(&one->recording, s, options, result, &one->fault);
+    force_history_take(&result->history.forces, &one->forces);
+    if (failed == STATUS_OK) {
+        motion *spare = one->motion;
+        one->motion = NULL;
+        failed = corrected_open(&one->run, &one->recording, spare, &one->fault);
+    }
+    return failed;
+}
+
+// Goes on with a run until it waits for series that can be computed together with others'. False
+// if it is over: it is closed then.
+static bool go_on(side_by_side *group, int place)
+{
+    side_run *one = &group->in_hand[place];
+    status failed = STATUS_OK;
+    bool ended = false;
+
+    // strides that need no series are taken at once, one that does waits for company
+    while (failed == STATUS_OK && !ended) {
+        failed = corrected_approach_stride(&one->run, &ended, &one->fault);
+        if (failed == STATUS_OK && !ended) {
+            double remaining = one->run.stop - one->run.motion->state[SLOT_TIME];
+            one->lane = taylor_prepare(&one->run.arm, one->run.motion, remaining);
+            if (one->lane != NULL) {
+                group->waiting[group->waiting_count++] = place;
+                return true;
+            }
+            failed = corrected_stride(&one->run, &one->fault);
+        }
+    }
+
+    end_run(one, failed);
+    return false;
+}
+
+// Makes the stride whose series are computed, and goes on.
+static bool stride_and_go_on(side_by_side *group, int place)
+{
+    side_run *one = &group->in_hand[place];
+    status failed = corrected_stride(&one->run, &one->fault);
+    if (failed == STATUS_OK) {
+        return go_on(group, place);
+    }
+    end_run(one, failed);
+    return false;
+}
+
+// Begins runs in a free place until one waits there for its series, or none is left.
+static void begin_next(side_by_side *group, int place)
+{
+    side_run *one = &group->in_hand[place];
+    bool waits = false;
+
+    // the printed model has nothing to wait for and is run here
+    while (!waits && group->next < group->count) {
+        const scenario *s = &group->scenarios[group->next];
+        run_result *result = &group->results[group->next++];
+        if (s->parameters.arm.model == ARM_PRINTED) {
+            run_scenario_with(s, &group->options, result);
+            continue;
+        }
+
+        // the next corrected run, up to its first wait
+        const status failed = begin_run(one, s, &group->options, result);
+        if (failed == STATUS_OK) {
+            waits = go_on(group, place);
+        } else {
+            end_run(one, failed);
+        }
+    }
+}
+
+// Takes as many of those that wait as fit into the vectors and are of the form that most of the
+// first few have, computes their series, and lets them make their strides.
+static void serve(side_by_side *group)
+{
+    enum { LOOKED_AT = 4 };
+    const int width = taylor_width();
+
+    // the form that most of the first in the queue share
+    int best = 0, most = 0, chosen[TAYLOR_WIDEST], count = 0;
+    for (int i = 0; i < group->waiting_count && i < LOOKED_AT && most < width; i++) {
+        int alike = 0;
+        for (int j = 0; j < group->waiting_count && alike < width; j++) {
+            alike += taylor_alike(group->in_hand[group->waiting[i]].lane->form,
+                                  group->in_hand[group->waiting[j]].lane->form);
+        }
+        best = alike > most ? i : best;
+        most = alike > most ? alike : most;
+    }
+
+    // out of the queue, whose order stays
+    const taylor_form form = group->in_hand[group->waiting[best]].lane->form;
+    taylor_lane *lanes[TAYLOR_WIDEST];
+    int left = 0;
+    for (int i = 0; i < group->waiting_count; i++) {
+        const int place = group->waiting[i];
+        if (count < width && taylor_alike(group->in_hand[place].lane->form, form)) {
+            lanes[count] = group->in_hand[place].lane;
+            chosen[count++] = place;
+        } else {
+            group->waiting[left++] = place;
+        }
+    }
+    group->waiting_count = left;
+
+    // side by side to the ends of their strides
+    taylor_end ends[TAYLOR_WIDEST];
+    taylor_compute(&group->series, lanes, count);
+    for (int i = 0; i < count; i++) {
+        const corrected_run *run = &group->in_hand[chosen[i]].run;
+        motion_look_ahead(&run->arm, run->motion, run->stop, run->recording->now.method.step);
+        const double length = run->motion->ahead.length;
+        const int pieces = lanes[i]->form.contact ? corrected_force_pieces(run, length) : 0;
+        ends[i] = (taylor_end){length, pieces};
+    }
+    taylor_finish(&group->series, lanes, ends, count);
+
+    // then each goes on by itself or makes room
+    for (int i = 0; i < count; i++) {
+        if (!stride_and_go_on(group, chosen[i])) {
+            begin_next(group, chosen[i]);
+        }
+    }
+}
+
+// The storage of the calls so far, or new one; NULL without memory.
+static side_by_side *open_storage(side_by_side **storage)
+{
+    if (*storage == NULL) {
+        *storage = aligned_alloc(_Alignof(side_by_side), sizeof **storage);
+        for (int place = 0; *storage != NULL && place < IN_HAND; place++) {
+            (*storage)->in_hand[place].motion = NULL;
+            force_history_init(&(*storage)->in_hand[place].forces);
+        }
+    }
+    return *storage;
+}
+
+void side_by_side_destroy(side_by_side *storage)
+{
+    for (int place = 0; storage != NULL && place < IN_HAND; place++) {
+        motion_destroy(storage->in_hand[place].motion);
+        force_history_finish(&storage->in_hand[place].forces);
+    }
+    free(storage);
+}
+
+void run_together(const scenario *scenarios, int count, const atomic_bool *abandon,
+                  run_result *results, side_by_side **storage)
+{
+    assert(scenarios != NULL && results != NULL && count >= 0 && storage != NULL);
+    const run_options options = {.abandon = abandon};
+    const time_used start = time_now();
+    side_by_side *group = taylor_width() > 1 ? open_storage(storage) : NULL;
+    if (group == NULL) {
+        for (int i = 0; i < count; i++) {
+            run_scenario_with(&scenarios[i], &options, &results[i]);
+        }
+        return;
+    }
+
+    group->scenarios = scenarios;
+    group->options = options;
+    group->results = results;
+    group->count = count;
+    group->next = group->waiting_count = 0;
+    for (int place = 0; place < IN_HAND; place++) {
+        begin_next(group, place);
+    }
+    while (group->waiting_count > 0) {
+        serve(group);
+    }
+
+    // nobody can say whose time it was
+    const time_used all = time_since(start);
+    for (int i = 0; i < count; i++) {
+        results[i].summary.cpu_time_s = all.cpu / count;
+        results[i].summary.wall_time_s = all.wall / count;
+    }
+}
