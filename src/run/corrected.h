@@ -7,8 +7,8 @@
 
 #include "src/run/corrected_rows.h"
 
-// Begins a run, or takes one up, in the storage of a motion that is over (`spare`, which may be NULL
-// and is used up). Whatever it returns, corrected_close or corrected_finish is due.
+// Begins a run, or takes one up, in the storage of a motion that is over (`spare`, which may be
+// NULL and is used up). Whatever it returns, corrected_close or corrected_finish is due.
 status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f);
 
 // Lets script and rig act where they are due, until a stride is next, to c->stop at most; *ended if

@@ -184,6 +184,23 @@ static status record_grid(corrected_run *c, bool at_event)
     return failed;
 }
 
+// The gap at an instant [s] within the step just made, a step in free flight; false, and none, if
+// that fails.
+static bool gap_within(corrected_run *c, double time, glance *gap)
+{
+    motion *m = c->motion;
+    *gap = (glance){0, 0};
+    if (m->engine->gap_at != NULL && !state_is_held_still(m, m->trial)) {
+        *gap = m->engine->gap_at(&c->arm, m, time - m->trial[SLOT_TIME]);
+        return true;
+    }
+    const double *state = motion_between(&c->arm, m, time);
+    if (state != NULL) {
+        *gap = (glance){state[SLOT_GAP], state[SLOT_GAP_VELOCITY]};
+    }
+    return state != NULL;
+}
+
 // Whether the gap was a separation at any instant of the step just made. A whole flight may lie
 // within one step, so the end says little: look where the gap stops growing.
 static bool step_separated(corrected_run *c)
@@ -201,12 +218,12 @@ static bool step_separated(corrected_run *c)
 
     // the gap closes at the step's end: bisect for the instant at which it was the largest
     for (int i = 0; i < SEPARATION_BISECTIONS; i++) {
-        double middle = 0.5 * (from + to);
-        const double *state = motion_between(&c->arm, m, middle);
-        if (state == NULL || state[SLOT_GAP] > SEPARATION_GAP) {
-            return state != NULL;
+        const double middle = 0.5 * (from + to);
+        glance gap;
+        if (!gap_within(c, middle, &gap) || gap.value > SEPARATION_GAP) {
+            return gap.value > SEPARATION_GAP;
         }
-        if (state[SLOT_GAP_VELOCITY] > 0) {
+        if (gap.slope > 0) {
             from = middle;
         } else {
             to = middle;
@@ -257,7 +274,7 @@ static status record_force(corrected_run *c, const force_step *whole)
     const motion *m = c->motion;
     const bool contact = m->trial[SLOT_CONTACT] != 0;
     const int pieces = contact ? corrected_force_pieces(c, m->made) : 1;
-    glance ends[MOST_PIECES];
+    glance at[MOST_PIECES + 1];
     force_step *kept = recording_add_steps(r, pieces);
 
     if (kept == NULL) {
@@ -268,28 +285,27 @@ static status record_force(corrected_run *c, const force_step *whole)
         return STATUS_OK;
     }
 
-    // the force at the ends of all pieces
+    // the force at the start and at the ends of all pieces
     const double width = m->made / pieces;
     if (m->engine->forces_at != NULL) {
-        m->engine->forces_at(&c->arm, m, m->made, pieces, ends);
+        m->engine->forces_at(&c->arm, m, m->made, pieces, at);
     } else {
-        for (int i = 0; i < pieces; i++) {
-            ends[i] = m->engine->force_at(&c->arm, m, (i + 1) * width);
+        for (int i = 0; i <= pieces; i++) {
+            at[i] = m->engine->force_at(&c->arm, m, i * width);
         }
     }
 
     // its mean over each is that of the cubic through both ends' values and slopes
-    glance first = m->engine->force_at(&c->arm, m, 0);
+    const double slope_share = width / 12;
     double start = whole->start;
     for (int i = 0; i < pieces; i++) {
-        const glance last = ends[i];
+        const glance first = at[i], last = at[i + 1];
         const double end = i < pieces - 1 ? whole->start + (i + 1) * width : whole->end;
         const double mean =
-            (first.value + last.value) / 2 + width * (first.slope - last.slope) / 12;
+            (first.value + last.value) / 2 + slope_share * (first.slope - last.slope);
         kept[i] = (force_step){
             .start = start, .end = end, .first = first.value, .last = last.value, .mean = mean};
         start = end;
-        first = last;
     }
     return STATUS_OK;
 }

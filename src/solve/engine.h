@@ -76,9 +76,13 @@ typedef struct engine {
     // Dense engines: the contact force [N] and its slope [N/s], never divided by anything.
     glance (*force_at)(const arm *a, const motion *m, double h);
 
-    // Dense engines, or NULL: force_at at the ends of `count` equal pieces of a stride of length h
-    // [s].
+    // Dense engines, or NULL: force_at at the start and at the ends of `count` equal pieces of a
+    // stride of length h [s], into at[count + 1].
     void (*forces_at)(const arm *a, const motion *m, double h, int count, glance *at);
+
+    // Dense engines, or NULL: the gap [m] and its rate [m/s] in free flight, never divided by
+    // anything.
+    glance (*gap_at)(const arm *a, const motion *m, double h);
 
     // Dense engines, or NULL: state_at, to the last bit, for several h at once and from the
     // stride's start in `start`, into states[count], whose other slots are set already, with the

@@ -132,17 +132,19 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, wat
     const bool jumped = s->kept[KEPT_JUMPED] != 0;
     const double friction = m->state[SLOT_FRICTION], stiction = a->motor.stiction;
     polynomial *p = &s->watched[w];
+    const taylor_lane *lane = &s->lane;
+    const int spacing = taylor_spacing(lane);
     s->known |= 1u << w;
 
     // the wall
     if (w == WATCH_FORCE) {
         const double edge[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
-        set_polynomial(p, taylor_terms(&s->lane, AT_FORCE, order), order, 1);
+        set_polynomial(p, taylor_term(lane, AT_FORCE), spacing, order, 1);
         if (jumped) {
             leave_edge(p, edge);
         }
     } else if (w == WATCH_GAP) {
-        set_polynomial(p, taylor_terms(&s->lane, AT_GAP, order + 2), order + 2, 1);
+        set_polynomial(p, taylor_term(lane, AT_GAP), spacing, order + 2, 1);
         const bool inside = p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
         p->terms[0] = inside ? 0 : p->terms[0];
         if (jumped || inside) {
@@ -154,15 +156,15 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, wat
     // the hub; what holds a stuck one may hold a little more just after an event
     if (w == WATCH_HUB) {
         const int place = a->hub_spring ? AT_RATE_0 : AT_RATE_1;
-        set_polynomial(p, taylor_terms(&s->lane, place, order + 1), order + 1, friction);
+        set_polynomial(p, taylor_term(lane, place), spacing, order + 1, friction);
         if (jumped) {
             leave_edge(p, (double[]){0, EDGE_RATE * rounding_of(a, m, s), EDGE_MORE});
         }
     } else if (w == WATCH_STICTION) {
-        const double *hold = taylor_terms(&s->lane, AT_HOLD, order);
+        const double *hold = taylor_term(lane, AT_HOLD);
         const double sign = hold[0] < 0 ? -1 : 1;
-        set_polynomial(p, hold, order, -sign);
-        set_polynomial(&s->far_limit, hold, order, sign);
+        set_polynomial(p, hold, spacing, order, -sign);
+        set_polynomial(&s->far_limit, hold, spacing, order, sign);
         p->terms[0] += stiction;
         s->far_limit.terms[0] += stiction;
         p->terms[0] = jumped && fabs(p->terms[0]) <= EDGE_VALUE ? EDGE_VALUE : p->terms[0];
@@ -182,13 +184,18 @@ static const polynomial *watched(const arm *a, const motion *m, watch w)
 static void keep(motion *m, double most)
 {
     double *kept = state_kept(m, m->state);
-    const size_t size = (size_t)m->dof * sizeof *kept;
+    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    const double *quadratures = state_quadratures(m, m->state);
     kept[KEPT_LENGTH] = kept[KEPT_USED] = 0;
     kept[KEPT_WANTED] = most;
     kept[KEPT_JUMPED] = m->state[SLOT_JUMPED];
-    memcpy(kept + KEPT_QUADRATURES, state_quadratures(m, m->state), 3 * sizeof *kept);
-    memcpy(kept + KEPT_ANGLES, state_angles(m, m->state), size);
-    memcpy(kept + KEPT_VELOCITIES, state_velocities(m, m->state), size);
+    for (int i = 0; i < 3; i++) {
+        kept[KEPT_QUADRATURES + i] = quadratures[i];
+    }
+    for (int i = 0; i < m->dof; i++) {
+        kept[KEPT_ANGLES + i] = q[i];
+        kept[KEPT_VELOCITIES + i] = w[i];
+    }
 }
 
 // What the series of the stride that the state keeps start from.
@@ -418,12 +425,12 @@ static double bend(const arm *a, const motion *m, watch w, double from, double t
     (void)from;
     if (w == WATCH_FORCE && p->divided) {
         // divided by the time: the force itself may bend more
-        const int order = s->lane.form.order;
         polynomial force;
-        set_polynomial(&force, taylor_terms(&s->lane, AT_FORCE, order), order, 1);
+        set_polynomial(&force, taylor_term(&s->lane, AT_FORCE), taylor_spacing(&s->lane),
+                       s->lane.form.order, 1);
         return fmax(near, bend_of(&force, t));
     }
-    return w == WATCH_STICTION ? fmax(near, bend_of(&s->far_limit, t)) : near;
+    return near; // that of both limits of stiction
 }
 
 static glance force_at(const arm *a, const motion *m, double h)
@@ -441,17 +448,26 @@ static void forces_at(const arm *a, const motion *m, double h, int count, glance
     const double width = h / count;
     const taylor_lane *lane = &s->lane;
 
-    // evaluated with others', or here
+    // evaluated with others', which began their strides with the steps, or here
     if (lane->pieces == count && lane->end == h) {
         const taylor_pieces *pieces = &lane->group->pieces;
+        at[0] = (glance){*taylor_term(lane, AT_FORCE), *taylor_term(lane, AT_FORCE + 1)};
         for (int i = 0; i < count; i++) {
-            at[i] = (glance){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
+            at[i + 1] = (glance){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
         }
     } else {
-        for (int i = 0; i < count; i++) {
-            at[i] = force_at(a, m, (i + 1) * width);
+        for (int i = 0; i <= count; i++) {
+            at[i] = force_at(a, m, i * width);
         }
     }
+}
+
+static glance gap_at(const arm *a, const motion *m, double h)
+{
+    taylor_stride *s = m->memory;
+    (void)a;
+    const int count = s->lane.form.order + 2;
+    return glance_at(taylor_terms(&s->lane, AT_GAP, count), count, s->used + h);
 }
 
 // Whether the watched function is off its edge from the start, and above zero all over the stride.
@@ -511,6 +527,7 @@ const engine taylor_engine = {.name = "Taylor series",
                               .bounded = bounded,
                               .force_at = force_at,
                               .forces_at = forces_at,
+                              .gap_at = gap_at,
                               .first_event = first_event,
                               .peak = dense_search_peak,
                               .open = open,

@@ -60,6 +60,18 @@ void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_
 // Computes the series of one arm in the widest vectors that help it; the same bits in all of them.
 void taylor_compute_one(taylor_lane *lane);
 
+// Where the number of a place of the lane's series stands; those of the places behind it follow
+// taylor_spacing() further each.
+static inline const double *taylor_term(const taylor_lane *lane, int place)
+{
+    const taylor_group *group = lane->group;
+    return group != NULL ? group->block + place * group->width + lane->number : lane->block + place;
+}
+static inline int taylor_spacing(const taylor_lane *lane)
+{
+    return lane->group != NULL ? lane->group->width : 1;
+}
+
 // The first `count` terms of the array of the lane's series that begins at a place.
 const double *taylor_terms(taylor_lane *lane, int place, int count);
 

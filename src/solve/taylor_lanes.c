@@ -143,7 +143,7 @@ const double *taylor_terms(taylor_lane *lane, int place, int count)
     const unsigned bit = 1u << (place - AT_ANGLE_0) / TAYLOR_MOST;
     if (lane->group != NULL && !(lane->fetched & bit)) {
         const int width = lane->group->width;
-        const double *from = lane->group->block + place * width + lane->number;
+        const double *from = taylor_term(lane, place);
         for (int n = 0; n < count; n++) {
             lane->block[place + n] = from[n * width];
         }

@@ -21,14 +21,15 @@ typedef struct polynomial {
     bool divided;             // by a power of the time
 } polynomial;
 
-// Takes the `count` terms, each times the factor.
-static inline void set_polynomial(polynomial *p, const double *terms, int count, double factor)
+// Takes the `count` terms, which stand `spacing` apart, each times the factor.
+static inline void set_polynomial(polynomial *p, const double *terms, int spacing, int count,
+                                  double factor)
 {
     p->count = count + count % 2;
     p->divided = false;
     p->terms[p->count - 1] = 0;
     for (int n = 0; n < count; n++) {
-        p->terms[n] = factor * terms[n];
+        p->terms[n] = factor * terms[n * spacing];
     }
 }
 
