@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <string.h>
 
+#include "src/run/run.h"
 #include "src/run/together.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
