@@ -15,6 +15,16 @@ static const char *const *const bounced = SETTINGS(
     "arm.k2=0.42683428006921265", "arm.damping_ratio=0", "initial.angle=-0.31252081318290958",
     "initial.velocity=4.7072186055817422");
 
+// A stuck hub, whose link swings so far that its sine needs higher orders than its velocity.
+static const char *const *const swung =
+    SETTINGS("wall.kind=plane", "arm.hub_joint=rigid", "motor.voltage=1.5723574791556594",
+             "motor.amplifier_gain=3.5633144777693193", "motor.torque_constant=0.52914640170410843",
+             "motor.back_emf=0", "motor.viscous_friction=0", "motor.stiction=0.2083535248321986",
+             "wall.angle=-1.2979903407760596", "wall.restitution=1",
+             "arm.mass=0.021412955434791433", "arm.hub_inertia=0.026441001325556369",
+             "arm.k2=0.088287400729351456", "arm.damping_ratio=0.001600751403942513",
+             "initial.angle=-2.3138095162855059", "initial.velocity=3.4473836375613836");
+
 // A hub on a stiff spring that breaks away again and again in no time.
 static const char *const *const broke_away =
     SETTINGS("wall.kind=plane", "arm.hub_joint=spring", "motor.voltage=7.8616633048956466",
@@ -100,8 +110,8 @@ static void run_with(const char *const *settings, bool keep_trace, run_result *r
 static void test_runs_that_failed_come_to_their_end(void **state)
 {
     (void)state;
-    const char *const *const runs[] = {bounced,   broke_away, let_go,      let_go_fast,
-                                       came_back, swept_over, came_to_rest};
+    const char *const *const runs[] = {bounced,   broke_away, let_go,       let_go_fast,
+                                       came_back, swept_over, came_to_rest, swung};
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         run_result r;
         run_with(runs[i], false, &r);

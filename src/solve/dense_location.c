@@ -51,14 +51,24 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
     return t;
 }
 
+// The engine's bound on the second derivative; `known` if that is what it was for a longer interval
+// with the same end, else HUGE_VAL.
+static double bend_between(const arm *a, const motion *m, watch w, point lo, point hi, double known)
+{
+    return isfinite(known) && m->engine->bends_from_start
+               ? known
+               : m->engine->bend(a, m, w, lo.time, hi.time);
+}
+
 // The first fall below zero from `lo` to `hi`, both known; negative if there is none. Intervals in
 // which the bound on the second derivative leaves no room for one are passed, those in which it
 // leaves none for a slope upwards have one root, and all others are cut in two. In what is not
 // finite nothing is to be found: the state at its end says so.
-static double first_fall(const arm *a, const motion *m, watch w, point lo, point hi, int cuts)
+static double first_fall(const arm *a, const motion *m, watch w, point lo, point hi, int cuts,
+                         double known)
 {
     const double length = hi.time - lo.time;
-    const double bend = m->engine->bend(a, m, w, lo.time, hi.time);
+    const double bend = bend_between(a, m, w, lo, hi, known);
     const double room = bend * length * length / 8;
     if (fmin(lo.at.value, hi.at.value) > room || !isfinite(room)) {
         return -1;
@@ -76,10 +86,10 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
     double time = 0.5 * (lo.time + hi.time);
     point middle = {time, m->engine->look(a, m, w, time)};
     if (middle.at.value < 0) {
-        return first_fall(a, m, w, lo, middle, cuts - 1);
+        return first_fall(a, m, w, lo, middle, cuts - 1, HUGE_VAL);
     }
-    double first = first_fall(a, m, w, lo, middle, cuts - 1);
-    return first >= 0 ? first : first_fall(a, m, w, middle, hi, cuts - 1);
+    double first = first_fall(a, m, w, lo, middle, cuts - 1, HUGE_VAL);
+    return first >= 0 ? first : first_fall(a, m, w, middle, hi, cuts - 1, bend);
 }
 
 void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
@@ -102,7 +112,7 @@ void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *
             continue;
         }
         point start = {0, m->engine->look(a, m, w, 0)}, end = {*h, m->engine->look(a, m, w, *h)};
-        double fall = start.at.value < 0 ? 0 : first_fall(a, m, w, start, end, MOST_CUTS);
+        double fall = start.at.value < 0 ? 0 : first_fall(a, m, w, start, end, MOST_CUTS, HUGE_VAL);
         if (fall >= 0) {
             *any = true;
             *first = w;
@@ -146,11 +156,11 @@ static point summit(const arm *a, const motion *m, point lo, point hi)
     return top;
 }
 
-static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts)
+static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, double known)
 {
     // no room for a larger force, or a slope that keeps its sign
     const double length = hi.time - lo.time;
-    const double bend = m->engine->bend(a, m, WATCH_FORCE, lo.time, hi.time);
+    const double bend = bend_between(a, m, WATCH_FORCE, lo, hi, known);
     const double most = fmax(lo.at.value, hi.at.value) + bend * length * length / 8;
     const double change = bend * length / 2; // of the slope from the nearer end
     if (most <= m->pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
@@ -169,8 +179,8 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts)
     double time = 0.5 * (lo.time + hi.time);
     point middle = {time, m->engine->force_at(a, m, time)};
     note_force(m, middle);
-    raise_peak(a, m, lo, middle, cuts - 1);
-    raise_peak(a, m, middle, hi, cuts - 1);
+    raise_peak(a, m, lo, middle, cuts - 1, HUGE_VAL);
+    raise_peak(a, m, middle, hi, cuts - 1, bend);
 }
 
 void dense_peak(const arm *a, motion *m, double h)
@@ -193,5 +203,5 @@ void dense_search_peak(const arm *a, motion *m, double h)
     point start = {0, m->engine->force_at(a, m, 0)}, end = {h, m->engine->force_at(a, m, h)};
     note_force(m, start);
     note_force(m, end);
-    raise_peak(a, m, start, end, CUTS);
+    raise_peak(a, m, start, end, CUTS, HUGE_VAL);
 }

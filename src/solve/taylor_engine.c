@@ -113,8 +113,8 @@ static double wanted_stride(const arm *a, const motion *m, const double *w, doub
 
     // and the lowest order that reaches so far
     *order = TAYLOR_MOST;
-    for (int i = ORDERS - 1; i >= 0; i--) {
-        *order = wanted * rate <= orders[i].reach ? orders[i].order : *order;
+    for (int i = ORDERS - 1; i >= 0 && wanted * rate <= orders[i].reach; i--) {
+        *order = orders[i].order;
     }
     return wanted;
 }
@@ -523,6 +523,7 @@ const engine taylor_engine = {.name = "Taylor series",
                               .states_at = states_at,
                               .look = look,
                               .bend = bend,
+                              .bends_from_start = true,
                               .clear = clear,
                               .bounded = bounded,
                               .force_at = force_at,

@@ -278,6 +278,18 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
             const real S2 = PART(x.directions[n], 3);
             gap[n] = point ? l * PART(x.directions[n], 1) - S2 : -(PART(x.direction1[n], 1) + S2);
         }
+
+        // its rate counts as the velocities do: sines of large swings go on where those have ended
+        const real per_length = 1 / l;
+        last += magnitude(gap[order + 1]) * (order + 1) * per_length;
+        before_last += magnitude(gap[order]) * order * per_length;
+    }
+
+    // so does what a stuck hub is held from
+    if (!hub_spring && any(stuck)) {
+        const real per_inertia = choose(stuck, 1 / m11, zero);
+        last += magnitude(hold[order - 1]) * inverse[order] * per_inertia;
+        before_last += magnitude(hold[order - 2]) * inverse[order - 1] * per_inertia;
     }
 
     const real scale = greater(greater(magnitude(w1[0]), magnitude(w2[0])), zero + 1.0);

@@ -1,8 +1,7 @@
 // A watched function over a stride of the two-link arm, as a polynomial of the time since its
 // start.
 //
-// With u = t^2 it is E(u) + t O(u), its even and its odd terms, which Horner's rule takes side by
-// side. So the number of terms is even, the last one zero if need be.
+// Terms are taken in pairs, so that their number is even, the last one zero if need be.
 #pragma once
 
 #include <math.h>
@@ -53,40 +52,70 @@ static inline pair terms_at(const double *terms, int n)
     return p;
 }
 
-// p' = O + 2 t (E' + t O'), the dashes on the right by u.
+// The pairs of terms n, n + 1 are coefficients of u = t^2, and again by turns A(v) + u B(v) with
+// v = u^2: four sums side by side, as each waits long for its last term. The values are those of a
+// pair of terms that are x[0] + t x[1].
+typedef struct turns {
+    pair even, odd; // A, B
+} turns;
+
+// Value and slope: with the dashes by v, (A + u B)' by u is 2 u A' + B + 2 v B'.
 static inline glance glance_at(const double *terms, int count, double t)
 {
-    const double u = t * t;
-    pair value = terms_at(terms, count - 2), slope = {0, 0};
-    for (int n = count - 4; n >= 0; n -= 2) {
-        slope = slope * u + value;
-        value = value * u + terms_at(terms, n);
+    const double u = t * t, v = u * u;
+    turns value = {{0, 0}, {0, 0}}, slope = {{0, 0}, {0, 0}};
+    int n = count - 2;
+    if (n % 4 == 0) {
+        value.even = terms_at(terms, n);
+        n -= 2;
     }
-    return (glance){value[0] + t * value[1], value[1] + 2 * t * (slope[0] + t * slope[1])};
+    for (; n >= 2; n -= 4) {
+        slope.odd = slope.odd * v + value.odd;
+        value.odd = value.odd * v + terms_at(terms, n);
+        slope.even = slope.even * v + value.even;
+        value.even = value.even * v + terms_at(terms, n - 2);
+    }
+    const pair at = value.even + u * value.odd;
+    const pair by_u = value.odd + 2 * (u * slope.even + v * slope.odd);
+    return (glance){at[0] + t * at[1], at[1] + 2 * t * (by_u[0] + t * by_u[1])};
 }
 
 // The largest second derivative for times from 0 to t, from the magnitudes of the terms.
 static inline double bend_of(const polynomial *p, double t)
 {
-    const double u = t * t;
-    pair bound = {0, 0};
-    for (int n = p->count - 2; n >= 2; n -= 2) {
-        bound = bound * u + magnitudes(terms_at(p->terms, n)) * terms_at(falling, n);
+    const double u = t * t, v = u * u;
+    turns bound = {{0, 0}, {0, 0}};
+    int n = p->count - 2;
+    if (n % 4 == 2) {
+        bound.even = magnitudes(terms_at(p->terms, n)) * terms_at(falling, n);
+        n -= 2;
     }
-    return bound[0] + t * bound[1];
+    for (; n >= 4; n -= 4) {
+        bound.odd = bound.odd * v + magnitudes(terms_at(p->terms, n)) * terms_at(falling, n);
+        bound.even =
+            bound.even * v + magnitudes(terms_at(p->terms, n - 2)) * terms_at(falling, n - 2);
+    }
+    const pair all = bound.even + u * bound.odd;
+    return all[0] + t * all[1];
 }
 
 // What the function stays above for times from 0 to t: its straight part is least at an end, what
 // bends it takes a little more than the sum of its terms' magnitudes at most.
 static inline double low_of(const polynomial *p, double t)
 {
-    const double u = t * t, *terms = p->terms;
-    pair sum = {0, 0};
-    for (int n = p->count - 2; n >= 2; n -= 2) {
-        sum = sum * u + magnitudes(terms_at(terms, n));
+    const double u = t * t, v = u * u, *terms = p->terms;
+    turns sum = {{0, 0}, {0, 0}};
+    int n = p->count - 2;
+    if (n % 4 == 2) {
+        sum.even = magnitudes(terms_at(terms, n));
+        n -= 2;
     }
-    sum *= u;
-    const double bent = sum[0] + t * sum[1];
+    for (; n >= 4; n -= 4) {
+        sum.odd = sum.odd * v + magnitudes(terms_at(terms, n));
+        sum.even = sum.even * v + magnitudes(terms_at(terms, n - 2));
+    }
+    const pair all = u * (sum.even + u * sum.odd);
+    const double bent = all[0] + t * all[1];
     const double straight = terms[0] + t * terms[1];
     return fmin(terms[0], straight) - ((bent + fabs(terms[0]) + fabs(terms[1]) * t) * 1e-12 + bent);
 }
