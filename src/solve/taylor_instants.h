@@ -78,20 +78,33 @@ KERNEL void derivatives_of(coefficients x, int count, real t, real u, real resul
     result[2] = 2 * even1 + 6 * t * odd1 + 8 * u * (even2 + t * odd2);
 }
 
-// Value and first derivative.
+// Value and first derivative, by the operations of glance_at (taylor_polynomial.h): terms in pairs,
+// the pairs by turns.
 KERNEL void glance_of(coefficients x, int count, real t, double *value, double *slope)
 {
-    const real u = t * t;
-    real even = term(x, count - 2), odd = term(x, count - 1);
-    real even1 = (real){0}, odd1 = (real){0};
-    for (int n = count - 4; n >= 0; n -= 2) {
-        even1 = even1 * u + even;
-        odd1 = odd1 * u + odd;
-        even = even * u + term(x, n);
-        odd = odd * u + term(x, n + 1);
+    const real u = t * t, v = u * u;
+    real even[2] = {(real){0}, (real){0}}, odd[2] = {(real){0}, (real){0}};
+    real even1[2] = {(real){0}, (real){0}}, odd1[2] = {(real){0}, (real){0}}, at[2], by_u[2];
+    int n = count - 2;
+    if (n % 4 == 0) {
+        even[0] = term(x, n);
+        even[1] = term(x, n + 1);
+        n -= 2;
     }
-    put(value, even + t * odd);
-    put(slope, odd + 2 * t * (even1 + t * odd1));
+    for (; n >= 2; n -= 4) {
+        for (int i = 0; i < 2; i++) {
+            odd1[i] = odd1[i] * v + odd[i];
+            odd[i] = odd[i] * v + term(x, n + i);
+            even1[i] = even1[i] * v + even[i];
+            even[i] = even[i] * v + term(x, n - 2 + i);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        at[i] = even[i] + u * odd[i];
+        by_u[i] = odd[i] + 2 * (u * even1[i] + v * odd1[i]);
+    }
+    put(value, at[0] + t * at[1]);
+    put(slope, at[1] + 2 * t * (by_u[0] + t * by_u[1]));
 }
 
 // Gap, its rate and second derivative from directions, velocities and accelerations of the links.
