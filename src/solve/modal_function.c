@@ -146,19 +146,44 @@ static void add_vibration(modal_function *f, const modal_vibrations *v, int mode
 {
     const int e = v->entry[mode];
     const double p = f->place[mode], s = f->speed[mode];
-    double *cosine = f->sum.cosine, *sine = f->sum.sine;
-    if (e < v->vibrating) {
-        const double a = v->decay[e], turn = v->turn[e], b = (speed + a * place) / turn;
-        cosine[e] = p * place + s * (turn * b - a * place);
-        sine[e] = p * b - s * (a * b + turn * place);
-        return;
-    }
+    const double a = v->decay[e], turn = v->turn[e], b = (speed + a * place) / turn;
+    f->sum.cosine[e] = p * place + s * (turn * b - a * place);
+    f->sum.sine[e] = p * b - s * (a * b + turn * place);
+}
 
-    // two decays
-    const int other = e + v->overdamped;
+// `weight` times the decay u' + rate u = n(t) from u = start, into an amplitude and the series'
+// derivatives: where it hardly decays in the stride that has all of it.
+static void add_decay(double rate, double length, double start, const double *n, double weight,
+                      double *amplitude, double *total)
+{
+    double g[MODAL_SERIES] = {0};
+    if (rate * length <= SLOW_TURN) {
+        g[0] = start;
+        for (int j = 0; j + 1 < MODAL_SERIES; j++) {
+            g[j + 1] = (j < MODAL_NODES ? n[j] : 0) - rate * g[j];
+        }
+    } else {
+        for (int j = MODAL_NODES - 1; j >= 0; j--) {
+            g[j] = (n[j] - g[j + 1]) / rate;
+        }
+        *amplitude = weight * (start - g[0]);
+    }
+    for (int j = 0; j < MODAL_SERIES; j++) {
+        total[j] += weight * g[j];
+    }
+}
+
+// An overdamped mode from x = 0 with a speed under n(t). With decays a and b, u = x' + b x and
+// v = x' + a x decay at a and b, x = (u - v)/(b - a) and x' = (b v - a u)/(b - a). Apart, since one
+// may be slow and the other fast by any factor.
+static void add_overdamped(modal_function *f, const modal_vibrations *v, int mode, double speed,
+                           const double *n, double *total)
+{
+    const int e = v->entry[mode], other = e + v->overdamped;
     const double slow = v->decay[e], fast = v->decay[other], per = 1 / (fast - slow);
-    cosine[e] = per * (fast * place + speed) * (p - s * slow);
-    cosine[other] = -per * (slow * place + speed) * (p - s * fast);
+    const double p = f->place[mode], s = f->speed[mode], length = f->sum.length;
+    add_decay(slow, length, speed, n, per * (p - s * slow), &f->sum.cosine[e], total);
+    add_decay(fast, length, speed, n, -per * (p - s * fast), &f->sum.cosine[other], total);
 }
 
 // The function on the whole stride from its value, functional and rest.
@@ -188,6 +213,7 @@ static void fit_sum(modal_function *f, const modal_stride *s)
             const double turn = j + 1 < MODAL_NODES ? s->drift[j + 1][k] : 0;
             n[j] = s->force[j][k] + 2 * damping * s->drift[j][k] + turn;
         }
+        total[0] -= f->speed[k] * speed;
         if (k == s->modes->across) {
             memset(g, 0, sizeof g);
             for (int j = 0; j < MODAL_NODES; j++) {
@@ -197,11 +223,13 @@ static void fit_sum(modal_function *f, const modal_stride *s)
             slow_mode(damping, rate, speed, n, g);
             sum->first =
                 v->entry[k] >= 0 && v->entry[k] == sum->first ? sum->first + 1 : sum->first;
+        } else if (v->entry[k] >= v->vibrating) {
+            add_overdamped(f, v, k, speed, n, total);
+            continue;
         } else {
             followed(damping, rate, n, g);
             add_vibration(f, v, k, -g[0], speed - g[1]);
         }
-        total[0] -= f->speed[k] * speed;
         for (int j = 0; j < MODAL_SERIES; j++) {
             total[j] += f->place[k] * g[j] + f->speed[k] * g[j + 1];
         }
