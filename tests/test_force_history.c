@@ -3,6 +3,8 @@
 
 #include "src/run/largest_mean.h"
 #include "src/run/run_result.h"
+#include "src/solve/contact_machine.h"
+#include "tests/rig_fixture.h"
 
 #define STEP 1e-2 // [s]
 
@@ -112,6 +114,52 @@ static void an_impulse_counts_as_long_as_the_window_holds_it(void **state)
     force_history_finish(&r.history.forces);
 }
 
+// Impulse of the force over a run, as the motion itself integrates it [N s].
+static double pressed(const parameters *p)
+{
+    arm a;
+    motion_report report;
+    arm_init(&a, p);
+    motion *m = motion_create(&a, &p->method);
+    assert_non_null(m);
+    motion_start(&a, m, p->initial.angle, p->initial.velocity);
+    while (m->state[SLOT_TIME] < p->run.duration) {
+        assert_int_equal(motion_step(&a, m, p->run.duration, p->method.step, &report), STATUS_OK);
+        motion_apply(&a, m, &report);
+    }
+    const double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    motion_destroy(m);
+    return integral;
+}
+
+// The modes of a damped chain decay within nanoseconds of an impact, in which they press with
+// thousands of newtons: what is kept of the force has their impulse.
+static void the_force_kept_has_the_impulse_of_decays(void **state)
+{
+    (void)state;
+    static const char *const links[] = {"arm.links=2", "arm.links=8", "arm.links=32"};
+    static const char *const ratios[] = {"arm.damping_ratio=0.01", "arm.damping_ratio=0.3",
+                                         "arm.damping_ratio=1"};
+    for (int i = 0; i < 9; i++) {
+        const char *const settings[] = {links[i / 3],          ratios[i % 3],
+                                        "initial.angle=-0.01", "initial.velocity=1",
+                                        "run.duration=0.03",   NULL};
+        const parameters p = rig_parameters(settings);
+        const scenario one = {.parameters = p};
+        const run_options kept = {.keep_trace = true, .rows_expected = 100};
+        run_result run;
+        assert_int_equal(run_scenario_with(&one, &kept, &run), STATUS_OK);
+        const force_history *h = &run.history.forces;
+        double sum = 0;
+        for (size_t k = 0; k < h->count; k++) {
+            const force_step *step = &force_steps(h)[k];
+            sum += step->mean * (step->end - step->start);
+        }
+        check_relative(sum, pressed(&p), 1e-4);
+        run_finish(&run);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -121,6 +169,7 @@ int main(void)
         cmocka_unit_test(an_empty_history_has_no_answer),
         cmocka_unit_test(the_largest_mean_is_where_the_curve_is_highest),
         cmocka_unit_test(an_impulse_counts_as_long_as_the_window_holds_it),
+        cmocka_unit_test(the_force_kept_has_the_impulse_of_decays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

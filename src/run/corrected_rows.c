@@ -262,45 +262,83 @@ static int pieces_of_step(const corrected_run *c, double length, double reach)
     return whole < MOST_PIECES ? whole + (whole < pieces) : MOST_PIECES;
 }
 
-int corrected_force_pieces(const corrected_run *c, double length)
+// Where the next piece of a step ends that goes from `time` to `end` and is taken in parabolas [s],
+// as long as what the last event set going decays faster than the arm vibrates. False where equal
+// pieces do for the rest.
+static bool next_decay_piece(const corrected_run *c, double time, double end, double reach,
+                             double *next)
 {
-    return pieces_of_step(c, length, FORCE_REACH);
+    const arm *a = &c->arm;
+    if (!(a->fastest_decay > a->highest_frequency) || !engine_is_dense(c->motion->engine) ||
+        motion_held_still(c->motion)) {
+        return false;
+    }
+    const double since = time - c->recording->state.last_jump;
+    const double length = larger(motion_decay_length(a, reach, since), instant_tolerance(time));
+    const double equal = larger(reach / a->highest_frequency, (end - time) / MOST_PIECES);
+    *next = time + length;
+    return length < equal && *next < end;
 }
 
-// Keeps the force over the step just made, in pieces that are parabolas to sight.
-static status record_force(corrected_run *c, const force_step *whole)
+int corrected_force_pieces(const corrected_run *c, double length)
 {
-    recording *r = c->recording;
-    const motion *m = c->motion;
-    const bool contact = m->trial[SLOT_CONTACT] != 0;
-    const int pieces = contact ? corrected_force_pieces(c, m->made) : 1;
-    glance at[MOST_PIECES + 1];
-    force_step *kept = recording_add_steps(r, pieces);
+    const double now = c->motion->state[SLOT_TIME];
+    double next;
+    return next_decay_piece(c, now, now + length, FORCE_REACH, &next)
+               ? 0
+               : pieces_of_step(c, length, FORCE_REACH);
+}
 
+// A way along the step just made: where it has come, and what it has met there.
+typedef struct way {
+    double time; // [s]
+    sensed_motion at;
+    double integral; // of the force [N s]
+} way;
+
+static way way_at(const corrected_run *c, double time, double *state)
+{
+    return (way){time, corrected_sensed_motion(c, state),
+                 state_quadratures(c->motion, state)[QUADRATURE_FORCE]};
+}
+
+// Goes on to an instant within the step. False if the state there cannot be had.
+static bool go_to(const corrected_run *c, way *w, double time)
+{
+    double *state = motion_between(&c->arm, c->motion, time);
+    if (state == NULL) {
+        return false;
+    }
+    *w = way_at(c, time, state);
+    return true;
+}
+
+// Keeps the force over equal pieces of the step just made, from `since` its start on [s]: each has
+// the mean of the cubic through both ends' values and slopes.
+static status record_equal_pieces(corrected_run *c, const force_step *rest, double since, int count)
+{
+    const motion *m = c->motion;
+    glance at[MOST_PIECES + 1];
+    force_step *kept = recording_add_steps(c->recording, count);
     if (kept == NULL) {
         return STATUS_NO_MEMORY;
     }
-    if (pieces == 1) {
-        *kept = *whole;
-        return STATUS_OK;
-    }
 
     // the force at the start and at the ends of all pieces
-    const double width = m->made / pieces;
-    if (m->engine->forces_at != NULL) {
-        m->engine->forces_at(&c->arm, m, m->made, pieces, at);
+    const double width = (m->made - since) / count;
+    if (m->engine->forces_at != NULL && since == 0) {
+        m->engine->forces_at(&c->arm, m, m->made, count, at);
     } else {
-        for (int i = 0; i <= pieces; i++) {
-            at[i] = m->engine->force_at(&c->arm, m, i * width);
+        for (int i = 0; i <= count; i++) {
+            at[i] = m->engine->force_at(&c->arm, m, since + i * width);
         }
     }
 
-    // its mean over each is that of the cubic through both ends' values and slopes
     const double slope_share = width / 12;
-    double start = whole->start;
-    for (int i = 0; i < pieces; i++) {
+    double start = rest->start;
+    for (int i = 0; i < count; i++) {
         const glance first = at[i], last = at[i + 1];
-        const double end = i < pieces - 1 ? whole->start + (i + 1) * width : whole->end;
+        const double end = i < count - 1 ? rest->start + (i + 1) * width : rest->end;
         const double mean =
             (first.value + last.value) / 2 + slope_share * (first.slope - last.slope);
         kept[i] = (force_step){
@@ -310,59 +348,73 @@ static status record_force(corrected_run *c, const force_step *whole)
     return STATUS_OK;
 }
 
-// A way along the step just made, and what the sensors are fixed to where it has come.
-typedef struct way {
-    double time; // [s]
-    sensed_motion at;
-    double integral; // of the force [N s]
-} way;
+// Keeps the force over the step just made, in pieces that are parabolas to sight.
+static status record_force(corrected_run *c, const force_step *whole)
+{
+    recording *r = c->recording;
+    const motion *m = c->motion;
+    if (m->trial[SLOT_CONTACT] == 0) {
+        return recording_add_step(r, *whole);
+    }
+
+    // what an event set going and decays at once, its integral being that of the motion
+    way w = way_at(c, whole->start, m->trial);
+    double next;
+    while (next_decay_piece(c, w.time, whole->end, FORCE_REACH, &next)) {
+        const way last = w;
+        if (!go_to(c, &w, next)) {
+            return STATUS_NOT_FINITE;
+        }
+        const force_step piece = {.start = last.time,
+                                  .end = w.time,
+                                  .first = last.at.force,
+                                  .last = w.at.force,
+                                  .mean = (w.integral - last.integral) / (w.time - last.time)};
+        const status s = recording_add_step(r, piece);
+        if (s != STATUS_OK) {
+            return s;
+        }
+    }
+
+    // what vibrates
+    const double since = w.time - whole->start, length = whole->end - w.time;
+    const double all = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    force_step rest = *whole;
+    if (since > 0) {
+        rest.start = w.time;
+        rest.first = w.at.force;
+        rest.mean = (all - w.integral) / length;
+    }
+    const int pieces = pieces_of_step(c, since > 0 ? length : m->made, FORCE_REACH);
+    return pieces > 1 ? record_equal_pieces(c, &rest, since, pieces) : recording_add_step(r, rest);
+}
 
 // Lets the sensors follow the arm on to an instant within the step, a stretch of this length [s].
 static status follow_to(corrected_run *c, way *w, double time, double length)
 {
-    motion *m = c->motion;
-    double *state = motion_between(&c->arm, m, time);
-    if (state == NULL) {
+    const way last = *w;
+    if (!go_to(c, w, time)) {
         return STATUS_NOT_FINITE;
     }
-    const sensed_motion here = corrected_sensed_motion(c, state);
-    const double pressed = state_quadratures(m, state)[QUADRATURE_FORCE];
-    const double mean = (pressed - w->integral) / length;
-    sensors_follow(&c->recording->rig->sensors, length, &w->at, &here, mean);
-    *w = (way){time, here, pressed};
+    const double mean = (w->integral - last.integral) / length;
+    sensors_follow(&c->recording->rig->sensors, length, &last.at, &w->at, mean);
     return STATUS_OK;
-}
-
-// Lets them follow what an event set going that decays faster than the arm vibrates.
-static status follow_decays(corrected_run *c, way *w, double end)
-{
-    const motion *m = c->motion;
-    const double widest = SENSOR_REACH / c->arm.highest_frequency;
-    if (!engine_is_dense(m->engine) || motion_held_still(m)) {
-        return STATUS_OK;
-    }
-    for (;;) {
-        const double since = w->time - c->recording->state.last_jump;
-        const double length = motion_parabola_length(&c->arm, SENSOR_REACH, since);
-        const double next = w->time + larger(length, instant_tolerance(w->time));
-        if (!(length < widest) || !(next < end)) {
-            return STATUS_OK;
-        }
-        if (follow_to(c, w, next, next - w->time) != STATUS_OK) {
-            return STATUS_NOT_FINITE;
-        }
-    }
 }
 
 // Lets the sensors follow the arm over the step just made.
 static status follow_with_sensors(corrected_run *c, const force_step *whole)
 {
     motion *m = c->motion;
-    way w = {whole->start, corrected_sensed_motion(c, m->trial),
-             state_quadratures(m, m->trial)[QUADRATURE_FORCE]};
-    status s = follow_decays(c, &w, whole->end);
+    way w = way_at(c, whole->start, m->trial);
+    status s = STATUS_OK;
+    double next;
 
-    // from piece to piece
+    // what an event set going and decays at once
+    while (s == STATUS_OK && next_decay_piece(c, w.time, whole->end, SENSOR_REACH, &next)) {
+        s = follow_to(c, &w, next, next - w.time);
+    }
+
+    // the rest from piece to piece
     const double start = w.time, length = whole->end - start;
     const int pieces = pieces_of_step(c, length, SENSOR_REACH);
     for (int i = 1; i < pieces && s == STATUS_OK; i++) {

@@ -268,11 +268,9 @@ double motion_rounding_at(const arm *a, int dof, const double *q, const double *
     return 1 + LAST_BITS * (a->highest_frequency * a->highest_frequency * angle + rate * rate);
 }
 
-double motion_parabola_length(const arm *a, double reach, double since)
+double motion_decay_length(const arm *a, double reach, double since)
 {
-    const double length = reach / a->highest_frequency;
-    return fmin(length,
-                fmax(GRADING * since, reach / fmax(a->highest_frequency, a->fastest_decay)));
+    return fmax(GRADING * since, reach / fmax(a->highest_frequency, a->fastest_decay));
 }
 
 double motion_wall_energy(const arm *a, const motion *m, const double *state)

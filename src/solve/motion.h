@@ -295,10 +295,10 @@ static inline double motion_motor_work(const motion *m, double *state)
     return state[SLOT_MOTOR_WORK] + state_quadratures(m, state)[QUADRATURE_MOTOR];
 }
 
-// How long [s] a parabola does for the force on a damped chain, `since` [s] after the last event.
-// It does for what vibrates over `reach` / (highest frequency). What decays faster was set going by
-// the event, and what is left of it changes in a share of the time since.
-double motion_parabola_length(const arm *a, double reach, double since);
+// How long [s] a parabola does for what decays of the force on a damped chain, `since` [s] after
+// the last event, which set it going: what is left of it changes in a share of that time, and
+// nothing before `reach` / (fastest decay).
+double motion_decay_length(const arm *a, double reach, double since);
 
 // Energy that a wall that gives holds, with that of its face's motion; 0 in a rigid one [J].
 double motion_wall_energy(const arm *a, const motion *m, const double *state);

@@ -186,7 +186,9 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
         double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
         if (!isnan(w->touched) && engine_is_dense(m->engine)) {
             const double now = m->state[SLOT_TIME]; // its strides are no parabolas
-            until = fmin(until, now + motion_parabola_length(a, PARABOLA_REACH, now - last));
+            const double vibrating = PARABOLA_REACH / a->highest_frequency;
+            const double decaying = motion_decay_length(a, PARABOLA_REACH, now - last);
+            until = fmin(until, now + fmin(vibrating, decaying));
         }
         status code = motion_step(a, m, until, step, &report);
         if (code != STATUS_OK) {
