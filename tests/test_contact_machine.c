@@ -193,6 +193,28 @@ static void a_torque_away_from_the_wall_ends_the_contact(void **state)
     motion_destroy(r.motion);
 }
 
+// A release is looked at, not obeyed: what is pressed at the wall stays there.
+static void a_release_of_what_is_pressed_is_none(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    const double force = r.motion->state[SLOT_FORCE];
+    motion_report release = {.event = MOTION_RELEASE};
+    motion_apply(&r.arm, r.motion, &release);
+    assert_true(touches(&r));
+    check_relative(r.motion->state[SLOT_FORCE], force, 1e-12);
+    motion_destroy(r.motion);
+}
+
+// Without stiction a hub that begins to turn meets no event of friction on its way to the wall.
+static void a_hub_without_stiction_never_sticks(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.stiction=0"));
+    assert_int_equal(next_event(&r, 1).event, MOTION_IMPACT);
+    motion_destroy(r.motion);
+}
+
 // A wall that gives stops nothing at once: the rod of 1 m keeps its speed, the damper answers it.
 static void a_wall_that_gives_takes_the_rod_at_its_speed(void **state)
 {
@@ -290,6 +312,8 @@ int main(void)
         cmocka_unit_test(a_push_into_the_wall_is_answered_by_it),
         cmocka_unit_test(a_push_away_ends_the_contact),
         cmocka_unit_test(a_torque_away_from_the_wall_ends_the_contact),
+        cmocka_unit_test(a_release_of_what_is_pressed_is_none),
+        cmocka_unit_test(a_hub_without_stiction_never_sticks),
         cmocka_unit_test(a_wall_that_gives_takes_the_rod_at_its_speed),
         cmocka_unit_test(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not),
         cmocka_unit_test(a_cut_changes_nothing_before_it),

@@ -39,6 +39,12 @@ static void faults_of_lessons(void **state)
     assert_int_equal(s.lesson.steps[0].right, 1);
     scenario_finish(&s);
 
+    // the first of all parameters is one like the others
+    s = good("lesson: {steps: [{say: a, value: {arm.model: printed}}]}\n");
+    assert_int_equal(s.lesson.steps[0].parameter, parameter_find("arm.model"));
+    check_close(s.lesson.steps[0].value, ARM_PRINTED, 0);
+    scenario_finish(&s);
+
     // the lesson as a whole
     check_fault("lesson: [a]\n", 1, 9, "lesson is a list");
     check_fault("lesson: {steps: []}\n", 1, 9, "no steps");

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -481,6 +482,29 @@ static void what_only_looks_left_behind_stays(void **state)
     }
 }
 
+// A program that was started without a standard input has its number for the next file.
+static void a_file_may_have_the_number_of_the_standard_input(void **state)
+{
+    (void)state;
+    fault f = {0};
+    whole_file w;
+    const int input = dup(STDIN_FILENO);
+    close(STDIN_FILENO);
+    const status opened = whole_file_open(&w, "numbered-0", &f);
+    const bool is_0 = opened == STATUS_OK && fcntl(STDIN_FILENO, F_GETFD) >= 0;
+    if (opened == STATUS_OK) {
+        fputs("whole", w.stream);
+    }
+    const status written = opened == STATUS_OK ? whole_file_commit(&w, &f) : opened;
+    if (input >= 0) {
+        dup2(input, STDIN_FILENO);
+        close(input);
+    }
+    assert_int_equal(written, STATUS_OK);
+    assert_true(is_0);
+    assert_holds("numbered-0", "whole");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -503,6 +527,7 @@ int main(void)
         cmocka_unit_test(devices_and_the_standard_output_can_be_abandoned),
         cmocka_unit_test(a_link_may_be_absolute),
         cmocka_unit_test(what_only_looks_left_behind_stays),
+        cmocka_unit_test(a_file_may_have_the_number_of_the_standard_input),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder) != 0;
 }
