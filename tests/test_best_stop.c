@@ -31,6 +31,10 @@ static void the_model_has_the_numbers_of_the_arm(void **state)
         parameters p = fixture_parameters(SETTINGS(beyond[i]));
         assert_false(pressed_arm_model_of(&p, &m));
     }
+
+    // links whose inertia is that of their mass at half their length: the force needs no motion
+    parameters p = fixture_parameters(SETTINGS("arm.mass=0.4", "arm.link_inertia=0.0125"));
+    assert_false(pressed_arm_model_of(&p, &m));
 }
 
 // Docs: x' = ((M11 - M12) w2 + (M12 - M22) w3)/M.

@@ -97,6 +97,24 @@ static void less_voltage_and_less_force_take_longer(void **state)
                 of(SETTINGS(START, volts[3]), 1, 1.05).total);
 }
 
+// A beam that hardly bends goes as one rod about the hub, braked by the motor: I w' = T - D w.
+static void a_stiff_arm_goes_as_a_rod(void **state)
+{
+    (void)state;
+    enum { STEPS = 200 };
+    parameters p = fixture_parameters(SETTINGS(START, "arm.k2=1000"));
+    const double damping = motor_damping(&p.motor), most = 0.5;
+    const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
+    double torque[STEPS], tip, press;
+    for (int k = 0; k < STEPS; k++) {
+        torque[k] = most;
+    }
+    least_time_follow(&p, torque, STEPS, &tip, &press);
+    const double time = STEPS * LEAST_TIME_STEP, lag = inertia / damping;
+    const double angle = most / damping * (time - lag * (1 - exp(-time / lag)));
+    check_relative(tip + 0.1 * p.arm.length, angle * p.arm.length, 5e-3);
+}
+
 static void where_there_is_no_way_it_says_so(void **state)
 {
     (void)state;
@@ -111,6 +129,7 @@ int main(void)
         cmocka_unit_test(full_voltage_either_way_has_it),
         cmocka_unit_test(no_torque_does_better),
         cmocka_unit_test(less_voltage_and_less_force_take_longer),
+        cmocka_unit_test(a_stiff_arm_goes_as_a_rod),
         cmocka_unit_test(where_there_is_no_way_it_says_so),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

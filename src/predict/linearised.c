@@ -160,16 +160,14 @@ static void pressed_tangents(const arm *a, const double *q, double *c, double *k
     *k = a->joint_stiffness * bend * bend / mass;
 }
 
-// Vertex of the parabola through three points with spacing h; *t is the middle one's time.
-static double parabola_top(const double f[3], double h, double *t)
+// Moves *t, the middle one's time, to the top of the parabola through three points with spacing h;
+// where that has none it stays.
+static void seek_parabola_top(const double f[3], double h, double *t)
 {
     double second = f[0] - 2 * f[1] + f[2], slope = (f[2] - f[0]) / 2;
-    if (second >= 0) {
-        return fmax(f[0], f[2]);
+    if (second < 0) {
+        *t += fmin(fmax(-slope / second, -1), 1) * h;
     }
-    double s = fmin(fmax(-slope / second, -1), 1);
-    *t += s * h;
-    return f[1] + slope * s + second * s * s / 2;
 }
 
 // The predicted path in contact: oscillations one after another.
@@ -241,7 +239,7 @@ static bool path_peak(pressed_arm *p, const pressed_path *path, double first, pr
     }
 
     double middle = t;
-    parabola_top(f, h, &t);
+    seek_parabola_top(f, h, &t);
     f[3] = path_force(p, path, t);
 
     // Newton's form on s = (time - middle) / h with nodes -1, 0, 1 and s3
