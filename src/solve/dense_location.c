@@ -15,12 +15,27 @@ typedef struct point {
     glance at;
 } point;
 
+// Where the cubic through both ends' values and slopes, the time over the value, is zero: for a
+// function that falls all the way; else the root of the chord.
+static double guess_root(point lo, point hi)
+{
+    const double fall = lo.at.value - hi.at.value, length = hi.time - lo.time;
+    const double s = lo.at.value / fall, chord = lo.time + length * s;
+    if (!(lo.at.slope < 0 && hi.at.slope < 0)) {
+        return chord;
+    }
+    const double start = s * (1 - s) * (1 - s) / lo.at.slope, end = s * s * (s - 1) / hi.at.slope;
+    const double guess = lo.time + length * s * s * (3 - 2 * s) - fall * (start + end);
+    return guess > lo.time && guess < hi.time ? guess : chord;
+}
+
 // The root of a function that falls from `lo` to `hi`, the function taken from `look`, its slope
-// too: Newton's method within the bracket, halved where that leaves it or gains too little.
-static double root_between(const arm *a, const motion *m, watch w, point lo, point hi)
+// too, and `bend` that bounds its second derivative: Newton's method within the bracket, halved
+// where that leaves it or gains too little.
+static double root_between(const arm *a, const motion *m, watch w, point lo, point hi, double bend)
 {
     double from = lo.time, to = hi.time;
-    double t = from + (to - from) * lo.at.value / (lo.at.value - hi.at.value);
+    double t = guess_root(lo, hi);
     double width = to - from;
 
     for (int i = 0; i < MOST_ITERATIONS; i++) {
@@ -34,10 +49,12 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
             to = t;
         }
 
-        // it has settled, or the bracket has closed
+        // it has settled, the step after this one would be shorter than time resolves, or the
+        // bracket has closed
         double next = t - g.value / g.slope;
-        double resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
-        if (fabs(next - t) <= resolution || to - from <= resolution) {
+        const double step = fabs(next - t), resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
+        if (step <= resolution || bend * step * step <= resolution * fabs(g.slope) ||
+            to - from <= resolution) {
             return fmin(fmax(next, lo.time), hi.time);
         }
 
@@ -79,7 +96,7 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
     const bool steady = fmax(lo.at.slope, hi.at.slope) + bend * length / 2 < 0;
     const bool flat = cuts == 0 || room <= watch_tolerance(w);
     if (steady || flat) {
-        return falls ? root_between(a, m, w, lo, hi) : -1;
+        return falls ? root_between(a, m, w, lo, hi, bend) : -1;
     }
 
     // each half by itself, the earlier one first
