@@ -100,8 +100,8 @@ typedef struct factors {
 KERNEL void inner_sums(const factors *x, int n, const int contact, const int point, sums *result)
 {
     sums even = no_sums, odd = no_sums;
-#if LANES == 1 || LANES == 8
-    // all together, as a processor has registers enough
+#if LANES == 1
+    // all together, as one arm leaves registers enough
 #define ADD_ALL(s, x, j, n)                                                                        \
     do {                                                                                           \
         ADD_TURNING(s, x, j, n);                                                                   \
