@@ -499,13 +499,16 @@ static void first_event(const arm *a, motion *m, double *h, watch *first, bool *
 static bool clear(const arm *a, motion *m, watch w, double h)
 {
     const taylor_stride *s = m->memory;
+    const double t = s->used + h;
     if (clear_throughout(m, w)) {
         return true;
+    }
+    if (s->kept[KEPT_JUMPED] == 0 && t >= s->kept[KEPT_LENGTH]) {
+        return false; // the bounds of the whole stride leave it to be looked for
     }
 
     // what begins on the edge, or is not asked for as far as the stride goes
     const polynomial *p = watched(a, m, w);
-    const double t = s->used + h;
     double low = low_of(p, t);
     return w == WATCH_STICTION ? fmin(low, low_of(&s->far_limit, t)) > 0 : low > 0;
 }
