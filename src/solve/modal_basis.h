@@ -7,8 +7,8 @@
 // for what the exact constraint needs beyond.
 #pragma once
 
-#include "src/arm/arm.h"
 #include "src/base/status.h"
+#include "src/solve/modal_shapes.h"
 
 typedef struct modal_basis {
     int count;       // of modes, that vector included
@@ -28,11 +28,6 @@ void modal_basis_place(modal_basis *b, int n, double *storage);
 
 // Computes the basis of the arm in contact or not, its hub stuck or not. STATUS_SINGULAR.
 status modal_basis_compute(modal_basis *b, const arm *a, bool contact, bool stuck, double *scratch);
-
-// y = M0 x for the straight chain, in O(N).
-void modal_mass_times(const arm *a, const double *x, double *y);
-// y = K x.
-void modal_stiffness_times(const arm *a, const double *x, double *y);
 
 // angles[column][dof] = sum over modes of coordinates[column][mode] V, for some columns at once;
 // columns are `stride` doubles apart.

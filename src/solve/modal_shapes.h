@@ -1,0 +1,42 @@
+// The straight chain of equal links: its mass and stiffness, and its natural modes in a time that
+// grows with the square of N.
+//
+// Between the ends the links' places across the chain obey a recurrence of constant coefficients,
+//
+//     kappa (d4 u)_i = w^2 (u_i + c (d2 u)_i),     kappa = k/(m l^2),     c = 1/4 - I/(m l^2),
+//
+// with d2 u_i = u_(i-1) - 2 u_i + u_(i+1). A mode's u is therefore a sum of cos(phi j), sin(phi j),
+// e^(-psi j) and e^(-psi i), j = N - i links from the tip, with
+//
+//     w = 4 sqrt(kappa) s^2 / sqrt(1 - 4 c s^2),     s = sin(phi/2) = sinh(psi/2) sqrt(1 - 4 c
+//     s^2).
+//
+// Tip and hub give four equations for the four amplitudes; a mode is where their determinant is
+// zero. How many modes are slower than some w is counted by eliminating the angles one after the
+// other from the tip inwards: as many pivots are negative. So each is found between bounds that
+// hold no other. Modes so slow that they hardly bend, and those faster than phi = pi, which are
+// confined to the hub, follow from the same elimination instead.
+#pragma once
+
+#include "src/arm/arm.h"
+
+// y = M0 x for the straight chain, in O(N).
+void modal_mass_times(const arm *a, const double *x, double *y);
+// y = K x.
+void modal_stiffness_times(const arm *a, const double *x, double *y);
+
+// Doubles that computing them takes for n degrees of freedom.
+static inline size_t modal_shapes_scratch(int n)
+{
+    return 7 * (size_t)n;
+}
+
+// Rates [rad/s], in rising order, and angles of all modes with the tip free or held by a wall, the
+// hub free or stuck: row k of shapes[dof * dof] is mode k, of unit length in the mass matrix M0.
+// Returns how many there are, or -1 where the arm's constants leave none that can be told apart.
+int modal_shapes(const arm *a, bool contact, bool stuck, double *rate, double *shapes,
+                 double *scratch);
+
+// The angles that an impulse across the tip gives the straight chain at rest, its joints loose:
+// M0^-1 of the gradient of the sum of all links' angles, of any length.
+void modal_tip_answer(const arm *a, bool stuck, double *answer, double *scratch);

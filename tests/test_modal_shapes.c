@@ -1,0 +1,114 @@
+// Modes of the straight chain in closed form against the dense solution of the same problem.
+#include <stdlib.h>
+
+#include "src/arm/modes.h"
+#include "src/base/random.h"
+#include "src/solve/modal_basis.h"
+#include "tests/arm_fixture.h"
+
+enum { MOST_LINKS = 40, RUNS = 60 };
+
+// A random arm: hub light and heavy, rigid and on springs soft and stiff.
+static arm random_arm(int number)
+{
+    char links[32], hub[64];
+    random_generator g;
+    random_seed(&g, (uint64_t)number);
+    const double joint = random_uniform(&g);
+    snprintf(links, sizeof links, "arm.links=%d",
+             2 + (int)(random_uniform(&g) * random_uniform(&g) * (MOST_LINKS - 1)));
+    snprintf(hub, sizeof hub, "arm.hub_inertia=%.17g", 1e-2 * exp(8 * (random_uniform(&g) - 0.5)));
+    parameters p = fixture_parameters(SETTINGS(links, hub,
+                                               joint < 0.3   ? "arm.hub_joint=rigid"
+                                               : joint < 0.6 ? "arm.hub_joint=beam"
+                                                             : "arm.hub_joint=spring"));
+    p.arm.k1 *= joint < 0.6 ? 1 : exp(16 * (random_uniform(&g) - 0.5));
+    arm a;
+    arm_init(&a, &p);
+    return a;
+}
+
+// x' M0 y and x' K y, the latter by the bends.
+static double inertia(const arm *a, const double *x, const double *y, double *product)
+{
+    double sum = 0;
+    modal_mass_times(a, x, product);
+    for (int i = 0; i < a->dof; i++) {
+        sum += product[i] * y[i];
+    }
+    return sum;
+}
+
+static double strain(const arm *a, const double *x, const double *y)
+{
+    double sum = 0;
+    for (int k = 0; k + 1 < a->dof; k++) {
+        const double s = k + 1 == a->first ? a->hub_stiffness : a->joint_stiffness;
+        sum += s * (x[k + 1] - x[k]) * (y[k + 1] - y[k]);
+    }
+    return sum;
+}
+
+static void check_basis(const arm *a, bool contact, bool stuck)
+{
+    const int n = a->dof;
+    const size_t size = (size_t)n;
+    double *storage = calloc(modal_basis_size(n) + modal_basis_scratch(n) + size * size + 2 * size,
+                             sizeof *storage);
+    assert_non_null(storage);
+    double *scratch = storage + modal_basis_size(n), *rates = scratch + modal_basis_scratch(n);
+    double *product = rates + n, *dense = product + n;
+    modal_basis b;
+    modal_basis_place(&b, n, storage);
+
+    // as many, as fast as the dense matrices say to their digits
+    int count;
+    assert_int_equal(modal_basis_compute(&b, a, contact, stuck, scratch), STATUS_OK);
+    assert_int_equal(modes_compute(a, stuck ? HUB_LOCKED : HUB_FREE,
+                                   contact ? TIP_PINNED : TIP_FREE, &count, rates, dense),
+                     STATUS_OK);
+    assert_int_equal(b.count, count + contact);
+    for (int k = 0; k < count; k++) {
+        const double square = b.rate[k] * b.rate[k], fastest = rates[count - 1];
+        check_close(square, rates[k] * rates[k], 1e-12 * fastest * fastest);
+    }
+
+    // of unit mass, with nothing in common, at rest where they are held
+    for (int k = 0; k < b.count; k++) {
+        const double *mode = b.by_mode + (size_t)k * size;
+        double tip = 0;
+        for (int i = a->first; i < n; i++) {
+            tip += mode[i];
+        }
+        check_close(contact && k != b.across ? tip : 0, 0, 1e-9);
+        check_close(stuck ? mode[0] : 0, 0, 0);
+        for (int j = 0; j <= k; j++) {
+            const double *other = b.by_mode + (size_t)j * size;
+            check_close(inertia(a, mode, other, product), j == k, 1e-11);
+            if (k != b.across && b.rate[j] > 0) {
+                const double shared = strain(a, mode, other) / (b.rate[k] * b.rate[j]);
+                check_close(shared, j == k, 1e-9);
+            }
+        }
+    }
+    free(storage);
+}
+
+static void modes_are_those_of_the_matrices(void **state)
+{
+    (void)state;
+    for (int i = 0; i < RUNS; i++) {
+        const arm a = random_arm(i);
+        for (int j = 0; j < 4; j++) {
+            if (a.dof > 2 || j != 3) {
+                check_basis(&a, j & 1, j & 2);
+            }
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(modes_are_those_of_the_matrices)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
