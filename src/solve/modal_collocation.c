@@ -5,7 +5,7 @@
 
 enum { FEW_SWEEPS = 4, MOST_SWEEPS = 30 };
 
-#define CONVERGED   3e-8 // change of a sweep that ends them, of the modes' momenta
+#define CONVERGED   1e-8 // change still to come that ends them, of the modes' momenta
 #define SLOW_SWEEPS 0.6  // of the last change is left: a shorter stride costs less
 
 // Lobatto's points on [0, 1].
@@ -38,6 +38,23 @@ void modal_polynomial(const double values[MODAL_NODES], double length, double ou
         out[j] *= scale;
         scale *= (j + 1) / length;
     }
+}
+
+// What the last Legendre polynomials that r and s are made of would do, were they constant.
+static double last_terms(const modal_stride *s, double h)
+{
+    static const double leading = 252; // coefficient of x^5 in the fifth one on [0, 1]
+    double square = 0;
+    for (int k = 0; k < s->count; k++) {
+        const double rate = s->modes->rate[k], reach = rate * h > 1 ? 1 / rate : h;
+        double drift = 0, force = 0;
+        for (int i = 0; i < MODAL_NODES; i++) {
+            drift += to_powers[MODAL_NODES - 1][i] * s->drifts[i][k];
+            force += to_powers[MODAL_NODES - 1][i] * s->forces[i][k];
+        }
+        square += reach * reach * (force * force + rate * rate * drift * drift);
+    }
+    return sqrt(square) / leading;
 }
 
 // The polynomials of r and s from their values; returns what changed, as the momenta and, times
@@ -118,27 +135,27 @@ static void leave_out_vibrations(modal_stride *s, int first)
     }
 }
 
-// The modes' responses at the points of collocation: of a length that is a power of two they are
-// computed once a basis.
+// The modes' responses at the points of collocation: those of the lengths last met are kept.
 static void take_tables(modal_stride *s, double length)
 {
-    int exponent;
-    const bool round = frexp(length, &exponent) == 0.5;
-    const int slot = 1 - exponent - MODAL_LONGEST_LEVEL;
-    const bool kept = round && slot >= 0 && slot < MODAL_KEPT_LEVELS;
-    modal_kept *keep = kept ? &s->kept[s->modes - s->basis][slot] : &s->passing;
-
-    // a kept table is filled once, the passing one every time
-    if (!kept || !keep->known) {
-        for (int i = 1; i < MODAL_NODES; i++) {
-            modal_fill_table(s, points[i] * length, modal_kept_powers(i), s->count, &keep->at[i]);
-        }
-        keep->known = true;
+    const size_t state = (size_t)(s->modes - s->basis);
+    modal_kept *keep = s->kept[state];
+    int i = 0;
+    while (i < MODAL_KEPT && keep[i].length != length) {
+        i++;
     }
 
-    // from here on it makes no difference where they are kept
-    for (int i = 1; i < MODAL_NODES; i++) {
-        s->at[i] = keep->at[i];
+    // a new one in place of the one kept longest
+    if (i == MODAL_KEPT) {
+        i = s->oldest[state];
+        s->oldest[state] = (i + 1) % MODAL_KEPT;
+        keep[i].length = length;
+        for (int j = 1; j < MODAL_NODES; j++) {
+            modal_fill_table(s, points[j] * length, modal_kept_powers(j), s->count, &keep[i].at[j]);
+        }
+    }
+    for (int j = 1; j < MODAL_NODES; j++) {
+        s->at[j] = keep[i].at[j];
     }
 }
 
@@ -210,8 +227,11 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
     const size_t size = (size_t)s->count * sizeof(double);
     s->length = length;
 
+    // of all momenta, were the energy all kinetic, with what the motor adds
+    const double torque = fabs(a->motor.torque) + a->motor.stiction;
+    const double most = sqrt(2 * s->start_energy) + torque * length * s->hub_response + 1e-15;
+
     // first guess: what holds at the start
-    const double most = sqrt(2 * s->start_energy + 1e-30); // of all momenta, were it all kinetic
     take_tables(s, length);
     for (int i = 1; i < MODAL_NODES; i++) {
         memcpy(s->drifts[i], s->drifts[0], size);
@@ -220,16 +240,20 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
 
     // sweeps until nothing changes
     modal_fit fit = {0};
+    double change = 0; // by a sweep
     fit_polynomials(s, length);
     for (int i = 0; i < MOST_SWEEPS; i++) {
         evaluate_points(s, a, links, q);
-        const double last = fit.change;
-        fit.change = fit_polynomials(s, length) / most;
+        const double last = change;
+        change = fit_polynomials(s, length) / most;
         fit.sweeps = i + 1;
-        bool idle = i >= FEW_SWEEPS && fit.change > SLOW_SWEEPS * last;
-        if (!(fit.change < 1e3) || fit.change < CONVERGED || idle) {
+        const double share = i > 0 ? change / last : 1;
+        fit.left = share < 1 ? change * share / (1 - share) : change;
+        const bool idle = i >= FEW_SWEEPS && share > SLOW_SWEEPS;
+        if (!(change < 1e3) || fit.left < CONVERGED || idle) {
             break;
         }
     }
+    fit.defect = last_terms(s, length) / most;
     return fit;
 }

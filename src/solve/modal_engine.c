@@ -23,22 +23,24 @@
 #define STATES_ALONG 32     // of a stride where it has not
 #define LONGEST      1.8e-2 // [s]
 #define ADVANTAGE    8.0    // strides of the series that one of the modes has to replace
-#define SETTLED      1e-7   // change of the last sweep that is let pass
+#define SETTLED      1e-7   // change by further sweeps that is let pass
 #define OPEN         1e-8   // share of the energy that a stride's ledger may lack
 #define FAINT        1e-8   // share of it that vibrations may have to be left out of the points
-#define GROWTH       16     // from stride to stride
+#define GROWTH       4      // from stride to stride
 #define FIRST_TURN   3      // of the fastest vibration in the stride after an event [rad]
 #define TURN         0.05   // of the fastest link in a stride [rad]
 #define LAST_TERMS   1e-9   // of the series between the modes' strides
 
-// Turn up to which a stride's points show a vibration [rad]: a stride is then exact to 1e-7 of the
-// velocities, with the second one to 1e-10. An arm that bounces passes on what is lost a thousand
-// times enlarged, and more. 12 would do in most arms and not in all.
-#define SHOWN          8
-#define SHOWN_BOUNCING 4
+// Turn up to which a stride's points show a vibration [rad], and the defect (modal_fit) of a stride
+// that is let pass. An arm that bounces passes on what is lost a thousand times enlarged, and more.
+#define SHOWN           12
+#define SHOWN_BOUNCING  6
+#define DEFECT          3e-7
+#define DEFECT_BOUNCING 1e-7
+#define SAFE            0.85 // of a length that would just pass
 
-#define TRUSTED_GAP    1e-10 // [m]
-#define TRUSTED_RATE   1e-8  // [rad/s], and share of the fastest link's
+#define TRUSTED_GAP     1e-10 // [m]
+#define TRUSTED_RATE    1e-8  // [rad/s], and share of the fastest link's
 
 enum { MOST_TRIES = 24, FEW_SWEEPS = 5, PATIENCE = 16 };
 
@@ -51,13 +53,23 @@ typedef struct modal_memory {
     bool any;                    // an event ends it,
     watch first;                 // this one,
     double event;                // then [s]
+
+    // the state at its end, slots and what follows up to the accelerations
+    double *end;
+    double length; // to there [s]
 } modal_memory;
+
+// Doubles of a state up to its accelerations.
+static size_t state_size(const arm *a)
+{
+    return (size_t)(SLOT_COUNT + 3 * a->dof + QUADRATURE_COUNT);
+}
 
 // Bytes of the modes' part, to a whole number of doubles.
 static size_t modes_size(const arm *a)
 {
     const size_t size = sizeof(modal_memory) + modal_stride_size(a) +
-                        2 * modal_function_size(a->dof) * sizeof(double);
+                        (2 * modal_function_size(a->dof) + state_size(a)) * sizeof(double);
     return (size + sizeof(double) - 1) / sizeof(double) * sizeof(double);
 }
 
@@ -73,7 +85,8 @@ static void open_memory(const arm *a, motion *m)
     memset(memory, 0, sizeof *memory);
     modal_function_place(&memory->contact, a->dof, arrays);
     modal_function_place(&memory->hub, a->dof, arrays + modal_function_size(a->dof));
-    memory->stride = (modal_stride *)(arrays + 2 * modal_function_size(a->dof));
+    memory->end = arrays + 2 * modal_function_size(a->dof);
+    memory->stride = (modal_stride *)(memory->end + state_size(a));
     modal_stride_place(memory->stride, a);
     memory->series = (series_stride *)((char *)m->memory + modes_size(a));
     series_stride_place(memory->series, a);
@@ -84,12 +97,13 @@ static modal_stride *stride_of(const motion *m)
     return ((modal_memory *)m->memory)->stride;
 }
 
-// The greatest power of two that is not beyond x > 0.
-static double power_of_two(double x)
+// The greatest length that is not beyond x > 0 of those whose responses are likely to be kept: four
+// from one power of two to the next.
+static double round_length(double x)
 {
     int exponent;
-    (void)frexp(x, &exponent);
-    return ldexp(1, exponent - 1);
+    const double share = frexp(x, &exponent);
+    return ldexp(floor(8 * share), exponent - 3);
 }
 
 // The gap's or the force's function on the stride.
@@ -170,17 +184,25 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
     }
     longest = fmin(longest, s->shown_turn / modal_stride_shown(s, FAINT * s->start_energy));
 
-    // powers of two, whose responses are kept; beyond what remains the last one is of no interest
-    double h = power_of_two(fmin(longest, 2 * remaining));
+    // beyond what remains the last one is of no interest
+    const double most_defect = a->wall.restitution > 0 ? DEFECT_BOUNCING : DEFECT;
+    double h = round_length(fmin(longest, 2 * remaining));
     const double energy = s->start_energy + fabs(a->motor.torque) * TURN / 10;
     for (int i = 0; i < MOST_TRIES && h > ADVANTAGE * series; i++) {
         modal_fit fit = modal_stride_fit(s, a, m->links, q, h);
-        if (fit.change < SETTLED) {
-            memcpy(m->between, m->state, SLOT_COUNT * sizeof *m->between);
-            const double open = fabs(modal_state_at(s, a, m, h, m->between));
+        const double fitting = SAFE * sqrt(sqrt(most_defect / (fit.defect + 1e-300)));
+        if (fit.left < SETTLED && fit.defect > most_defect) {
+            h = round_length(h * fmax(fitting, 0.25));
+            continue;
+        }
+        if (fit.left < SETTLED) {
+            modal_memory *memory = m->memory;
+            memcpy(memory->end, m->state, SLOT_COUNT * sizeof *memory->end);
+            memory->length = h;
+            const double open = fabs(modal_state_at(s, a, m, h, memory->end));
             if (open < OPEN * energy && find_event(a, m, fmin(h, remaining))) {
                 const double growth = fit.sweeps <= FEW_SWEEPS ? GROWTH : 2;
-                s->next = i == 0 ? fmin(fmax(longest, growth * h), LONGEST) : h;
+                s->next = fmin(h * fmin(fitting, i == 0 ? growth : 1), LONGEST);
                 return fmin(h, remaining);
             }
         }
@@ -219,6 +241,20 @@ static double proposal(const motion *m)
     return waiting < 0 ? waiting + 1 : 1 - PATIENCE;
 }
 
+// The stride's end into m->trial, which has the slots that no evaluation gives.
+static void take_end(const arm *a, motion *m)
+{
+    static const int evaluated[] = {SLOT_FORCE,         SLOT_FRICTION_TORQUE, SLOT_GAP_ACCELERATION,
+                                    SLOT_GAP,           SLOT_GAP_VELOCITY,    SLOT_VISCOUS_POWER,
+                                    SLOT_DAMPING_POWER, SLOT_MOTOR_TORQUE,    SLOT_WALL_POWER};
+    const double *end = ((const modal_memory *)m->memory)->end;
+    for (size_t i = 0; i < sizeof evaluated / sizeof *evaluated; i++) {
+        m->trial[evaluated[i]] = end[evaluated[i]];
+    }
+    memcpy(m->trial + SLOT_COUNT, end + SLOT_COUNT,
+           (state_size(a) - SLOT_COUNT) * sizeof *m->trial);
+}
+
 static status state_at(const arm *a, motion *m, double h)
 {
     const modal_memory *memory = m->memory;
@@ -227,7 +263,11 @@ static status state_at(const arm *a, motion *m, double h)
     if (memory->by_series) {
         return series_stride_state(memory->series, a, m, h);
     }
-    (void)modal_state_at(memory->stride, a, m, h, trial);
+    if (h == memory->length) {
+        take_end(a, m);
+    } else {
+        (void)modal_state_at(memory->stride, a, m, h, trial);
+    }
     memcpy(state_algorithmic(m, trial), state_accelerations(m, trial),
            (size_t)m->dof * sizeof(double));
     return STATUS_OK;

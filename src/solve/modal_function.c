@@ -99,12 +99,17 @@ static void fit_functional(modal_function *f, modal_stride *s, const arm *a, mot
 static double exact_at(watch kind, const arm *a, motion *m, contact_state mode, const double *q,
                        const double *w, double *accelerations)
 {
-    chain_reaction r;
     if (kind == WATCH_HUB) {
         return mode.friction * w[0];
     }
+    if (kind == WATCH_GAP) {
+        double penetration;
+        chain_penetration(a, q, w, &penetration, NULL);
+        return -penetration;
+    }
+    chain_reaction r;
     chain_accelerations(a, m->links, q, w, mode, accelerations, &r);
-    return kind == WATCH_GAP ? r.gap : kind == WATCH_FORCE ? r.force : r.friction;
+    return kind == WATCH_FORCE ? r.force : r.friction;
 }
 
 // The functional without what it is at the start.

@@ -118,12 +118,15 @@ void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double
 // Damping of all modes, and the hub's part of it.
 static void take_damping(modal_stride *s, const arm *a)
 {
+    double square = 0;
     s->per_stiffness = a->joint_stiffness > 0 ? a->joint_damping / a->joint_stiffness : 0;
     for (int k = 0; k < s->modes->count; k++) {
         const double rate = s->modes->rate[k], hub = s->modes->by_dof[k];
         s->viscous[k] = k == s->modes->across ? 0 : a->motor.damping * hub * hub;
         s->damping[k] = (s->per_stiffness * rate * rate + s->viscous[k]) / 2;
+        square += hub * hub;
     }
+    s->hub_response = sqrt(square);
 }
 
 // Takes the basis of a contact state, computed when it is first wanted. False if it is singular.
@@ -150,8 +153,8 @@ static bool take_basis(modal_stride *s, const arm *a, contact_state mode)
     s->now = &s->vibrations[i];
     take_damping(s, a);
     if (!s->known[i]) {
-        for (int j = 0; j < MODAL_KEPT_LEVELS; j++) {
-            s->kept[i][j].known = false;
+        for (int j = 0; j < MODAL_KEPT; j++) {
+            s->kept[i][j].length = 0;
         }
         modal_vibrations_compute(s->now, s->modes, s->damping);
         s->known[i] = true;

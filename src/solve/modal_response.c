@@ -1,6 +1,8 @@
 #include "src/solve/modal_response.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 #include "src/base/sincos.h"
 
@@ -23,11 +25,25 @@ double modal_decay(double x)
     const double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
     const double n = floor(x * 1.44269504088896338700 + 0.5);
     const double r = (x - n * ln2_high) - n * ln2_low;
-    double sum = 1;
-    for (int i = 14; i >= 1; i--) {
-        sum = 1 + sum * r * reciprocal[i];
+
+    // even and odd powers of r side by side, times 1/i!
+    static const double even[] = {1,          1. / 2,       1. / 24,        1. / 720,
+                                  1. / 40320, 1. / 3628800, 1. / 479001600, 1. / 87178291200};
+    static const double odd[] = {1,           1. / 6,        1. / 120,       1. / 5040,
+                                 1. / 362880, 1. / 39916800, 1. / 6227020800};
+    const double square = r * r;
+    double evens = even[7] * square + even[6], odds = odd[6];
+    for (int i = 5; i >= 0; i--) {
+        evens = evens * square + even[i];
+        odds = odds * square + odd[i];
     }
-    return ldexp(sum, (int)n);
+    const double sum = evens + r * odds;
+
+    // times 2^n, no less than 2^-1010
+    const uint64_t bits = (uint64_t)((int)n + 1023) << 52;
+    double scale;
+    memcpy(&scale, &bits, sizeof scale);
+    return sum * scale;
 }
 
 // Small t: powers of t. g_m = -2 a g_{m-1} - w^2 g_{m-2} are the derivatives of G at 0. The two
@@ -91,16 +107,18 @@ static void phi(double x, double t, int count, double *out)
 {
     const double z = x * t;
 
-    // near zero by their series
+    // near zero the highest by its series, the others downwards: t^k / k! + x t^k+1 phi_k+1
     if (z > -2) {
-        double scale = 1;
-        for (int k = 0; k < count; k++) {
-            double sum = 0;
-            for (int i = SERIES_TERMS; i >= 0; i--) {
-                sum = 1 + sum * z * reciprocal[k + i + 1];
-            }
-            out[k] = scale * sum;
-            scale *= t / (k + 1);
+        double scale[MODAL_POWERS + 2] = {1}, sum = 0;
+        for (int k = 1; k < count; k++) {
+            scale[k] = scale[k - 1] * t * reciprocal[k];
+        }
+        for (int i = SERIES_TERMS; i >= 0; i--) {
+            sum = 1 + sum * z * reciprocal[count + i];
+        }
+        out[count - 1] = scale[count - 1] * sum;
+        for (int k = count - 2; k >= 0; k--) {
+            out[k] = scale[k] + x * out[k + 1];
         }
         return;
     }

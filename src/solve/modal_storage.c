@@ -27,7 +27,7 @@ size_t modal_stride_size(const arm *a)
         MODAL_CONTACT_STATES * (modal_basis_size(a->dof) + modal_vibrations_size(a->dof)) +
         modal_basis_scratch(a->dof);
     doubles += 2 * table_size(a->dof);
-    doubles += (1 + MODAL_CONTACT_STATES * MODAL_KEPT_LEVELS) * kept_size(a->dof);
+    doubles += MODAL_CONTACT_STATES * MODAL_KEPT * kept_size(a->dof);
     doubles += n * (8 + 8 * MODAL_NODES + 3 * COLUMNS + 3);
     return sizeof(modal_stride) + doubles * sizeof(double);
 }
@@ -102,9 +102,8 @@ void modal_stride_place(modal_stride *s, const arm *a)
     place_table(&s->walk.at, &storage, n, MODAL_POWERS);
     place_table(&s->at[0], &storage, n, MODAL_POWERS);
     for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
-        for (int j = 0; j < MODAL_KEPT_LEVELS; j++) {
+        for (int j = 0; j < MODAL_KEPT; j++) {
             place_kept(&s->kept[i][j], &storage, n);
         }
     }
-    place_kept(&s->passing, &storage, n);
 }

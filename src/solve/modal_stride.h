@@ -20,8 +20,8 @@
 
 enum { MODAL_NODES = 6, MODAL_CONTACT_STATES = 4 };
 
-// Strides of 2^-MODAL_LONGEST_LEVEL s and so many shorter powers of two keep their responses.
-enum { MODAL_LONGEST_LEVEL = 6, MODAL_KEPT_LEVELS = 15 };
+// Lengths of strides whose responses are kept in each contact state.
+enum { MODAL_KEPT = 24 };
 
 // Responses of all modes at one instant, arrays of as many as there are modes.
 typedef struct modal_table {
@@ -29,10 +29,10 @@ typedef struct modal_table {
     double *power[MODAL_POWERS];
 } modal_table;
 
-// Responses at the points of collocation of a stride of one length; [0] is unused.
+// Responses at the points of collocation of a stride of one length, 0 if of none; [0] is unused.
 typedef struct modal_kept {
+    double length; // [s]
     modal_table at[MODAL_NODES];
-    bool known;
 } modal_kept;
 
 // The modes on a walk through the stride in steps of one length.
@@ -49,7 +49,8 @@ typedef struct modal_stride {
     modal_basis basis[MODAL_CONTACT_STATES];
     modal_vibrations vibrations[MODAL_CONTACT_STATES];
     bool known[MODAL_CONTACT_STATES];
-    modal_kept kept[MODAL_CONTACT_STATES][MODAL_KEPT_LEVELS], passing;
+    modal_kept kept[MODAL_CONTACT_STATES][MODAL_KEPT];
+    int oldest[MODAL_CONTACT_STATES]; // of these
     // of hub and joints, and all damping: what the bases were computed for
     double stiffness[5];
     double *scratch;
@@ -66,6 +67,7 @@ typedef struct modal_stride {
     double per_stiffness;        // c, structural damping over stiffness [s]
     double *damping;             // a, by mode [1/s]
     double *viscous;             // kv V_0k^2, by mode [1/s]
+    double hub_response;         // length of V_0k over the modes: of a unit impulse on the hub
     double *start;               // y at the start, by mode
     double *momentum;            // P at the start, by degree of freedom
     double *drift[MODAL_NODES];  // r(t) = sum drift[j] t^j / j!, by mode
@@ -92,9 +94,11 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
 
 // Fits r and s to a stride of the given length, s->start_energy being set.
 typedef struct modal_fit {
-    double change; // by the last of the sweeps, as a share of the momenta that start_energy
-                   // would have
+    double left;   // that more sweeps would still change, as they have converged so far: a share of
+                   // the momenta that start_energy and the motor would give
     int sweeps;    // that were made
+    double defect; // what the last terms of the polynomials do at most, the same share: it shrinks
+                   // with the fifth power of the length
 } modal_fit;
 modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
                            double length);
