@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/solve/taylor_engine.h"
+
 size_t modal_basis_size(int n)
 {
     return (size_t)n * (2 * (size_t)n + 2);
@@ -120,13 +122,96 @@ __attribute__((target("avx2"))) static void combine_by_four(const double *matrix
 {
     combine(matrix, side, rows, width, columns, in, out, stride);
 }
+
+// Eight elements of an out[column], whose sums stay in registers for `columns` columns and a panel
+// of so many rows, read side by side.
+typedef double block __attribute__((vector_size(64), aligned(8), may_alias));
+enum { LANES = 8, TOGETHER = 6, PANEL = 16, NEAR_ROWS = 256 };
+
+__attribute__((target("avx512f"))) static inline __attribute__((always_inline)) void
+combine_block(const double *matrix, int side, int from, int end, int columns, const double *in,
+              double *out, int stride)
+{
+    // what the panels before have left
+    block sum[TOGETHER] = {0};
+#pragma GCC unroll 6
+    for (int c = 0; c < columns && from > 0; c++) {
+        sum[c] = *(const block *)(out + (size_t)c * (size_t)stride);
+    }
+
+    // the panel's rows
+    int i = from;
+    for (; i + 4 <= end; i += 4) {
+        const double *row = matrix + (size_t)i * (size_t)side;
+        const block r0 = *(const block *)row, r1 = *(const block *)(row + side);
+        const block r2 = *(const block *)(row + 2 * side), r3 = *(const block *)(row + 3 * side);
+#pragma GCC unroll 6
+        for (int c = 0; c < columns; c++) {
+            const double *x = in + (size_t)c * (size_t)stride + i;
+            sum[c] += (x[0] * r0 + x[1] * r1) + (x[2] * r2 + x[3] * r3);
+        }
+    }
+    for (; i < end; i++) {
+        const block row = *(const block *)(matrix + (size_t)i * (size_t)side);
+#pragma GCC unroll 6
+        for (int c = 0; c < columns; c++) {
+            sum[c] += in[(size_t)c * (size_t)stride + (size_t)i] * row;
+        }
+    }
+
+#pragma GCC unroll 6
+    for (int c = 0; c < columns; c++) {
+        *(block *)(out + (size_t)c * (size_t)stride) = sum[c];
+    }
+}
+
+__attribute__((target("avx512f"))) static void combine_by_eight(const double *matrix, int side,
+                                                                int rows, int width, int columns,
+                                                                const double *in, double *out,
+                                                                int stride)
+{
+    // few rows are near enough for one panel: the last block goes back over sums that are made
+    const bool few = rows <= NEAR_ROWS && width >= LANES;
+    const int panel = few ? rows : PANEL, whole = few ? width : width - width % LANES;
+    for (int from = 0; from < rows; from += panel) {
+        const int end = from + panel < rows ? from + panel : rows;
+        for (int at = 0; at < whole; at += LANES) {
+            const int j = at + LANES <= whole ? at : whole - LANES;
+            const double *x = in;
+            double *y = out + j;
+            int left = columns;
+            for (; left >= TOGETHER; left -= TOGETHER) {
+                combine_block(matrix + j, side, from, end, TOGETHER, x, y, stride);
+                x += (size_t)TOGETHER * (size_t)stride;
+                y += (size_t)TOGETHER * (size_t)stride;
+            }
+            for (; left > 1; left -= 2) {
+                combine_block(matrix + j, side, from, end, 2, x, y, stride);
+                x += 2 * (size_t)stride;
+                y += 2 * (size_t)stride;
+            }
+            if (left > 0) {
+                combine_block(matrix + j, side, from, end, 1, x, y, stride);
+            }
+        }
+    }
+    // sums that fill no block
+    if (width > whole) {
+        combine_by_four(matrix + whole, side, rows, width - whole, columns, in, out + whole,
+                        stride);
+    }
+}
 #endif
 
 static void combine_rows(const double *matrix, int side, int rows, int width, int columns,
                          const double *in, double *out, int stride)
 {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) {
+    if (taylor_width() >= 8) {
+        combine_by_eight(matrix, side, rows, width, columns, in, out, stride);
+        return;
+    }
+    if (taylor_width() >= 4) {
         combine_by_four(matrix, side, rows, width, columns, in, out, stride);
         return;
     }
