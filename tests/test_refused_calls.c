@@ -83,7 +83,7 @@ static status ask_a_program(scenario *s, FILE *out)
     own.parameters.code_allowed = true;
     code = session_init(&t, &own, &f);
     if (code != STATUS_OK) {
-        return code;
+        return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
     }
 
     // what is asked after the change follows what was asked before it

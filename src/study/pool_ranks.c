@@ -168,6 +168,14 @@ static void collect(leader *l, size_t piece, const void *result)
     }
 }
 
+// What is wrong with a rank, unless something is already.
+static void note_fault(leader *l, int rank, const char *what)
+{
+    if (l->code == STATUS_OK) {
+        l->code = fault_set(l->fault, STATUS_BAD_ARGUMENT, "rank %d %s", rank, what);
+    }
+}
+
 // Takes a message that waits.
 static void take_message(leader *l, int from, size_t size)
 {
@@ -178,38 +186,26 @@ static void take_message(leader *l, int from, size_t size)
     l->group->receive(l->group->context, from, l->buffer, size);
     memcpy(&m, l->buffer, size < sizeof m ? size : sizeof m);
 
-    switch (m.head.kind) {
-    case MESSAGE_BEGINS:
+    if (m.head.kind == MESSAGE_BEGINS) {
         r->begun = true;
-        if (memcmp(l->buffer + sizeof m.head, l->identity, RANK_IDENTITY) != 0 &&
-            l->code == STATUS_OK) {
-            l->code = fault_set(l->fault, STATUS_BAD_ARGUMENT,
-                                "rank %d has other work than rank 0: another version of the "
-                                "program, or another scenario on its machine",
-                                from);
+        if (memcmp(l->buffer + sizeof m.head, l->identity, RANK_IDENTITY) != 0) {
+            note_fault(l, from,
+                       "has other work than rank 0: another version of the program, or another "
+                       "scenario on its machine");
         }
         feed(l, from);
-        break;
-    case MESSAGE_RESULTS:
+    } else if (m.head.kind == MESSAGE_RESULTS) {
         r->in_hand--;
         note_time(l, m.head.seconds / m.head.count);
         for (int i = 0; i < m.head.count; i++) {
             collect(l, m.pieces[i], l->buffer + sizeof m + (size_t)i * w->result_size);
         }
         feed(l, from);
-        break;
-    case MESSAGE_ENDS:
+    } else {
+        assert(m.head.kind == MESSAGE_ENDS); // the others go the other way
         r->gone = true;
         (*l->group->gone)++;
-        if (l->code == STATUS_OK) {
-            l->code = fault_set(l->fault, STATUS_BAD_ARGUMENT,
-                                "rank %d ended before the work was over", from);
-        }
-        break;
-    case MESSAGE_PORTION:
-    case MESSAGE_OVER:
-    case MESSAGE_DISMISS:
-        break; // these go the other way
+        note_fault(l, from, "ended before the work was over");
     }
 }
 
