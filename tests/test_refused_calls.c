@@ -1,6 +1,7 @@
 // Calls of the system refused in turn, and requests for memory with them: whole files are those of
-// before or the whole new ones, programs that are controllers answer or the run says why not, and
-// what measures says that it cannot.
+// before or the whole new ones, rows that are shared stay what they are, programs that are
+// controllers answer or the run says why not, and what measures says that it cannot.
+#include "src/base/shared_array.h"
 #include "src/base/whole_file.h"
 #include "src/rig/keeper.h"
 #include "src/session/session.h"
@@ -38,6 +39,48 @@ static status write_whole_file(const char *path, FILE *out)
     assert_true(code == STATUS_OK || strstr(f.text, "cannot be written: ") != NULL);
     fputs(code == STATUS_OK ? "new" : "old", out);
     return code;
+}
+
+// --- shared rows --------------------------------------------------------------------------------
+
+enum { PER_CHUNK = ARRAY_CHUNK / sizeof(uint64_t), ROWS = 5 * PER_CHUNK / 2 };
+
+// An array with room for all rows, filled; it is to be finished even on failure.
+static bool fill(shared_array *a)
+{
+    const bool room = shared_array_reserve(a, sizeof(uint64_t), ROWS, ROWS);
+    if (!room || !shared_array_grow(a, ROWS)) {
+        return false;
+    }
+    for (size_t i = 0; i < ROWS; i++) {
+        ((uint64_t *)a->base)[i] = i;
+    }
+    return true;
+}
+
+// One array, another that shares its rows, and a third one of equal rows that comes to share them.
+static status share_rows(const char *ignored, FILE *out)
+{
+    (void)ignored;
+    shared_array one, shares, equal = {0};
+    const bool filled = fill(&one);
+    bool whole = shared_array_reserve(&shares, sizeof(uint64_t), ROWS, ROWS) && filled &&
+                 shared_array_share(&shares, &one, ROWS) && fill(&equal);
+    if (whole) {
+        shared_array_merge(&equal, &one, shared_array_same_chunks(&equal, &one, ROWS));
+    }
+
+    // each is whole without the others
+    shared_array_finish(&one);
+    for (size_t i = 0; i < ROWS && whole; i++) {
+        whole = ((uint64_t *)shares.base)[i] == i && ((uint64_t *)equal.base)[i] == i;
+        assert_true(whole);
+    }
+    shared_array_finish(&shares);
+    shared_array_finish(&equal);
+    assert_true(shared_array_memory() == 0);
+    fputs("shared", out);
+    return whole ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 // --- programs -----------------------------------------------------------------------------------
@@ -120,6 +163,32 @@ static status measure(const char *name, FILE *out)
 
 // --- the tests ----------------------------------------------------------------------------------
 
+// The first rows of a program need a file and tables that later ones find; each refusal leaves some
+// of it, from which the next attempt goes on.
+static void the_first_rows_of_all(void **state)
+{
+    (void)state;
+    long attempts = 0;
+    bool grown = false;
+    refused_later = true;
+    while (!grown) {
+        shared_array a;
+        atomic_store(&requests, 0);
+        refused_at = 1 + attempts++ / 2;
+        grown = shared_array_reserve(&a, sizeof(uint64_t), 1, 1) && shared_array_grow(&a, 1);
+        refused_at = 0;
+        shared_array_finish(&a);
+        assert_true(shared_array_memory() == 0);
+    }
+    assert_true(attempts > 8); // its place, number, file, two tables, length, memory
+}
+
+static void rows_are_shared_or_refused(void **state)
+{
+    (void)state;
+    try_all(share_rows, "");
+}
+
 static void whole_files(void **state)
 {
     (void)state;
@@ -166,8 +235,8 @@ int main(int argc, char **argv)
     tries = argc > 1 ? atol(argv[1]) : tries;
     scenario_text = short_run;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whole_files),
-        cmocka_unit_test(programs_as_controllers),
+        cmocka_unit_test(the_first_rows_of_all), cmocka_unit_test(rows_are_shared_or_refused),
+        cmocka_unit_test(whole_files),           cmocka_unit_test(programs_as_controllers),
         cmocka_unit_test(measurements),
     };
     return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;
