@@ -6,9 +6,11 @@
 #pragma once
 
 #include <errno.h>
+#include <execinfo.h>
 #include <pthread.h>
 #include <sqlite3.h>
 #include <stdatomic.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -24,10 +26,29 @@ static long refused_at;      // the request that is refused; 0: none
 static bool refused_later;   // and all after it
 static bool memory_is_given; // requests for memory are not counted
 
+// Where each request was made, by its number: a hash of the calls that led to it.
+enum { MOST_REQUESTS = 1 << 18, CALLS_OF_A_PLACE = 6 };
+static uint64_t places[MOST_REQUESTS];
+static bool notes_places;
+
+static void note_place(long number)
+{
+    void *calls[CALLS_OF_A_PLACE];
+    uint64_t hash = 0xcbf29ce484222325u;
+    const int count = backtrace(calls, CALLS_OF_A_PLACE);
+    for (int i = 0; i < count; i++) {
+        hash = (hash ^ (uint64_t)(uintptr_t)calls[i]) * 0x100000001b3u;
+    }
+    places[number] = hash;
+}
+
 // Whether the next request is to be refused.
 static bool refuses(void)
 {
     const long number = atomic_fetch_add(&requests, 1) + 1;
+    if (notes_places && number < MOST_REQUESTS) {
+        note_place(number);
+    }
     return refused_at > 0 && (number == refused_at || (refused_later && number > refused_at));
 }
 
@@ -121,8 +142,21 @@ static bool tells_of_refusal(status code)
            code == STATUS_BAD_SCENARIO;
 }
 
-static long tries = 12;     // requests that are refused of a piece of work, at most
-enum { FEW_REQUESTS = 80 }; // of so few each is
+// Requests that are refused of a piece of work: of so few each is, of more so many, evenly, and if
+// `everywhere` the first one that each place makes, too.
+enum { FEW_REQUESTS = 80, TRIES = 12 };
+static bool everywhere;
+
+// Whether the k-th of all requests is to be refused.
+static bool is_tried(long k, long all)
+{
+    const long step = all <= FEW_REQUESTS ? 1 : (all + TRIES - 1) / TRIES;
+    bool known = !everywhere || k >= MOST_REQUESTS;
+    for (long before = 1; before < k && !known; before++) {
+        known = places[before] == places[k];
+    }
+    return !known || (k - 1) % step == 0;
+}
 
 // Refusals are told by a sentence; without any there is nothing to say.
 static void keep_nothing(void *context, const char *sentence)
@@ -195,21 +229,25 @@ static status carry_out_refused(const attempt *a, long k, bool later, char **tex
     return code;
 }
 
-// The work with no request refused is the measure; then each k-th, or every n-th where there are
-// many, alone and with all that follow.
+// The work with no request refused is the measure; then one after the other is, alone and with all
+// that follow.
 static void try_each(const attempt *a)
 {
     char *expected = NULL, *found = NULL;
     for (int i = 0; i < 2; i++) { // what is asked for once in a program's life is there then
         free(expected);
+        notes_places = everywhere && i > 0;
         assert_int_equal(carry_out_refused(a, 0, false, &expected), STATUS_OK);
+        notes_places = false;
     }
     const long all = atomic_load(&requests);
-    const long step = all <= FEW_REQUESTS ? 1 : (all + tries - 1) / tries;
     assert_true(all > 0);
 
     for (int later = 0; later < 2; later++) {
-        for (long k = 1; k <= all; k += step) {
+        for (long k = 1; k <= all; k++) {
+            if (!is_tried(k, all)) {
+                continue;
+            }
             const status code = carry_out_refused(a, k, later, &found);
             const char *also = later ? ", and all after it" : "";
             if (code == STATUS_OK && strcmp(found, expected) != 0) {

@@ -13,7 +13,7 @@
 
 // Of all that a scenario may hold.
 static const char whole_scenario[] =
-    "title: t\n"
+    "title: Stoß\n"
     "description: some\n"
     "run: {duration: 0.12 s}\n"
     "initial: {angle: -0.01 rad}\n"
@@ -261,10 +261,11 @@ static void many_runs(void **state)
     try_with_scenario(put_side_by_side, "");
 }
 
-// argument: how many requests are refused, spread over those of a piece of work
-int main(int argc, char **argv)
+// with an argument: the first request of each place is refused, not only some of all
+int main(int count, char **arguments)
 {
-    tries = argc > 1 ? atol(argv[1]) : tries;
+    (void)arguments;
+    everywhere = count > 1;
     scenario_text = whole_scenario;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenarios_are_read_copied_and_written),

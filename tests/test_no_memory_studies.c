@@ -276,10 +276,11 @@ static int remove_folder(void **state)
     return rmdir(folder); // nothing else stays
 }
 
-// argument: how many requests are refused, spread over those of a piece of work
-int main(int argc, char **argv)
+// with an argument: the first request of each place is refused, not only some of all
+int main(int count, char **arguments)
 {
-    tries = argc > 1 ? atol(argv[1]) : tries;
+    (void)arguments;
+    everywhere = count > 1;
     scenario_text = short_run;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_name_means_the_same_scenario),

@@ -227,12 +227,13 @@ static void measurements(void **state)
     }
 }
 
-// argument: how many requests are refused, spread over those of a piece of work
-int main(int argc, char **argv)
+// with an argument: the first request of each place is refused, not only some of all
+int main(int count, char **arguments)
 {
+    (void)arguments;
     static const char short_run[] = "title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\n"
                                     "run: {duration: 0.12 s}\ninitial: {angle: -0.01 rad}\n";
-    tries = argc > 1 ? atol(argv[1]) : tries;
+    everywhere = count > 1;
     scenario_text = short_run;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_rows_of_all), cmocka_unit_test(rows_are_shared_or_refused),

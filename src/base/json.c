@@ -1,6 +1,7 @@
 #include "src/base/json.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -35,8 +36,9 @@ json_t *json_number(double value)
 json_t *json_text(const char *text)
 {
     assert(text != NULL);
+    errno = 0;
     json_t *string = json_string(text);
-    char *copy = string == NULL ? strdup(text) : NULL;
+    char *copy = string == NULL && errno != ENOMEM ? strdup(text) : NULL;
 
     // a file's name may be no UTF-8, which JSON cannot hold
     for (char *c = copy; c != NULL && *c != '\0'; c++) {
@@ -166,6 +168,9 @@ void json_write(FILE *stream, const json_t *value)
 
 void json_write_member(FILE *stream, const json_t *value, int depth)
 {
-    assert(stream != NULL && value != NULL && depth >= 0);
-    write_indented(stream, value, depth);
+    assert(stream != NULL && depth >= 0);
+    lost = value == NULL || lost;
+    if (value != NULL) {
+        write_indented(stream, value, depth);
+    }
 }

@@ -239,9 +239,7 @@ status sweep_store_json(sweep_store *store, FILE *stream, fault *f)
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
         json_t *object = row_object(s, rows);
         fputs(separator, stream);
-        if (object != NULL) {
-            json_write_member(stream, object, 2);
-        }
+        json_write_member(stream, object, 2);
         json_decref(object);
         separator = ",\n    ";
     }
