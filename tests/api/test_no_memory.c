@@ -1,0 +1,26 @@
+// Requests for memory of libimpactlab refused one after the other: each call that is refused says
+// so and leaves nothing, or what comes out is whole.
+#include "calls.h"
+
+#include "tests/refused_requests.h"
+
+static status call_library(const char *ignored, FILE *out)
+{
+    (void)ignored;
+    return call_everything(out) == 0 ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+static void every_call_says_that_it_was_refused(void **state)
+{
+    (void)state;
+    try_all(call_library, "");
+}
+
+// with an argument: the first request of each place is refused, not only some of all
+int main(int count, char **arguments)
+{
+    (void)arguments;
+    everywhere = count > 1;
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_call_says_that_it_was_refused)};
+    return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;
+}
