@@ -68,8 +68,8 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
     return t;
 }
 
-// The engine's bound on the second derivative; `known` if that is what it was for a longer interval
-// with the same end, else HUGE_VAL.
+// The engine's bound on the second derivative; `known` if that is what it was for an interval that
+// this one is part of and the engine's is no tighter here, else HUGE_VAL.
 static double bend_between(const arm *a, const motion *m, watch w, point lo, point hi, double known)
 {
     return isfinite(known) && m->engine->bends_from_start
@@ -103,9 +103,9 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
     double time = 0.5 * (lo.time + hi.time);
     point middle = {time, m->engine->look(a, m, w, time)};
     if (middle.at.value < 0) {
-        return first_fall(a, m, w, lo, middle, cuts - 1, HUGE_VAL);
+        return first_fall(a, m, w, lo, middle, cuts - 1, bend);
     }
-    double first = first_fall(a, m, w, lo, middle, cuts - 1, HUGE_VAL);
+    double first = first_fall(a, m, w, lo, middle, cuts - 1, bend);
     return first >= 0 ? first : first_fall(a, m, w, middle, hi, cuts - 1, bend);
 }
 
@@ -196,7 +196,7 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
     double time = 0.5 * (lo.time + hi.time);
     point middle = {time, m->engine->force_at(a, m, time)};
     note_force(m, middle);
-    raise_peak(a, m, lo, middle, cuts - 1, HUGE_VAL);
+    raise_peak(a, m, lo, middle, cuts - 1, bend);
     raise_peak(a, m, middle, hi, cuts - 1, bend);
 }
 

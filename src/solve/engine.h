@@ -66,7 +66,7 @@ typedef struct engine {
     // for h from `from` to `to`. With it, the function is nowhere in between below the lower of its
     // ends less bend (to - from)^2 / 8. For stiction the bound is that of the friction torque.
     double (*bend)(const arm *a, const motion *m, watch w, double from, double to);
-    bool bends_from_start; // that bound is the same wherever it is from
+    bool bends_from_start; // that bound is hardly tighter for a part of the stride, and dear
 
     // Dense engines, or NULL: cheap tests that spare most strides the search. Whether the watched
     // function certainly stays above zero up to h; whether the contact force certainly stays at
