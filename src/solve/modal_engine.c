@@ -3,11 +3,12 @@
 // engine.
 //
 // A stride of the modes is LONGEST at most, and so short that its points show all vibrations but
-// those that have next to no energy (modal_stride_shown). It is halved where Picard's sweeps do not
-// converge, its ledger does not close or its first event is none of the exact functions. Where that
-// leaves it shorter than ADVANTAGE strides of the
-// series, which are exact and cost a fraction, the series go on, and the modes are asked again
-// after PATIENCE of their strides. What happens within a stride is found as modal_watch.h or
+// those that have next to no energy (modal_stride_shown). Its defect (modal_fit) says whether it
+// may pass, how long the next try is where it may not, and the next stride where it may. It is
+// halved where Picard's sweeps do not converge, its ledger does not close or its first event is
+// none of the exact functions. Where that leaves it shorter than ADVANTAGE strides of the series,
+// which are exact and cost a fraction, the series go on, and the modes are asked again after
+// PATIENCE of their strides. What happens within a stride is found as modal_watch.h or
 // dense_location.h says.
 #include <math.h>
 #include <string.h>
@@ -177,6 +178,7 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
         return 0;
     }
 
+    // as proposed, and no longer than turning, events and vibrations allow
     double longest = m->state[SLOT_STRIDE] > 0 ? m->state[SLOT_STRIDE] : LONGEST;
     longest = fmin(longest, TURN / fmax(fabs(w[0]), 1e-9));
     if (m->state[SLOT_JUMPED] != 0) {
@@ -184,8 +186,9 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
     }
     longest = fmin(longest, s->shown_turn / modal_stride_shown(s, FAINT * s->start_energy));
 
-    // beyond what remains the last one is of no interest
+    // beyond what remains the last one is of no interest, and it says little of the next one
     const double most_defect = a->wall.restitution > 0 ? DEFECT_BOUNCING : DEFECT;
+    const double least_next = 2 * remaining < longest ? longest : 0;
     double h = round_length(fmin(longest, 2 * remaining));
     const double energy = s->start_energy + fabs(a->motor.torque) * TURN / 10;
     for (int i = 0; i < MOST_TRIES && h > ADVANTAGE * series; i++) {
@@ -203,6 +206,7 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
             if (open < OPEN * energy && find_event(a, m, fmin(h, remaining))) {
                 const double growth = fit.sweeps <= FEW_SWEEPS ? GROWTH : 2;
                 s->next = fmin(h * fmin(fitting, i == 0 ? growth : 1), LONGEST);
+                s->next = i == 0 ? fmax(s->next, least_next) : s->next;
                 return fmin(h, remaining);
             }
         }
