@@ -1,7 +1,7 @@
 // An explorer without a terminal, for tests: opened, its keys pressed, its screen as text.
 #pragma once
 
-#include "tests/check.h"
+#include "tests/session_fixture.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,12 +10,6 @@
 #include "ui/explorer/keys.h"
 #include "ui/explorer/mouse.h"
 #include "ui/terminal/key_codes.h"
-
-static inline void fail_on_fault(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
 
 static inline void open_explorer(explorer *ex, const char *name)
 {

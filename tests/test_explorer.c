@@ -372,22 +372,7 @@ static void test_random_keys_do_no_harm(void **state)
         }
     }
     // what was done can be saved, and gives the same run
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, &ex.state.session.effective);
-    fclose(stream);
-    scenario saved;
-    run_result again;
-    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
-                     STATUS_OK);
-    run_scenario(&saved, true, &again);
-    const trace *t = &ex.state.session.run.trace;
-    assert_int_equal(again.trace.row_count, t->row_count);
-    assert_memory_equal(again.trace.rows, t->rows, t->row_count * sizeof *t->rows);
-    run_finish(&again);
-    scenario_finish(&saved);
-    free(text);
+    free(save_and_compare(&ex.state.session));
     explorer_finish(&ex);
 }
 

@@ -105,25 +105,11 @@ static void test_a_lock_is_saved_and_run_again_byte_for_byte(void **state)
 {
     (void)state;
     explorer ex;
-    char *text = NULL;
-    size_t size = 0;
     open_explorer(&ex, "compare/recovering");
     press(&ex, ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
     assert_false(ex.state.message.warning);
-    FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, &ex.state.session.effective);
-    fclose(stream);
+    char *text = save_and_compare(&ex.state.session);
     assert_non_null(strstr(text, "set: {control.lock: \"approach\"}"));
-    scenario saved;
-    run_result again;
-    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
-                     STATUS_OK);
-    run_scenario(&saved, true, &again);
-    const trace *t = &ex.state.session.run.trace;
-    assert_int_equal(again.trace.row_count, t->row_count);
-    assert_memory_equal(again.trace.rows, t->rows, t->row_count * sizeof *t->rows);
-    run_finish(&again);
-    scenario_finish(&saved);
     free(text);
     explorer_finish(&ex);
 }

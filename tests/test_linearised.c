@@ -14,6 +14,21 @@ typedef struct comparison {
     summary simulated;
 } comparison;
 
+// A motion from rest at the instant before its first impact, to be destroyed.
+static motion *before_impact(const arm *a, const method_parameters *method)
+{
+    motion *m = motion_create(a, method);
+    motion_report report;
+    motion_start(a, m, 0, 0);
+    do {
+        assert_int_equal(motion_advance(a, m, 1, 1e-3, &report), STATUS_OK);
+        if (report.event != MOTION_IMPACT) {
+            motion_apply(a, m, &report);
+        }
+    } while (report.event != MOTION_IMPACT);
+    return m;
+}
+
 // Prediction at the instant before the first contact, and what the simulation then did.
 static comparison compare(double k2, double volts, const char *wall, const char *more)
 {
@@ -30,15 +45,7 @@ static comparison compare(double k2, double volts, const char *wall, const char 
 
     arm a;
     arm_init(&a, &s.parameters);
-    motion *m = motion_create(&a, &s.parameters.method);
-    motion_report report;
-    motion_start(&a, m, 0, 0);
-    do {
-        assert_int_equal(motion_advance(&a, m, 1, 1e-3, &report), STATUS_OK);
-        if (report.event != MOTION_IMPACT) {
-            motion_apply(&a, m, &report);
-        }
-    } while (report.event != MOTION_IMPACT);
+    motion *m = before_impact(&a, &s.parameters.method);
     assert_int_equal(predict_linearised(&a, m, state_angles(m, m->state),
                                         state_velocities(m, m->state), &c.predicted),
                      STATUS_OK);
@@ -197,16 +204,8 @@ static void predict_and_follow(const char *joint, const char *links, const volta
     parameters p = fixture_parameters(SETTINGS(joint, links, "arm.k1=90", "motor.voltage=1"));
     arm a;
     arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
-    motion_report report;
+    motion *m = before_impact(&a, &p.method);
     prediction out;
-    motion_start(&a, m, 0, 0);
-    do {
-        assert_int_equal(motion_advance(&a, m, 1, 1e-3, &report), STATUS_OK);
-        if (report.event != MOTION_IMPACT) {
-            motion_apply(&a, m, &report);
-        }
-    } while (report.event != MOTION_IMPACT);
     assert_int_equal(predict_pulse(&a, m, state_angles(m, m->state), state_velocities(m, m->state),
                                    command, &out),
                      STATUS_OK);

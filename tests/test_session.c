@@ -5,21 +5,7 @@
 #include <string.h>
 
 #include "src/base/random.h"
-#include "src/session/session.h"
-
-static void fail_on_fault(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
-
-static void open_session(session *s, const char *name)
-{
-    scenario base;
-    fault f = {0};
-    assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(session_init(s, &base, &f), STATUS_OK);
-}
+#include "tests/session_fixture.h"
 
 static void change(session *s, const char *path, const char *value)
 {
@@ -27,15 +13,6 @@ static void change(session *s, const char *path, const char *value)
     if (session_change(s, parameter_find(path), value, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
-}
-
-static void assert_same_trace(const trace *a, const trace *b)
-{
-    assert_int_equal(a->row_count, b->row_count);
-    assert_int_equal(a->event_count, b->event_count);
-    assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
-    assert_memory_equal(a->angles, b->angles,
-                        a->row_count * (size_t)a->angle_count * sizeof *a->angles);
 }
 
 static void test_stepping_back_and_forth_gives_the_same_states(void **state)
@@ -240,25 +217,6 @@ static void test_a_refused_change_changes_nothing(void **state)
     session_finish(&s);
 }
 
-static void save_and_compare(const session *s)
-{
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    scenario_write(stream, &s->effective);
-    fclose(stream);
-    scenario saved;
-    run_result again;
-    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
-                     STATUS_OK);
-    run_scenario(&saved, true, &again);
-    assert_same_trace(&s->run.trace, &again.trace);
-    run_finish(&again);
-    scenario_finish(&saved);
-    free(text);
-}
-
 static void test_a_saved_scenario_reproduces_the_run(void **state)
 {
     (void)state;
@@ -274,20 +232,20 @@ static void test_a_saved_scenario_reproduces_the_run(void **state)
         session_seek(&s, 0.3333);
         assert_int_equal(session_push(&s, -0.01, &f), STATUS_OK);
         change(&s, "wall.restitution", "0.3");
-        save_and_compare(&s);
+        free(save_and_compare(&s));
         session_finish(&s);
     }
     // a run that ends before an action of its script
     session shorter;
     open_session(&shorter, "corrected/voltage-step");
     change(&shorter, "run.duration", "0.7");
-    save_and_compare(&shorter);
+    free(save_and_compare(&shorter));
     session_finish(&shorter);
     session printed;
     open_session(&printed, "thesis/fig-3-4");
     session_seek(&printed, 0.1);
     change(&printed, "motor.voltage", "2");
-    save_and_compare(&printed);
+    free(save_and_compare(&printed));
     session_finish(&printed);
 }
 

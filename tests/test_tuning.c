@@ -7,21 +7,7 @@
 #include <string.h>
 
 #include "src/rig/rig.h"
-#include "src/session/session.h"
-
-static void fail_on_fault(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
-
-static void open_session(session *s, const char *name)
-{
-    scenario base;
-    fault f = {0};
-    assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(session_init(s, &base, &f), STATUS_OK);
-}
+#include "tests/session_fixture.h"
 
 static void change(session *s, const char *path, const char *value)
 {

@@ -1,0 +1,51 @@
+// Sessions for tests: opened on a scenario that ships, and saved and run again.
+#pragma once
+
+#include <stdlib.h>
+
+#include "src/run/run.h"
+#include "src/session/session.h"
+#include "tests/check.h"
+
+static inline void fail_on_fault(void *context, const char *sentence)
+{
+    (void)context;
+    fail_msg("%s", sentence);
+}
+
+static inline void open_session(session *s, const char *name)
+{
+    scenario base;
+    fault f = {0};
+    assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(session_init(s, &base, &f), STATUS_OK);
+}
+
+static inline void assert_same_trace(const trace *a, const trace *b)
+{
+    assert_int_equal(a->row_count, b->row_count);
+    assert_int_equal(a->event_count, b->event_count);
+    assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
+    assert_memory_equal(a->angles, b->angles,
+                        a->row_count * (size_t)a->angle_count * sizeof *a->angles);
+}
+
+// What was done is saved as a scenario, which gives the same run. Returns its text, to be freed.
+static inline char *save_and_compare(const session *s)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    scenario_write(stream, &s->effective);
+    fclose(stream);
+    scenario saved;
+    run_result again;
+    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
+                     STATUS_OK);
+    run_scenario(&saved, true, &again);
+    assert_same_trace(&s->run.trace, &again.trace);
+    run_finish(&again);
+    scenario_finish(&saved);
+    return text;
+}
