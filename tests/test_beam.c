@@ -134,6 +134,29 @@ static void first_mode_has_the_damping_asked_for(void **state)
     check_relative(a.hub_joint_damping / a.hub_stiffness, 2 * wanted / frequencies[0], 1e-6);
 }
 
+// No free mode is faster than what steps are chosen for, nor slower by a tenth, whatever the
+// joints.
+static void the_highest_frequency_bounds_the_modes(void **state)
+{
+    (void)state;
+    const char *const arms[][2] = {{"arm.links=2", "arm.hub_joint=rigid"},
+                                   {"arm.links=2", "arm.hub_joint=spring"},
+                                   {"arm.links=2", "arm.hub_joint=beam"},
+                                   {"arm.links=3", "arm.hub_joint=rigid"},
+                                   {"arm.links=8", "arm.hub_joint=rigid"}};
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+        parameters p = fixture_parameters(SETTINGS(arms[i][0], arms[i][1]));
+        arm a;
+        arm_init(&a, &p);
+        int count;
+        double frequencies[9], shapes[81];
+        assert_int_equal(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes),
+                         STATUS_OK);
+        check_below(frequencies[count - 1], a.highest_frequency);
+        check_below(a.highest_frequency, 1.1 * frequencies[count - 1]);
+    }
+}
+
 // A mode that is damped beyond its limit creeps by two decays whose product is the square of its
 // frequency w and whose sum is 2 zeta w; the faster one is what steps have to follow.
 static void an_overdamped_mode_decays_by_the_roots_of_its_equation(void **state)
@@ -273,6 +296,7 @@ int main(void)
         cmocka_unit_test(joints_bent_by_the_moment_balance_the_load),
         cmocka_unit_test(frequencies_converge_at_second_order),
         cmocka_unit_test(first_mode_has_the_damping_asked_for),
+        cmocka_unit_test(the_highest_frequency_bounds_the_modes),
         cmocka_unit_test(an_overdamped_mode_decays_by_the_roots_of_its_equation),
         cmocka_unit_test(a_mass_at_the_tip_lowers_the_frequencies),
         cmocka_unit_test(every_engine_carries_the_mass_of_a_stiff_chain),

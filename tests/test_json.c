@@ -77,6 +77,10 @@ static void what_cannot_be_put_is_noted_once(void **state)
     json_add(array, json_text("b"));
     assert_false(json_lost_something());
 
+    // texts that are written are not lost
+    free(written(json_text("as it is")));
+    assert_false(json_lost_something());
+
     // no value, as without memory, and no container
     json_put(object, "c", NULL);
     json_put(object, "d", json_number(2));

@@ -2,6 +2,11 @@
 // before the wall.
 #include "tests/rig_fixture.h"
 
+#include <string.h>
+
+#include "src/rig/controller_values.h"
+#include "src/rig/rig.h"
+
 // --- the hybrid law -------------------------------------------------------------------------
 
 static void hybrid_makes_contact_once_and_settles(void **state)
@@ -311,6 +316,31 @@ static void impedance_gives_way_by_its_stiffness(void **state)
     }
 }
 
+// All settings count, in any order and with blanks between them.
+static void several_settings_are_taken(void **state)
+{
+    (void)state;
+    fault f;
+    const controller *law = controller_of(LAW_IMPEDANCE);
+    parameters p = rig_parameters(SETTINGS("control.law=impedance"));
+    double one[16], both[16];
+    assert_true(law->parameter_count >= 2 && law->parameter_count <= 16);
+    strcpy(p.control.settings, "stiffness=7");
+    assert_int_equal(controller_values(law, &p, one, &f), STATUS_OK);
+    strcpy(p.control.settings, " force=3  stiffness=7 ");
+    assert_int_equal(controller_values(law, &p, both, &f), STATUS_OK);
+
+    // the one alone changes its own value, the other one as well
+    int differ = 0;
+    for (int i = 0; i < law->parameter_count; i++) {
+        const bool force = strcmp(law->parameters[i].name, "force") == 0;
+        differ += one[i] != both[i];
+        assert_true(!force || both[i] == 3);
+        assert_true(strcmp(law->parameters[i].name, "stiffness") != 0 || both[i] == 7);
+    }
+    assert_int_equal(differ, 1);
+}
+
 // Admittance ends where the reading is right, wherever the wall is and however stiff the beam.
 static void admittance_ends_with_the_force(void **state)
 {
@@ -380,6 +410,7 @@ int main(void)
         cmocka_unit_test(every_law_ends_near_its_force),
         cmocka_unit_test(recovering_law_returns_to_position_control),
         cmocka_unit_test(impedance_gives_way_by_its_stiffness),
+        cmocka_unit_test(several_settings_are_taken),
         cmocka_unit_test(admittance_ends_with_the_force),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

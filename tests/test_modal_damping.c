@@ -27,6 +27,24 @@ static held_modes modes_of(const parameters *p)
     return m;
 }
 
+// Joints that the arm does not have take no part.
+static void only_joints_that_are_there_are_damped(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(SETTINGS("arm.links=5"));
+    double rows[PARAMETER_MODES_MOST][PARAMETER_LIST_MOST];
+    arm a;
+    arm_init(&a, &p);
+    assert_int_equal(modal_damping_rows(&a, "0.1,0.2,0.3", rows), 3);
+    for (int i = 0; i < 3; i++) {
+        int damped = 0;
+        for (int k = 0; k < PARAMETER_LIST_MOST; k++) {
+            damped += rows[i][k] != 0;
+        }
+        assert_int_equal(damped, a.dof - 1);
+    }
+}
+
 // x' M y over the bodies beyond the hub.
 static double product(const held_modes *m, const double *x, const double *y)
 {
@@ -191,6 +209,7 @@ static void an_arm_that_turns_as_a_whole_is_not_damped(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(only_joints_that_are_there_are_damped),
         cmocka_unit_test(modes_decay_with_the_ratios_of_the_list),
         cmocka_unit_test(air_takes_from_all_modes_alike),
         cmocka_unit_test(ratios_in_proportion_are_structural_damping),

@@ -137,6 +137,7 @@ static void the_first_characters_of_each_length_are_whole(void **state)
     check_printable("\xed\x9f\xbf", "\xed\x9f\xbf");
     check_printable("\xed\xa0\x80", "???");
     check_printable("\xee\x80\x80", "\xee\x80\x80");
+    check_printable("\xf4\x8f\xbf\xbf", "\xf4\x8f\xbf\xbf"); // the last of all
     check_printable("\xf4\x8f\xbf\xbd", "\xf4\x8f\xbf\xbd");
     check_printable("\xf4\x90\x80\x80", "????");
 }
