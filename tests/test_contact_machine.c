@@ -165,7 +165,7 @@ static void a_push_into_the_wall_is_answered_by_it(void **state)
     assert_int_equal(report.event, MOTION_IMPACT);
     check_relative(report.impulse, 0.03, 1e-12);
     check_close(speed_of(&r), 0, 1e-14);
-    assert_true(touches(&r));
+    assert_true(report.holds && touches(&r));
     motion_destroy(r.motion);
 }
 
@@ -175,7 +175,7 @@ static void a_push_away_ends_the_contact(void **state)
     moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
     motion_report report = {0};
     motion_push(&r.arm, r.motion, -0.03, &report);
-    assert_false(touches(&r));
+    assert_false(report.holds || touches(&r));
     check_relative(speed_of(&r), -0.03 / r.inertia, 1e-12);
     motion_destroy(r.motion);
 }

@@ -238,6 +238,8 @@ static void what_does_not_go_together_is_refused(void **state)
         {"control: {law: process}", "control.command"},
         {"control: {law: hybrid, jitter: 0.01 s}", "jitter"},
         {"control: {law: hybrid, impact_angle: film}\nsensor: {film: false}", "sensor.film"},
+        {"control: {law: hybrid, impact_angle: accelerometer}\nsensor: {accelerometer: false}",
+         "sensor.accelerometer = false"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         scenario s;
@@ -248,6 +250,23 @@ static void what_does_not_go_together_is_refused(void **state)
             fail_msg("%s: %d faults, expected one about '%s':\n%s", cases[i].text, all.count,
                      cases[i].what, all.text);
         }
+    }
+}
+
+// However the reader comes upon them: the keys of the whole before those within.
+static void faults_of_one_line_are_told_from_left_to_right(void **state)
+{
+    (void)state;
+    scenario s;
+    sentences all;
+    const char *text = "{wall: {knd: 3}, script: [{at: x}], w: 1, arm: {lnks: 3}}\n";
+    assert_int_equal(parse(&s, text, &all), STATUS_BAD_SCENARIO);
+    static const char *const wrong[] = {"'knd'", "at", "'w'", "'lnks'"};
+    const char *before = all.text;
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        const char *at = strstr(before, wrong[i]);
+        assert_non_null(at);
+        before = at;
     }
 }
 
@@ -506,6 +525,7 @@ int main(void)
         cmocka_unit_test(a_key_may_be_there_once),
         cmocka_unit_test(impossible_combinations_point_at_the_key),
         cmocka_unit_test(what_does_not_go_together_is_refused),
+        cmocka_unit_test(faults_of_one_line_are_told_from_left_to_right),
         cmocka_unit_test(a_title_has_a_limit),
         cmocka_unit_test(faults_of_actions),
         cmocka_unit_test(faults_of_set),

@@ -196,6 +196,27 @@ static void test_undo_and_redo(void **state)
     session_finish(&s);
 }
 
+static void test_an_input_taken_out_is_put_in_again(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    open_session(&s, "corrected/first-impact");
+    change(&s, "wall.angle", "0.2");
+    change(&s, "arm.k2", "10");
+    const double both = s.run.summary.peak_force_N;
+    assert_int_equal(session_drop_input(&s, 0, &f), STATUS_OK);
+    assert_int_equal(s.input_count, 1);
+    check_close(s.effective.parameters.wall.angle, 0.1, 0);
+    check_close(s.effective.parameters.arm.k2, 10, 0);
+    assert_int_equal(session_redo(&s, &f), STATUS_OK);
+    assert_int_equal(s.input_count, 2);
+    check_close(s.effective.parameters.wall.angle, 0.2, 0);
+    check_close(s.run.summary.peak_force_N, both, 0);
+    assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
+    session_finish(&s);
+}
+
 static void test_a_refused_change_changes_nothing(void **state)
 {
     (void)state;
@@ -271,6 +292,7 @@ int main(void)
         cmocka_unit_test(test_a_lower_voltage_before_contact_hits_less_hard),
         cmocka_unit_test(test_what_is_before_a_change_stays_to_the_last_bit),
         cmocka_unit_test(test_undo_and_redo),
+        cmocka_unit_test(test_an_input_taken_out_is_put_in_again),
         cmocka_unit_test(test_a_refused_change_changes_nothing),
         cmocka_unit_test(test_a_saved_scenario_reproduces_the_run),
         cmocka_unit_test(test_the_model_can_be_exchanged),
