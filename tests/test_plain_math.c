@@ -99,6 +99,12 @@ static void arctangents_are_right_to_two_units(void **state)
         assert_true(units_off(plain_atan2(y, x), atan2l((long double)y, (long double)x)) < 2);
     }
 
+    // the diagonal, where both ways to it meet: an eighth of a turn to the last bit
+    for (int power = -300; power <= 300; power += 60) {
+        const double x = ldexp(1.1, power);
+        check_close(plain_atan2(x, x), atan2(1, 1), 0);
+    }
+
     // both axes, both signs, and the origin
     for (int quarter = -1; quarter <= 2; quarter++) {
         const double x = quarter == 0 ? 3 : quarter == 2 ? -3 : 0, y = quarter % 2 * 5;

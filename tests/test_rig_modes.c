@@ -271,9 +271,25 @@ static void pressing_from_the_start_finds_the_wall(void **state)
     }
 }
 
+// No more names are written than there is room for.
+static void names_of_modes_keep_to_their_room(void **state)
+{
+    (void)state;
+    parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
+    char names[3][MODE_NAME_SIZE] = {"", "", "untouched"};
+    bool lockable;
+    assert_int_equal(rig_mode_names(&p, names, 1, &lockable), 1);
+    assert_string_equal(names[0], controller_of(LAW_HYBRID)->modes[0]);
+    assert_string_equal(names[1], "");
+    assert_true(rig_mode_names(&p, names, 2, &lockable) == 2 && lockable);
+    assert_string_equal(names[1], controller_of(LAW_HYBRID)->modes[1]);
+    assert_string_equal(names[2], "untouched");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_of_modes_keep_to_their_room),
         cmocka_unit_test(every_lockable_law_stays_in_every_mode_of_its_own),
         cmocka_unit_test(approach_means_the_approach_command),
         cmocka_unit_test(force_means_the_force_law_at_once),

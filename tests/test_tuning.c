@@ -164,9 +164,27 @@ static void test_a_saved_tuned_run_is_the_same(void **state)
     session_finish(&s);
 }
 
+// Without a law, or under one that hears of every change, all of control.* may change at any time.
+static void what_nobody_took_at_the_start_can_change(void **state)
+{
+    (void)state;
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    const int force = PARAMETER_INDEX(control.force);
+    static const int laws[] = {LAW_NONE, LAW_PROCESS, LAW_HYBRID};
+    for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
+        p.control.law = laws[i];
+        assert_true(rig_can_change(&p, force));
+        assert_false(rig_can_change(&p, PARAMETER_INDEX(control.law)));
+    }
+    p.control.law = LAW_PLUGIN; // of which nothing is known
+    assert_false(rig_can_change(&p, force));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_nobody_took_at_the_start_can_change),
         cmocka_unit_test(test_a_gain_holds_from_the_next_sample_on),
         cmocka_unit_test(test_another_rate_samples_at_its_own_period),
         cmocka_unit_test(test_setpoints_are_steps_ramps_and_waves),
