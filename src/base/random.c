@@ -21,32 +21,6 @@ void random_seed(random_generator *g, uint64_t seed)
     }
 }
 
-static uint64_t rotated_left(uint64_t bits, int count)
-{
-    return bits << count | bits >> (64 - count);
-}
-
-uint64_t random_bits(random_generator *g)
-{
-    uint64_t *s = g->state;
-    uint64_t result = rotated_left(s[1] * 5, 7) * 9;
-
-    // the linear step: x <- x M over the field of two elements
-    uint64_t shifted = s[1] << 17;
-    s[2] ^= s[0];
-    s[3] ^= s[1];
-    s[1] ^= s[2];
-    s[0] ^= s[3];
-    s[2] ^= shifted;
-    s[3] = rotated_left(s[3], 45);
-    return result;
-}
-
-double random_uniform(random_generator *g)
-{
-    return (double)(random_bits(g) >> 11) * 0x1p-53;
-}
-
 uint64_t random_below(random_generator *g, uint64_t bound)
 {
     assert(g != NULL && bound > 0);

@@ -17,10 +17,27 @@ uint64_t splitmix64_next(uint64_t *state);
 void random_seed(random_generator *g, uint64_t seed);
 
 // 64 random bits.
-uint64_t random_bits(random_generator *g);
+static inline uint64_t random_bits(random_generator *g)
+{
+    uint64_t *s = g->state;
+    const uint64_t times5 = s[1] * 5, result = (times5 << 7 | times5 >> 57) * 9;
+
+    // the linear step: x <- x M over the field of two elements
+    uint64_t shifted = s[1] << 17;
+    s[2] ^= s[0];
+    s[3] ^= s[1];
+    s[1] ^= s[2];
+    s[0] ^= s[3];
+    s[2] ^= shifted;
+    s[3] = s[3] << 45 | s[3] >> 19;
+    return result;
+}
 
 // A number evenly distributed over [0, 1), a multiple of 2^-53.
-double random_uniform(random_generator *g);
+static inline double random_uniform(random_generator *g)
+{
+    return (double)(random_bits(g) >> 11) * 0x1p-53;
+}
 
 // A whole number evenly distributed over 0 ... bound - 1; bound > 0.
 uint64_t random_below(random_generator *g, uint64_t bound);

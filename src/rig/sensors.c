@@ -17,29 +17,37 @@
 
 static const double turn = 2 * 3.14159265358979323846; // [rad]
 
+// Draws two numbers of the standard normal distribution by Marsaglia's polar method.
+static void draw_pair(noise_source *n)
+{
+    double x, y, r;
+    do {
+        x = 2 * random_uniform(&n->random) - 1;
+        y = 2 * random_uniform(&n->random) - 1;
+        r = x * x + y * y;
+    } while (!(r > 0 && r < 1));
+
+    const double factor = sqrt(-2 * plain_log(r) / r);
+    n->pair[0] = x * factor;
+    n->pair[1] = y * factor;
+    n->taken = 0;
+}
+
 static void noise_start(noise_source *n, uint64_t seed)
 {
     random_seed(&n->random, seed);
-    n->spare = (double)NAN;
+    draw_pair(n);
 }
 
-// A number of the standard normal distribution, by Marsaglia's polar method, which makes two.
+// A number of the standard normal distribution. The next ones are drawn as soon as there are none
+// left, so that whoever takes them does not wait for the logarithm.
 static double random_normal(noise_source *n)
 {
-    double spare = n->spare;
-    n->spare = (double)NAN;
-
-    // a point within the unit circle makes two, the other is kept for the next call
-    while (isnan(spare)) {
-        double x = 2 * random_uniform(&n->random) - 1, y = 2 * random_uniform(&n->random) - 1;
-        double r = x * x + y * y;
-        if (r > 0 && r < 1) {
-            double factor = sqrt(-2 * plain_log(r) / r);
-            n->spare = y * factor;
-            return x * factor;
-        }
+    const double taken = n->pair[n->taken++];
+    if (n->taken == 2) {
+        draw_pair(n);
     }
-    return spare;
+    return taken;
 }
 
 converter converter_of(int bits, double range)

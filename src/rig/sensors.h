@@ -32,7 +32,8 @@ typedef struct first_order_lag {
 // White noise of its own.
 typedef struct noise_source {
     random_generator random;
-    double spare; // second number of a pair of normal ones, NaN if there is none
+    double pair[2]; // of normal numbers, drawn before they are asked for
+    int taken;      // of them
 } noise_source;
 
 // An A/D or D/A converter.

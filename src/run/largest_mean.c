@@ -116,9 +116,10 @@ static double largest_between(const run_result *r, const window_end *front, cons
 }
 
 // Whether no window that ends within the front's step holds more than `largest` [N s]: where no
-// event is, by the bounds of the few steps that such windows reach over.
+// event is, by the bounds of the few steps that such windows reach over. Those before *bounded are
+// known to hold no more over a window; it goes on with the steps that are found so.
 static bool holds_no_more(const run_result *r, const window_end *front, const window_end *back,
-                          double window, double largest)
+                          double window, double largest, size_t *bounded)
 {
     enum { MOST_STEPS = 8 };
     const force_step *steps = force_steps(&r->history.forces);
@@ -127,11 +128,12 @@ static bool holds_no_more(const run_result *r, const window_end *front, const wi
         (back->event < t->event_count && t->events[back->event].time <= steps[front->step].end)) {
         return false;
     }
-    for (size_t i = back->step; i <= front->step; i++) {
+    for (size_t i = *bounded > back->step ? *bounded : back->step; i <= front->step; i++) {
         const double most = larger(steps[i].first, steps[i].last) + step_bulge(&steps[i]);
         if (most * window > largest) {
             return false;
         }
+        *bounded = i + 1;
     }
     return true;
 }
@@ -147,11 +149,12 @@ double force_largest_mean(const run_result *result, double from, double window)
 
     window_end front = {0}, back = {0};
     double largest = -HUGE_VAL;
+    size_t bounded = 0;
     for (double time = from + window;;) {
         // at the instant itself, impulses on both edges counting
         advance(result, &front, time, true);
         advance(result, &back, time - window, false);
-        if (time < end && holds_no_more(result, &front, &back, window, largest)) {
+        if (time < end && holds_no_more(result, &front, &back, window, largest, &bounded)) {
             time = fmin(force_steps(h)[front.step].end, end);
             continue;
         }

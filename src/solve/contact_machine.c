@@ -405,8 +405,12 @@ void motion_retorque(const arm *a, motion *m, double before)
     }
 
     // a hub that moves goes on as it did, unless the contact is lost
-    motion_evaluate(a, m, state);
     bool moves = !sticks && state_velocities(m, state)[0] != 0;
+    if (moves && m->engine->retorque != NULL) {
+        m->engine->retorque(a, m, a->motor.torque - before);
+    } else {
+        motion_evaluate(a, m, state);
+    }
     if (!moves || (state[SLOT_CONTACT] != 0 && state[SLOT_FORCE] <= 0)) {
         resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_REACHED);
         check_invariants(a, m);

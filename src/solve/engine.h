@@ -97,6 +97,11 @@ typedef struct engine {
     void (*first_event)(const arm *a, motion *m, double *h, watch *first, bool *any);
     void (*peak)(const arm *a, motion *m, double h);
 
+    // Engines that know it without evaluating the state, else NULL: adds to accelerations and
+    // reactions of m->state what a change of the motor's torque [N m] does to them at once, the hub
+    // sliding, in the same contact state.
+    void (*retorque)(const arm *a, motion *m, double change);
+
     // Engines whose memory grows with the arm, else NULL: bytes it wants in m->memory, and what
     // prepares them.
     size_t (*memory_for)(const arm *a);

@@ -11,8 +11,6 @@
 #define SLOWEST_PACE 2e-8
 #define ASKED_FOR    1e-3 // share of method.step
 
-enum { STRIDES_A_LOOK = 1 << 16 }; // more than anything brief takes
-
 // Says what of the arm or the wall makes strides short, and what would make them longer.
 static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
 {
@@ -49,16 +47,13 @@ pace pace_begin(void)
     return (pace){.looked_from = -1};
 }
 
-status pace_keep(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
+status pace_look(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
 {
     assert(p != NULL && a != NULL && m != NULL && duration > 0 && asked > 0);
     const double now = m->state[SLOT_TIME], from = p->looked_from;
-    if (from >= 0 && ++p->strides < STRIDES_A_LOOK) {
-        return STATUS_OK;
-    }
 
     // the first stride only begins to count
-    const double least = STRIDES_A_LOOK * fmin(SLOWEST_PACE * fmin(duration, 1), ASKED_FOR * asked);
+    const double least = PACE_STRIDES * fmin(SLOWEST_PACE * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;
     p->strides = 0;
     p->looked_from = now;
@@ -71,5 +66,5 @@ status pace_keep(pace *p, const arm *a, const motion *m, double duration, double
     return fault_set(f, STATUS_NO_PROGRESS,
                      "at t = %.9g s of %g s: %d strides by %s passed %.3g s, at which the run is "
                      "given up: %s",
-                     now, duration, STRIDES_A_LOOK, m->engine->name, now - from, cause);
+                     now, duration, PACE_STRIDES, m->engine->name, now - from, cause);
 }

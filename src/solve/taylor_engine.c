@@ -1,8 +1,9 @@
 // The two-link arm by power series (taylor_kernel.h): a dense engine.
 //
 // The stride goes as far as the fastest mode and the rotation let a series of the highest order
-// reach, and is shortened until its last terms are small; where something else ends it sooner a
-// lower order does. Everything within it (events, rows, peaks, quadratures) is a polynomial.
+// reach, and is shortened until its last terms are small; where they are small before, as in one
+// that something else ends sooner, the series end with them. Everything within it (events, rows,
+// peaks, quadratures) is a polynomial.
 //
 // Steps that cut a stride without an event (a sample whose command stays, an instant that a program
 // stops at) go on in it: the state says where it began, the engine's memory holds its series. While
@@ -87,17 +88,9 @@ static void put_inputs(const arm *a, const motion *m, const double *q, const dou
     block[AT_WANTED] = wanted;
 }
 
-// The length that is tried from velocities w on, up to `most`, and the order that is enough for it.
-static double wanted_stride(const arm *a, const motion *m, const double *w, double most, int *order)
+// The length that is tried from velocities w on, up to `most`.
+static double wanted_stride(const arm *a, const motion *m, const double *w, double most)
 {
-    // how far a series of each order reaches with small last terms, in units of the fastest rate
-    static const struct {
-        int order;
-        double reach;
-    } orders[] = {{8, 0.04},  {10, 0.1},  {12, 0.2},  {14, 0.33},
-                  {16, 0.48}, {18, 0.66}, {20, 0.88}, {22, 1.1}};
-    enum { ORDERS = sizeof orders / sizeof orders[0] };
-
     // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
     double rate = a->highest_frequency > 1e-3 ? a->highest_frequency : 1e-3;
     for (int i = 0; i < m->dof; i++) {
@@ -107,16 +100,7 @@ static double wanted_stride(const arm *a, const motion *m, const double *w, doub
     rate = rate < turning ? turning : rate;
     double wanted = LONGEST_REACH / rate;
     wanted = most < wanted ? most : wanted;
-    if (a->fastest_decay * wanted > LONGEST_DECAY) {
-        wanted = LONGEST_DECAY / a->fastest_decay;
-    }
-
-    // and the lowest order that reaches so far
-    *order = TAYLOR_MOST;
-    for (int i = ORDERS - 1; i >= 0 && wanted * rate <= orders[i].reach; i--) {
-        *order = orders[i].order;
-    }
-    return wanted;
+    return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay : wanted;
 }
 
 static double rounding_of(const arm *a, const motion *m, const taylor_stride *s)
@@ -204,14 +188,11 @@ static void prepare(const arm *a, motion *m)
     taylor_stride *s = m->memory;
     const double *kept = state_kept(m, m->state);
     const double *q = kept + KEPT_ANGLES, *w = kept + KEPT_VELOCITIES;
-    int order;
-    double wanted = wanted_stride(a, m, w, kept[KEPT_WANTED], &order);
-    put_inputs(a, m, q, w, wanted, s->lane.block);
+    put_inputs(a, m, q, w, wanted_stride(a, m, w, kept[KEPT_WANTED]), s->lane.block);
     s->lane.form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
                                  .point = a->wall.kind == WALL_POINT,
                                  .hub_spring = a->hub_spring,
-                                 .damped = a->joint_damping > 0 || a->hub_joint_damping > 0,
-                                 .order = order};
+                                 .damped = a->joint_damping > 0 || a->hub_joint_damping > 0};
 }
 
 // Whether the state's stride goes on: to the end of what remains, or, where it was not made for
@@ -535,4 +516,5 @@ const engine taylor_engine = {.name = "Taylor series",
                               .first_event = first_event,
                               .peak = dense_search_peak,
                               .open = open,
+                              .retorque = taylor_retorque,
                               .memory_size = sizeof(taylor_stride)};

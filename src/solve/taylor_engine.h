@@ -39,8 +39,8 @@ taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining);
 // Whether two strides can go side by side.
 static inline bool taylor_alike(taylor_form a, taylor_form b)
 {
-    return a.order == b.order && a.contact == b.contact && a.point == b.point &&
-           a.hub_spring == b.hub_spring && a.damped == b.damped;
+    return a.contact == b.contact && a.point == b.point && a.hub_spring == b.hub_spring &&
+           a.damped == b.damped;
 }
 
 // Computes up to taylor_width() prepared strides of one form; the motions take the series from
@@ -81,6 +81,9 @@ void taylor_fetch(taylor_lane *lane);
 
 // Evaluates the series of one arm at `count` instants of the stride, up to taylor_width().
 void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at);
+
+// engine.retorque of the series' engine.
+void taylor_retorque(const arm *a, motion *m, double change);
 
 // How many arms the widest vectors of this processor hold, 1 to TAYLOR_WIDEST.
 int taylor_width(void);

@@ -33,39 +33,72 @@
 #define SERIES GLUE(taylor_series_, LANES)
 #endif
 
-// The last terms of the velocities stay below this share of 1 rad/s or the largest velocity; the
-// first one left out is about ten times smaller.
+// The last terms of the velocities stay below this share of 1 rad/s or the largest velocity, and,
+// where the series end before the highest order, those of the losses below this share of 1 J times
+// its square; the first one left out is about ten times smaller.
 #define LAST_TERMS 1e-13
-// A stride that is too long for that is shortened by this factor, at most so often.
+// The series end with the first even order, this or a later one, whose terms are so small at the
+// length that is wanted.
+#define LEAST_ORDER 8
+// A stride that is too long for the highest order is shortened by this factor, at most so often.
 #define SHORTENING       0.875
 #define MOST_SHORTENINGS 200
 
 // --- series -----------------------------------------------------------------------------------
 
-// The longest stride, up to `wanted`, whose last terms in velocity are small; terms: magnitudes of
-// the coefficients of the two last orders.
-KERNEL real allowed_stride(real wanted, real before_last, real last, real scale, int order)
+// Magnitudes of the coefficients of the two last orders, and what those of the earlier one are
+// multiplied with at the end of a stride of a length h: of velocities h^(order - 1), of losses h
+// times that.
+typedef struct last_terms {
+    real before, last, power;
+} last_terms;
+
+KERNEL mask too_large(last_terms x, real h, real limit)
 {
-    real h = wanted, power = (real){0} + 1.0, base = h; // h^(order - 1)
-    const real limit = LAST_TERMS * scale;
+    return ~MASK((x.last * h + x.before) * x.power <= limit);
+}
+
+// The longest stride, up to the one of length h that x is of, whose last terms are small; of the
+// highest order.
+KERNEL real allowed_stride(real h, last_terms x, real limit)
+{
     double shrinking = 1, factor = SHORTENING;
-    for (int e = order - 1; e > 0; e >>= 1) {
-        power = e & 1 ? power * base : power;
+    for (int e = TAYLOR_MOST - 1; e > 0; e >>= 1) {
         shrinking = e & 1 ? shrinking * factor : shrinking;
-        base *= base;
         factor *= factor;
     }
 
     // all lanes go on until the last of them is short enough, only those that are too long are cut
     for (int i = 0; i < MOST_SHORTENINGS; i++) {
-        const mask bad = ~MASK((last * h + before_last) * power <= limit);
+        const mask bad = too_large(x, h, limit);
         if (!any(bad)) {
             break;
         }
         h = choose(bad, SHORTENING * h, h);
-        power = choose(bad, shrinking * power, power);
+        x.power = choose(bad, shrinking * x.power, x.power);
     }
     return h;
+}
+
+// Takes what lies beyond an arm's own order out of its lane, where others have gone further;
+// open[i]: the lanes that go beyond the order 2 i.
+KERNEL void cut_off(real *block, const mask *open, int order)
+{
+    for (int n = LEAST_ORDER + 1; n <= order; n++) {
+        const mask own = open[(n - 1) / 2];
+        for (int i = 0; i < 3; i++) {
+            real *q = block + AT_ANGLE_0 + i * (TAYLOR_MOST + 2) + n + 1;
+            real *w = block + AT_RATE_0 + i * (TAYLOR_MOST + 1) + n;
+            *q = real_of(bits_of(*q) & own);
+            *w = real_of(bits_of(*w) & own);
+        }
+        real *gap = block + AT_GAP + n + 1;
+        *gap = real_of(bits_of(*gap) & own);
+        for (int i = 0; i < 4; i++) {
+            real *x = block + AT_FORCE + i * TAYLOR_MOST + n - 1;
+            *x = real_of(bits_of(*x) & own);
+        }
+    }
 }
 
 typedef struct range {
@@ -95,11 +128,19 @@ KERNEL range range_of(const real *terms, int count, real t)
     return (range){choose(falls, end, terms[0]) - off, choose(falls, terms[0], end) + off};
 }
 
-KERNEL void series(real *block, const int contact, const int point, const int hub_spring,
-                   bool damped, const int order)
+// The n-th coefficient of the gap.
+KERNEL real gap_term(const factors *x, ptrdiff_t n, real l, const int point)
+{
+    const real S2 = PART(DIRECTIONS(x, n), 3);
+    return point ? l * PART(DIRECTIONS(x, n), 1) - S2 : -(PART(DIRECTION1(x, n), 1) + S2);
+}
+
+KERNEL int series(real *block, const int contact, const int point, const int hub_spring,
+                  bool damped)
 {
     const real zero = (real){0};
     const mask stuck = MASK(block[AT_FRICTION] == 0);
+    const bool sticks = any(stuck);
     const real mass = block[AT_MASS], l = block[AT_LENGTH];
     const real k = block[AT_STIFFNESS], kd = block[AT_DAMPING];
     const real kh = block[AT_HUB_STIFFNESS], khd = block[AT_HUB_DAMPING];
@@ -140,9 +181,9 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     const real reach_y = point ? block[AT_WALL_Y] : l * block[AT_WALL_Y];
     const real S20 = reach_x * sine - reach_y * cosine;
     const real C20 = reach_x * cosine + reach_y * sine;
-    x.directions[0] = FOUR(c0, s0, C20, S20);
+    DIRECTIONS(&x, 0) = FOUR(c0, s0, C20, S20);
     if (!point) {
-        x.direction1[0] = TWO(C20 * c0 + S20 * s0, S20 * c0 - C20 * s0);
+        DIRECTION1(&x, 0) = TWO(C20 * c0 + S20 * s0, S20 * c0 - C20 * s0);
     }
 
     // the matrix of the start, inverted; a stuck rigid hub takes the first row away
@@ -155,7 +196,7 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
         i22 = choose(stuck, 1 / m22, i22);
     }
     real y1 = zero, y2 = zero, per_force = zero; // M^-1 J, 1/(J M^-1 J)
-    const real j1 = point ? l * c0 : PART(x.direction1[0], 0);
+    const real j1 = point ? l * c0 : PART(DIRECTION1(&x, 0), 0);
     const real j2 = point ? C20 - l * c0 : C20;
     if (contact) {
         y1 = i11 * j1 + i12 * j2;
@@ -164,16 +205,24 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     }
     const real inverse_hub = hub_spring ? choose(stuck, zero, 1 / block[AT_HUB_INERTIA]) : zero;
 
+    // as far as the terms matter
+    const real wanted = block[AT_WANTED];
+    const real scale = greater(greater(magnitude(w1[0]), magnitude(w2[0])), zero + 1.0);
+    const real limit = LAST_TERMS * scale;
+    real power = zero + 1.0; // wanted^n
+    mask open[TAYLOR_MOST / 2 + 1];
+    ptrdiff_t order = TAYLOR_MOST;
+
     real product = zero; // (w1 w2)_(n-1)
-    for (int n = 0; n < order; n++) {
+    for (ptrdiff_t n = 0; n < order; n++) {
         // directions of the next order end what the last pass has left open
         v[n] = w2[n] - w1[n];
         keep_rates(&x, n, w1[n], w2[n]);
         ADD_TURNING(sum, &x, n, n - 1);
-        turn(&sum.turning, inverse[n + 1], &x.directions[n + 1]);
+        turn(&sum.turning, inverse[n + 1], &DIRECTIONS(&x, n + 1));
         if (!point) {
             ADD_TURNING1(sum, &x, n, n - 1);
-            turn_one(&sum.turning1, inverse[n + 1], &x.direction1[n + 1]);
+            turn_one(&sum.turning1, inverse[n + 1], &DIRECTION1(&x, n + 1));
         }
 
         // products: what is known of (c w2)_(n+1), (w1 w2)_n, (s w1 w2)_n, the hub's square; of the
@@ -230,7 +279,7 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
             const real closing = point ? PART(sum.turning, 2) - l * bent
                                        : PART(sum.turning1, 0) + PART(sum.turning, 2);
             const real share = (y1 * b1 + y2 * b2 + closing) * per_force;
-            f[n] = share * (n + 1);
+            f[n] = share * (double)(n + 1);
             keep_force(&x, n, f[n]);
             x1 -= y1 * share;
             x2 -= y2 * share;
@@ -241,8 +290,8 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
         q2[n + 1] = w2[n] * inverse[n + 1];
 
         // what holds a stuck hub, and what springs lose
-        if (!hub_spring) {
-            hold[n] = (coupling * x2 + m12 * swung) * (n + 1) - push1;
+        if (!hub_spring && sticks) {
+            hold[n] = (coupling * x2 + m12 * swung) * (double)(n + 1) - push1;
             if (contact) {
                 hold[n] += j1 * f[n];
             }
@@ -253,15 +302,50 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
                 dissipation[n] += khd * square(hub_rate, n);
             }
         }
+
+        // an order lower than the highest at which they may be small enough
+        power = n > 0 ? power * wanted : power;
+        if (n % 2 == 1 && n + 1 >= LEAST_ORDER && n + 1 < TAYLOR_MOST) {
+            last_terms now = {magnitude(w1[n]) + magnitude(w2[n]), magnitude(x1) + magnitude(x2),
+                              power};
+            if (hub_spring) {
+                now.before += magnitude(w0[n]);
+                now.last += magnitude(w0[n + 1]);
+            }
+            // what decays is lost twice as fast as it decays: the losses' series end later
+            last_terms lost = {viscous * magnitude(hub_square[n - 1]),
+                               viscous * magnitude(hub_square[n]), power};
+            if (damped) {
+                lost.before += magnitude(dissipation[n - 1]);
+                lost.last += magnitude(dissipation[n]);
+            }
+            mask large = too_large(now, wanted, limit) | too_large(lost, wanted, limit * scale);
+            if (!contact) {
+                // of the gap the coefficients so far, which are of one order less
+                const real gap_before = gap_term(&x, n, l, point);
+                const real gap_last = gap_term(&x, n + 1, l, point);
+                const last_terms swing = {magnitude(gap_before) * (double)n,
+                                          magnitude(gap_last) * (double)(n + 1), power};
+                large |= too_large(swing, wanted, limit * wanted * l);
+            }
+            if (!hub_spring && sticks) {
+                const last_terms held = {magnitude(hold[n - 1]) * inverse[n],
+                                         magnitude(hold[n]) * inverse[n + 1], power};
+                large |= stuck & too_large(held, wanted, limit * m11);
+            }
+            const mask before = n + 1 > LEAST_ORDER ? open[(n - 1) / 2] : ~(mask){0};
+            open[(n + 1) / 2] = before & large;
+            order = any(open[(n + 1) / 2]) ? order : n + 1;
+        }
     }
     q1[order + 1] = w1[order] * inverse[order + 1];
     q2[order + 1] = w2[order] * inverse[order + 1];
-    real last = magnitude(w1[order]) + magnitude(w2[order]);
-    real before_last = magnitude(w1[order - 1]) + magnitude(w2[order - 1]);
+    last_terms tail = {magnitude(w1[order - 1]) + magnitude(w2[order - 1]),
+                       magnitude(w1[order]) + magnitude(w2[order]), power};
     if (hub_spring) {
         q0[order + 1] = w0[order] * inverse[order + 1];
-        last += magnitude(w0[order]);
-        before_last += magnitude(w0[order - 1]);
+        tail.before += magnitude(w0[order - 1]);
+        tail.last += magnitude(w0[order]);
     }
 
     // the gap, as far as the angles are known
@@ -269,31 +353,36 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
         v[order] = w2[order] - w1[order];
         keep_rates(&x, order, w1[order], w2[order]);
         ADD_TURNING(sum, &x, order, order - 1);
-        turn(&sum.turning, inverse[order + 1], &x.directions[order + 1]);
+        turn(&sum.turning, inverse[order + 1], &DIRECTIONS(&x, order + 1));
         if (!point) {
             ADD_TURNING1(sum, &x, order, order - 1);
-            turn_one(&sum.turning1, inverse[order + 1], &x.direction1[order + 1]);
+            turn_one(&sum.turning1, inverse[order + 1], &DIRECTION1(&x, order + 1));
         }
         for (int n = 0; n <= order + 1; n++) {
-            const real S2 = PART(x.directions[n], 3);
-            gap[n] = point ? l * PART(x.directions[n], 1) - S2 : -(PART(x.direction1[n], 1) + S2);
+            gap[n] = gap_term(&x, n, l, point);
         }
 
         // its rate counts as the velocities do: sines of large swings go on where those have ended
         const real per_length = 1 / l;
-        last += magnitude(gap[order + 1]) * (order + 1) * per_length;
-        before_last += magnitude(gap[order]) * order * per_length;
+        tail.last += magnitude(gap[order + 1]) * (double)(order + 1) * per_length;
+        tail.before += magnitude(gap[order]) * (double)order * per_length;
     }
 
     // so does what a stuck hub is held from
-    if (!hub_spring && any(stuck)) {
+    if (!hub_spring && sticks) {
         const real per_inertia = choose(stuck, 1 / m11, zero);
-        last += magnitude(hold[order - 1]) * inverse[order] * per_inertia;
-        before_last += magnitude(hold[order - 2]) * inverse[order - 1] * per_inertia;
+        tail.last += magnitude(hold[order - 1]) * inverse[order] * per_inertia;
+        tail.before += magnitude(hold[order - 2]) * inverse[order - 1] * per_inertia;
     }
 
-    const real scale = greater(greater(magnitude(w1[0]), magnitude(w2[0])), zero + 1.0);
-    const real h = allowed_stride(block[AT_WANTED], before_last, last, scale, order);
+    // where no order was enough the stride is shortened
+    const mask ended = order < TAYLOR_MOST ? ~(mask){0} : ~open[TAYLOR_MOST / 2 - 1];
+    tail.last = choose(ended, zero, tail.last);
+    tail.before = choose(ended, zero, tail.before);
+    const real h = allowed_stride(wanted, tail, limit);
+    if (LANES > 1 && order > LEAST_ORDER && any(~open[order / 2 - 1])) {
+        cut_off(block, open, (int)order);
+    }
     block[AT_ALLOWED] = h;
 
     // what the stride leaves of the wall's function and the hub's
@@ -302,20 +391,21 @@ KERNEL void series(real *block, const int contact, const int point, const int hu
     block[AT_FORCE_MOST] = wall.high;
     const range rate = range_of(hub_spring ? w0 : w1, order + 1, h);
     real left = choose(MASK(block[AT_FRICTION] > 0), rate.low, -rate.high);
-    if (any(stuck)) {
+    if (sticks) {
         const range torque = range_of(hold, order, h);
         const real most = greater(torque.high, -torque.low);
         left = choose(stuck, block[AT_STICTION] - most, left);
     }
     block[AT_HUB_LEAST] = left;
+    return (int)order;
 }
 
 // --- entries ----------------------------------------------------------------------------------
 
 #define FORM(name, contact, point, hub_spring)                                                     \
-    static __attribute__((noinline)) void name(real *block, taylor_form form)                      \
+    static __attribute__((noinline)) int name(real *block, bool damped)                            \
     {                                                                                              \
-        series(block, contact, point, hub_spring, form.damped, form.order);                        \
+        return series(block, contact, point, hub_spring, damped);                                  \
     }
 FORM(free_plane, 0, 0, 0)
 FORM(free_point, 0, 1, 0)
@@ -327,10 +417,10 @@ FORM(spring_held_plane, 1, 0, 1)
 FORM(spring_held_point, 1, 1, 1)
 #undef FORM
 
-void SERIES(double *block, taylor_form form)
+int SERIES(double *block, taylor_form form)
 {
-    static void (*const forms[2][2][2])(real *, taylor_form) = {
+    static int (*const forms[2][2][2])(real *, bool) = {
         {{free_plane, free_point}, {held_plane, held_point}},
         {{spring_free_plane, spring_free_point}, {spring_held_plane, spring_held_point}}};
-    forms[form.hub_spring][form.contact][form.point]((real *)block, form);
+    return forms[form.hub_spring][form.contact][form.point]((real *)block, form.damped);
 }

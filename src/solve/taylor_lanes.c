@@ -40,11 +40,11 @@ void taylor_compute_one(taylor_lane *lane)
     lane->pieces = 0;
 #if defined __x86_64__
     if (taylor_width() >= 4) {
-        taylor_series_1_avx2(lane->block, lane->form);
+        lane->form.order = taylor_series_1_avx2(lane->block, lane->form);
         return;
     }
 #endif
-    taylor_series_1(lane->block, lane->form);
+    lane->form.order = taylor_series_1(lane->block, lane->form);
 }
 
 // --- by width ---------------------------------------------------------------------------------
@@ -90,11 +90,12 @@ void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
     } else {
         put_inputs(lanes, count, 2, group->block);
     }
-    OF_WIDTH(taylor_series_, group->width)(group->block, group->form);
+    group->form.order = OF_WIDTH(taylor_series_, group->width)(group->block, group->form);
 
     // each knows where its own are, and what its stride leaves
     for (int i = 0; i < count; i++) {
         lanes[i]->group = group;
+        lanes[i]->form.order = group->form.order;
         lanes[i]->number = i;
         lanes[i]->end = -1;
         lanes[i]->pieces = 0;
@@ -193,5 +194,11 @@ void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at)
     if (lane->group != NULL) {
         fetch_motion(lane);
     }
+#if defined __x86_64__
+    if (width == 1 && taylor_width() >= 4) {
+        taylor_instants_1_avx2(lane->block, form, at);
+        return;
+    }
+#endif
     OF_WIDTH(taylor_instants_, width)(lane->block, form, at);
 }

@@ -5,6 +5,8 @@
 // factors added at last: so additions wait neither for each other nor for what is being computed.
 #pragma once
 
+#include <stddef.h>
+
 #include "src/solve/taylor_numbers.h"
 #include "src/solve/taylor_series.h"
 
@@ -41,23 +43,32 @@ static const sums no_sums;
 
 // Factors of the products, by coefficient.
 #if LANES == 1
+typedef struct order_factors {
+    halves rates;    // v, w2
+    four directions; // c, s of the bend; C2, S2
+    four left;       // c_(n+1), w1_n, s_(n+1), the hub's velocity
+    four right;      // w2_n, w2_n, (w1 w2)_(n-1), the hub's velocity
+    both forces;     // in contact: f
+    two levers;      // in contact: c, C2; plane: C1, C2
+    both rate1;      // plane: w1
+    two direction1;  // plane: C1, S1
+} order_factors;
 typedef struct factors {
-    halves rates[TAYLOR_MOST + 2];    // v, w2
-    four directions[TAYLOR_MOST + 2]; // c, s of the bend; C2, S2
-    four left[TAYLOR_MOST + 2];       // c_(n+1), w1_n, s_(n+1), the hub's velocity
-    four right[TAYLOR_MOST + 2];      // w2_n, w2_n, (w1 w2)_(n-1), the hub's velocity
-    both forces[TAYLOR_MOST + 2];     // in contact: f
-    two levers[TAYLOR_MOST + 2];      // in contact: c, C2; plane: C1, C2
-    both rate1[TAYLOR_MOST + 2];      // plane: w1
-    two direction1[TAYLOR_MOST + 2];  // plane: C1, S1
-    real v[TAYLOR_MOST + 2];          // of the bend
+    order_factors of[TAYLOR_MOST + 2];
+    real v[TAYLOR_MOST + 2]; // of the bend
 } factors;
 
-#define ADD_TURNING(s, x, j, n)  ((s).turning += (x)->rates[j] * (x)->directions[(n) + 1 - (j)])
-#define ADD_PRODUCTS(s, x, j, n) ((s).products += (x)->left[j] * (x)->right[(n) - (j)])
-#define ADD_LEVERED(s, x, j, n)  ((s).levered += (x)->forces[j] * (x)->levers[(n) - (j)])
-#define ADD_TURNING1(s, x, j, n) ((s).turning1 += (x)->rate1[j] * (x)->direction1[(n) + 1 - (j)])
+#define DIRECTIONS(x, n) ((x)->of[n].directions)
+#define DIRECTION1(x, n) ((x)->of[n].direction1)
+#define ADD_TURNING(s, x, j, n)                                                                    \
+    ((s).turning += (x)->of[j].rates * (x)->of[(n) + 1 - (j)].directions)
+#define ADD_PRODUCTS(s, x, j, n) ((s).products += (x)->of[j].left * (x)->of[(n) - (j)].right)
+#define ADD_LEVERED(s, x, j, n)  ((s).levered += (x)->of[j].forces * (x)->of[(n) - (j)].levers)
+#define ADD_TURNING1(s, x, j, n)                                                                   \
+    ((s).turning1 += (x)->of[j].rate1 * (x)->of[(n) + 1 - (j)].direction1)
 #else
+#define DIRECTIONS(x, n) ((x)->directions[n])
+#define DIRECTION1(x, n) ((x)->direction1[n])
 typedef struct factors {
     four directions[TAYLOR_MOST + 2];
     two direction1[TAYLOR_MOST + 2];
@@ -87,7 +98,7 @@ typedef struct factors {
 // Sums for the n-th coefficient from j = 1 to n - 1: the first and the last are left to be added.
 #define IN_TURNS(ADD)                                                                              \
     do {                                                                                           \
-        int j = 1;                                                                                 \
+        ptrdiff_t j = 1;                                                                           \
         for (; j + 1 < n; j += 2) {                                                                \
             ADD(even, x, j, n);                                                                    \
             ADD(odd, x, j + 1, n);                                                                 \
@@ -97,7 +108,8 @@ typedef struct factors {
         }                                                                                          \
     } while (0)
 
-KERNEL void inner_sums(const factors *x, int n, const int contact, const int point, sums *result)
+KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int contact, const int point,
+                       sums *result)
 {
     sums even = no_sums, odd = no_sums;
 #if LANES == 1
@@ -147,46 +159,47 @@ KERNEL real square(const real *x, int n)
 
 // What the newest coefficients are to the products, where that is not read from the series.
 #if LANES == 1
-KERNEL void keep_rates(factors *x, int n, real w1, real w2)
+KERNEL void keep_rates(factors *x, ptrdiff_t n, real w1, real w2)
 {
-    x->rates[n] = FOUR(x->v[n], x->v[n], w2, w2);
-    x->rate1[n] = TWO(w1, w1);
+    x->of[n].rates = FOUR(x->v[n], x->v[n], w2, w2);
+    x->of[n].rate1 = TWO(w1, w1);
 }
 
-KERNEL void keep_products(factors *x, int n, real w1, real w2, real coupled, real hub)
+KERNEL void keep_products(factors *x, ptrdiff_t n, real w1, real w2, real coupled, real hub)
 {
-    const four next = x->directions[n + 1];
-    x->left[n] = FOUR(next[0], w1, next[1], hub);
-    x->right[n] = FOUR(w2, w2, coupled, hub);
+    const four next = x->of[n + 1].directions;
+    x->of[n].left = FOUR(next[0], w1, next[1], hub);
+    x->of[n].right = FOUR(w2, w2, coupled, hub);
 }
 
-KERNEL void keep_levers(factors *x, int n, const int point)
+KERNEL void keep_levers(factors *x, ptrdiff_t n, const int point)
 {
-    x->levers[n] = TWO(point ? x->directions[n][0] : x->direction1[n][0], x->directions[n][2]);
+    const order_factors *at = &x->of[n];
+    x->of[n].levers = TWO(point ? at->directions[0] : at->direction1[0], at->directions[2]);
 }
 
-KERNEL void keep_force(factors *x, int n, real f)
+KERNEL void keep_force(factors *x, ptrdiff_t n, real f)
 {
-    x->forces[n] = TWO(f, f);
+    x->of[n].forces = TWO(f, f);
 }
 #else
-KERNEL void keep_rates(factors *x, int n, real w1, real w2)
+KERNEL void keep_rates(factors *x, ptrdiff_t n, real w1, real w2)
 {
     (void)x, (void)n, (void)w1, (void)w2;
 }
 
-KERNEL void keep_products(factors *x, int n, real w1, real w2, real coupled, real hub)
+KERNEL void keep_products(factors *x, ptrdiff_t n, real w1, real w2, real coupled, real hub)
 {
     (void)w1, (void)w2, (void)hub;
     x->coupled[n] = coupled;
 }
 
-KERNEL void keep_levers(factors *x, int n, const int point)
+KERNEL void keep_levers(factors *x, ptrdiff_t n, const int point)
 {
     (void)x, (void)n, (void)point;
 }
 
-KERNEL void keep_force(factors *x, int n, real f)
+KERNEL void keep_force(factors *x, ptrdiff_t n, real f)
 {
     (void)x, (void)n, (void)f;
 }

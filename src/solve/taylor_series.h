@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-// Highest order of the velocities' series; strides that something cuts short take less.
+// Highest order of the velocities' series, even; strides that something cuts short take less.
 enum { TAYLOR_MOST = 24, TAYLOR_WIDEST = 8 };
 
 // 1/n
@@ -70,17 +70,19 @@ typedef struct taylor_form {
     bool point;      // the wall is a point, else a plane
     bool hub_spring; // the hub is a body of its own
     bool damped;     // some spring has damping: AT_DISSIPATION is wanted
-    int order;       // of the velocities' series, up to TAYLOR_MOST
+    int order;       // of the velocities' series, up to TAYLOR_MOST, once they are computed
 } taylor_form;
 
 // Computes the series of as many arms as the name says; block: TAYLOR_PLACES times so many, aligned
-// to their vectors. The widest two are for processors with AVX2 and AVX-512; that with a name of
-// its own for one arm has AVX2's vectors, too.
-void taylor_series_1(double *block, taylor_form form);
-void taylor_series_1_avx2(double *block, taylor_form form);
-void taylor_series_2(double *block, taylor_form form);
-void taylor_series_4(double *block, taylor_form form);
-void taylor_series_8(double *block, taylor_form form);
+// to their vectors. Returns their order, which is even: where an arm has enough with a lower one,
+// its terms beyond are zero, which changes no bit of what is made of them. The widest two are for
+// processors with AVX2 and AVX-512; that with a name of its own for one arm has AVX2's vectors,
+// too.
+int taylor_series_1(double *block, taylor_form form);
+int taylor_series_1_avx2(double *block, taylor_form form);
+int taylor_series_2(double *block, taylor_form form);
+int taylor_series_4(double *block, taylor_form form);
+int taylor_series_8(double *block, taylor_form form);
 
 // What series come to at instants of their strides, side by side. Bodies are the hub (with a
 // spring), the first and the second link.
@@ -104,6 +106,7 @@ typedef struct taylor_instants {
 
 // Evaluates the series of the arm, a block of its own, at as many instants as the name says.
 void taylor_instants_1(const double *block, taylor_form form, taylor_instants *at);
+void taylor_instants_1_avx2(const double *block, taylor_form form, taylor_instants *at);
 void taylor_instants_2(const double *block, taylor_form form, taylor_instants *at);
 void taylor_instants_4(const double *block, taylor_form form, taylor_instants *at);
 void taylor_instants_8(const double *block, taylor_form form, taylor_instants *at);
