@@ -23,16 +23,16 @@ static void take_samples(const arm *a, motion *m, double before, double impulses
     }
 }
 
-chain_outcome chain_outcome_of(const parameters *p, double angle, double velocity, double duration,
-                               double after_contact)
+chain_outcome chain_outcome_of(const chain_start *start)
 {
+    const parameters *p = start->parameters;
     arm a;
     arm_init(&a, p);
-    motion *m = motion_create(&a, &p->method);
+    motion *m = motion_create_by(&a, &p->method, start->by);
     assert_non_null(m);
-    motion_start(&a, m, angle, velocity);
+    motion_start(&a, m, start->angle, start->velocity);
     chain_outcome o = {.first_contact = (double)NAN};
-    double impulses = 0, end = duration;
+    double impulses = 0, end = start->duration;
     for (int events = 0; m->state[SLOT_TIME] < end; events++) {
         motion_report r;
         const double before = m->state[SLOT_TIME], work = m->state[SLOT_MOTOR_WORK];
@@ -60,7 +60,7 @@ chain_outcome chain_outcome_of(const parameters *p, double angle, double velocit
             o.first_contact = m->state[SLOT_TIME];
             o.first_impulse = r.impulse;
             o.momentum[o.samples++] = impulses;
-            end = fmin(end, o.first_contact + after_contact);
+            end = fmin(end, o.first_contact + start->after_contact);
         }
     }
     o.motor_work = m->state[SLOT_MOTOR_WORK];

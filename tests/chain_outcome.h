@@ -4,6 +4,7 @@
 
 #include "src/base/status.h"
 #include "src/quantities/parameters.h"
+#include "src/solve/engine.h"
 #include "tests/reference/reference_arm.h"
 
 #define OUTCOME_FIRST_MS 10 // the sample 1 ms after first contact
@@ -19,11 +20,18 @@ typedef struct chain_outcome {
     double momentum[REFERENCE_SAMPLES];
 } chain_outcome;
 
-// Moves an arm from an angle [rad] and an angular velocity [rad/s] of all links by its own method
-// with the time step p->method.step. Ends after `duration`, or `after_contact` behind first contact
-// if that is earlier [s]; a step that fails, or events without end, end it with that status.
-chain_outcome chain_outcome_of(const parameters *p, double angle, double velocity, double duration,
-                               double after_contact);
+// An arm in front of its wall.
+typedef struct chain_start {
+    const parameters *parameters;
+    double angle, velocity; // of all links [rad], [rad/s]
+    double duration;        // [s]
+    double after_contact;   // behind first contact it ends, if that is earlier [s]
+    const engine *by;       // that moves it; NULL: the one of its own method
+} chain_start;
+
+// Moves it with the time step of its parameters. A step that fails, or events without end, end it
+// with that status.
+chain_outcome chain_outcome_of(const chain_start *start);
 
 // Root mean square of the difference of what two sensors with a lag of 1 ms read, as a share of the
 // first one's; NaN where that reads nothing.

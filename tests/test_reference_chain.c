@@ -32,7 +32,8 @@ static chain_outcome library_outcome(const reference_case *c, bool by_formula)
         p.arm.tip_mass = EXPLICIT_MASS;
     }
 
-    chain_outcome o = chain_outcome_of(&p, c->angle, c->velocity, c->duration, c->duration);
+    const chain_start start = {&p, c->angle, c->velocity, c->duration, c->duration, NULL};
+    chain_outcome o = chain_outcome_of(&start);
     if (o.status != STATUS_OK) {
         fail_msg("%s, %s: %s", c->name, by_formula ? "formula" : "default", status_text(o.status));
     }

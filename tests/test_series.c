@@ -16,7 +16,7 @@
 static chain_outcome outcome_of(const char *const *settings)
 {
     parameters p = fixture_parameters(settings);
-    return chain_outcome_of(&p, START_ANGLE, 0.7, DURATION, DURATION);
+    return chain_outcome_of(&(chain_start){&p, START_ANGLE, 0.7, DURATION, DURATION, NULL});
 }
 
 // Chains of all kinds that touch a wall, bounce or stay, slide and stick.
@@ -67,7 +67,7 @@ static void a_chain_that_bounces_keeps_its_impacts(void **state)
             "arm.mass=0.53343796353978479", "arm.hub_inertia=0.001109107661660298",
             i == 0 ? "arm.tip_mass=0" : EXPLICIT_MASS);
         parameters p = fixture_parameters(settings);
-        o[i] = chain_outcome_of(&p, 0.0930597, 2.17651, 0.1, 0.0501);
+        o[i] = chain_outcome_of(&(chain_start){&p, 0.0930597, 2.17651, 0.1, 0.0501, NULL});
         assert_int_equal(o[i].status, STATUS_OK);
     }
     const int last = o[1].samples - 1;

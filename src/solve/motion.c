@@ -41,7 +41,8 @@ static const engine *event_engine(const arm *a, const motion *m)
     return stiff && !bounces ? &modal_engine : &series_engine;
 }
 
-static void choose_engine(const arm *a, motion *m, const method_parameters *method)
+static void choose_engine(const arm *a, motion *m, const method_parameters *method,
+                          const engine *chosen)
 {
     double rho = method->spectral_radius;
     m->electric = a->motor.electric;
@@ -61,7 +62,8 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = 0.5 - m->alpha_m + m->alpha_f;
         m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
     } else {
-        m->engine = event_engine(a, m);
+        m->engine = chosen != NULL ? chosen : event_engine(a, m);
+        m->chosen = chosen != NULL;
     }
 }
 
@@ -130,6 +132,11 @@ static bool open_engine(const arm *a, motion *m)
 
 motion *motion_create(const arm *a, const method_parameters *method)
 {
+    return motion_create_by(a, method, NULL);
+}
+
+motion *motion_create_by(const arm *a, const method_parameters *method, const engine *chosen)
+{
     assert(a != NULL && method != NULL && a->dof > 0 && method->step > 0);
     motion *m = calloc(1, sizeof *m);
     if (m == NULL) {
@@ -140,7 +147,7 @@ motion *motion_create(const arm *a, const method_parameters *method)
     m->nominal_step = method->step;
     m->cut = HUGE_VAL;
     m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT + KEPT_COUNT;
-    choose_engine(a, m, method);
+    choose_engine(a, m, method, chosen);
 
     // its storage: all of it or none
     layout l = {0};
@@ -182,7 +189,7 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
                    .forgets = true,
                    .block = m->block,
                    .engine_block = m->engine_block};
-    choose_engine(a, &next, method);
+    choose_engine(a, &next, method, NULL);
     if (next.engine != m->engine || next.engine->memory_for != NULL) {
         motion_destroy(m);
         return motion_create(a, method);
@@ -206,7 +213,8 @@ void motion_destroy(motion *m)
 void motion_follow_arm(const arm *a, motion *m)
 {
     assert(a != NULL && m != NULL && a->dof == m->dof);
-    const engine *wanted = motion_is_implicit(m) ? m->engine : event_engine(a, m);
+    const bool stays = motion_is_implicit(m) || m->chosen;
+    const engine *wanted = stays ? m->engine : event_engine(a, m);
     if (wanted == m->engine && !m->starved) {
         return;
     }

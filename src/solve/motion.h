@@ -86,6 +86,7 @@ struct motion {
 
     // how the smooth motion is advanced
     const engine *engine;
+    bool chosen;         // it is not to follow the arm
     double nominal_step; // method.step [s]
     bool wall_gives;     // contact is no constraint
     bool wall_has_face;  // contact ties the arm to a mass on a spring
@@ -188,6 +189,10 @@ static inline int smooth_length(const motion *m)
 // Prepares a motion of the arm with the given method; all storage is allocated here. NULL if out of
 // memory.
 motion *motion_create(const arm *a, const method_parameters *method);
+
+// The same by an engine of the event method that the caller chooses, whatever becomes of the arm,
+// so that engines can be compared. It has to be one for such arms.
+motion *motion_create_by(const arm *a, const method_parameters *method, const engine *chosen);
 void motion_destroy(motion *m); // m may be NULL
 
 // A motion of the arm as motion_create gives it, in the storage of one that is over where that fits
