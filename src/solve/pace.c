@@ -34,10 +34,21 @@ static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
                       "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "
                       "none, has longer strides",
                       current);
+    } else if (m->engine == &series_engine && a->wall.restitution > 0) {
+        decimal_print(text, size,
+                      "an arm that bounces undamped is followed as fast as its fastest mode "
+                      "vibrates, %.3g rad/s; fewer links or softer joints have longer strides, and "
+                      "with wall.restitution = 0 the arm may have",
+                      a->highest_frequency);
+    } else if (m->engine == &modal_engine && a->fastest_decay > a->highest_frequency) {
+        decimal_print(text, size,
+                      "its modes decay at up to %.3g 1/s, which those of the straight arm show "
+                      "ever worse as it bends, and fewer links or less damping have longer strides",
+                      a->fastest_decay);
     } else {
         decimal_print(text, size,
-                      "the fastest mode of the arm changes at %.3g 1/s, and softer joints with "
-                      "less damping have longer strides",
+                      "the fastest mode of the arm changes at %.3g 1/s, and softer or fewer "
+                      "joints with less damping have longer strides",
                       a->fastest_rate);
     }
 }
@@ -61,7 +72,7 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
         return STATUS_OK;
     }
 
-    char cause[200];
+    char cause[240];
     tell_cause(a, m, cause, sizeof cause);
     return fault_set(f, STATUS_NO_PROGRESS,
                      "at t = %.9g s of %g s: %d strides by %s passed %.3g s, at which the run is "
