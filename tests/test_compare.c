@@ -152,12 +152,52 @@ static void nothing_beats_the_best(void **state)
     }
 }
 
+// What failed says so in every form and has no numbers; values of each type have theirs.
+static void a_failed_run_says_so(void **state)
+{
+    (void)state;
+    const int varied[] = {PARAMETER_INDEX(printed.spring_counted_twice),
+                          PARAMETER_INDEX(arm.model)};
+    compare_row rows[2] = {{.scenario = "a", .law = "none", .ok = true, .varied = {1, ARM_PRINTED}},
+                           {.scenario = "b", .law = "none", .varied = {0, ARM_CORRECTED}}};
+    for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+        rows[0].values[k] = 1234.5;
+        rows[1].values[k] = (double)NAN;
+    }
+    const compare_table t = {
+        .rows = rows, .count = 2, .varied = varied, .varied_count = 2, .group = 1};
+    char *page, *text, *csv;
+    keep(&page, &t, compare_markdown);
+    keep(&text, &t, compare_text);
+    keep(&csv, &t, compare_csv);
+    assert_non_null(strstr(text, " failed\n"));
+    assert_null(strstr(strstr(text, " failed\n") + 1, " failed\n"));
+    assert_non_null(strstr(csv, "\nb,none,"));
+    assert_non_null(strstr(csv, ",failed,,"));
+    assert_non_null(strstr(page, " 1234 | 1234 |"));
+    assert_non_null(strstr(page, " – | – |"));
+
+    json_t *whole = compare_json(&t), *runs = json_object_get(whole, "runs");
+    json_t *first = json_array_get(runs, 0), *second = json_array_get(runs, 1);
+    json_t *values = json_object_get(first, "varied");
+    assert_string_equal(json_string_value(json_object_get(first, "status")), "ok");
+    assert_string_equal(json_string_value(json_object_get(second, "status")), "failed");
+    assert_true(json_is_null(json_object_get(second, "peak_force_N")));
+    assert_true(json_is_true(json_object_get(values, "printed.spring_counted_twice")));
+    assert_string_equal(json_string_value(json_object_get(values, "arm.model")), "printed");
+    json_decref(whole);
+    free(page);
+    free(text);
+    free(csv);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(differences_are_shares_of_the_larger_value),
         cmocka_unit_test(rows_reach_every_form),
         cmocka_unit_test(varied_values_have_columns),
+        cmocka_unit_test(a_failed_run_says_so),
         cmocka_unit_test(nothing_beats_the_best),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

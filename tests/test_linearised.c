@@ -125,6 +125,21 @@ static void an_early_peak_is_predicted_too(void **state)
     }
 }
 
+// A joint that is overdamped: the force jumps up at the touch and only falls, at any voltage.
+static void an_overdamped_arm_is_predicted_too(void **state)
+{
+    (void)state;
+    static const char *const damping[] = {"arm.modal_ratios=1.2", "arm.modal_ratios=3",
+                                          "arm.modal_ratios=20"};
+    static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
+    for (int i = 0; i < 12; i++) {
+        comparison c = compare(4.92, i < 6 ? 1 : 5, walls[i % 2], damping[i / 2 % 3]);
+        assert_true(c.predicted.holds);
+        check_relative(c.predicted.force, c.simulated.first_pulse_peak_N, 1e-6);
+        check_close(c.predicted.delay, 0, 1e-9);
+    }
+}
+
 // In free flight the wall is imagined where the arm is; the nearer the wall, the truer.
 static void in_flight_it_approaches_the_prediction_at_the_wall(void **state)
 {
@@ -257,6 +272,7 @@ int main(void)
         cmocka_unit_test(it_is_right_at_a_flat_wall),
         cmocka_unit_test(other_arms_are_predicted_too),
         cmocka_unit_test(an_early_peak_is_predicted_too),
+        cmocka_unit_test(an_overdamped_arm_is_predicted_too),
         cmocka_unit_test(in_flight_it_approaches_the_prediction_at_the_wall),
         cmocka_unit_test(a_receding_arm_does_not_touch),
         cmocka_unit_test(a_prescribed_voltage_is_followed),

@@ -125,6 +125,34 @@ static void files_that_cannot_be_read(void **state)
     assert_int_equal(scenario_read(&s, "/dev/zero", NULL, keep_sentence, &all),
                      STATUS_BAD_SCENARIO);
     assert_non_null(strstr(all.text, "/dev/zero:1:1: the file is larger"));
+
+    // one that opens and gives nothing
+    all = (sentences){0};
+    assert_int_equal(scenario_read(&s, "/proc/self/mem", NULL, keep_sentence, &all),
+                     STATUS_CANNOT_READ);
+    assert_non_null(strstr(all.text, "/proc/self/mem:1:1: it cannot be read"));
+}
+
+// A link to a folder above would be listed for ever.
+static void links_in_a_circle_end(void **state)
+{
+    (void)state;
+    char circle[128], **names;
+    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    int count, found = 0;
+    snprintf(circle, sizeof circle, "%s/deep/again", folder);
+    assert_int_equal(symlink("..", circle), 0);
+    setenv("IMPACTLAB_SCENARIOS", folder, 1);
+    assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        found += strstr(names[i], "alpha-9") != NULL;
+        free(names[i]);
+    }
+    free(names);
+    assert_in_range(found, 2, 10);
+    setenv("IMPACTLAB_SCENARIOS", before, 1);
+    free(before);
+    assert_int_equal(unlink(circle), 0);
 }
 
 static void the_list_is_complete_and_sorted(void **state)
@@ -417,6 +445,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(an_unknown_name_suggests_the_nearest, make_folder,
                                         remove_folder),
         cmocka_unit_test_setup_teardown(files_that_cannot_be_read, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(links_in_a_circle_end, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(the_list_is_complete_and_sorted, make_folder,
                                         remove_folder),
         cmocka_unit_test_setup_teardown(every_folder_is_looked_into, make_folder, remove_folder),

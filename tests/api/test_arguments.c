@@ -328,6 +328,35 @@ static void states_of_others_are_refused(void **state)
     free(bytes);
 }
 
+// Whoever wants no sentence gets the status all the same, of what is done and of what is not.
+static void an_error_may_be_left_out(void **state)
+{
+    handles *h = *state;
+    static const char *const wrong[] = {"arm.k2=stiff", "motor.voltage=high"};
+    static const char *const right[] = {"arm.k2=5", "motor.voltage=1"};
+    const char text[] = "title: t\narm: {k2: stiff}\n";
+    impactlab_scenario *made = NULL;
+    char *yaml = NULL;
+    double value = 0;
+    assert_int_equal(impactlab_scenario_open(&made, "no such scenario", NULL),
+                     IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_scenario_parse(&made, text, strlen(text), NULL),
+                     IMPACTLAB_BAD_SCENARIO);
+    assert_null(made);
+    assert_int_not_equal(impactlab_scenario_set_all(h->scenario, wrong, COUNT(wrong), NULL),
+                         IMPACTLAB_OK);
+    assert_int_equal(impactlab_scenario_set_all(h->scenario, right, COUNT(right), NULL),
+                     IMPACTLAB_OK);
+    assert_int_equal(impactlab_scenario_set(h->scenario, "arm.k2", "6", NULL), IMPACTLAB_OK);
+    assert_int_equal(impactlab_scenario_number(h->scenario, "arm.k2", &value, NULL), IMPACTLAB_OK);
+    assert_true(value == 6);
+    assert_int_equal(impactlab_scenario_yaml(h->scenario, &yaml, NULL), IMPACTLAB_OK);
+    impactlab_text_free(yaml);
+    assert_int_equal(impactlab_run_quantity(h->run, "impacts", &value, NULL), IMPACTLAB_OK);
+    assert_int_equal(impactlab_run_quantity(h->run, "no such", &value, NULL),
+                     IMPACTLAB_BAD_ARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -336,6 +365,7 @@ int main(void)
         TEST(names_that_are_not_known),     TEST(numbers_that_cannot_be),
         TEST(sets_are_taken_whole_or_not),  TEST(controllers_are_whole),
         TEST(batches_look_before_they_run), TEST(states_of_others_are_refused),
+        TEST(an_error_may_be_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
