@@ -1,6 +1,7 @@
 #!/bin/bash
 # The table "What was run" of docs/reliability.md is the sum of docs/reliability.csv, to which the long
-# scripts add a line each (IMPACTLAB_COUNTS=docs/reliability.csv .ci/long NAME).
+# scripts add a line each (IMPACTLAB_COUNTS=docs/reliability.csv .ci/long NAME); of branches, which are
+# the same ones every time, the last count stands alone.
 # $1: the project's folder, $2: --write puts the sums into the page
 set -eu
 page=$1/docs/reliability.md
@@ -14,6 +15,7 @@ awk -F, '
     NF != 6 || $4 !~ /^[0-9]+$/ || $5 !~ /^[0-9]+$/ || $6 !~ /^[0-9]+$/ {
         print "docs/reliability.csv:" NR ": expected DATE,COMMIT,WHAT,TRIED,SECONDS,FOUND" >"/dev/stderr"; bad = 1 }
     !($3 in times) { order[++n] = $3 }
+    $3 ~ /^branches / { times[$3] = tried[$3] = seconds[$3] = found[$3] = 0 }
     { times[$3]++; tried[$3] += $4; seconds[$3] += $5; found[$3] += $6; last[$3] = $1 " " $2 }
     END {
         print "| what | runs | tried | seconds of the processor | found | last |"

@@ -53,6 +53,33 @@ static void a_push_of_any_size_ends_a_run_or_lets_it_go_on(void **state)
     assert_int_equal(ends_of_push(2, 0.1), STATUS_OK);
 }
 
+// Whoever asks a run of either model to end gets its first rows, and hears at which instant.
+static void a_run_that_is_asked_to_end_does(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"printed", "corrected"};
+    for (int i = 0; i < 2; i++) {
+        char text[128];
+        scenario s;
+        run_result whole, ended;
+        run_monitor monitor = {.stop = true};
+        const run_options options = {.keep_trace = true, .monitor = &monitor};
+        snprintf(text, sizeof text, "title: Ended\narm: {model: %s}\nrun: {duration: 0.5 s}\n",
+                 models[i]);
+        read_scenario(&s, text);
+        assert_int_equal(run_scenario(&s, true, &whole), STATUS_OK);
+        assert_int_equal(run_scenario_with(&s, &options, &ended), STATUS_STOPPED);
+        assert_true(ended.trace.row_count >= 1);
+        assert_true(ended.trace.row_count < whole.trace.row_count / 2);
+        assert_memory_equal(ended.trace.rows, whole.trace.rows,
+                            ended.trace.row_count * sizeof *whole.trace.rows);
+        assert_int_equal(strncmp(ended.summary.message, "at t = ", 7), 0);
+        run_finish(&whole);
+        run_finish(&ended);
+        scenario_finish(&s);
+    }
+}
+
 // At 1e16 rad/s a turn takes less than a last bit of the time.
 static void strides_that_pass_no_time_end_a_run(void **state)
 {
@@ -175,6 +202,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_push_of_any_size_ends_a_run_or_lets_it_go_on),
+        cmocka_unit_test(a_run_that_is_asked_to_end_does),
         cmocka_unit_test(strides_that_pass_no_time_end_a_run),
         cmocka_unit_test(the_peak_of_a_damped_chain_is_at_its_impact),
         cmocka_unit_test(a_touch_behind_the_link_is_told),
