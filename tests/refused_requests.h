@@ -27,7 +27,7 @@ static bool refused_later;   // and all after it
 static bool memory_is_given; // requests for memory are not counted
 
 // Where each request was made, by its number: a hash of the calls that led to it.
-enum { MOST_REQUESTS = 1 << 18, CALLS_OF_A_PLACE = 6 };
+enum { MOST_REQUESTS = 1 << 18, CALLS_OF_A_PLACE = 10 };
 static uint64_t places[MOST_REQUESTS];
 static bool notes_places;
 

@@ -83,10 +83,11 @@ static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
                          m->shape.run_count);
     }
 
-    for (int i = 0; i < sqlite3_column_count(row); i++) {
-        sqlite3_bind_value(m->store.insert, i + 1, sqlite3_column_value(row, i));
+    int done = SQLITE_OK;
+    for (int i = 0; i < sqlite3_column_count(row) && done == SQLITE_OK; i++) {
+        done = sqlite3_bind_value(m->store.insert, i + 1, sqlite3_column_value(row, i));
     }
-    int done = sqlite3_step(m->store.insert);
+    done = done == SQLITE_OK ? sqlite3_step(m->store.insert) : done;
     sqlite3_reset(m->store.insert);
     m->merged->runs += done == SQLITE_DONE;
 
