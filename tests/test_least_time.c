@@ -97,7 +97,9 @@ static void less_voltage_and_less_force_take_longer(void **state)
                 of(SETTINGS(START, volts[3]), 1, 1.05).total);
 }
 
-// A beam that hardly bends goes as one rod about the hub, braked by the motor: I w' = T - D w.
+// A beam that hardly bends goes as one rod about the hub, braked by the motor: I w' = T - D w. A
+// touch throws both links onto x' = (M11 - M22)/M w, (2.16) and (2.17), hub and first link one
+// body.
 static void a_stiff_arm_goes_as_a_rod(void **state)
 {
     (void)state;
@@ -113,6 +115,15 @@ static void a_stiff_arm_goes_as_a_rod(void **state)
     const double time = STEPS * LEAST_TIME_STEP, lag = inertia / damping;
     const double angle = most / damping * (time - lag * (1 - exp(-time / lag)));
     check_relative(tip + 0.1 * p.arm.length, angle * p.arm.length, 5e-3);
+
+    pressed_arm_model m;
+    assert_true(pressed_arm_model_of(&p, &m));
+    const double rate = most / damping * (1 - exp(-time / lag));
+    const double share =
+        (p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 8) / m.inertia;
+    check_relative(
+        press, m.spring_force * (angle - 0.1) + sqrt(m.spring_force * m.mass_force) * share * rate,
+        1e-2);
 }
 
 static void where_there_is_no_way_it_says_so(void **state)

@@ -482,6 +482,17 @@ static void what_only_looks_left_behind_stays(void **state)
     }
 }
 
+static void a_link_to_itself_leads_nowhere(void **state)
+{
+    (void)state;
+    fault f = {0};
+    whole_file w;
+    assert_int_equal(symlink("itself", "itself"), 0);
+    assert_int_equal(whole_file_check("itself", &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(whole_file_open(&w, "itself", &f), STATUS_CANNOT_WRITE);
+    unlink("itself");
+}
+
 // A program that was started without a standard input has its number for the next file.
 static void a_file_may_have_the_number_of_the_standard_input(void **state)
 {
@@ -527,6 +538,7 @@ int main(void)
         cmocka_unit_test(devices_and_the_standard_output_can_be_abandoned),
         cmocka_unit_test(a_link_may_be_absolute),
         cmocka_unit_test(what_only_looks_left_behind_stays),
+        cmocka_unit_test(a_link_to_itself_leads_nowhere),
         cmocka_unit_test(a_file_may_have_the_number_of_the_standard_input),
     };
     return cmocka_run_group_tests(tests, enter_folder, leave_folder) != 0;
