@@ -28,6 +28,6 @@ bool json_lost_something(void);
 void json_write(FILE *stream, const json_t *value);
 
 // The same within an array or object that the caller writes, `depth` levels deep, without the end
-// of the line: for what is too long to be held as one value. NULL, for which there was no memory, is
-// lost.
+// of the line: for what is too long to be held as one value. NULL, for which there was no memory,
+// is lost.
 void json_write_member(FILE *stream, const json_t *value, int depth);
