@@ -73,6 +73,35 @@ static void a_strong_motor_leaves_the_closed_forms(void **state)
     }
 }
 
+// The model is linear where friction is small: a touch a thousand times as gentle has a force a
+// thousand times as small.
+static void the_gentlest_touch_has_a_best_force_too(void **state)
+{
+    (void)state;
+    pressed_arm_model m = model_of(SETTINGS("motor.voltage_limit=1000"));
+    for (double velocity = 1e-6; velocity < 10; velocity *= 7) {
+        const pressed_state at = {0, velocity};
+        check_relative(best_peak(&m, at), m.spring_force * velocity / divergence(&m), 1e-4);
+    }
+}
+
+// A motor holds what its largest torque and stiction together carry, and no more.
+static void stiction_helps_to_hold(void **state)
+{
+    (void)state;
+    pressed_arm_model m = model_of(NULL);
+    m.stiction = 0.3 * m.torque_limit;
+    const double most = m.spring_force / m.stiffness * (m.torque_limit + m.stiction);
+    for (int i = 0; i < 4; i++) {
+        const double share = 0.75 + 0.06 * i, force = share * most;
+        const pressed_state there = {force / m.spring_force, 0};
+        check_close(best_settling(&m, there, force, 0.05, 1.06 * force), 0, 1e-3);
+    }
+    const double more = 1.01 * most;
+    assert_true(isnan(
+        best_settling(&m, (pressed_state){more / m.spring_force, 0}, more, 0.05, 1.06 * more)));
+}
+
 static void what_cannot_be_is_said(void **state)
 {
     (void)state;
@@ -188,6 +217,8 @@ int main(void)
         cmocka_unit_test(the_model_has_the_numbers_of_the_arm),
         cmocka_unit_test(an_impact_throws_both_links_onto_one_motion),
         cmocka_unit_test(a_strong_motor_leaves_the_closed_forms),
+        cmocka_unit_test(the_gentlest_touch_has_a_best_force_too),
+        cmocka_unit_test(stiction_helps_to_hold),
         cmocka_unit_test(what_cannot_be_is_said),
         cmocka_unit_test(no_controller_tried_is_better),
     };

@@ -98,6 +98,51 @@ static void rows_at_an_event_are_compared_in_their_order(void **state)
     run_finish(&results[1]);
 }
 
+// Only instants that both traces have are compared, whichever has more, and each row once.
+static void instants_of_one_trace_only_are_left_out(void **state)
+{
+    (void)state;
+    enum { ROWS = 40 };
+    for (int kind = 0; kind < 6; kind++) {
+        // multiples of two steps, one of which may begin later, end earlier or have double rows
+        const int step[2] = {(int[]){2, 3, 1, 4, 2, 5}[kind], (int[]){1, 2, 3, 1, 3, 7}[kind]};
+        const int from[2] = {kind % 2 ? 6 : 0, kind % 3 ? 0 : 12}, until[2] = {30, 22 + 3 * kind};
+        sample rows[2][ROWS] = {0};
+        trace both[2] = {{.rows = rows[0]}, {.rows = rows[1]}};
+        for (int t = 0; t < 2; t++) {
+            for (int time = from[t]; time <= until[t] && both[t].row_count < ROWS;
+                 time += step[t]) {
+                rows[t][both[t].row_count++] =
+                    (sample){.time = time, .force = (t + 1) * time + 5 * t};
+            }
+        }
+
+        double x[ROWS], y[ROWS];
+        const size_t count = convergence_difference(&both[0], &both[1], x, y);
+        size_t expected = 0;
+        for (int time = 0; time <= 60; time++) {
+            bool shared = true;
+            for (int t = 0; t < 2; t++) {
+                shared = shared && time >= from[t] && time <= until[t] &&
+                         (time - from[t]) % step[t] == 0;
+            }
+            if (shared) {
+                assert_true(expected < count);
+                check_close(x[expected], time, 0);
+                check_close(y[expected++], time - (2 * time + 5), 0);
+            }
+        }
+        assert_int_equal(count, expected);
+    }
+
+    // nothing to compare with
+    sample alone = {.time = 1, .force = 2};
+    double x[1], y[1];
+    const trace one = {.rows = &alone, .row_count = 1}, none = {0};
+    assert_int_equal(convergence_difference(&one, &none, x, y), 0);
+    assert_int_equal(convergence_difference(&none, &one, x, y), 0);
+}
+
 static void a_run_that_fails_is_told_with_its_step(void **state)
 {
     (void)state;
@@ -126,6 +171,13 @@ static void the_least_cost_is_read_off_a_study(void **state)
     check_close(step, pow(2, -5), 0);
     check_close(method_study_cost(&study, 0, 0, 0.9, &step), 4, 0);
     assert_true(isnan(method_study_cost(&study, 0, 0, 1e-30, &step)));
+
+    // of equal costs the shorter step's, which has the smaller error
+    for (int i = 0; i < STUDY_STEPS; i++) {
+        study.points[1][i] = (study_point){.step = pow(2, -i), .cost = 3, .error = {0.1, 0.1, 0.1}};
+    }
+    check_close(method_study_cost(&study, 1, 0, 0.1, &step), 3, 0);
+    check_close(step, pow(2, -(STUDY_STEPS - 1)), 0);
     assert_true(isnan(method_study_cost(&study, 0, 1, 1, &step)));
 }
 
@@ -194,6 +246,7 @@ int main(void)
         cmocka_unit_test(the_implicit_methods_are_of_second_order_through_impacts),
         cmocka_unit_test(the_event_method_needs_no_shorter_step),
         cmocka_unit_test(rows_at_an_event_are_compared_in_their_order),
+        cmocka_unit_test(instants_of_one_trace_only_are_left_out),
         cmocka_unit_test(a_run_that_fails_is_told_with_its_step),
         cmocka_unit_test(the_least_cost_is_read_off_a_study),
         cmocka_unit_test(a_study_that_is_stopped_keeps_the_runs_before),

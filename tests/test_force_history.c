@@ -1,6 +1,7 @@
 // When a force has settled, and the largest mean over a window, on forces known in closed form.
 #include "tests/check.h"
 
+#include "src/base/random.h"
 #include "src/run/largest_mean.h"
 #include "src/run/run_result.h"
 #include "src/solve/contact_machine.h"
@@ -79,6 +80,133 @@ static void the_band_is_entered_within_a_step(void **state)
     // 1 + 0.8 s (1 - s) = 1.05 at the later root
     check_close(force_settled_since(&h, 1), 0.5 + sqrt(0.25 - 0.05 / 0.8), 1e-12);
     force_history_finish(&h);
+}
+
+// A step with the parabola first + slope s + curve s^2 of its share s.
+static force_step parabolic_step(double start, double end, double first, double slope, double curve)
+{
+    return (force_step){start, end, first, first + slope + curve, first + slope / 2 + curve / 3};
+}
+
+static void a_line_that_meets_the_band_at_a_steps_end_settles_there(void **state)
+{
+    (void)state;
+    for (int power = -40; power <= 40; power += 10) {
+        const double final = ldexp(2, power), edge = final - SETTLED_BAND * final;
+        const force_step steps[] = {{0, 1, 0, final / 2, final / 4},
+                                    {1, 2, final / 2, edge, (final / 2 + edge) / 2},
+                                    {2, 3, edge, final, (final + edge) / 2}};
+        force_history h;
+        force_history_init(&h);
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(force_history_add(&h, steps[i]), STATUS_OK);
+        }
+        check_close(force_settled_since(&h, final), 2, 1e-12);
+        force_history_finish(&h);
+    }
+}
+
+// Steps as long as their lines are steep, with what rounding leaves of their curves: the instant of
+// the crossing is that of the line, in whatever unit the force is.
+static void lines_are_crossed_where_they_are(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 5);
+    for (int i = 0; i < 2000; i++) {
+        const double final = pow(10, 12 * random_uniform(&g) - 6);
+        const double edge = final - SETTLED_BAND * final, share = random_uniform(&g);
+        const double slope = final * (0.06 + random_uniform(&g)), first = edge - share * slope;
+        force_step step = parabolic_step(0, 1, first, slope, 0);
+        if (step.last > final * (1 + SETTLED_BAND)) {
+            continue; // beyond the band again
+        }
+        force_history h;
+        force_history_init(&h);
+        assert_int_equal(force_history_add(&h, step), STATUS_OK);
+        check_close(force_settled_since(&h, final), share, 1e-11);
+        force_history_finish(&h);
+    }
+}
+
+// Histories of parabolas that end near their final force. From the instant found on the force is in
+// the band, and just before it was not; the same forces in another unit give the same instant.
+static void from_the_instant_found_the_force_stays(void **state)
+{
+    (void)state;
+    enum { STEPS = 30, LOOKS = 200 };
+    random_generator g;
+    random_seed(&g, 6);
+    int within = 0, between = 0;
+    for (int round = 0; round < 300; round++) {
+        force_history h, scaled;
+        force_history_init(&h);
+        force_history_init(&scaled);
+        double force = 0, time = 0;
+        for (int i = 0; i < STEPS; i++) {
+            // towards 1 by shares, now and then with a jump as at an impact
+            const double spread = exp(-0.15 * i), jump = random_uniform(&g) < 0.2 ? spread : 0;
+            const double end = time + 0.1 + random_uniform(&g);
+            const double aim = 1 + (round % 2 ? 0.3 : 1) * spread * (random_uniform(&g) - 0.5);
+            const double curve = 2 * spread * (random_uniform(&g) - 0.5);
+            const double first = force + jump * (random_uniform(&g) - 0.5);
+            const force_step step = parabolic_step(time, end, first, aim - first - curve, curve);
+            force_step larger_unit = step;
+            larger_unit.first = ldexp(step.first, -45);
+            larger_unit.last = ldexp(step.last, -45);
+            larger_unit.mean = ldexp(step.mean, -45);
+            assert_int_equal(force_history_add(&h, step), STATUS_OK);
+            assert_int_equal(force_history_add(&scaled, larger_unit), STATUS_OK);
+            force = step.last;
+            time = end;
+        }
+
+        const double since = force_settled_since(&h, 1);
+        const double again = force_settled_since(&scaled, ldexp(1, -45));
+        assert_true(since == again || (isnan(since) && isnan(again)));
+        assert_int_equal(isnan(since), fabs(force - 1) > SETTLED_BAND);
+        for (size_t i = 0; i < h.count && !isnan(since); i++) {
+            const force_step *step = &force_steps(&h)[i];
+            const step_parabola p = step_parabola_of(step);
+            for (int k = 0; k <= LOOKS; k++) {
+                const double s = (double)k / LOOKS;
+                const double at = step->start + s * (step->end - step->start);
+                if (at > since + 1e-9) {
+                    check_below(fabs(p.first + s * (p.slope + s * p.curve) - 1),
+                                SETTLED_BAND + 1e-9);
+                }
+            }
+
+            // the step that it lies in crosses the band's edge there, else the one before ends
+            // outside
+            if (since > step->start && since < step->end) {
+                const double s = (since - step->start) / (step->end - step->start);
+                check_close(fabs(p.first + s * (p.slope + s * p.curve) - 1), SETTLED_BAND, 1e-9);
+                within++;
+            } else if (since == step->end) {
+                assert_true(fabs(step->last - 1) > SETTLED_BAND);
+                between++;
+            }
+        }
+        force_history_finish(&h);
+        force_history_finish(&scaled);
+    }
+    assert_true(within > 50 && between > 5);
+}
+
+// The sign of a force counts: one as large the other way is not in the band.
+static void the_opposite_force_is_outside(void **state)
+{
+    (void)state;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        force_history h;
+        force_history_init(&h);
+        assert_int_equal(force_history_add(&h, (force_step){0, 1, sign, -sign, 0}), STATUS_OK);
+        assert_true(isnan(force_settled_since(&h, sign)));
+        // the way from one to the other is a line of slope 2
+        check_close(force_settled_since(&h, -sign), 1 - SETTLED_BAND / 2, 1e-12);
+        force_history_finish(&h);
+    }
 }
 
 static void an_empty_history_has_no_answer(void **state)
@@ -166,6 +294,10 @@ int main(void)
         cmocka_unit_test(a_constant_force_has_settled_from_the_start),
         cmocka_unit_test(a_rising_force_settles_where_it_enters_the_band),
         cmocka_unit_test(the_band_is_entered_within_a_step),
+        cmocka_unit_test(a_line_that_meets_the_band_at_a_steps_end_settles_there),
+        cmocka_unit_test(lines_are_crossed_where_they_are),
+        cmocka_unit_test(from_the_instant_found_the_force_stays),
+        cmocka_unit_test(the_opposite_force_is_outside),
         cmocka_unit_test(an_empty_history_has_no_answer),
         cmocka_unit_test(the_largest_mean_is_where_the_curve_is_highest),
         cmocka_unit_test(an_impulse_counts_as_long_as_the_window_holds_it),

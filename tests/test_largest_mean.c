@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "src/base/random.h"
 #include "tests/rig_fixture.h"
 
 static run_result empty_run(void)
@@ -111,6 +112,66 @@ static void it_is_the_largest_of_many(void **state)
     finish(&r);
 }
 
+// Integral of the force over [0, time] [N s].
+static double integral_to(const run_result *r, double time)
+{
+    const force_step *steps = force_steps(&r->history.forces);
+    double sum = 0;
+    for (size_t i = 0; i < r->history.forces.count && steps[i].start < time; i++) {
+        const double length = steps[i].end - steps[i].start;
+        const double s = fmin((time - steps[i].start) / length, 1);
+        const double curve = 3 * (steps[i].first + steps[i].last) - 6 * steps[i].mean;
+        const double slope = steps[i].last - steps[i].first - curve;
+        sum += length * s * (steps[i].first + s * (slope / 2 + s * curve / 3));
+    }
+    return sum;
+}
+
+// A number of whole millionths (of 2^-20), whose sums are exact.
+static double whole(double number)
+{
+    return ldexp(round(ldexp(number, 20)), -20);
+}
+
+// Windows shorter and longer than the steps, some with impulses: of all windows that begin on a
+// fine grid none has a larger mean, and near the best of them there is one with the mean found.
+static void no_window_of_random_forces_has_more(void **state)
+{
+    (void)state;
+    enum { ROUNDS = 60, FINE = 3000 };
+    random_generator g;
+    random_seed(&g, 11);
+    for (int round = 0; round < ROUNDS; round++) {
+        run_result r = empty_run();
+        double time = 0, last = 1;
+        for (int i = 0; i < 6; i++) {
+            const double length = whole(0.1 + 0.2 * random_uniform(&g));
+            const double slope = 4 * random_uniform(&g) - 2, curve = 4 * random_uniform(&g) - 2;
+            add_step(&r, time, time + length, last, slope, curve);
+            last += slope + curve;
+            time += length;
+        }
+        const double at = whole(time * random_uniform(&g)), impulse = round % 3 == 0 ? 0.3 : 0;
+        if (impulse > 0) {
+            add_impulse(&r, at, impulse, false);
+        }
+
+        const double window = whole(0.03 + 0.4 * random_uniform(&g));
+        const double from = whole(0.1 * random_uniform(&g));
+        const double found = force_largest_mean(&r, from, window);
+        double seen = -HUGE_VAL;
+        for (int i = 0; i <= FINE; i++) {
+            const double start = from + (time - window - from) * i / FINE, end = start + window;
+            const double hit = start <= at && at <= end ? impulse : 0;
+            seen = fmax(seen, (integral_to(&r, end) - integral_to(&r, start) + hit) / window);
+        }
+        // without impulses a window's mean is smooth but for kinks
+        check_below(seen, found + 1e-10);
+        check_below(found, seen + (impulse > 0 ? 0.1 : 1e-4));
+        finish(&r);
+    }
+}
+
 static void a_run_on_the_rig_has_it_and_the_bare_arm_has_not(void **state)
 {
     (void)state;
@@ -127,6 +188,7 @@ int main(void)
         cmocka_unit_test(a_hump_is_met_in_its_middle),
         cmocka_unit_test(an_impulse_counts_over_the_window),
         cmocka_unit_test(it_is_the_largest_of_many),
+        cmocka_unit_test(no_window_of_random_forces_has_more),
         cmocka_unit_test(a_run_on_the_rig_has_it_and_the_bare_arm_has_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

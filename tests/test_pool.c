@@ -62,6 +62,7 @@ static pool_work work_on(tally *t)
 // The linker puts this in the place of the C library's (-Wl,--wrap=pthread_create, see
 // meson.build): of the threads asked for only so many are to be had.
 static int threads_left = 1000;
+static int started, joined; // threads, since the test set them to 0
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
                           void *(*function)(void *), void *argument);
 int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
@@ -69,8 +70,40 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
 int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
                           void *(*function)(void *), void *argument)
 {
-    return threads_left-- > 0 ? __real_pthread_create(thread, attributes, function, argument)
-                              : EAGAIN;
+    if (threads_left-- <= 0) {
+        return EAGAIN;
+    }
+    started++;
+    return __real_pthread_create(thread, attributes, function, argument);
+}
+
+// Joining is watched only.
+int __real_pthread_join(pthread_t thread, void **result);
+int __wrap_pthread_join(pthread_t thread, void **result);
+int __wrap_pthread_join(pthread_t thread, void **result)
+{
+    joined++;
+    return joined <= started ? __real_pthread_join(thread, result) : ESRCH;
+}
+
+// Each thread that there was is waited for, once, however many were to be had.
+static void every_thread_is_joined_once(void **state)
+{
+    (void)state;
+    for (int asked = 1; asked <= 8; asked++) {
+        for (int left = 0; left <= asked + 1; left++) {
+            tally t = {.fail_at = asked == 3 ? 5 : 0, .stop = asked == 5};
+            pool_work w = work_on(&t);
+            threads_left = left;
+            started = joined = 0;
+            assert_int_equal(pool_run(&w, asked, NULL),
+                             t.fail_at > 0 ? STATUS_CANNOT_WRITE : STATUS_OK);
+            assert_int_equal(started, left < asked ? left : asked);
+            assert_int_equal(joined, started);
+        }
+    }
+    threads_left = 1000;
+    started = joined = 0;
 }
 
 static void every_piece_is_computed_and_collected_once(void **state)
@@ -157,6 +190,7 @@ static void the_work_is_done_without_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_thread_is_joined_once),
         cmocka_unit_test(every_piece_is_computed_and_collected_once),
         cmocka_unit_test(a_failure_ends_the_work_and_is_returned),
         cmocka_unit_test(a_stop_ends_it_early_without_a_fault),

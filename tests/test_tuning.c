@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "src/rig/rig.h"
+#include "tests/rig_fixture.h"
 #include "tests/session_fixture.h"
 
 static void change(session *s, const char *path, const char *value)
@@ -86,6 +87,56 @@ static void test_another_rate_samples_at_its_own_period(void **state)
     }
     assert_true(samples >= 3);
     session_finish(&s);
+}
+
+// The rate changes again and again. A sample comes one period of the rate that holds then after the
+// one before; an equal rate moves nothing.
+static void test_rates_that_change_again_and_again(void **state)
+{
+    (void)state;
+    static const struct {
+        double time, rate;
+    } changes[] = {{0.0137, 50},   {0.0503, 200}, {0.0588, 125}, {0.0652, 40}, {0.0653, 40},
+                   {0.1401, 62.5}, {0.1523, 30},  {0.2411, 45},  {0.3009, 20}, {0.5201, 25}};
+    enum { CHANGES = sizeof changes / sizeof changes[0] };
+    parameters p = rig_parameters(SETTINGS("control.law=hybrid", "sensor.ideal=true"));
+    rig *r;
+    fault f = {0};
+    assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+    const sensed_motion at_rest = {.angle = -0.1};
+
+    // the first sample is at the start
+    double expected = 0, last = 0;
+    int samples = 0;
+    for (int i = 0; i <= CHANGES; i++) {
+        const double until = i < CHANGES ? changes[i].time : 0.8;
+        while (rig_next_time(r) <= until) {
+            const double now = rig_next_time(r);
+            const long before = r->samples;
+            bool changed;
+            assert_int_equal(rig_act(r, now, &at_rest, &changed, &f), STATUS_OK);
+            if (r->samples > before) {
+                check_close(now, expected, 1e-12);
+                last = now;
+                expected = last + 1 / p.control.rate;
+                samples++;
+            }
+        }
+        if (i < CHANGES) {
+            p.control.rate = changes[i].rate;
+            assert_int_equal(rig_retune(r, &p, until, &f), STATUS_OK);
+            expected = last + 1 / p.control.rate;
+            assert_true(expected >= until);
+        }
+    }
+    assert_true(samples > 25);
+
+    // where that period is over already, the next sample is at the change
+    p.control.rate = 1000;
+    assert_true(last + 1e-3 < 0.8);
+    assert_int_equal(rig_retune(r, &p, 0.8, &f), STATUS_OK);
+    check_close(rig_next_time(r), 0.8, 0);
+    rig_destroy(r);
 }
 
 // A ramp leads where a step does, later; a wave makes the force swing at its frequency.
@@ -187,6 +238,7 @@ int main(void)
         cmocka_unit_test(what_nobody_took_at_the_start_can_change),
         cmocka_unit_test(test_a_gain_holds_from_the_next_sample_on),
         cmocka_unit_test(test_another_rate_samples_at_its_own_period),
+        cmocka_unit_test(test_rates_that_change_again_and_again),
         cmocka_unit_test(test_setpoints_are_steps_ramps_and_waves),
         cmocka_unit_test(test_a_law_that_plans_at_its_start_takes_no_dated_change),
         cmocka_unit_test(test_a_saved_tuned_run_is_the_same),

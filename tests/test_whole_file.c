@@ -518,6 +518,7 @@ static void a_file_may_have_the_number_of_the_standard_input(void **state)
 
 int main(void)
 {
+    alarm(120); // where somebody waits for what never comes, this fails
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(appears_only_when_committed),
         cmocka_unit_test(abandoning_leaves_the_target_and_nothing_else),
