@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "src/base/extremes.h"
+#include "src/base/sincos.h"
 #include "src/solve/dense_location.h"
 #include "src/solve/motion.h"
 #include "src/solve/taylor_engine.h"
@@ -23,6 +24,8 @@
 #define LONGEST_REACH 2.0
 // A decay over a stride: the series of the highest order is stable on the negative axis beyond 7.
 #define LONGEST_DECAY 4.0
+// On a flat wall the first link turns by no more than this share of what is left to a fold.
+#define LONGEST_TURN 0.1
 
 // What is nothing but rounding in the first coefficients of a watched function at its edge: of the
 // value and of its derivatives, over which nothing is known but that they are small.
@@ -233,6 +236,31 @@ static void take_up(const arm *a, motion *m)
     s->own = true;
 }
 
+// The length of the stride whose series are computed: what they allow, but on a flat wall clear of
+// the fold over the hub's axis. There the force has a pole that the velocities know nothing of:
+// series of theirs go through it with small terms, while those of the force do not converge.
+static double length_of_stride(const arm *a, const taylor_lane *lane)
+{
+    const double allowed = lane->block[AT_ALLOWED];
+    if (!lane->form.contact || lane->form.point) {
+        return allowed;
+    }
+
+    // how far the first link turns at most: in contact both stand as far from across the wall
+    const double *q = taylor_term(lane, AT_ANGLE_1);
+    const int spacing = taylor_spacing(lane);
+    double turn = 0;
+    for (int n = lane->form.order + 1; n > 0; n--) {
+        turn = (turn + fabs(q[n * spacing])) * allowed;
+    }
+
+    // a share of the length takes no more than that share of the turn
+    double sine, cosine;
+    inline_sincos(*q, &sine, &cosine);
+    const double left = fabs(cosine * a->wall.cosine + sine * a->wall.sine);
+    return turn > LONGEST_TURN * left ? allowed * (LONGEST_TURN * left / turn) : allowed;
+}
+
 static double begin(const arm *a, motion *m, double remaining, double step)
 {
     taylor_stride *s = m->memory;
@@ -246,7 +274,7 @@ static double begin(const arm *a, motion *m, double remaining, double step)
             prepare(a, m);
             taylor_compute_one(&s->lane);
         }
-        kept[KEPT_LENGTH] = s->lane.block[AT_ALLOWED];
+        kept[KEPT_LENGTH] = length_of_stride(a, &s->lane);
         s->known = 0;
 
         // series of a group that are to be gone on with
