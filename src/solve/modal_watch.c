@@ -110,12 +110,23 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
         t = next;
     }
 
-    // what the functional leaves out moves the root by little
-    double target = far_side[f->kind];
+    // what the functional leaves out moves the root by little; a slope that steepens, as from the
+    // top of a flight of some 1e-14 m, would take it far beyond
+    double target = far_side[f->kind], above = -1, below = HUGE_VAL;
     for (int i = 0; i < MOST_POLISHING && slope < 0; i++) {
-        double value = modal_function_exact(f, s, a, m, t);
+        const double value = modal_function_exact(f, s, a, m, t);
+        if (value <= 0 && value >= -2 * target) {
+            break;
+        }
+        above = value > 0 ? t : above;
+        below = value > 0 ? below : t;
         double next = t - (value + target) / slope;
-        if ((value <= 0 && value >= -2 * target) || !(next > lo.time) || !(next <= s->length)) {
+        const bool enclosed = above >= 0 && below < HUGE_VAL;
+        if (enclosed && !(next > above && next < below)) {
+            t = 0.5 * (above + below);
+            continue;
+        }
+        if (!(next > lo.time) || !(next <= s->length)) {
             break;
         }
         next = next == t ? nextafter(t, value > 0 ? HUGE_VAL : 0) : next;
