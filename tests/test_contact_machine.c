@@ -300,6 +300,146 @@ static void a_motion_can_be_started_again(void **state)
     motion_destroy(r.motion);
 }
 
+// The algorithmic accelerations that the implicit methods go on with are those of the instant;
+// where those say nothing, the next step finds out.
+static void assert_starts_anew(const moving_rod *r)
+{
+    motion *m = r->motion;
+    if (motion_unresolved(&r->arm, m)) {
+        return;
+    }
+    assert_memory_equal(state_algorithmic(m, m->state), state_accelerations(m, m->state),
+                        (size_t)m->dof * sizeof(double));
+    assert_true(m->state[SLOT_JUMPED] == 1);
+}
+
+// After whatever jumps, events and torques alike, an implicit method starts anew.
+static void implicit_methods_start_anew_after_a_jump(void **state)
+{
+    (void)state;
+    static const char *const joints[] = {"arm.hub_joint=rigid", "arm.hub_joint=spring"};
+    static const char *const links[] = {"arm.links=2", "arm.links=5"};
+    int events[MOTION_SLIP + 1] = {0}, moved = 0;
+    for (int i = 0; i < 4; i++) {
+        moving_rod r = start_rod(SETTINGS("method.name=generalized-alpha", joints[i / 2],
+                                          links[i % 2], "motor.stiction=0.02"));
+        assert_starts_anew(&r);
+        const double start[] = {0.35, 0.5, 0.6, 0.7, 0.8, 0.9}, volts[] = {2, -0.5, 0.8, 0.3, 0, 1};
+        for (int k = 0; k < 6; k++) {
+            while (r.motion->state[SLOT_TIME] < start[k]) {
+                motion_report event = next_event(&r, start[k]);
+                events[event.event]++;
+                if (event.event != MOTION_REACHED) {
+                    assert_starts_anew(&r);
+                }
+            }
+
+            // another torque accelerates a hub that is not stuck
+            const bool sticks = contact_state_of(r.motion->state).friction == HUB_STICK;
+            const double before = r.arm.motor.torque;
+            arm_set_voltage(&r.arm, volts[k]);
+            motion_retorque(&r.arm, r.motion, before);
+            if (!sticks) {
+                assert_starts_anew(&r);
+                moved++;
+            }
+        }
+        motion_destroy(r.motion);
+    }
+    assert_true(events[MOTION_IMPACT] > 3 && events[MOTION_RELEASE] > 1 && moved > 3);
+}
+
+// What is held at wall and hub has neither velocity nor acceleration, to the last bit, and stays.
+static void what_is_held_does_not_move(void **state)
+{
+    (void)state;
+    static const char *const stictions[] = {"motor.stiction=0.1", "motor.stiction=0.4"};
+    static const char *const methods[] = {"method.name=event", "method.name=generalized-alpha"};
+    for (int i = 0; i < 4; i++) {
+        moving_rod r = start_rod(
+            SETTINGS(stictions[i % 2], methods[i / 2], "arm.damping_ratio=0.1", "motor.voltage=2"));
+        motion *m = r.motion;
+        const double *q = state_angles(m, m->state);
+        int held = 0;
+        double before[2] = {0};
+        while (m->state[SLOT_TIME] < 4 && held < 20) {
+            const motion_event event = next_event(&r, m->state[SLOT_TIME] + 0.01).event;
+            if (!motion_held_still(m) || event != MOTION_REACHED) {
+                held = 0;
+                continue;
+            }
+            for (int k = 0; k < m->dof; k++) {
+                check_close(state_velocities(m, m->state)[k], 0, 0);
+                check_close(state_accelerations(m, m->state)[k], 0, 0);
+                check_close(held > 0 ? q[k] : 0, held > 0 ? before[k] : 0, 1e-12);
+                before[k] = q[k];
+            }
+            held++;
+        }
+        assert_int_equal(m->dof, 2);
+        assert_int_equal(held, 20);
+        motion_destroy(m);
+    }
+}
+
+// An arm that bounces long and far goes on bouncing: the chatter rule counts short flights only.
+static void bounces_in_long_flights_are_no_chatter(void **state)
+{
+    (void)state;
+    moving_rod r = start_rod(SETTINGS("arm.links=2", "wall.restitution=0.95", "motor.voltage=2",
+                                      "motor.stiction=0", "arm.damping_ratio=0.01"));
+    const double shortest = 2 * 3.14159265358979 / r.arm.highest_frequency;
+    int far = 0, in_a_row = 0;
+    double last = -HUGE_VAL;
+    while (far <= MOTION_MOST_SHORT_FLIGHTS + 10) {
+        // thrown back now and then
+        motion_report event = next_event(&r, r.motion->state[SLOT_TIME] + 0.05);
+        if (event.event == MOTION_REACHED) {
+            motion_push(&r.arm, r.motion, -0.03, &event);
+        }
+        if (event.event == MOTION_IMPACT) {
+            const double now = r.motion->state[SLOT_TIME];
+            in_a_row = now - last < 0.01 * shortest ? in_a_row + 1 : 0;
+            far += now - last > 0.02 * shortest;
+            last = now;
+            assert_true(!event.chatter || in_a_row > MOTION_MOST_SHORT_FLIGHTS);
+        }
+    }
+    motion_destroy(r.motion);
+}
+
+// A force that only rises is largest at the last instant there was, one that only falls where it
+// began.
+static void the_peak_of_a_rising_force_is_at_its_end(void **state)
+{
+    (void)state;
+    static const char *const masses[] = {"arm.tip_mass=0", "arm.tip_mass=1e-18"};
+    for (int i = 0; i < 2; i++) {
+        moving_rod r = start_rod(SETTINGS(masses[i]));
+        motion *m = r.motion;
+        while (next_event(&r, 1).event != MOTION_IMPACT) {
+        }
+        const double touched = m->state[SLOT_TIME];
+        double last = m->state[SLOT_FORCE];
+        int rising = 0;
+        for (int k = 1; k < 200 && m->state[SLOT_CONTACT] != 0; k++) {
+            motion_report report;
+            assert_int_equal(motion_step(&r.arm, m, touched + k * 2e-4, 2e-4, &report), STATUS_OK);
+            motion_apply(&r.arm, m, &report);
+            assert_true(m->pulse_peak >= m->state[SLOT_FORCE] * (1 - 1e-12));
+            assert_true(m->pulse_peak_time <= m->state[SLOT_TIME] + 1e-15);
+            assert_true(m->pulse_peak_time >= touched);
+            if (m->pulse_peak == m->state[SLOT_FORCE] && m->state[SLOT_FORCE] > last) {
+                check_close(m->pulse_peak_time, m->state[SLOT_TIME], 1e-15);
+                rising++;
+            }
+            last = m->state[SLOT_FORCE];
+        }
+        assert_true(rising > 5);
+        motion_destroy(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -316,6 +456,10 @@ int main(void)
         cmocka_unit_test(a_hub_without_stiction_never_sticks),
         cmocka_unit_test(a_wall_that_gives_takes_the_rod_at_its_speed),
         cmocka_unit_test(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not),
+        cmocka_unit_test(implicit_methods_start_anew_after_a_jump),
+        cmocka_unit_test(what_is_held_does_not_move),
+        cmocka_unit_test(bounces_in_long_flights_are_no_chatter),
+        cmocka_unit_test(the_peak_of_a_rising_force_is_at_its_end),
         cmocka_unit_test(a_cut_changes_nothing_before_it),
         cmocka_unit_test(a_motion_can_be_started_again),
     };

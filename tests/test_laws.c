@@ -341,6 +341,67 @@ static void several_settings_are_taken(void **state)
     assert_int_equal(differ, 1);
 }
 
+// A setting is a number within its limits, both included, and nothing else; what is refused names
+// the word.
+static void settings_are_numbers_within_limits(void **state)
+{
+    (void)state;
+    static const controller_parameter own[] = {
+        {.name = "gain",
+         .unit = "N",
+         .initial = 2,
+         .minimum = -4,
+         .maximum = 8,
+         .description = "g"},
+        {.name = "gains",
+         .unit = "",
+         .initial = 3,
+         .minimum = 0,
+         .maximum = 1e9,
+         .description = "h"},
+    };
+    const controller law = {.name = "own", .parameters = own, .parameter_count = 2};
+    static const struct {
+        const char *text;
+        double gain, gains;
+    } right[] = {
+        {"", 2, 3},
+        {"gain=-4", -4, 3},
+        {"gain=8", 8, 3},
+        {"gains=1e9", 2, 1e9},
+        {"gain=0", 0, 3},
+        {"gains=0", 2, 0},
+        {" gain=2.5e-1 ", 0.25, 3},
+        {"gain=1 gains=7", 1, 7},
+        {"gain=1 gain=5", 5, 3},
+        {"gains=4 gain=-1", -1, 4},
+    };
+    static const char *const wrong[] = {
+        "gain",   "gain=",    "gain=x",  "gain=5x",   "gain=5,",    "gain=1e",   "gain=nan",
+        "gain=-", "gain==5",  "gain=5=", "gain=8.01", "gain=-4.01", "gain=inf",  "gains=-1e-9",
+        "gai=5",  "gainss=5", "=5",      "5",         "gain=5 x",   "gain=5 =1",
+    };
+    parameters p = rig_parameters(NULL);
+    fault f = {0};
+    for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
+        double values[2] = {-99, -99};
+        strcpy(p.control.settings, right[i].text);
+        if (controller_values(&law, &p, values, &f) != STATUS_OK) {
+            fail_msg("'%s': %s", right[i].text, f.text);
+        }
+        check_close(values[0], right[i].gain, 0);
+        check_close(values[1], right[i].gains, 0);
+    }
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        double values[2];
+        strcpy(p.control.settings, wrong[i]);
+        if (controller_values(&law, &p, values, &f) != STATUS_BAD_SCENARIO) {
+            fail_msg("'%s' was taken: %g, %g", wrong[i], values[0], values[1]);
+        }
+        assert_int_equal(f.code, STATUS_BAD_SCENARIO);
+    }
+}
+
 // Admittance ends where the reading is right, wherever the wall is and however stiff the beam.
 static void admittance_ends_with_the_force(void **state)
 {
@@ -411,6 +472,7 @@ int main(void)
         cmocka_unit_test(recovering_law_returns_to_position_control),
         cmocka_unit_test(impedance_gives_way_by_its_stiffness),
         cmocka_unit_test(several_settings_are_taken),
+        cmocka_unit_test(settings_are_numbers_within_limits),
         cmocka_unit_test(admittance_ends_with_the_force),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

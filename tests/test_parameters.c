@@ -360,6 +360,36 @@ static void defaults_are_never_to_blame(void **state)
     assert_string_equal(f.path, "initial.angle");
 }
 
+// The bound of what the ledger may lack follows the method, unless it was given.
+static void the_ledgers_bound_follows_the_method(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"event", "newmark", "generalized-alpha"};
+    double bound[3];
+    for (int i = 0; i < 3; i++) {
+        parameters p = fresh(ARM_CORRECTED), own = p, back;
+        fault f = {0};
+        give(&p, "method.name", methods[i]);
+        give(&own, "method.name", methods[i]);
+        give(&own, "method.residual_bound", "3e-5");
+        back = p;
+        assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+        assert_int_equal(parameters_resolve(&own, &f), STATUS_OK);
+        bound[i] = p.method.residual_bound;
+        check_close(own.method.residual_bound, 3e-5, 0);
+
+        // resolved for one method and then for another it is the other's
+        parameters_resolve(&back, &f);
+        give(&back, "method.name", "event");
+        assert_int_equal(parameters_resolve(&back, &f), STATUS_OK);
+        check_close(back.method.residual_bound, bound[0], 0);
+    }
+    check_close(bound[0],
+                parameter_table[parameter_find("method.residual_bound")].default_corrected, 0);
+    check_close(bound[1], 1e-2, 0);
+    check_close(bound[2], 1e-2, 0);
+}
+
 static void resolving_twice_changes_nothing(void **state)
 {
     (void)state;
@@ -391,6 +421,7 @@ int main(void)
         cmocka_unit_test(a_link_is_a_uniform_rod_unless_told),
         cmocka_unit_test(impossible_combinations_are_refused),
         cmocka_unit_test(defaults_are_never_to_blame),
+        cmocka_unit_test(the_ledgers_bound_follows_the_method),
         cmocka_unit_test(resolving_twice_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -73,10 +73,34 @@ static void command_that_is_not_finite_stops_the_run(void **state)
     }
 }
 
+// The modes of a plug-in are its own, where it is the law and may be opened.
+static void modes_are_the_plugins_own(void **state)
+{
+    (void)state;
+    char file[160], names[4][MODE_NAME_SIZE];
+    bool lockable = false;
+    plugin_setting(file, sizeof file, soft_push_file);
+    parameters p = rig_parameters(SETTINGS("control.law=plugin", file));
+    assert_int_equal(rig_mode_names(&p, names, 4, &lockable), 2);
+    assert_true(lockable);
+    assert_string_equal(names[0], "approach");
+    assert_string_equal(names[1], "push");
+    p.code_allowed = false;
+    assert_int_equal(rig_mode_names(&p, names, 4, &lockable), 0);
+    assert_false(lockable);
+
+    // named beside another law it is not opened
+    p.code_allowed = true;
+    p.control.law = LAW_HYBRID;
+    assert_int_equal(rig_mode_names(&p, names, 4, &lockable), 3);
+    assert_string_equal(names[1], "impact");
+}
+
 int main(int count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plugin_controls_the_arm),
+        cmocka_unit_test(modes_are_the_plugins_own),
         cmocka_unit_test(wrong_plugins_are_refused),
         cmocka_unit_test(command_that_is_not_finite_stops_the_run),
     };

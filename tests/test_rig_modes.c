@@ -286,9 +286,63 @@ static void names_of_modes_keep_to_their_room(void **state)
     assert_string_equal(names[2], "untouched");
 }
 
+// A plug-in is opened where it is the law and may be; one that is only named changes nothing.
+static void only_the_law_itself_gives_modes(void **state)
+{
+    (void)state;
+    char names[8][MODE_NAME_SIZE];
+    bool lockable = false;
+    parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
+    strcpy(p.control.plugin, "/nowhere/at-all.so");
+    for (int allowed = 0; allowed < 2; allowed++) {
+        p.code_allowed = allowed;
+        for (int law = LAW_NONE; law <= LAW_PLUGIN; law++) {
+            p.control.law = law;
+            const controller *c = controller_of(law);
+            int modes = 0;
+            while (c != NULL && c->modes != NULL && c->modes[modes] != NULL) {
+                modes++;
+            }
+            assert_int_equal(rig_mode_names(&p, names, 8, &lockable), modes);
+            assert_int_equal(lockable, c != NULL && c->lockable);
+            for (int i = 0; i < modes; i++) {
+                assert_string_equal(names[i], c->modes[i]);
+            }
+        }
+    }
+}
+
+static void a_law_of_no_modes_has_none_to_be_held_in(void **state)
+{
+    (void)state;
+    static const char *const none[] = {NULL}, *const one[] = {"only", NULL};
+    controller law = {.name = "own", .lockable = true, .modes = none};
+    fault f = {0};
+    int mode = 7;
+    assert_int_equal(rig_find_mode(&law, "none", &mode, &f), STATUS_OK);
+    assert_int_equal(mode, -1);
+    assert_int_equal(rig_find_mode(&law, "only", &mode, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(mode, -1);
+    assert_string_equal(f.text,
+                        "control.lock = 'only' is no mode of the law 'own', expected none, ");
+    assert_string_equal(f.path, "control.lock");
+
+    law.modes = one;
+    assert_int_equal(rig_find_mode(&law, "only", &mode, &f), STATUS_OK);
+    assert_int_equal(mode, 0);
+    assert_int_equal(rig_find_mode(&law, "onl", &mode, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.text,
+                        "control.lock = 'onl' is no mode of the law 'own', expected none, only");
+    law.modes = NULL;
+    assert_int_equal(rig_find_mode(&law, "only", &mode, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(rig_find_mode(&law, "", &mode, &f), STATUS_OK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(only_the_law_itself_gives_modes),
+        cmocka_unit_test(a_law_of_no_modes_has_none_to_be_held_in),
         cmocka_unit_test(names_of_modes_keep_to_their_room),
         cmocka_unit_test(every_lockable_law_stays_in_every_mode_of_its_own),
         cmocka_unit_test(approach_means_the_approach_command),
