@@ -14,7 +14,8 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
     if (p->arm.model == ARM_PRINTED) {
         return PREDICTION_CORRECTED_ONLY;
     }
-    if (question->angles == NULL || question->velocities == NULL) {
+    assert((question->angles == NULL) == (question->velocities == NULL));
+    if (question->angles == NULL) {
         return PREDICTION_LINKS_UNKNOWN;
     }
 

@@ -2,9 +2,9 @@
 
 #include <assert.h>
 
-// The last row in free flight before the first contact, or NULL if there was no contact.
-static const sample *last_free_row(const trace *t)
+const sample *row_before_contact(const trace *t)
 {
+    assert(t != NULL);
     for (size_t i = 0; i < t->row_count; i++) {
         bool touches = t->rows[i].contact != 0 || t->rows[i].impulse != 0;
         if (touches) {
@@ -14,8 +14,9 @@ static const sample *last_free_row(const trace *t)
     return NULL;
 }
 
-static three_body_state state_of(const sample *row)
+three_body_state row_bodies(const sample *row)
 {
+    assert(row != NULL);
     return (three_body_state){
         .angle = {row->hub_angle, row->first_angle, row->last_angle},
         .velocity = {row->hub_velocity, row->first_velocity, row->last_velocity},
@@ -27,7 +28,7 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
                                     prediction_answer answers[PREDICTOR_COUNT])
 {
     assert(s != NULL && result != NULL && answers != NULL);
-    const sample *row = last_free_row(&result->trace);
+    const sample *row = row_before_contact(&result->trace);
     if (row == NULL) {
         return NULL;
     }
@@ -38,7 +39,7 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
     const double *all = result->before_impact;
     int half = (int)(result->before_impact_size / sizeof *all / 2);
     prediction_question question = {.parameters = &now,
-                                    .bodies = state_of(row),
+                                    .bodies = row_bodies(row),
                                     .angles = all,
                                     .velocities = all != NULL ? all + half : NULL,
                                     .command = then != NULL ? *then : (voltage_profile){0},

@@ -92,12 +92,12 @@ static const weight_row brief_weights[BRIEF_STAGES + 1] = {
      1.0 / 10},
 };
 
-// One step of the method with the given weights for n degrees of freedom; n, links, hub_spring,
-// contact and loaded are constants in the two-link case.
+// One step of the method with the given weights, whose number and `loaded` are constants.
 KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *weights, int stages,
-                          int n, int links, bool hub_spring, bool contact, bool loaded)
+                          bool loaded)
 {
-    const int length = 2 * n + QUADRATURE_COUNT;
+    const int n = a->dof, length = 2 * n + QUADRATURE_COUNT;
+    const bool contact = m->state[SLOT_CONTACT] != 0;
     const int wanted = loaded ? length : length - (QUADRATURE_COUNT - QUADRATURE_WALL);
     const int current = 2 * n + QUADRATURE_CURRENT; // the one that enters the accelerations
     const int moving = loaded && m->electric ? length : 2 * n;
@@ -144,7 +144,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
         if (loaded) { // general, and seldom worth its place between the stages
             chain_accelerations(a, m->links, y, y + n, mode, k + n, &reaction);
         } else {
-            chain_sweep(a, links, hub_spring, contact, false, m->links, y, y + n, mode, k + n,
+            chain_sweep(a, a->links, a->hub_spring, contact, false, m->links, y, y + n, mode, k + n,
                         &reaction);
         }
         for (int i = 0; i < n; i++) {
@@ -163,15 +163,10 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
 
 KERNEL void step_by(const weight_row *weights, int stages, const arm *a, motion *m, double h)
 {
-    const bool contact = m->state[SLOT_CONTACT] != 0;
     if (chain_is_loaded(a)) {
-        explicit_step(a, m, h, weights, stages, a->dof, a->links, a->hub_spring, contact, true);
-    } else if (a->links == 2 && !a->hub_spring && contact) {
-        explicit_step(a, m, h, weights, stages, 2, 2, false, true, false);
-    } else if (a->links == 2 && !a->hub_spring) {
-        explicit_step(a, m, h, weights, stages, 2, 2, false, false, false);
+        explicit_step(a, m, h, weights, stages, true);
     } else {
-        explicit_step(a, m, h, weights, stages, a->dof, a->links, a->hub_spring, contact, false);
+        explicit_step(a, m, h, weights, stages, false);
     }
 }
 

@@ -259,12 +259,12 @@ static void closed_shape(const straight *c, double phi, double *angle, double *h
 
 // --- one mode after the other -----------------------------------------------------------------
 
-// y of mode `number` within (low, high), by counting.
-static double counted(straight *c, int number, double low, double high)
+// y, or phi with `by_wave`, of mode `number` within (low, high), by counting.
+static double counted(straight *c, int number, double low, double high, bool by_wave)
 {
     for (int i = 0; i < MOST_HALVINGS && high - low > RESOLUTION * high; i++) {
-        const double middle = low > 0.25 * high ? (low + high) / 2 : sqrt(low * high);
-        if (slower_modes(c, middle) > number) {
+        const double middle = by_wave || low > 0.25 * high ? (low + high) / 2 : sqrt(low * high);
+        if (slower_modes(c, by_wave ? wave_at(c, middle).y : middle) > number) {
             high = middle;
         } else {
             low = middle;
@@ -279,15 +279,7 @@ static double root(straight *c, int number, double low, double high)
 {
     double at_low = determinant(c, low), at_high = determinant(c, high);
     if ((at_low < 0) == (at_high < 0)) {
-        for (int i = 0; i < MOST_HALVINGS && high - low > RESOLUTION * high; i++) {
-            const double middle = (low + high) / 2;
-            if (slower_modes(c, wave_at(c, middle).y) > number) {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        return (low + high) / 2;
+        return counted(c, number, low, high, true);
     }
 
     // false position; an end that stays counts for half (Illinois)
@@ -419,7 +411,8 @@ int modal_shapes(const arm *a, bool contact, bool stuck, double *rate, double *s
             y = wave_at(&c, rate[k]).y;
             closed_shape(&c, rate[k], angle, &hub);
         } else {
-            y = k < first ? counted(&c, k, SLOWEST * slow, slow) : counted(&c, k, fast, most);
+            y = k < first ? counted(&c, k, SLOWEST * slow, slow, false)
+                          : counted(&c, k, fast, most, false);
             (void)slower_modes(&c, y);
             eliminated_shape(&c, angle, &hub);
         }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/run/first_contact.h"
 #include "src/run/run.h"
 #include "src/predict/predict.h"
 #include "src/solve/printed_algorithm.h"
@@ -101,26 +102,6 @@ static status simulate_printed(const parameters *p, cell *c, fault *f)
     return STATUS_OK;
 }
 
-// The last row before the jump of the first impact; NULL if there was no impact.
-static const sample *row_before_impact(const trace *t)
-{
-    const sample *before = NULL;
-    for (size_t i = 0; i < t->event_count; i++) {
-        if (t->events[i].kind != EVENT_IMPACT) {
-            continue;
-        }
-
-        // rows of the same instant stand on both sides of the jump, the first is the one before
-        for (size_t r = 0; r < t->row_count && t->rows[r].time <= t->events[i].time; r++) {
-            if (before == NULL || t->rows[r].time > before->time) {
-                before = &t->rows[r];
-            }
-        }
-        break;
-    }
-    return before;
-}
-
 // Runs the corrected model: the state just before the first impact, and the first pulse.
 static status simulate_corrected(const parameters *p, cell *c, fault *f)
 {
@@ -130,13 +111,10 @@ static status simulate_corrected(const parameters *p, cell *c, fault *f)
     status outcome = run_scenario(&s, true, &result);
 
     if (outcome == STATUS_OK) {
-        const sample *before = row_before_impact(&result.trace);
-        if (before != NULL) {
-            c->touched = true;
-            c->at_touch = (three_body_state){
-                {before->hub_angle, before->first_angle, before->last_angle},
-                {before->hub_velocity, before->first_velocity, before->last_velocity}};
-        }
+        const sample *before = row_before_contact(&result.trace);
+        assert(before != NULL);
+        c->touched = true;
+        c->at_touch = row_bodies(before);
         c->peak = result.summary.first_pulse_peak_N;
         c->delay = result.summary.first_pulse_time_to_peak_s;
     } else {
@@ -159,9 +137,10 @@ static status compute_cell(const parameters *p, double value[QUANTITIES], fault 
     // the simulation, and where it met the wall
     status result =
         p->arm.model == ARM_PRINTED ? simulate_printed(p, &c, f) : simulate_corrected(p, &c, f);
-    if (result != STATUS_OK || !c.touched) {
+    if (result != STATUS_OK) {
         return result;
     }
+    assert(c.touched);
     value[FORCE_SIMULATION] = c.peak;
     value[DELAY_SIMULATION] = c.delay;
 
@@ -213,6 +192,15 @@ static status compute_table(const parameters *defaults, const thesis_table *sour
     return STATUS_OK;
 }
 
+// The defaults of a model, which resolve.
+static void take_defaults(parameters *p, arm_model_kind kind)
+{
+    parameters_defaults(p, kind);
+    const status resolved = parameters_resolve(p, NULL);
+    assert(resolved == STATUS_OK);
+    (void)resolved;
+}
+
 status tables_compute(thesis_tables *t, fault *f)
 {
     static const struct {
@@ -227,12 +215,9 @@ status tables_compute(thesis_tables *t, fault *f)
     for (int k = 0; k < STIFFNESSES; k++) {
         for (int m = 0; m < MODELS; m++) {
             parameters p;
-            parameters_defaults(&p, models[m].kind);
-            status result = parameters_resolve(&p, f);
-            if (result == STATUS_OK) {
-                result = compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count, f);
-            }
-
+            take_defaults(&p, models[m].kind);
+            status result =
+                compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count, f);
             if (result != STATUS_OK) {
                 return result;
             }
@@ -274,13 +259,15 @@ status tables_compute_fitted(thesis_tables *t, fault *f)
 
     // the model as it is, and with the set
     parameters printed, set;
-    parameters_defaults(&printed, ARM_PRINTED);
+    take_defaults(&printed, ARM_PRINTED);
     parameters_defaults(&set, ARM_PRINTED);
-    status result = parameters_resolve(&printed, f);
-    for (size_t i = 0; i < sizeof fitted / sizeof fitted[0] && result == STATUS_OK; i++) {
-        result = parameter_set_text(&set, parameter_index(fitted[i].path), fitted[i].value, f);
+    status result = STATUS_OK;
+    for (size_t i = 0; i < sizeof fitted / sizeof fitted[0]; i++) {
+        result = parameter_set_text(&set, parameter_index(fitted[i].path), fitted[i].value, NULL);
+        assert(result == STATUS_OK);
     }
-    result = result == STATUS_OK ? parameters_resolve(&set, f) : result;
+    result = parameters_resolve(&set, NULL);
+    assert(result == STATUS_OK);
 
     for (int k = 0; k < STIFFNESSES && result == STATUS_OK; k++) {
         table_row as_printed[QUANTITIES], with_set[QUANTITIES];
