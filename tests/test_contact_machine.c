@@ -94,6 +94,47 @@ static void an_elastic_impact_turns_the_rod_back(void **state)
     motion_destroy(r.motion);
 }
 
+// The face of a wall that gives stays on an arm that is pushed as long as it presses, parts from
+// one that is torn away faster than it follows, and is met again.
+static void a_push_parts_arm_and_face(void **state)
+{
+    (void)state;
+    const char *const damping[] = {"wall.damping=0", "wall.damping=50"};
+    for (int i = 0; i < 2; i++) {
+        moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt", damping[i],
+                                          "wall.stiffness=1e5", "wall.angle=0", "motor.voltage=1",
+                                          "initial.velocity=0.1"));
+        motion_report report;
+        assert_true(touches(&r));
+
+        // at the touch, the spring still straight
+        motion_push(&r.arm, r.motion, 1e-3, &report);
+        assert_true(report.holds && touches(&r));
+        assert_int_equal(report.event, MOTION_REACHED);
+        assert_int_equal(motion_step(&r.arm, r.motion, 1e-3, 1e-3, &report), STATUS_OK);
+        const double depth = -r.motion->state[SLOT_GAP];
+        check_below(0, depth);
+
+        // away: without a damper the spring goes along, with one the face is left behind
+        motion_push(&r.arm, r.motion, -100, &report);
+        assert_int_equal(touches(&r), i == 0);
+        assert_int_equal(r.motion->state[SLOT_PARTED] != 0, i == 1);
+        assert_true(i == 0 || r.motion->state[SLOT_FORCE] == 0);
+
+        // back, and there it is again
+        motion_push(&r.arm, r.motion, 100, &report);
+        assert_true(touches(&r) && r.motion->state[SLOT_PARTED] == 0);
+        check_close(-r.motion->state[SLOT_GAP], depth, 1e-15);
+        check_below(0, r.motion->state[SLOT_FORCE]);
+
+        // away again, and pushed on while it is parted
+        motion_push(&r.arm, r.motion, -100, &report);
+        motion_push(&r.arm, r.motion, -100, &report);
+        assert_int_equal(touches(&r), i == 0);
+        motion_destroy(r.motion);
+    }
+}
+
 // Stiction is a limit without a margin: a torque beyond it by a hundred millionth moves the rod.
 static void a_torque_just_beyond_stiction_moves_the_rod(void **state)
 {
@@ -445,6 +486,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_state_at_the_start_follows_from_where_the_arm_is),
         cmocka_unit_test(a_plastic_impact_stops_the_rod_and_holds_it),
+        cmocka_unit_test(a_push_parts_arm_and_face),
         cmocka_unit_test(an_elastic_impact_turns_the_rod_back),
         cmocka_unit_test(a_torque_just_beyond_stiction_moves_the_rod),
         cmocka_unit_test(a_located_peak_leaves_the_step_as_it_was),

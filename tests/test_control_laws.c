@@ -1,9 +1,11 @@
 // The list of control laws: a law's name, word, controller and line of the manual belong together.
 // `test_control_laws docs/control.md --write` brings the manual's table up to date.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/rig/controller_values.h"
+#include "src/rig/process_lines.h"
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
@@ -101,6 +103,103 @@ static void initial_values_of_ones_own_parameters_take_effect(void **state)
     assert_int_equal(controller_values(&vague, &p, values, &f), STATUS_BAD_SCENARIO);
 }
 
+// A setting that is none says which one and what was expected; of a name the nearest.
+static void wrong_settings_are_told(void **state)
+{
+    (void)state;
+    const controller_parameter table[] = {{"kp", "1/s", 7, 0, 10, "with a unit"},
+                                          {"calm", "", 0.5, 0, 1, "without one"},
+                                          {"bare", NULL, 0.5, 0, 1, "with nothing said of it"}};
+    const controller own = {.name = "own", .parameters = table, .parameter_count = 3};
+    static const struct {
+        const char *settings, *sentence;
+    } cases[] = {
+        {"kq=4", "no parameter 'kq', did you mean 'kp'?"},
+        {"unheardof=4", "the controller 'own' has no parameter 'unheardof'"},
+        {"calm=1 kp", "'kp' is wrong, expected kp=NUMBER from 0 to 10 1/s"},
+        {"kp=4x", "'kp=4x' is wrong"},
+        {"kp=", "'kp=' is wrong"},
+        {"kp=-1", "'kp=-1' is wrong"},
+        {"kp=11 calm=1", "'kp=11' is wrong"},
+        {"calm=2", "'calm=2' is wrong, expected calm=NUMBER from 0 to 1"},
+        {"bare=2", "'bare=2' is wrong, expected bare=NUMBER from 0 to 1"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        double values[3];
+        fault f = {.text = ""};
+        parameters p = rig_parameters(NULL);
+        strcpy(p.control.settings, cases[i].settings);
+        assert_int_equal(controller_values(&own, &p, values, &f), STATUS_BAD_SCENARIO);
+        if (strstr(f.text, cases[i].sentence) == NULL) {
+            fail_msg("'%s': '%s'", cases[i].settings, f.text);
+        }
+    }
+
+    // without a controller that knows any name there is none to suggest
+    const controller none = {.name = "none"};
+    double values[1];
+    fault f = {.text = ""};
+    parameters p = rig_parameters(NULL);
+    strcpy(p.control.settings, "kp=1");
+    assert_int_equal(controller_values(&none, &p, values, &f), STATUS_BAD_SCENARIO);
+    assert_null(strstr(f.text, "did you mean"));
+}
+
+// --- a controller in a program of its own ----------------------------------------------------
+
+// It hears its settings as numbers where they are numbers, else as texts.
+static void settings_are_told_as_numbers_or_texts(void **state)
+{
+    (void)state;
+    parameters p = rig_parameters(NULL);
+    strcpy(p.control.settings, "gain=2.5 way=fast mixed=3x bare");
+    const controller_setup setup = {.period = 0.005};
+    const controller_input in = {.time = 0.25, .piezo_force = (double)NAN};
+    char *first = process_question(&setup, &p.control, &in);
+    char *later = process_question(NULL, &p.control, &in);
+    assert_true(first != NULL && later != NULL);
+    assert_non_null(strstr(first, "\"gain\":2.5,\"way\":\"fast\",\"mixed\":\"3x\",\"bare\":\"\""));
+    assert_non_null(strstr(first, "\"protocol\":"));
+    assert_null(strstr(later, "settings"));
+    assert_int_equal(first[strlen(first) - 1], '\n');
+    free(first);
+    free(later);
+}
+
+// An answer is an object with a command; what else it names has to be a number or null.
+static void answers_are_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line;
+        process_answer answer;
+    } cases[] = {
+        {"{\"command\": 1.5}", PROCESS_ANSWERED},
+        {"{\"command\": 1.5, \"desired_angle\": 2, \"calculated_force\": null}", PROCESS_ANSWERED},
+        {"{\"command\": \"1.5\"}", PROCESS_BABBLED},
+        {"{\"command\": null}", PROCESS_BABBLED},
+        {"{}", PROCESS_BABBLED},
+        {"[1.5]", PROCESS_BABBLED},
+        {"1.5", PROCESS_BABBLED},
+        {"{\"command\": 1.5", PROCESS_BABBLED},
+        {"{\"command\": 1.5, \"desired_angle\": true}", PROCESS_BABBLED},
+        {"{\"command\": 1.5, \"desired_velocity\": []}", PROCESS_BABBLED},
+        {"{\"command\": 1.5, \"calculated_force\": \"2\"}", PROCESS_BABBLED},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        controller_output out = {0};
+        const char *line = cases[i].line;
+        if (process_read_answer(line, strlen(line), &out) != cases[i].answer) {
+            fail_msg("%s", line);
+        }
+        if (cases[i].answer == PROCESS_ANSWERED) {
+            check_close(out.command, 1.5, 0);
+            assert_true(isnan(out.desired_velocity) && isnan(out.calculated_force));
+            assert_true(i == 0 ? isnan(out.desired_angle) : out.desired_angle == 2);
+        }
+    }
+}
+
 // --- the manual -----------------------------------------------------------------------------
 
 #define TABLE_HEAD "| law | what it does |\n|---|---|\n"
@@ -170,6 +269,9 @@ int main(int count, char **arguments)
         cmocka_unit_test(parameters_of_the_scenario_are_described_there_alone),
         cmocka_unit_test(settings_go_before_the_scenario_and_that_before_the_default),
         cmocka_unit_test(initial_values_of_ones_own_parameters_take_effect),
+        cmocka_unit_test(wrong_settings_are_told),
+        cmocka_unit_test(settings_are_told_as_numbers_or_texts),
+        cmocka_unit_test(answers_are_numbers),
         cmocka_unit_test(manual_has_the_table_of_the_list),
     };
     manual = count > 1 ? arguments[1] : "docs/control.md";

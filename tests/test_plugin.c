@@ -56,6 +56,24 @@ static void wrong_plugins_are_refused(void **state)
     check_refused(SETTINGS("control.law=plugin", file), "compile it again");
 }
 
+// The modes of one that is open to code, and none of one that is not or cannot be opened.
+static void modes_of_a_plugin_are_its_own(void **state)
+{
+    (void)state;
+    char file[160], names[4][MODE_NAME_SIZE];
+    bool lockable;
+    plugin_setting(file, sizeof file, soft_push_file);
+    parameters p = rig_parameters(SETTINGS("control.law=plugin", file));
+    assert_true(rig_mode_names(&p, names, 4, &lockable) == 2 && lockable);
+    assert_string_equal(names[0], "approach");
+    assert_string_equal(names[1], "push");
+
+    p.code_allowed = false;
+    assert_true(rig_mode_names(&p, names, 4, &lockable) == 0 && !lockable);
+    p = rig_parameters(SETTINGS("control.law=plugin", "control.plugin=/nonexistent.so"));
+    assert_true(rig_mode_names(&p, names, 4, &lockable) == 0 && !lockable);
+}
+
 static void command_that_is_not_finite_stops_the_run(void **state)
 {
     (void)state;
@@ -102,6 +120,7 @@ int main(int count, char **arguments)
         cmocka_unit_test(plugin_controls_the_arm),
         cmocka_unit_test(modes_are_the_plugins_own),
         cmocka_unit_test(wrong_plugins_are_refused),
+        cmocka_unit_test(modes_of_a_plugin_are_its_own),
         cmocka_unit_test(command_that_is_not_finite_stops_the_run),
     };
     if (count != 4) {

@@ -271,6 +271,62 @@ static void pressing_from_the_start_finds_the_wall(void **state)
     }
 }
 
+// Every lockable law is in the mode that it is told, from one to the next, in flight as in contact,
+// and with the printed arm, whose steps the sensors sample just the same.
+static void every_mode_is_gone_into_from_every_other(void **state)
+{
+    (void)state;
+    enum { MOST = 32 };
+    const int lock = PARAMETER_INDEX(control.lock);
+    const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
+    for (int law = LAW_NONE + 1; law < 2 * LAW_PLUGIN; law++) {
+        const controller *c = law % LAW_PLUGIN == LAW_NONE ? NULL : controller_of(law % LAW_PLUGIN);
+        if (c == NULL || !c->lockable) {
+            continue;
+        }
+
+        // all pairs of modes in flight, and again in contact
+        action script[MOST];
+        int count = 0, modes = 0, mode[MOST];
+        while (c->modes[modes] != NULL) {
+            modes++;
+        }
+        for (int part = 0; part < 2; part++) {
+            double time = part == 0 ? 0.006 : 0.601;
+            for (int i = 0; i < modes; i++) {
+                for (int j = 0; j < modes && count + 2 <= MOST; j++) {
+                    for (int k = 0; k < 2; k++, time += 0.01, count++) {
+                        mode[count] = k == 0 ? i : j;
+                        script[count] =
+                            (action){.time = time, .kind = ACTION_SET, .parameter = lock};
+                        snprintf(script[count].text, sizeof script[count].text, "%s",
+                                 c->modes[mode[count]]);
+                    }
+                }
+            }
+        }
+
+        char setting[64];
+        snprintf(setting, sizeof setting, "control.law=%s", c->name);
+        scenario s = {.parameters = rig_parameters(
+                          SETTINGS(setting, models[law / LAW_PLUGIN], "run.duration=0.8")),
+                      .actions = script,
+                      .action_count = count};
+        run_result r;
+        if (run_scenario(&s, true, &r) != STATUS_OK) {
+            fail_msg("%s: %s", c->name, r.summary.message);
+        }
+        for (int i = 0; i < count; i++) {
+            const double then = script[i].time + 0.006, is = answer_at(&r, then)->controller_mode;
+            if (is != mode[i]) {
+                fail_msg("%s, %s: mode %g, not %d, at %g s", c->name, models[law / LAW_PLUGIN], is,
+                         mode[i], then);
+            }
+        }
+        run_finish(&r);
+    }
+}
+
 // No more names are written than there is room for.
 static void names_of_modes_keep_to_their_room(void **state)
 {
@@ -353,6 +409,7 @@ int main(void)
         cmocka_unit_test(unknown_modes_are_refused),
         cmocka_unit_test(files_are_checked_where_the_lock_stands),
         cmocka_unit_test(lock_is_an_input_that_a_saved_scenario_repeats),
+        cmocka_unit_test(every_mode_is_gone_into_from_every_other),
         cmocka_unit_test(pressing_from_the_start_finds_the_wall),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -8,6 +8,7 @@
 #include "src/run/run.h"
 #include "src/solve/contact_machine.h"
 #include "src/solve/modal_basis.h"
+#include "src/solve/pace.h"
 #include "tests/arm_fixture.h"
 
 // What became of a motion.
@@ -138,6 +139,54 @@ static void a_run_that_could_not_end_says_so(void **state)
     assert_true(r.summary.message[0] != '\0');
     assert_true(r.summary.steps > 0);
     run_finish(&r);
+}
+
+// What is told of strides that are too short names what makes them so.
+static void a_run_that_could_not_end_says_why(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *settings[8];
+        double angle, velocity;
+        const char *cause;
+    } cases[] = {
+        {{"arm.links=3"}, 0, 0, "fastest mode of the arm"},
+        {{"arm.links=3"}, 0, -1e9, "too fast to follow"},
+        {{"wall.contact=kelvin-voigt", "wall.stiffness=1e6", "wall.angle=0"},
+         0,
+         0.1,
+         "wall.damping"},
+        {{"wall.contact=kelvin-voigt", "wall.stiffness=1e6"}, 0, 0, "fastest mode of the arm"},
+        {{"motor.inductance=1e-12"}, 0, 0, "motor.inductance"},
+        {{"motor.inductance=1"}, 0, 0, "fastest mode of the arm"},
+        {{"arm.links=3", "wall.restitution=0.5"}, 0, 0, "wall.restitution = 0"},
+        {{"arm.links=3", "arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02"},
+         0,
+         0,
+         "fewer links or less damping"},
+        {{"arm.links=4", "arm.hub_joint=spring", "arm.k1=169468", "arm.hub_inertia=2.29663e-4"},
+         0,
+         0,
+         "fastest mode of the arm"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fixture_parameters(cases[i].settings);
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_non_null(m);
+        motion_start(&a, m, cases[i].angle, cases[i].velocity);
+
+        // the first look only begins to count, and none has passed since
+        pace looked = pace_begin();
+        fault f = {.text = ""};
+        assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_OK);
+        assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
+        if (strstr(f.text, cases[i].cause) == NULL) {
+            fail_msg("case %zu, '%s': %s", i, cases[i].cause, f.text);
+        }
+        motion_destroy(m);
+    }
 }
 
 // A program that goes back to a state a thousand times, or asks for instants a nanosecond apart,
@@ -447,6 +496,71 @@ static void bounces_lower_than_rounding_do_not_gain(void **state)
     }
 }
 
+// Without damping, of the joints or of the motor, nothing is booked as lost to it, and in strides
+// of the modes the ledger closes as it does with both: in flight, on the wall, pressed to it and
+// bent.
+static void an_arm_without_damping_loses_nothing_to_it(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        const bool joints = i & 1, hub = i & 2, stands = i & 4;
+        parameters p = fixture_parameters(SETTINGS(
+            "arm.links=4", "arm.hub_joint=spring", "arm.hub_inertia=2e-4", "arm.k1=169468",
+            joints ? "arm.damping_ratio=1e-3" : "arm.damping_ratio=0",
+            hub ? "motor.viscous_friction=0.01" : "motor.viscous_friction=0", "motor.back_emf=0",
+            "motor.voltage=0.5", stands ? "wall.kind=point" : "wall.kind=none"));
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_ptr_equal(m->engine, &modal_engine);
+        motion_start(&a, m, 0.09, 0.3);
+        const passage all = move_on(&a, m, 0.1, 5000);
+        assert_int_equal(all.impacts > 0, stands);
+        check_below(all.open, 1e-8);
+        const double *lost = state_quadratures(m, m->state);
+        assert_int_equal(lost[QUADRATURE_DAMPING] != 0, joints);
+        assert_int_equal(lost[QUADRATURE_VISCOUS] != 0, hub);
+        motion_destroy(m);
+    }
+}
+
+// Whether an arm that swings towards the wall and is pulled back touches it.
+static bool grazes(const parameters *p, double wall)
+{
+    parameters moved = *p;
+    moved.wall.angle = wall;
+    return meetings_of(&moved, 0, 0.5, 0.3).count > 0;
+}
+
+// The farthest wall that an arm which turns back just touches, the instant far within a stride, is
+// the same by the modes and by the formula: a graze is an impact however short it is.
+static void a_graze_within_a_stride_is_found(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        parameters p = fixture_parameters(
+            SETTINGS("arm.links=4", "arm.hub_joint=spring", "arm.hub_inertia=2.29663e-4",
+                     "arm.damping_ratio=7.92665e-4", "arm.k1=169468", "motor.voltage=-1",
+                     "motor.stiction=0", i == 0 ? "wall.kind=point" : "wall.kind=plane"));
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_ptr_equal(m->engine, &modal_engine);
+        motion_destroy(m);
+
+        double touched = 0.005, missed = 0.5;
+        assert_true(grazes(&p, touched) && !grazes(&p, missed));
+        while (missed - touched > 1e-12) {
+            const double middle = (touched + missed) / 2;
+            *(grazes(&p, middle) ? &touched : &missed) = middle;
+        }
+
+        // the formula alone takes what carries a mass
+        p.arm.tip_mass = 1e-18;
+        assert_true(grazes(&p, touched - 1e-10) && !grazes(&p, touched + 1e-10));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -454,6 +568,9 @@ int main(void)
         cmocka_unit_test(a_stiff_pair_moves_as_by_the_formula),
         cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
         cmocka_unit_test(a_run_that_could_not_end_says_so),
+        cmocka_unit_test(a_run_that_could_not_end_says_why),
+        cmocka_unit_test(an_arm_without_damping_loses_nothing_to_it),
+        cmocka_unit_test(a_graze_within_a_stride_is_found),
         cmocka_unit_test(a_loop_makes_as_many_strides_as_are_asked_for),
         cmocka_unit_test(events_within_a_stride_are_the_formulas),
         cmocka_unit_test(an_impact_is_one_of_the_exact_gap),
