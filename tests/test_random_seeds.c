@@ -185,6 +185,22 @@ static void test_the_force_near_a_fold_is_that_of_another_engine(void **state)
     check_relative(peak[0], peak[1], 1e-4);
 }
 
+// Neither do the steps of the Runge-Kutta engine lead through a fold, nor to a release in it.
+static void test_no_step_leads_through_a_fold(void **state)
+{
+    (void)state;
+    const char *const voltages[] = {"motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8"};
+    for (size_t i = 0; i < sizeof voltages / sizeof voltages[0]; i++) {
+        run_result r;
+        run_with(SETTINGS("wall.kind=plane", "wall.angle=0.0018", "wall.restitution=0.08",
+                          "arm.mass=1.5", "arm.length=0.3", "arm.hub_inertia=0.00036",
+                          "arm.k2=0.27", "arm.tip_mass=1e-15", "run.duration=0.3", voltages[i]),
+                 false, &r);
+        assert_int_equal(r.summary.status, STATUS_FOLDED);
+        run_finish(&r);
+    }
+}
+
 // A decay that strides are only as brief as is no reason to leave the series of two links: in fast
 // rotation a stride of the modes is hardly longer and costs twenty times as much.
 static void test_a_braked_pair_stays_with_its_series(void **state)
@@ -206,6 +222,7 @@ int main(void)
         cmocka_unit_test(test_runs_that_failed_come_to_their_end),
         cmocka_unit_test(test_an_arm_folded_over_the_hub_ends_the_run),
         cmocka_unit_test(test_the_force_near_a_fold_is_that_of_another_engine),
+        cmocka_unit_test(test_no_step_leads_through_a_fold),
         cmocka_unit_test(test_a_braked_pair_stays_with_its_series),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

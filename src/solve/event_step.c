@@ -4,6 +4,7 @@
 
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
+#include "src/base/sincos.h"
 #include "src/solve/contact_machine.h"
 #include "src/solve/dense_location.h"
 #include "src/solve/locate.h"
@@ -130,6 +131,23 @@ static bool held_folded(const arm *a, motion *m)
            chain_is_folded(a, state_angles(m, m->state));
 }
 
+// Whether the step just made by a stepping engine led an arm on a rigid flat wall through a fold,
+// where every link goes from one side of across the wall to the other. Strides of dense engines
+// keep clear of it.
+static bool went_through_fold(const arm *a, const motion *m)
+{
+    const double *before = state_angles(m, m->trial), *now = state_angles(m, m->state);
+    bool through = !engine_is_dense(m->engine) && m->trial[SLOT_CONTACT] != 0 &&
+                   motion_wall_is_rigid(m) && a->wall.kind == WALL_PLANE && a->links > 1;
+    for (int k = a->first; k < a->dof && through; k++) {
+        const double was =
+            inline_cos(before[k]) * a->wall.cosine + inline_sin(before[k]) * a->wall.sine;
+        const double is = inline_cos(now[k]) * a->wall.cosine + inline_sin(now[k]) * a->wall.sine;
+        through = was * is < 0;
+    }
+    return through;
+}
+
 // What motion_look_ahead finds out, of an arm that can go on.
 static void look_ahead(const arm *a, motion *m, double until, double step)
 {
@@ -209,8 +227,9 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 
     accept(m, step);
     m->made = h;
-    if (any && first == WATCH_GAP && motion_wall_is_rigid(m) &&
-        chain_is_folded(a, state_angles(m, m->state))) {
+    const bool folded = any && (first == WATCH_GAP || first == WATCH_FORCE) &&
+                        motion_wall_is_rigid(m) && chain_is_folded(a, state_angles(m, m->state));
+    if (folded || went_through_fold(a, m)) {
         m->failure_time = m->state[SLOT_TIME];
         return STATUS_FOLDED;
     }
