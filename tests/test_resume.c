@@ -96,6 +96,52 @@ static void an_arm_made_stiff_is_resumed_as_it_is(void **state)
     }
 }
 
+// Scripts of two runs that have their first actions in common: the run is resumed before the first
+// one that differs in whatever, is missing or is new.
+static void scripts_that_part_are_resumed_where_they_part(void **state)
+{
+    (void)state;
+    const int volts = PARAMETER_INDEX(motor.voltage), spring = PARAMETER_INDEX(arm.k2);
+    const action one = {.time = 0.8, .kind = ACTION_SET, .parameter = volts, .value = 1.5};
+    const action two = {.time = 2.5, .kind = ACTION_SET, .parameter = volts, .value = 0.5};
+    const action three = {.time = 3, .kind = ACTION_SET, .parameter = volts, .value = 0.8};
+    action other = two, later = two, elsewhere = two;
+    other.value = 0.6;
+    later.time = 2.7;
+    elsewhere.parameter = spring;
+    elsewhere.value = 5;
+    action scripts[][3] = {{one},
+                           {one, two},
+                           {one, two, three},
+                           {one, other, three},
+                           {one, later, three},
+                           {one, elsewhere},
+                           {one, three}};
+    const int counts[] = {1, 2, 3, 3, 3, 2, 2};
+    enum { SCRIPTS = sizeof counts / sizeof counts[0] };
+
+    scenario s[SCRIPTS];
+    run_result whole[SCRIPTS];
+    for (int i = 0; i < SCRIPTS; i++) {
+        s[i] = (scenario){.parameters =
+                              fixture_parameters(SETTINGS("run.duration=4", "motor.stiction=0")),
+                          .actions = scripts[i],
+                          .action_count = counts[i]};
+        whole[i] = run_keeping_history(&s[i]);
+    }
+    for (int i = 0; i < SCRIPTS; i++) {
+        for (int j = 0; j < SCRIPTS; j++) {
+            run_result result;
+            assert_true(resumed(&whole[i], &s[i], &s[j], &result));
+            check_same_run(&result, &whole[j]);
+            run_finish(&result);
+        }
+    }
+    for (int i = 0; i < SCRIPTS; i++) {
+        run_finish(&whole[i]);
+    }
+}
+
 static void a_longer_run_goes_on_from_a_shorter_one(void **state)
 {
     (void)state;
@@ -162,6 +208,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_resumed_run_is_the_run_from_the_start),
         cmocka_unit_test(an_arm_made_stiff_is_resumed_as_it_is),
+        cmocka_unit_test(scripts_that_part_are_resumed_where_they_part),
         cmocka_unit_test(a_longer_run_goes_on_from_a_shorter_one),
         cmocka_unit_test(another_arm_has_nothing_in_common),
         cmocka_unit_test(a_run_without_history_cannot_be_resumed),

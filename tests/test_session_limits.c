@@ -124,6 +124,63 @@ static void inputs_that_cannot_go_stay(void **state)
     session_finish(&s);
 }
 
+// An input that may not go leaves all of them as and where they were, whichever it is.
+static void a_refused_drop_keeps_the_order(void **state)
+{
+    (void)state;
+    session s = opened(brief);
+    fault f = {0};
+    session_input before[5];
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.mass), "0.45", &f), STATUS_OK);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.links), "3", &f), STATUS_OK);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.joint_stiffness), "7,8", &f),
+                     STATUS_OK);
+    session_seek(&s, 0.1);
+    assert_int_equal(session_push(&s, 0.01, &f), STATUS_OK);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "2", &f), STATUS_OK);
+    assert_int_equal(s.input_count, 5);
+    memcpy(before, s.inputs, sizeof before);
+    assert_int_equal(session_drop_input(&s, 1, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(s.input_count, 5);
+    assert_memory_equal(before, s.inputs, sizeof before);
+
+    // the others can go, and those behind move up
+    for (int i = 4; i > 2; i--) {
+        assert_int_equal(session_drop_input(&s, i, &f), STATUS_OK);
+        assert_int_equal(s.input_count, i);
+        assert_memory_equal(before, s.inputs, (size_t)i * sizeof *before);
+    }
+    assert_int_equal(session_drop_input(&s, 0, &f), STATUS_OK);
+    assert_int_equal(s.input_count, 2);
+    assert_memory_equal(before + 1, s.inputs, 2 * sizeof *before);
+    session_finish(&s);
+}
+
+// A session that takes the inputs of another one has its run to the last bit.
+static void taken_inputs_make_the_same_run(void **state)
+{
+    (void)state;
+    session from = opened(brief), to = opened(brief);
+    fault f = {0};
+    assert_int_equal(session_change(&from, PARAMETER_INDEX(arm.k2), "7", &f), STATUS_OK);
+    for (int i = 1; i <= 3; i++) {
+        char volts[16];
+        session_seek(&from, 0.05 * i);
+        snprintf(volts, sizeof volts, "%d", i);
+        assert_int_equal(session_change(&from, PARAMETER_INDEX(motor.voltage), volts, &f),
+                         STATUS_OK);
+        assert_int_equal(session_push(&from, 0.001 * i, &f), STATUS_OK);
+        assert_int_equal(session_take_inputs(&to, from.inputs, from.input_count, &f), STATUS_OK);
+        assert_int_equal(to.input_count, 1 + 2 * i);
+        assert_memory_equal(to.inputs, from.inputs, (size_t)to.input_count * sizeof *to.inputs);
+        assert_int_equal(to.run.trace.row_count, from.run.trace.row_count);
+        assert_memory_equal(to.run.trace.rows, from.run.trace.rows,
+                            to.run.trace.row_count * sizeof *to.run.trace.rows);
+    }
+    session_finish(&from);
+    session_finish(&to);
+}
+
 // A change given at the row before an event takes effect before it, one at the row after it does
 // not change the event.
 static void a_change_at_an_event_belongs_to_its_row(void **state)
@@ -219,6 +276,8 @@ int main(void)
         cmocka_unit_test(what_is_too_long_or_no_value_is_refused),
         cmocka_unit_test(adjusting_keeps_what_was_before),
         cmocka_unit_test(inputs_that_cannot_go_stay),
+        cmocka_unit_test(a_refused_drop_keeps_the_order),
+        cmocka_unit_test(taken_inputs_make_the_same_run),
         cmocka_unit_test(a_change_at_an_event_belongs_to_its_row),
         cmocka_unit_test(a_stopped_run_goes_on),
         cmocka_unit_test(code_that_cannot_be_loaded_stays_withheld),
