@@ -127,12 +127,6 @@ static double integral_to(const run_result *r, double time)
     return sum;
 }
 
-// A number of whole millionths (of 2^-20), whose sums are exact.
-static double whole(double number)
-{
-    return ldexp(round(ldexp(number, 20)), -20);
-}
-
 // Windows shorter and longer than the steps, some with impulses: of all windows that begin on a
 // fine grid none has a larger mean, and near the best of them there is one with the mean found.
 static void no_window_of_random_forces_has_more(void **state)
@@ -145,19 +139,19 @@ static void no_window_of_random_forces_has_more(void **state)
         run_result r = empty_run();
         double time = 0, last = 1;
         for (int i = 0; i < 6; i++) {
-            const double length = whole(0.1 + 0.2 * random_uniform(&g));
+            const double length = 0.1 + 0.2 * random_uniform(&g);
             const double slope = 4 * random_uniform(&g) - 2, curve = 4 * random_uniform(&g) - 2;
             add_step(&r, time, time + length, last, slope, curve);
             last += slope + curve;
             time += length;
         }
-        const double at = whole(time * random_uniform(&g)), impulse = round % 3 == 0 ? 0.3 : 0;
+        const double at = time * random_uniform(&g), impulse = round % 3 == 0 ? 0.3 : 0;
         if (impulse > 0) {
             add_impulse(&r, at, impulse, false);
         }
 
-        const double window = whole(0.03 + 0.4 * random_uniform(&g));
-        const double from = whole(0.1 * random_uniform(&g));
+        const double window = 0.03 + 0.4 * random_uniform(&g);
+        const double from = 0.1 * random_uniform(&g);
         const double found = force_largest_mean(&r, from, window);
         double seen = -HUGE_VAL;
         for (int i = 0; i <= FINE; i++) {

@@ -131,11 +131,19 @@ static void test_rates_that_change_again_and_again(void **state)
     }
     assert_true(samples > 25);
 
-    // where that period is over already, the next sample is at the change
+    // where that period is over already, the next sample is at the change, and those after it
+    // follow in the new period
     p.control.rate = 1000;
     assert_true(last + 1e-3 < 0.8);
     assert_int_equal(rig_retune(r, &p, 0.8, &f), STATUS_OK);
-    check_close(rig_next_time(r), 0.8, 0);
+    for (int i = 0; i < 10; i++) {
+        const double now = rig_next_time(r);
+        const long before = r->samples;
+        bool changed;
+        assert_int_equal(rig_act(r, now, &at_rest, &changed, &f), STATUS_OK);
+        assert_int_equal(r->samples, before + 1);
+        check_close(now, 0.8 + i * 1e-3, 1e-12);
+    }
     rig_destroy(r);
 }
 

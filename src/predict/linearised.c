@@ -33,6 +33,10 @@ enum { PIECES = 3 };
 // As far as the closed form is followed: its three pieces are then 1 % off at worst [rad].
 #define CLOSED_FORM_BEND 0.6
 
+// And the share of critical damping to which it is taken: more of it, and the arm stops late, far
+// from where the pieces are fitted.
+#define MOST_DAMPED 0.5
+
 // The arm with the wall moved to where the arm touches it now.
 static arm touching_now(const arm *a, const double *q)
 {
@@ -296,8 +300,8 @@ static bool closed_form_suits(const arm *a, const double *after)
     return a->dof == 2 && a->links == 2 && after[0] > 0 && !chain_is_loaded(a);
 }
 
-// False if the arm bends further than the few pieces of the closed form are good for, or if the
-// force peaks long before the arm stops.
+// False if the arm bends further than the few pieces of the closed form are good for, if the force
+// peaks long before the arm stops, or if so much damping is on the way that it stops late.
 static bool predict_closed_form(const arm *touched, const double *q, const double *after,
                                 contact_state mode, prediction *out)
 {
@@ -309,6 +313,9 @@ static bool predict_closed_form(const arm *touched, const double *q, const doubl
 
     // the path, and the force along its end, where the arm is bent the most
     pressed_tangents(touched, q, &c, &k);
+    if (c * c > 4 * MOST_DAMPED * MOST_DAMPED * k) {
+        return false;
+    }
     predict_path(&p, q[0], after[0], c, k, &path);
     return path_peak(&p, &path, first, out) && fabs(p.bend) < CLOSED_FORM_BEND;
 }

@@ -16,6 +16,8 @@
 #define GRAZE 0.02
 // A peak after such a force that is no larger than this times the one before changes nothing.
 #define SAME_PEAK 1.005
+// The peak is known if it does not grow between this share of the horizon and its end.
+#define SETTLED_FROM 0.8
 
 enum { MOST_PIECES = 1000, MOST_SAMPLES = 60000 };
 
@@ -355,8 +357,10 @@ static bool see_end(follower *f, double h, pulse *out)
 static void follow(follower *f, pulse *out)
 {
     int pieces = 0;
-    bool fresh = true; // a linear arm begins
+    bool fresh = true;         // a linear arm begins
+    double before = out->peak; // the peak some time before the horizon [N]
     for (int sample = 0; f->now.time < PULSE_HORIZON; sample++) {
+        before = f->now.time < SETTLED_FROM * PULSE_HORIZON ? out->peak : before;
         if (command_changes(f) || fresh) {
             evaluate(f, &f->now);
             if (held_still(f)) {
@@ -397,6 +401,11 @@ static void follow(follower *f, pulse *out)
         }
         fresh = changed || cut || off;
         pieces += off;
+    }
+
+    // a force that still rises at the horizon has its peak beyond it
+    if (out->peak - before > FORCE_DEFECT * out->peak) {
+        out->doubt = DOUBT_LENGTH;
     }
 }
 

@@ -11,7 +11,8 @@
 #include "src/base/status.h"
 #include "src/predict/predict.h"
 
-// A pulse that has not ended after this time is followed no further [s].
+// A pulse that has not ended after this time is followed no further [s]; one whose force still
+// rises then is doubtful.
 #define PULSE_HORIZON 1.0
 
 // Where a pulse begins.

@@ -90,7 +90,14 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
                 : r->clock_start;
         r->clock_samples = r->samples > 0 ? r->samples - 1 : 0;
         r->period = period;
-        r->sample_time = r->samples > 0 ? fmax(time, r->clock_start + period) : r->sample_time;
+        r->sample_time = r->samples > 0 ? r->clock_start + period : r->sample_time;
+
+        // the clock goes on from now where that sample would have been due earlier
+        if (r->samples > 0 && r->sample_time < time) {
+            r->sample_time = time;
+            r->clock_start = time;
+            r->clock_samples = r->samples;
+        }
     }
     r->delay = p->control.delay + p->control.delay_periods * r->period;
     return tell_controller(r, told, f);

@@ -7,7 +7,7 @@
 
 // One end of the window, on its way through the run.
 typedef struct window_end {
-    double time;     // [s]
+    double time;     // of the window's front [s]
     size_t step;     // that it lies in
     double before;   // integral of the force up to that step [N s]
     size_t event;    // next one whose impulse it has not passed
@@ -28,21 +28,26 @@ static bool is_impulse(const event *e)
     return e->kind == EVENT_IMPACT && e->impulse > 0 && !e->delivered_by_step;
 }
 
-// Moves an end of the window on. Impulses at the instant itself are passed or not.
-static void advance(const run_result *r, window_end *w, double time, bool past_impulses)
+// Moves an end of the window on, which stands `behind` the front's time [s]. Impulses at the
+// instant itself are passed or not. Instants are compared where the front meets them, by the same
+// sums as in next_change: rounded otherwise, the end could stay in a step that it has left.
+static void advance(const run_result *r, window_end *w, double time, double behind,
+                    bool past_impulses)
 {
     const force_step *steps = force_steps(&r->history.forces);
     const trace *t = &r->trace;
-    while (w->step + 1 < r->history.forces.count && steps[w->step].end <= time) {
+    while (w->step + 1 < r->history.forces.count && steps[w->step].end + behind <= time) {
         w->before += steps[w->step].mean * (steps[w->step].end - steps[w->step].start);
         w->step++;
     }
 
     // and past impulses
-    while (w->event < t->event_count && (t->events[w->event].time < time ||
-                                         (past_impulses && t->events[w->event].time == time))) {
+    for (; w->event < t->event_count; w->event++) {
+        const double met = t->events[w->event].time + behind;
+        if (!(met < time || (past_impulses && met == time))) {
+            break;
+        }
         w->impulses += is_impulse(&t->events[w->event]) ? t->events[w->event].impulse : 0;
-        w->event++;
     }
     w->time = time;
 }
@@ -152,8 +157,8 @@ double force_largest_mean(const run_result *result, double from, double window)
     size_t bounded = 0;
     for (double time = from + window;;) {
         // at the instant itself, impulses on both edges counting
-        advance(result, &front, time, true);
-        advance(result, &back, time - window, false);
+        advance(result, &front, time, 0, true);
+        advance(result, &back, time, window, false);
         if (time < end && holds_no_more(result, &front, &back, window, largest, &bounded)) {
             time = fmin(force_steps(h)[front.step].end, end);
             continue;
@@ -165,7 +170,7 @@ double force_largest_mean(const run_result *result, double from, double window)
         }
 
         // behind it, up to the next one
-        advance(result, &back, time - window, true);
+        advance(result, &back, time, window, true);
         double next = fmin(next_change(result, &front, &back, window), end);
         largest = fmax(largest, largest_between(result, &front, &back, window, next));
         time = next > time ? next : end;
