@@ -28,3 +28,14 @@ static inline parameters fixture_parameters(const char *const *settings)
 }
 
 #define SETTINGS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+// x' K y of equal joints, by the bends: no digit of a slow mode is lost in differences.
+static inline double bend_product(const arm *a, const double *x, const double *y)
+{
+    double sum = 0;
+    for (int k = 0; k + 1 < a->dof; k++) {
+        const double s = k + 1 == a->first ? a->hub_stiffness : a->joint_stiffness;
+        sum += s * (x[k + 1] - x[k]) * (y[k + 1] - y[k]);
+    }
+    return sum;
+}

@@ -39,16 +39,6 @@ static double inertia(const arm *a, const double *x, const double *y, double *pr
     return sum;
 }
 
-static double strain(const arm *a, const double *x, const double *y)
-{
-    double sum = 0;
-    for (int k = 0; k + 1 < a->dof; k++) {
-        const double s = k + 1 == a->first ? a->hub_stiffness : a->joint_stiffness;
-        sum += s * (x[k + 1] - x[k]) * (y[k + 1] - y[k]);
-    }
-    return sum;
-}
-
 static void check_basis(const arm *a, bool contact, bool stuck)
 {
     const int n = a->dof;
@@ -86,7 +76,7 @@ static void check_basis(const arm *a, bool contact, bool stuck)
             const double *other = b.by_mode + (size_t)j * size;
             check_close(inertia(a, mode, other, product), j == k, 1e-11);
             if (k != b.across && b.rate[j] > 0) {
-                const double shared = strain(a, mode, other) / (b.rate[k] * b.rate[j]);
+                const double shared = bend_product(a, mode, other) / (b.rate[k] * b.rate[j]);
                 check_close(shared, j == k, 1e-9);
             }
         }

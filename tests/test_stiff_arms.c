@@ -308,17 +308,6 @@ static void what_a_fast_hub_loses_is_all_booked(void **state)
     }
 }
 
-// x' K y by the bends.
-static double strain(const arm *a, const double *x, const double *y)
-{
-    double sum = 0;
-    for (int k = 0; k + 1 < a->dof; k++) {
-        const double s = k + 1 == a->first ? a->hub_stiffness : a->joint_stiffness;
-        sum += s * (x[k + 1] - x[k]) * (y[k + 1] - y[k]);
-    }
-    return sum;
-}
-
 // The squares of the rates of 256 links span ten decades: a last bit of the fastest is 1e-6 of the
 // slowest. In all contact states the slow modes have their own rates and no springs in common.
 static void slow_modes_of_many_links_keep_their_digits(void **state)
@@ -338,9 +327,9 @@ static void slow_modes_of_many_links_keep_their_digits(void **state)
         assert_true(rigid ? b.rate[0] == 0 : b.rate[0] > 1);
         for (int j = rigid; j < 12; j++) {
             const double *mode = b.by_mode + (size_t)j * (size_t)a.dof;
-            check_relative(b.rate[j] * b.rate[j], strain(&a, mode, mode), 1e-11);
+            check_relative(b.rate[j] * b.rate[j], bend_product(&a, mode, mode), 1e-11);
             for (int k = rigid; k < j; k++) {
-                const double shared = strain(&a, mode, b.by_mode + (size_t)k * (size_t)a.dof);
+                const double shared = bend_product(&a, mode, b.by_mode + (size_t)k * (size_t)a.dof);
                 check_close(shared / (b.rate[j] * b.rate[k]), 0, 1e-11);
             }
         }

@@ -67,16 +67,6 @@ double plain_exp(double x)
     return value * double_of_bits((uint64_t)(power + (DBL_MAX_EXP - 1)) << (DBL_MANT_DIG - 1));
 }
 
-// 2 (artanh(s) - s)/s of z = s^2 by its series, the terms left out below 1e-18 for s up to
-// (sqrt(2) - 1)/(sqrt(2) + 1)
-#define ARTANH_SERIES_ENDS 0.1716
-static double artanh_tail(double z)
-{
-    static const double shares[12] = {2. / 3,  2. / 5,  2. / 7,  2. / 9,  2. / 11, 2. / 13,
-                                      2. / 15, 2. / 17, 2. / 19, 2. / 21, 2. / 23, 2. / 25};
-    return z * twelve_terms(shares, z);
-}
-
 // The exponent n of a number x = 2^n m above zero, and m from sqrt(1/2) to sqrt(2).
 static int split_number(double x, double *m)
 {
@@ -173,37 +163,6 @@ double plain_pow(double x, double y)
 {
     assert(x >= 0);
     return y == 0 ? 1 : plain_exp(y * plain_log(x));
-}
-
-double plain_sinh(double x)
-{
-    const double size = fabs(x);
-    if (size > 1) {
-        const double half = plain_exp(size) / 2;
-        return copysign(isinf(half) ? half : half - 0.25 / half, x);
-    }
-
-    // its series, as the difference of exponentials would lose digits
-    double tail = 0;
-    for (int k = 19; k >= 3; k -= 2) {
-        tail = (1 + tail) * (x * x / (k * (k - 1)));
-    }
-    return x + x * tail;
-}
-
-double plain_cosh(double x)
-{
-    const double half = plain_exp(fabs(x)) / 2;
-    return isinf(half) ? half : half + 0.25 / half;
-}
-
-double plain_atanh(double x)
-{
-    assert(fabs(x) < 1);
-    if (fabs(x) < ARTANH_SERIES_ENDS) {
-        return x + x * artanh_tail(x * x) / 2;
-    }
-    return copysign(plain_log((1 + fabs(x)) / (1 - fabs(x))) / 2, x);
 }
 
 // Arctangent of `low`/`high`, 0 <= low <= high, high > 0.

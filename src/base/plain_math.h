@@ -1,4 +1,4 @@
-// Exponential, logarithm, power, hyperbolic functions and arctangents from nothing but IEEE
+// Exponential, logarithm, power and arctangents from nothing but IEEE
 // additions, multiplications, divisions and square roots.
 //
 // The C library picks its code for them (with or without fused multiply-add) by the processor, so
@@ -15,13 +15,6 @@ double plain_log(double x);
 
 // x^y for x above zero or zero; within y log(x) units in the last place.
 double plain_pow(double x, double y);
-
-// Hyperbolic sine and cosine, within 4 units in the last place; infinite beyond exp's range.
-double plain_sinh(double x);
-double plain_cosh(double x);
-
-// Inverse of the hyperbolic tangent for |x| < 1, within 4 units in the last place.
-double plain_atanh(double x);
 
 // The angle of the point (x, y) from the x axis, from -pi to pi [rad], both finite; 0 at the
 // origin.

@@ -33,8 +33,8 @@ enum { PIECES = 3 };
 // As far as the closed form is followed: its three pieces are then 1 % off at worst [rad].
 #define CLOSED_FORM_BEND 0.6
 
-// And the share of critical damping to which it is taken: more of it, and the arm stops late, far
-// from where the pieces are fitted.
+// And the share of critical damping below which its pieces are taken: with more the arm stops late,
+// far from where they are fitted.
 #define MOST_DAMPED 0.5
 
 // The arm with the wall moved to where the arm touches it now.
@@ -65,52 +65,41 @@ static arm touching_now(const arm *a, const double *q)
 typedef struct oscillation {
     double rest;      // where it would settle [rad]
     double decay;     // c / 2 [1/s]
-    double square;    // k - c^2/4, negative if overdamped [1/s2]
-    double frequency; // root of |square| [rad/s]
+    double frequency; // root of k - c^2/4 [rad/s]
     double sine;      // coefficient of the sine [rad]
 } oscillation;
 
-static oscillation oscillation_from(double acceleration, double velocity, double c, double k)
+// False of one that is damped by more than MOST_DAMPED.
+static bool oscillation_from(double acceleration, double velocity, double c, double k,
+                             oscillation *o)
 {
-    oscillation o;
-    o.decay = c / 2;
-    o.square = k - c * c / 4;
-    o.frequency = sqrt(fmax(fabs(o.square), 1e-12));
-    o.rest = (acceleration + c * velocity) / k;
-    o.sine = (velocity - o.decay * o.rest) / o.frequency;
-    return o;
+    if (!(c * c < 4 * MOST_DAMPED * MOST_DAMPED * k)) {
+        return false;
+    }
+    o->decay = c / 2;
+    o->frequency = sqrt(k - c * c / 4);
+    o->rest = (acceleration + c * velocity) / k;
+    o->sine = (velocity - o->decay * o->rest) / o->frequency;
+    return true;
 }
 
 static void oscillation_at(const oscillation *o, double t, double *y, double *velocity)
 {
-    double c, s, decay = plain_exp(-o->decay * t),
-                 turn = o->square >= 0 ? -o->frequency : o->frequency;
-    if (o->square >= 0) {
-        inline_sincos(o->frequency * t, &s, &c);
-    } else {
-        c = plain_cosh(o->frequency * t);
-        s = plain_sinh(o->frequency * t);
-    }
-
+    double c, s, decay = plain_exp(-o->decay * t);
+    inline_sincos(o->frequency * t, &s, &c);
     *y = o->rest + decay * (o->sine * s - o->rest * c);
-    *velocity =
-        decay * (o->sine * (o->frequency * c - o->decay * s) - o->rest * (turn * s - o->decay * c));
+    *velocity = decay * (o->sine * (o->frequency * c - o->decay * s) +
+                         o->rest * (o->frequency * s + o->decay * c));
 }
 
 // First instant at which the oscillation comes to rest, its velocity being positive at 0.
 static double oscillation_stop(const oscillation *o)
 {
-    // velocity = decay(t) ((sine f + rest d) c + (-turn rest - sine d) s)
-    double p = o->sine * o->frequency + o->rest * o->decay;
-    double turn = o->square >= 0 ? -o->frequency : o->frequency;
-    double q = -turn * o->rest - o->sine * o->decay;
-
-    // overdamped it comes to rest once or only in the limit
-    if (o->square >= 0) {
-        double angle = plain_atan2(p, -q); // tan(f t) = -p/q
-        return (angle > 0 ? angle : angle + M_PI) / o->frequency;
-    }
-    return -p / q > 0 && -p / q < 1 ? plain_atanh(-p / q) / o->frequency : 3 / o->decay;
+    // velocity = decay(t) (p c + q s), which vanishes where tan(f t) = -p/q
+    const double p = o->sine * o->frequency + o->rest * o->decay;
+    const double q = o->frequency * o->rest - o->sine * o->decay;
+    const double angle = plain_atan2(p, -q);
+    return (angle > 0 ? angle : angle + M_PI) / o->frequency;
 }
 
 // One degree of freedom of the arm on the wall.
@@ -195,8 +184,9 @@ static double path_force(pressed_arm *p, const pressed_path *path, double t)
     return p->force;
 }
 
-// Follows the arm from the hub at x moving at v, towards the wall, until it comes to rest.
-static void predict_path(pressed_arm *p, double x, double v, double c, double k, pressed_path *path)
+// Follows the arm from the hub at x moving at v, towards the wall, until it comes to rest. False if
+// damping lets it creep there.
+static bool predict_path(pressed_arm *p, double x, double v, double c, double k, pressed_path *path)
 {
     double t = 0, acceleration = p->acceleration;
     for (int i = 0; i < PIECES; i++) {
@@ -208,7 +198,9 @@ static void predict_path(pressed_arm *p, double x, double v, double c, double k,
         }
 
         // a first guess of the piece, an even share of what is left of the way
-        *o = oscillation_from(acceleration, v, c, k);
+        if (!oscillation_from(acceleration, v, c, k, o)) {
+            return false;
+        }
         length = oscillation_stop(o) / (PIECES - i);
         oscillation_at(o, length, &y, &velocity);
         pressed_evaluate(p, x + y, velocity);
@@ -217,7 +209,9 @@ static void predict_path(pressed_arm *p, double x, double v, double c, double k,
         double secant = (acceleration - c * (velocity - v) - p->acceleration) / y;
         if (y > 0 && secant > 0) {
             k = secant;
-            *o = oscillation_from(acceleration, v, c, k);
+            if (!oscillation_from(acceleration, v, c, k, o)) {
+                return false;
+            }
         }
 
         // the piece, and the state at its end
@@ -230,6 +224,7 @@ static void predict_path(pressed_arm *p, double x, double v, double c, double k,
         v = velocity;
         t += length;
     }
+    return true;
 }
 
 // The force peaks a little before the arm stops: a parabola through three instants there finds
@@ -313,11 +308,8 @@ static bool predict_closed_form(const arm *touched, const double *q, const doubl
 
     // the path, and the force along its end, where the arm is bent the most
     pressed_tangents(touched, q, &c, &k);
-    if (c * c > 4 * MOST_DAMPED * MOST_DAMPED * k) {
-        return false;
-    }
-    predict_path(&p, q[0], after[0], c, k, &path);
-    return path_peak(&p, &path, first, out) && fabs(p.bend) < CLOSED_FORM_BEND;
+    return predict_path(&p, q[0], after[0], c, k, &path) && path_peak(&p, &path, first, out) &&
+           fabs(p.bend) < CLOSED_FORM_BEND;
 }
 
 static prediction no_prediction(void)
