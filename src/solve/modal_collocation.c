@@ -176,7 +176,7 @@ static int first_point(modal_stride *s)
 }
 
 // r and s at the points of collocation from the present polynomials.
-static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, const double *q)
+static void evaluate_points(modal_stride *s, const arm *a, const double *q)
 {
     const int n = s->dof, first = first_point(s);
     const size_t pair = 2 * (size_t)n;
@@ -204,20 +204,7 @@ static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, co
     modal_to_angles(s->modes, n, columns, s->columns + skipped, s->more_columns + skipped, n);
 
     // velocities and forces there by the sweeps
-    for (int i = first; i < MODAL_NODES; i++) {
-        double *turn = s->more_columns + (size_t)i * pair;
-        double *momentum = s->columns + (size_t)i * pair, impulse;
-        modal_mass_times(a, turn + n, momentum);
-        for (int k = 0; k < n; k++) {
-            s->angles[k] = q[k] + turn[k];
-            momentum[k] += s->momentum[k];
-        }
-        chain_from_momentum(a, links, s->mode, s->angles, momentum, s->velocities, s->rates,
-                            &impulse);
-        memcpy(s->point_angles[i], s->angles, (size_t)n * sizeof *q);
-        memcpy(s->point_velocities[i], s->velocities, (size_t)n * sizeof *q);
-        modal_prepare_remainders(s, a, s->velocities, turn);
-    }
+    modal_sweep_points(s, a, q, first);
 
     // brought back to the modes
     modal_from_angles(s->modes, n, columns, s->more_columns + skipped, s->columns + skipped, n);
@@ -227,8 +214,7 @@ static void evaluate_points(modal_stride *s, const arm *a, chain_link *links, co
     }
 }
 
-modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
-                           double length)
+modal_fit modal_stride_fit(modal_stride *s, const arm *a, const double *q, double length)
 {
     const size_t size = (size_t)s->count * sizeof(double);
     s->length = length;
@@ -249,7 +235,7 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, con
     double change = 0; // by a sweep
     fit_polynomials(s, length);
     for (int i = 0; i < MOST_SWEEPS; i++) {
-        evaluate_points(s, a, links, q);
+        evaluate_points(s, a, q);
         const double last = change;
         change = fit_polynomials(s, length) / most;
         fit.sweeps = i + 1;

@@ -192,7 +192,7 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
     double h = round_length(fmin(longest, 2 * remaining));
     const double energy = s->start_energy + fabs(a->motor.torque) * TURN / 10;
     for (int i = 0; i < MOST_TRIES && h > ADVANTAGE * series; i++) {
-        modal_fit fit = modal_stride_fit(s, a, m->links, q, h);
+        modal_fit fit = modal_stride_fit(s, a, q, h);
         const double fitting = SAFE * sqrt(sqrt(most_defect / (fit.defect + 1e-300)));
         if (fit.left < SETTLED && fit.defect > most_defect) {
             h = round_length(h * fmax(fitting, 0.25));

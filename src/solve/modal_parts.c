@@ -3,6 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+typedef double real;
+#include "src/solve/modal_straight.h"
+
 // --- the linear part --------------------------------------------------------------------------
 
 void modal_fill_table(const modal_stride *s, double t, int powers, int count, const modal_table *at)
@@ -164,23 +167,8 @@ static bool take_basis(modal_stride *s, const arm *a, contact_state mode)
 
 void modal_prepare_remainders(modal_stride *s, const arm *a, const double *w, double *columns)
 {
-    const int n = s->dof;
-    double *force = columns + n;
     modal_mass_times(a, w, columns);
-
-    // forces beyond the springs' at small angles: what the sweeps say, structural damping, motor
-    modal_stiffness_times(a, s->angles, force);
-    double inner = 0; // torque of structural damping in the joint before
-    for (int k = 0; k < n; k++) {
-        double outer = 0;
-        if (k + 1 < n) {
-            double c = k + 1 == a->first ? a->hub_joint_damping : a->joint_damping;
-            outer = c * (w[k + 1] - w[k]);
-        }
-        force[k] = s->rates[k] - force[k] + outer - inner;
-        inner = outer;
-    }
-    force[0] += a->motor.torque - s->mode.friction * a->motor.stiction;
+    straight_forces_left(a, modal_hub_torque(s, a), s->angles, w, s->rates, columns + s->dof);
 }
 
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,

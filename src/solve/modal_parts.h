@@ -4,6 +4,7 @@
 //     modal_storage.c      where everything is
 //     modal_parts.c        bases, the start, the modes' own answer, states
 //     modal_collocation.c  r and s by Picard's sweeps
+//     modal_points.c       the chain at all points of a stride side by side
 //     modal_losses.c       walks along the stride, energy lost in it
 #pragma once
 
@@ -31,6 +32,18 @@ void modal_to_momenta(const modal_stride *s, const arm *a, const double *x, doub
 void modal_prepare_remainders(modal_stride *s, const arm *a, const double *w, double *columns);
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
                            const double *modal);
+
+// Torque of motor and friction on the hub [N m].
+static inline double modal_hub_torque(const modal_stride *s, const arm *a)
+{
+    return a->motor.torque - s->mode.friction * a->motor.stiction;
+}
+
+// The same from the angles and V y of the points from `first` on, in s->more_columns, for all
+// points side by side in the lanes of a vector: what is to be brought to the modes takes their
+// place; angles and velocities go into s->point_angles and s->point_velocities.
+void modal_sweep_points(modal_stride *s, const arm *a, const double *q, int first);
+size_t modal_points_size(int dof); // of s->lanes in doubles, a whole number of cache lines
 
 // Whether a mode vibrates too fast in the stride to be seen in r and s.
 bool modal_is_fast(const modal_stride *s, int k);

@@ -5,6 +5,9 @@
 
 #include "src/base/sincos.h"
 
+typedef double real;
+#include "src/solve/modal_straight.h"
+
 #define PI         3.14159265358979323846
 #define EDGE       0.5 // phi N from the ends of its range up to where elimination is the better way
 #define SLOWEST    1e-24 // of w^2 over that of phi N = EDGE: slower modes than the rigid ones
@@ -16,37 +19,12 @@ enum { MOST_HALVINGS = 200, MOST_ROOT_STEPS = 80, SLOWEST_MODES = 4 };
 
 void modal_mass_times(const arm *a, const double *x, double *y)
 {
-    const int N = a->links;
-    const double l = a->link_length, m = a->link_mass, unit = m * l * l;
-    const double own = a->link_inertia - 0.25 * unit; // A_ii beyond what A_ij would give
-    const double *in = x + a->first;
-    double *out = y + a->first;
-
-    // A_ij = unit (N - 1 - max(i, j) + 1/2): links beyond, then links before
-    double beyond = 0, before = 0;
-    for (int i = N - 1; i >= 0; i--) {
-        out[i] = beyond;
-        beyond += unit * (N - 0.5 - i) * in[i];
-    }
-    for (int i = 0; i < N; i++) {
-        before += in[i];
-        out[i] += unit * (N - 0.5 - i) * before + own * in[i];
-    }
-    y[0] = (a->first > 0 ? 0 : y[0]) + a->hub_inertia * x[0];
+    straight_mass_times(a, x, y);
 }
 
 void modal_stiffness_times(const arm *a, const double *x, double *y)
 {
-    double inner = 0;
-    for (int k = 0; k < a->dof; k++) {
-        double outer = 0;
-        if (k + 1 < a->dof) {
-            double s = k + 1 == a->first ? a->hub_stiffness : a->joint_stiffness;
-            outer = s * (x[k + 1] - x[k]);
-        }
-        y[k] = inner - outer;
-        inner = outer;
-    }
+    straight_stiffness_times(a, x, y);
 }
 
 // The chain in units of a link's mass and length; stiffnesses and w^2 both over kappa.

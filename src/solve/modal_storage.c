@@ -1,8 +1,9 @@
+#include <stdint.h>
 #include <string.h>
 
 #include "src/solve/modal_parts.h"
 
-enum { COLUMNS = 2 * MODAL_NODES };
+enum { COLUMNS = 2 * MODAL_NODES, CACHE_DOUBLES = 8 };
 
 static size_t table_size(int n)
 {
@@ -29,6 +30,7 @@ size_t modal_stride_size(const arm *a)
     doubles += 2 * table_size(a->dof);
     doubles += MODAL_CONTACT_STATES * MODAL_KEPT * kept_size(a->dof);
     doubles += n * (8 + 8 * MODAL_NODES + 3 * COLUMNS + 3);
+    doubles += modal_points_size(a->dof) + CACHE_DOUBLES;
     return sizeof(modal_stride) + doubles * sizeof(double);
 }
 
@@ -90,6 +92,11 @@ void modal_stride_place(modal_stride *s, const arm *a)
     s->columns = take(&storage, n * COLUMNS);
     s->more_columns = take(&storage, n * COLUMNS);
     s->modal = take(&storage, n * COLUMNS);
+
+    // lanes, from a whole cache line on
+    const size_t beyond = (uintptr_t)storage / sizeof(double) % CACHE_DOUBLES;
+    (void)take(&storage, (CACHE_DOUBLES - beyond) % CACHE_DOUBLES);
+    s->lanes = take(&storage, modal_points_size(a->dof));
 
     // what there is once an instant
     s->angles = take(&storage, n);

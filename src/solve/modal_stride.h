@@ -75,6 +75,7 @@ typedef struct modal_stride {
     modal_table at[MODAL_NODES]; // responses at the points of collocation; [0] at any other instant
     double *drifts[MODAL_NODES], *forces[MODAL_NODES]; // r and s there, by mode
     double *columns, *more_columns, *modal;            // 2 * MODAL_NODES vectors of dof each
+    double *lanes;                                     // of modal_sweep_points
     double *angles, *velocities, *rates;               // at one instant
     double *point_angles[MODAL_NODES], *point_velocities[MODAL_NODES]; // at the points; [0] unused
     double *place, *momenta;   // x and y at the instant of the state last asked for
@@ -100,8 +101,7 @@ typedef struct modal_fit {
     double defect; // what the last terms of the polynomials do at most, the same share: it shrinks
                    // with the fifth power of the length
 } modal_fit;
-modal_fit modal_stride_fit(modal_stride *s, const arm *a, chain_link *links, const double *q,
-                           double length);
+modal_fit modal_stride_fit(modal_stride *s, const arm *a, const double *q, double length);
 
 // x and y of all modes at t within the stride, into s->place and s->momenta.
 void modal_stride_modes(modal_stride *s, double t);
