@@ -1,6 +1,7 @@
 #include "tests/chain_outcome.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "src/solve/contact_machine.h"
 #include "tests/check.h"
@@ -65,6 +66,13 @@ chain_outcome chain_outcome_of(const chain_start *start)
     }
     o.motor_work = m->state[SLOT_MOTOR_WORK];
     o.put_in += m->start_energy;
+    o.peak = m->pulse_peak;
+    o.peak_time = m->pulse_peak_time;
+    const double *quadrature = state_quadratures(m, m->state);
+    const double lost[] = {m->state[SLOT_FRICTION_LOSS], m->state[SLOT_IMPACT_LOSS],
+                           quadrature[QUADRATURE_VISCOUS], quadrature[QUADRATURE_DAMPING],
+                           quadrature[QUADRATURE_WALL]};
+    memcpy(o.lost, lost, sizeof o.lost);
     motion_destroy(m);
     return o;
 }

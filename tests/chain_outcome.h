@@ -15,7 +15,9 @@ typedef struct chain_outcome {
     double first_impulse;    // [N s]
     double motor_work;       // [J]
     double residual, put_in; // the ledger's largest; energy and work that went in [J]
-    int impacts, samples;    // samples: of momentum
+    double peak, peak_time;  // of the force in contact [N], [s]
+    double lost[5]; // to friction, impacts, viscous friction, structural damping, the wall [J]
+    int impacts, samples; // samples: of momentum
     // that the wall took until instants REFERENCE_INTERVAL apart, from first contact on [N s]
     double momentum[REFERENCE_SAMPLES];
 } chain_outcome;

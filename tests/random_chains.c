@@ -1,18 +1,21 @@
 // Random arms of many links that hit a wall, by the engine that a run takes, and by the explicit
 // formula at strides so short that it is exact: none may be wrong with a ledger that closes.
 //
-//     random_chains [COUNT [FIRST [LEAST [MOST [modes]]]]]     default: 200 0 6 20
+//     random_chains [COUNT [FIRST [LEAST [MOST [KIND]]]]]     default: 200 0 6 20 plain
 //
-// LEAST to MOST links. With `modes` the straight chain's modes are compared with power series
-// alone, which costs a hundredth of the formula, for arms that modes are used for: not those that
-// bounce undamped.
+// LEAST to MOST links. KIND: `plain`, equal bare links; `uneven`, links and joints given one by
+// one, or a mass at the tip; `modes`, the straight chain's modes compared with power series alone,
+// which costs a hundredth of the formula, for arms that modes are used for: not those that bounce
+// undamped.
 //
 // Run i is made of its own number. Compared are first contact (1 us), its impulse (1e-4), the
-// momentum after 1 and up to 50 ms (1e-3) and what a 1 ms sensor reads (5e-3, root mean square).
-// Where the explicit formula does not agree with itself at other strides, or the series with
-// themselves at a mass of 1e-12 more, the motion is chaotic and nothing is said.
+// momentum after 1 and up to 50 ms (1e-3) and what a 1 ms sensor reads (5e-3, root mean square); of
+// arms that are not plain also the largest force (1e-5), when it is (1e-5 s), and each loss (1e-6
+// of what was put in). Where the explicit formula does not agree with itself at other strides, or
+// the series with themselves at a mass of 1e-12 more, the motion is chaotic and nothing is said.
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "src/base/random.h"
 #include "tests/arm_fixture.h"
@@ -21,18 +24,21 @@
 #define AFTER_CONTACT 0.0501
 #define DURATION      0.1
 #define SUBSTEPS      20    // of the explicit formula: its fastest rate times its time step
-#define EXPLICIT_MASS 1e-18 // at the tip [kg]: neither modes nor series take it
 #define FASTEST       3e6   // beyond which the explicit formula takes too long [1/s]
 #define FASTEST_MODES 1.5e5 // the same of the series, of which there are to be many
 #define NEXT_TO_NONE  1e-12 // share of the mass
 
-enum { MOST_SETTINGS = 12 };
+enum { MOST_SETTINGS = 16 };
+
+// What is compared.
+typedef enum chain_kind { KIND_PLAIN, KIND_MODES, KIND_UNEVEN, KINDS } chain_kind;
+static const char *const kind_names[KINDS] = {"plain", "modes", "uneven"};
 
 // A random arm in front of its wall.
 typedef struct random_chain {
     parameters parameters;
     double angle, velocity;
-    char settings[MOST_SETTINGS][64];
+    char settings[MOST_SETTINGS][160];
     int count;
 } random_chain;
 
@@ -46,8 +52,7 @@ static chain_outcome by_formula(const random_chain *c, double step)
 {
     parameters p = c->parameters;
     p.method.step = step;
-    p.arm.tip_mass = EXPLICIT_MASS;
-    return simulate(c, &p, NULL);
+    return simulate(c, &p, &explicit_engine);
 }
 
 // By power series alone, of an arm that is heavier by a share.
@@ -58,8 +63,14 @@ static chain_outcome by_series(const random_chain *c, double heavier)
     return simulate(c, &p, &series_engine);
 }
 
+// Whether forces and losses are compared too.
+static bool is_close(chain_kind kind)
+{
+    return kind != KIND_PLAIN && kind != KIND_MODES;
+}
+
 // Largest difference of two outcomes, as a multiple of what may be.
-static double distance(const chain_outcome *truth, const chain_outcome *o)
+static double distance(const chain_outcome *truth, const chain_outcome *o, bool closely)
 {
     const int samples = truth->samples < o->samples ? truth->samples : o->samples;
     const int last = samples - 1, early = last < OUTCOME_FIRST_MS ? last : OUTCOME_FIRST_MS;
@@ -67,6 +78,13 @@ static double distance(const chain_outcome *truth, const chain_outcome *o)
     worst = fmax(worst, fabs(o->first_impulse / truth->first_impulse - 1) / 1e-4);
     worst = fmax(worst, fabs(o->momentum[early] / truth->momentum[early] - 1) / 1e-3);
     worst = fmax(worst, fabs(o->momentum[last] / truth->momentum[last] - 1) / 1e-3);
+    for (size_t i = 0; i < sizeof o->lost / sizeof *o->lost && closely; i++) {
+        worst = fmax(worst, fabs(o->lost[i] - truth->lost[i]) / (1e-6 * truth->put_in));
+    }
+    if (closely) {
+        worst = fmax(worst, fabs(o->peak / truth->peak - 1) / 1e-5);
+        worst = fmax(worst, fabs(o->peak_time - truth->peak_time) / 1e-5);
+    }
     return fmax(worst, chain_outcome_sensor_difference(truth, o) / 5e-3);
 }
 
@@ -84,30 +102,65 @@ static __attribute__((format(printf, 2, 3))) void set(random_chain *c, const cha
     c->count++;
 }
 
-static void make_chain(random_chain *c, int number, int least, int most)
+// A list of numbers of one beam in pieces: `mean` times or over so much.
+static void set_list(random_chain *c, random_generator *g, const char *path, int count, double mean,
+                     double share)
+{
+    char list[128];
+    int at = 0;
+    for (int k = 0; k < count; k++) {
+        at += snprintf(list + at, sizeof list - (size_t)at, "%s%.2g", k > 0 ? "," : "",
+                       mean * between(g, 1 / share, share));
+    }
+    set(c, "%s=%s", path, list);
+}
+
+// Links and joints given one by one, a mass at the tip, or both.
+static void make_uneven(random_chain *c, random_generator *g, int links, bool rigid, double k2)
+{
+    const int joints = links - (rigid ? 1 : 0);
+    const double which = random_uniform(g);
+    if (which < 0.7 && joints > 0) {
+        set_list(c, g, "arm.joint_stiffness", joints, k2 * links / 2, 2);
+    } else {
+        set(c, "arm.k2=%.17g", k2);
+    }
+    if (which < 0.5) {
+        set_list(c, g, "arm.link_lengths", links, 1.0 / links, 1.5);
+    }
+    if (which > 0.3) {
+        set(c, "arm.tip_mass=%.17g", between(g, 1e-3, 0.5));
+    }
+}
+
+static void make_chain(random_chain *c, int number, int least, int most, chain_kind kind)
 {
     random_generator g;
     random_seed(&g, (uint64_t)number * 7919 + 13);
     c->count = 0;
 
     // kinds
-    set(c, "arm.links=%d", least + (int)random_below(&g, (uint64_t)(most - least + 1)));
-    set(c, "arm.hub_joint=%s",
-        random_uniform(&g) < 0.5   ? "rigid"
-        : random_uniform(&g) < 0.7 ? "beam"
-                                   : "spring");
+    const int links = least + (int)random_below(&g, (uint64_t)(most - least + 1));
+    const bool rigid = random_uniform(&g) < 0.5, beam = !rigid && random_uniform(&g) < 0.7;
+    set(c, "arm.links=%d", links);
+    set(c, "arm.hub_joint=%s", rigid ? "rigid" : beam ? "beam" : "spring");
     set(c, "wall.kind=%s", random_uniform(&g) < 0.5 ? "plane" : "point");
     set(c, "wall.restitution=%.17g", random_uniform(&g) < 0.5 ? 0 : random_uniform(&g) * 0.9);
     set(c, "arm.damping_ratio=%.17g", random_uniform(&g) < 0.5 ? 0 : between(&g, 1e-4, 0.05));
 
     // numbers
     set(c, "motor.voltage=%.17g", between(&g, 0.3, 10));
-    set(c, "arm.k2=%.17g", between(&g, 1, 50));
+    const double k2 = between(&g, 1, 50);
     set(c, "arm.mass=%.17g", between(&g, 0.1, 2));
     set(c, "arm.hub_inertia=%.17g", between(&g, 1e-3, 5e-2));
     set(c, "motor.stiction=%.17g", random_uniform(&g) < 0.5 ? 0.045 : between(&g, 1e-3, 0.5));
     c->velocity = between(&g, 0.05, 5);
     c->angle = 0.1 - c->velocity * between(&g, 2e-3, 2e-2);
+    if (kind == KIND_UNEVEN) {
+        make_uneven(c, &g, links, !beam, k2);
+    } else {
+        set(c, "arm.k2=%.17g", k2);
+    }
     const char *list[MOST_SETTINGS + 1] = {NULL};
     for (int i = 0; i < c->count; i++) {
         list[i] = c->settings[i];
@@ -126,13 +179,19 @@ static void describe(const random_chain *c, int number, const char *what, double
     fflush(stdout);
 }
 
+// A step at which the explicit formula is exact.
+static double formula_step(const arm *a, chain_kind kind)
+{
+    return fmin(is_close(kind) ? 1e-5 : 1e-4, SUBSTEPS / a->fastest_rate);
+}
+
 // What is taken for right, and the same at other strides or a mass that differs by next to nothing;
 // false if it would take too long, or there is no contact.
-static bool find_truth(const random_chain *c, bool modes, chain_outcome *truth)
+static bool find_truth(const random_chain *c, chain_kind kind, chain_outcome *truth)
 {
     arm a;
     arm_init(&a, &c->parameters);
-    if (modes) {
+    if (kind == KIND_MODES) {
         const bool bounces =
             c->parameters.wall.restitution > 0 && a.fastest_decay <= a.highest_frequency;
         if (bounces || a.fastest_rate > FASTEST_MODES) {
@@ -143,49 +202,58 @@ static bool find_truth(const random_chain *c, bool modes, chain_outcome *truth)
         if (a.fastest_rate > FASTEST) {
             return false;
         }
-        *truth = by_formula(c, fmin(1e-4, SUBSTEPS / a.fastest_rate));
+        *truth = by_formula(c, formula_step(&a, kind));
     }
     return truth->status == STATUS_OK && truth->samples >= 2;
 }
 
 // Whether that is worth anything.
-static bool is_sure(const random_chain *c, bool modes, const chain_outcome *truth)
+static bool is_sure(const random_chain *c, chain_kind kind, const chain_outcome *truth)
 {
+    const bool modes = kind == KIND_MODES;
     arm a;
     arm_init(&a, &c->parameters);
-    const chain_outcome again = modes ? by_series(c, NEXT_TO_NONE)
-                                      : by_formula(c, 0.61 * fmin(1e-4, SUBSTEPS / a.fastest_rate));
-    return distance(truth, &again) < 0.1;
+    const chain_outcome again =
+        modes ? by_series(c, NEXT_TO_NONE) : by_formula(c, 0.61 * formula_step(&a, kind));
+    return distance(truth, &again, is_close(kind)) < 0.1;
 }
 
 int main(int argc, char **argv)
 {
     const int count = argc > 1 ? atoi(argv[1]) : 200, first = argc > 2 ? atoi(argv[2]) : 0;
     const int least = argc > 3 ? atoi(argv[3]) : 6, most = argc > 4 ? atoi(argv[4]) : 20;
-    const bool modes = argc > 5;
+    chain_kind kind = KIND_PLAIN;
+    while (argc > 5 && kind < KINDS && strcmp(argv[5], kind_names[kind]) != 0) {
+        kind++;
+    }
+    if (kind == KINDS) {
+        fprintf(stderr, "random_chains: %s is no kind of arm\n", argv[5]);
+        return 2;
+    }
     int compared = 0, wrong = 0, said = 0, chaotic = 0;
     double largest = 0;
     for (int i = first; i < first + count; i++) {
         random_chain c;
         chain_outcome truth;
-        make_chain(&c, i, least, most);
-        if (!find_truth(&c, modes, &truth)) {
+        make_chain(&c, i, least, most, kind);
+        if (!find_truth(&c, kind, &truth)) {
             continue;
         }
 
         // wrong: said to be, or not
         const double bound = c.parameters.method.residual_bound;
         compared++;
-        const chain_outcome o = simulate(&c, &c.parameters, modes ? &modal_engine : NULL);
+        const chain_outcome o =
+            simulate(&c, &c.parameters, kind == KIND_MODES ? &modal_engine : NULL);
         const bool ok = o.status == STATUS_OK && o.residual <= bound * o.put_in;
-        const double worst = o.samples > 0 ? distance(&truth, &o) : HUGE_VAL;
+        const double worst = o.samples > 0 ? distance(&truth, &o, is_close(kind)) : HUGE_VAL;
         said += !ok;
         if (!ok) {
             describe(&c, i, status_text(o.status), worst);
         } else if (worst <= 1) {
             largest = fmax(largest, worst);
         } else {
-            const bool sure = is_sure(&c, modes, &truth);
+            const bool sure = is_sure(&c, kind, &truth);
             wrong += sure;
             chaotic += !sure;
             describe(&c, i, sure ? "WRONG" : "chaotic", worst);

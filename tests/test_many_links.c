@@ -72,9 +72,9 @@ static void the_event_method_stays_exact(void **state)
     }
 }
 
-// Two roads to the same motion: the modes and the explicit formula, which takes what carries a mass
-// at its tip, were it next to nothing.
-static void modes_agree_with_the_explicit_formula(void **state)
+// Two roads to the same motion: the modes and the series, which take what carries a mass at its
+// tip, were it next to nothing.
+static void modes_agree_with_the_series(void **state)
 {
     (void)state;
     summary answers[2];
@@ -163,6 +163,6 @@ int main(void)
                                        cmocka_unit_test(strides_follow_the_fastest_link),
                                        cmocka_unit_test(runs_stay_stable),
                                        cmocka_unit_test(the_event_method_stays_exact),
-                                       cmocka_unit_test(modes_agree_with_the_explicit_formula)};
+                                       cmocka_unit_test(modes_agree_with_the_series)};
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

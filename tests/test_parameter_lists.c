@@ -160,8 +160,7 @@ static void equal_numbers_are_the_uniform_arm_to_the_last_bit(void **state)
         SETTINGS("arm.links=4", "arm.joint_stiffness=20,10,10,10", "arm.hub_joint=beam"));
 }
 
-// Lists that differ from the uniform arm by nothing that counts, and go the general way: by the
-// explicit formula, whose own error in 0.3 s this is, where the uniform arm goes by power series.
+// Lists that differ from the uniform arm by nothing that counts.
 static void the_general_way_meets_the_uniform_one(void **state)
 {
     (void)state;

@@ -160,7 +160,7 @@ static void test_an_arm_folded_over_the_hub_ends_the_run(void **state)
 }
 
 // On its way to a fold and back the force has a pole nearby, of which the velocities know nothing:
-// it is what the Runge-Kutta engine makes of it, which a tip mass of next to nothing takes.
+// it is what the series of chains make of it, which a tip mass of next to nothing takes.
 static void test_the_force_near_a_fold_is_that_of_another_engine(void **state)
 {
     (void)state;
@@ -185,7 +185,7 @@ static void test_the_force_near_a_fold_is_that_of_another_engine(void **state)
     check_relative(peak[0], peak[1], 1e-4);
 }
 
-// Neither do the steps of the Runge-Kutta engine lead through a fold, nor to a release in it.
+// Neither do the strides of chains lead through a fold, nor to a release in it.
 static void test_no_step_leads_through_a_fold(void **state)
 {
     (void)state;

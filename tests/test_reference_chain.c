@@ -16,8 +16,7 @@
 #define START_ANGLE    0.095 // a little in front of the wall at 0.1 rad
 #define START_VELOCITY 0.7   // [rad/s]
 #define DURATION       0.06
-#define EXPLICIT_MASS  1e-18 // at the tip [kg]: only the explicit formula takes it
-#define FEW_LINKS      16    // of which that formula has the time
+#define FEW_LINKS      16 // of which that formula has the time
 
 static chain_outcome library_outcome(const reference_case *c, bool by_formula)
 {
@@ -28,11 +27,9 @@ static chain_outcome library_outcome(const reference_case *c, bool by_formula)
     parameters p = fixture_parameters(SETTINGS(
         links, damping, restitution, c->beam_root ? "arm.hub_joint=beam" : "arm.hub_joint=rigid",
         c->plane_wall ? "wall.kind=plane" : "wall.kind=point", "motor.voltage=1"));
-    if (by_formula) {
-        p.arm.tip_mass = EXPLICIT_MASS;
-    }
 
-    const chain_start start = {&p, c->angle, c->velocity, c->duration, c->duration, NULL};
+    const chain_start start = {&p,          c->angle,    c->velocity,
+                               c->duration, c->duration, by_formula ? &explicit_engine : NULL};
     chain_outcome o = chain_outcome_of(&start);
     if (o.status != STATUS_OK) {
         fail_msg("%s, %s: %s", c->name, by_formula ? "formula" : "default", status_text(o.status));

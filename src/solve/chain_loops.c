@@ -173,7 +173,6 @@ LOOP void loop_products(chain_rows *r, const chain_order *o)
 LOOP void loop_torques(chain_rows *r, const chain_order *o)
 {
     const int last = r->blocks - 1;
-    const block stiffness = all(o->stiffness), damping = all(o->damping);
 
     // of the joints beyond
     for (int b = 0; b <= last; b++) {
@@ -182,9 +181,9 @@ LOOP void loop_torques(chain_rows *r, const chain_order *o)
             b < last ? TERM(r->angle, o->n, b + 1) : next_lane(&TERM(r->angle, o->n, 0), 0);
         const block rate_beyond =
             b < last ? TERM(r->rate, o->n, b + 1) : next_lane(&TERM(r->rate, o->n, 0), 0);
-        const block turn = AT(r->joint, b) * (rate_beyond - rate);
+        const block turn = rate_beyond - rate;
         TERM(r->bend_rate, o->n, b) = turn;
-        AT(r->torque, b) = AT(r->joint, b) * (stiffness * (angle_beyond - angle)) + damping * turn;
+        AT(r->torque, b) = AT(r->stiffness, b) * (angle_beyond - angle) + AT(r->damping, b) * turn;
     }
 
     // what each link feels of both of its own
@@ -211,7 +210,7 @@ LOOP void loop_prepare(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_sweep(chain_rows *r, const chain_order *o)
+LOOP void loop_sweep(chain_rows *r)
 {
     double **m = r->matrix, **in = r->inwards, **out = r->outwards;
     const int last = r->blocks - 1;
@@ -232,13 +231,12 @@ LOOP void loop_sweep(chain_rows *r, const chain_order *o)
 
     // accelerations over a resting base, and what they add to the next base's
     block beyond_x = begin_x, beyond_y = begin_y;
-    const block length = all(o->length);
     for (int b = last; b >= 0; b--) {
         const block vx = AT(r->vx, b), vy = AT(r->vy, b);
         const block turn = (AT(r->moment, b) - (vx * beyond_x + vy * beyond_y)) * AT(r->inv_d, b);
         AT(r->free, b) = turn;
-        AT(r->add_x, b) = vx * turn + length * AT(r->rho_x, b);
-        AT(r->add_y, b) = vy * turn + length * AT(r->rho_y, b);
+        AT(r->add_x, b) = vx * turn + AT(r->length, b) * AT(r->rho_x, b);
+        AT(r->add_y, b) = vy * turn + AT(r->length, b) * AT(r->rho_y, b);
         AT(r->qx, b) = beyond_x = AT(r->qx, b) + (AT(in[0], b) * begin_x + AT(in[1], b) * begin_y);
         AT(r->qy, b) = beyond_y = AT(r->qy, b) + (AT(in[2], b) * begin_x + AT(in[3], b) * begin_y);
     }
@@ -289,8 +287,8 @@ LOOP void loop_finish(chain_rows *r, const chain_order *o)
 LOOP void loop_hand(chain_rows *r, const chain_order *o)
 {
     const int last = r->blocks - 1;
-    const block half = all(o->length / 2);
     for (int b = 0; b <= last; b++) {
+        const block half = AT(r->half, b);
         const block x = b < last ? AT(r->qx, b + 1) : next_lane(&AT(r->qx, 0), o->tip_x);
         const block y = b < last ? AT(r->qy, b + 1) : next_lane(&AT(r->qy, 0), o->tip_y);
         TERM(r->gx, o->n, b) = half * (AT(r->qx, b) + x);
@@ -317,9 +315,9 @@ LOOP void loop_hand(chain_rows *r, const chain_order *o)
     {                                                                                              \
         loop_prepare(r, o);                                                                        \
     }                                                                                              \
-    target_ static void sweep_##name(chain_rows *r, const chain_order *o)                          \
+    target_ static void sweep_##name(chain_rows *r)                                                \
     {                                                                                              \
-        loop_sweep(r, o);                                                                          \
+        loop_sweep(r);                                                                             \
     }                                                                                              \
     target_ static void finish_##name(chain_rows *r, const chain_order *o)                         \
     {                                                                                              \

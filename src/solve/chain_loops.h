@@ -25,7 +25,9 @@ typedef struct chain_rows {
     double *gx, *gy;           // G, to order - 1 [kg m2]
     double *bend_rate;         // of the joint beyond each link [rad]; to order - 1
     double *start_c, *start_s; // c and s at the start
-    double *joint;             // 1 where there is a joint beyond the link, else 0
+    double *length, *half;     // of the link, and half of it [m]
+    double *stiffness;         // of the joint beyond it, times L^2; none beyond the last [kg m2]
+    double *damping;           // of that joint, times L [kg m2]
     double *torque;            // of that joint, times L^2
 
     // the stride's matrices
@@ -60,11 +62,9 @@ static inline size_t chain_term(int n, size_t place)
 // What an order's loops are given.
 typedef struct chain_order {
     int n;
-    double stiffness, damping; // of the joints, times L^2 and L
-    double length;             // of a link [m]
-    double root;               // torque of the hub on the first link, times L^2
-    double force;              // contact force, times L^2
-    double tip_x, tip_y;       // the same at the tip of the last link
+    double root;         // torque of the hub on the first link, times L^2
+    double force;        // contact force, times L^2
+    double tip_x, tip_y; // F at the tip of the last link
 } chain_order;
 
 typedef struct chain_loops {
@@ -78,7 +78,7 @@ typedef struct chain_loops {
     // rho, the moment less what it costs, what goes into Q
     void (*prepare)(chain_rows *r, const chain_order *o);
     // Q of all links, accelerations of links whose base rests, those of the bases
-    void (*sweep)(chain_rows *r, const chain_order *o);
+    void (*sweep)(chain_rows *r);
     // accelerations, forces at the bases in place of Q, and the next coefficients
     void (*finish)(chain_rows *r, const chain_order *o);
     void (*hand)(chain_rows *r, const chain_order *o); // G, from the forces at the bases

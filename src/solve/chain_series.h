@@ -1,6 +1,5 @@
-// The motion of a plain chain of any number of links as power series of the time since a stride's
-// start: the equations of chain.h by coefficient, in a time that grows with N and the square of the
-// order.
+// The motion of a chain of any number of links as power series of the time since a stride's start:
+// the equations of chain.h by coefficient, in a time that grows with N and the square of the order.
 //
 // Time is counted in units of the stride's length L, so that no coefficient grows out of range:
 // x = t/L, velocities w = dq/dx, accelerations a = d2q/dx2, forces times L^2. Of link k, r_k = (c,
@@ -12,7 +11,9 @@
 // carries the force F_k to the link before:
 //
 //     A_(k+1) = A_k + l (a_k t_k + rho_k),     F_k = F_(k+1) + m (A_k + l/2 (a_k t_k + rho_k)),
-//     I a_k + r_k x G_k = tau_k,               G_k = l/2 (F_k + F_(k+1)).
+//     I a_k + r_k x G_k = tau_k,               G_k = l/2 (F_k + F_(k+1)),
+//
+// with l, m and I of link k; beyond the last one F is what a mass at the tip demands.
 //
 // Of the n-th coefficient of each equation all but a, A and F is known from the coefficients
 // before, products being Cauchy's. The rest is linear with the matrix of the stride's start: the
@@ -61,7 +62,7 @@ typedef struct chain_series {
     series_square hub_square;             // of the hub's w
     series_square dissipation;            // power lost in the springs, times L^2 [J s]
     int square_terms;                     // of these two
-    series_terms tip_x, tip_y;            // of the tip, in lengths of a link
+    series_terms tip_x, tip_y;            // of the tip [m]
     series_terms reach_x, reach_y, along; // from the last link's base to a point wall, and along it
 } chain_series;
 
@@ -72,10 +73,10 @@ void chain_series_place(chain_series *s, const arm *a);
 // How far a stride may go by the arm's rates and velocities w[dof] [s].
 double chain_series_reach(const arm *a, const double *w);
 
-// Computes the series of an arm with arm_is_plain and two or more links, from q[dof] and w[dof]
-// [rad/s] in a contact state, for a stride of `length` up to chain_series_reach [s]. s->allowed is
-// then that length, or less where the last terms of the velocities are not below `last_terms` of
-// the largest velocity.
+// Computes the series of an arm with series_engine_suits from q[dof] and w[dof] [rad/s] in a
+// contact state, for a stride of `length` up to chain_series_reach [s]. s->allowed is then that
+// length, or less where the last terms of the velocities are not below `last_terms` of the largest
+// velocity.
 void chain_series_compute(chain_series *s, const arm *a, contact_state mode, const double *q,
                           const double *w, double length, double last_terms);
 

@@ -6,18 +6,21 @@
 #include <string.h>
 
 #include "src/solve/chain_series_parts.h"
+#include "src/solve/engine.h"
 
-#define REACH      6.0   // of the fastest mode or decay in a stride
-#define TURNING    1.2   // rotation counts so many times
-#define LEAST_RATE 0.1   // that counts as the largest velocity [rad/s]
-#define SHORTENING 0.92  // of a stride that is too long for that
-#define SMALL_TERM 1e-14 // of the first term that is left out, where the order may be lower
+#define REACH       6.0   // of the fastest mode or decay in a stride
+#define TURNING     1.2   // rotation counts so many times
+#define LEAST_RATE  0.1   // that counts as the largest velocity [rad/s]
+#define SHORTENING  0.92  // of a stride that is too long for that
+#define FORCE_TERMS 1e-9  // last terms of the contact force, as a share of its first ones
+#define LEAST_FORCE 1e-6  // that counts as a force [N]
+#define SMALL_TERM  1e-14 // of the first term that is left out, where the order may be lower
 
 enum { LEAST_ORDER = 8, MOST_SHORTENINGS = 400, CACHE_LINE = 64 };
 
 // --- storage ------------------------------------------------------------------------------------
 
-enum { ROWS_OF_TERMS = 7, SINGLE_ROWS = 60 };
+enum { ROWS_OF_TERMS = 7, SINGLE_ROWS = 63 };
 
 static int blocks_of(const arm *a)
 {
@@ -52,13 +55,14 @@ void chain_series_place(chain_series *s, const arm *a)
     }
 
     // by link
-    double **const rows[] = {&r->start_c, &r->start_s, &r->joint,  &r->torque,       &r->ux,
-                             &r->uy,      &r->inv_d,   &r->vx,     &r->vy,           &r->pxx,
-                             &r->pxy,     &r->pyy,     &r->back_x, &r->back_y,       &r->rho_xx,
-                             &r->rho_xy,  &r->rho_yy,  &r->unit,   &r->unit_fx,      &r->unit_fy,
-                             &r->known_c, &r->known_s, &r->moment, &r->rho_x,        &r->rho_y,
-                             &r->add_x,   &r->add_y,   &r->free,   &r->acceleration, &r->qx,
-                             &r->qy,      &r->base_x,  &r->base_y, &s->unit_x,       &s->unit_y};
+    double **const rows[] = {&r->start_c, &r->start_s,      &r->length,  &r->half,    &r->stiffness,
+                             &r->damping, &r->torque,       &r->ux,      &r->uy,      &r->inv_d,
+                             &r->vx,      &r->vy,           &r->pxx,     &r->pxy,     &r->pyy,
+                             &r->back_x,  &r->back_y,       &r->rho_xx,  &r->rho_xy,  &r->rho_yy,
+                             &r->unit,    &r->unit_fx,      &r->unit_fy, &r->known_c, &r->known_s,
+                             &r->moment,  &r->rho_x,        &r->rho_y,   &r->add_x,   &r->add_y,
+                             &r->free,    &r->acceleration, &r->qx,      &r->qy,      &r->base_x,
+                             &r->base_y,  &s->unit_x,       &s->unit_y};
     enum { ROWS = sizeof rows / sizeof rows[0] };
     _Static_assert(ROWS + 16 + 3 * (SERIES_TOGETHER - 1) == SINGLE_ROWS, "rows by link");
     for (int i = 0; i < ROWS; i++) {
@@ -77,9 +81,6 @@ void chain_series_place(chain_series *s, const arm *a)
         r->next_s[i] = storage + row;
         r->next_moment[i] = storage + 2 * row;
         storage += 3 * row;
-    }
-    for (int k = 0; k + 1 < a->links; k++) {
-        r->joint[chain_place(r, k)] = 1;
     }
 }
 
@@ -123,8 +124,8 @@ static double root_torque(chain_series *s, const arm *a, int n, double *hub)
     }
     const double angle = s->rows.angle[chain_term(n, s->first_place)];
     const double turn = rate - s->hub_rate.term[n];
-    const double spring =
-        t * t * a->hub_stiffness * (angle - s->hub_angle.term[n]) + t * a->hub_joint_damping * turn;
+    const double spring = t * t * arm_joint_stiffness(a, 0) * (angle - s->hub_angle.term[n]) +
+                          t * arm_joint_damping(a, 0) * turn;
     s->root_rate.term[n] = turn;
     *hub = drive + spring - t * a->motor.damping * s->hub_rate.term[n];
     return -spring;
@@ -142,7 +143,7 @@ static double product_term(const double *x, const double *y, int n, int from)
 
 // What the force's earlier coefficients do at a point wall, whose direction turns with the link:
 // on the link's base, and to its moment.
-static double earlier_force(const chain_series *s, const arm *a, int n, double push[2])
+static double earlier_force(const chain_series *s, int n, double push[2])
 {
     const chain_rows *r = &s->rows;
     push[0] = push[1] = 0;
@@ -151,7 +152,7 @@ static double earlier_force(const chain_series *s, const arm *a, int n, double p
         push[1] += s->force.term[n - i] * last_of(s, r->cosine, i);
     }
     const double across = r->start_c[s->last_place] * push[1] - r->start_s[s->last_place] * push[0];
-    return a->link_length / 2 * across + product_term(s->along.term, s->force.term, n, 1);
+    return r->half[s->last_place] * across + product_term(s->along.term, s->force.term, n, 1);
 }
 
 // The n-th coefficient of the contact force, from the accelerations without it.
@@ -162,7 +163,7 @@ static double force_term(const chain_series *s, const arm *a, int n)
     const double ax = r->base_x[end], ay = r->base_y[end];
     const double turn = r->free[end] - (r->ux[end] * ax + r->uy[end] * ay) * r->inv_d[end];
     if (a->wall.kind != WALL_POINT) {
-        const double l = a->link_length;
+        const double l = r->length[end];
         const double x = ax + r->vx[end] * turn + l * r->rho_x[end];
         const double y = ay + r->vy[end] * turn + l * r->rho_y[end];
         return -(a->wall.cosine * y - a->wall.sine * x) / s->response;
@@ -179,19 +180,53 @@ static double force_term(const chain_series *s, const arm *a, int n)
     return -(across + s->along.term[0] * turn + rest) / s->response;
 }
 
+// F at the tip: what its mass demands, and the push of a plane.
+static void force_at_tip(chain_series *s, const arm *a, chain_order *o)
+{
+    chain_rows *r = &s->rows;
+    const size_t end = s->last_place;
+    if (a->tip_mass > 0) {
+        const double turn = r->acceleration[end], l = r->length[end], f = o->force;
+        const double x = r->base_x[end] + f * s->unit_x[end],
+                     y = r->base_y[end] + f * s->unit_y[end];
+        o->tip_x = a->tip_mass * (x + r->vx[end] * turn + l * r->rho_x[end]);
+        o->tip_y = a->tip_mass * (y + r->vy[end] * turn + l * r->rho_y[end]);
+    }
+    if (s->mode.contact && a->wall.kind == WALL_PLANE) {
+        o->tip_x -= o->force * a->wall.sine;
+        o->tip_y += o->force * a->wall.cosine;
+    }
+    if (s->links < r->blocks * SERIES_LANES) {
+        const size_t beyond = chain_place(r, s->links);
+        r->qx[beyond] = o->tip_x;
+        r->qy[beyond] = o->tip_y;
+    }
+}
+
+// F at the hub, where the first link's base rests; push: as earlier_force has it, for the only
+// link of an arm.
+static void force_at_hub(chain_series *s, const arm *a, const chain_order *o, const double push[2])
+{
+    chain_rows *r = &s->rows;
+    const size_t first = s->first_place, second = chain_place(r, 1);
+    const double turn = r->acceleration[first], l = r->length[first];
+    const double half = arm_link_mass(a, 0) / 2;
+    r->qx[first] = r->qx[second] + half * (r->vx[first] * turn + l * r->rho_x[first]);
+    r->qy[first] = r->qy[second] + half * (r->vy[first] * turn + l * r->rho_y[first]);
+    if (s->links == 1 && s->mode.contact && a->wall.kind == WALL_POINT) {
+        r->qx[first] += push[0] - o->force * r->start_s[first];
+        r->qy[first] += push[1] + o->force * r->start_c[first];
+    }
+}
+
 // The n-th coefficients of accelerations and forces, and what follows of the next ones.
 static void next_order(chain_series *s, const arm *a, const chain_loops *loops, int n)
 {
     chain_rows *r = &s->rows;
-    const double t = s->length, l = a->link_length, m = a->link_mass;
     const bool contact = s->mode.contact, point = contact && a->wall.kind == WALL_POINT;
     const size_t first = s->first_place, end = s->last_place;
     double hub = 0, push[2] = {0};
-    chain_order o = {.n = n,
-                     .length = l,
-                     .stiffness = t * t * a->joint_stiffness,
-                     .damping = t * a->joint_damping,
-                     .root = root_torque(s, a, n, &hub)};
+    chain_order o = {.n = n, .root = root_torque(s, a, n, &hub)};
 
     // what is known
     loops->products(r, &o);
@@ -199,32 +234,21 @@ static void next_order(chain_series *s, const arm *a, const chain_loops *loops, 
     const double on_first = r->moment[first];
     if (point) {
         chain_series_reach_point(s, a, n + 1);
-        r->moment[end] -= earlier_force(s, a, n, push);
+        r->moment[end] -= earlier_force(s, n, push);
     }
     loops->prepare(r, &o);
     r->add_x[end] += push[0];
     r->add_y[end] += push[1];
 
     // the sweeps, and the force
-    loops->sweep(r, &o);
+    loops->sweep(r);
     if (contact) {
         o.force = s->force.term[n] = force_term(s, a, n);
     }
     loops->finish(r, &o);
 
-    // forces at the bases; the first one rests, and a plane pushes at the tip
-    const size_t second = chain_place(r, 1);
-    r->qx[first] =
-        r->qx[second] + m / 2 * (r->vx[first] * r->acceleration[first] + l * r->rho_x[first]);
-    r->qy[first] =
-        r->qy[second] + m / 2 * (r->vy[first] * r->acceleration[first] + l * r->rho_y[first]);
-    o.tip_x = contact && !point ? -o.force * a->wall.sine : 0;
-    o.tip_y = contact && !point ? o.force * a->wall.cosine : 0;
-    if (s->links < r->blocks * SERIES_LANES) {
-        const size_t beyond = chain_place(r, s->links);
-        r->qx[beyond] = o.tip_x;
-        r->qy[beyond] = o.tip_y;
-    }
+    force_at_tip(s, a, &o);
+    force_at_hub(s, a, &o, push);
     loops->hand(r, &o);
 
     // the hub
@@ -253,6 +277,21 @@ static double power(double x, int n)
     return result;
 }
 
+// Whether the last terms of the contact force are small at a share of the stride. On a flat wall
+// the force has a pole where the arm is folded over the hub's axis, of which the velocities know
+// nothing: their terms would be small beyond it.
+static bool force_converges(const chain_series *s, double share)
+{
+    const double *f = s->force.term;
+    if (!s->mode.contact) {
+        return true;
+    }
+    const double first = fmax(fabs(f[0]), share * fmax(fabs(f[1]), share * fabs(f[2])));
+    const double last = fabs(f[s->order - 2]) + share * fabs(f[s->order - 1]);
+    const double least = LEAST_FORCE * s->length * s->length;
+    return power(share, s->order - 2) * last <= FORCE_TERMS * fmax(first, least);
+}
+
 // How far the last terms are small, as a share of the stride; 0 if they are not finite.
 static double small_terms(const chain_series *s, double last_terms)
 {
@@ -275,7 +314,7 @@ static double small_terms(const chain_series *s, double last_terms)
     double share = 1;
     for (int i = 0; i < MOST_SHORTENINGS; i++) {
         const double high = power(share, order - 1);
-        if (high * (before + share * last) <= last_terms * largest) {
+        if (high * (before + share * last) <= last_terms * largest && force_converges(s, share)) {
             break;
         }
         share *= SHORTENING;
@@ -287,7 +326,7 @@ void chain_series_compute(chain_series *s, const arm *a, contact_state mode, con
                           const double *w, double length, double last_terms)
 {
     assert(s != NULL && a != NULL && q != NULL && w != NULL && length > 0 && last_terms > 0);
-    assert(a->links >= 2 && a->links == s->links && arm_is_plain(a));
+    assert(a->links == s->links && series_engine_suits(a));
     const chain_loops *loops = chain_loops_here();
     chain_rows *r = &s->rows;
     const size_t size = (size_t)(r->blocks * SERIES_LANES) * sizeof(double);

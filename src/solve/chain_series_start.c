@@ -6,10 +6,19 @@
 void chain_series_prepare_sweep(chain_series *s, const arm *a)
 {
     chain_rows *r = &s->rows;
-    const double l = a->link_length, m = a->link_mass, own = a->link_inertia + m * l * l / 4;
-    double pxx = 0, pxy = 0, pyy = 0;
+    const double t = s->length;
+    double pxx = a->tip_mass, pxy = 0, pyy = a->tip_mass;
     for (int k = s->links - 1; k >= 0; k--) {
         const size_t at = chain_place(r, k);
+        const bool joint = k + 1 < s->links; // beyond it
+        const double l = arm_link_length(a, k), m = arm_link_mass(a, k);
+        const double own = arm_link_inertia(a, k) + m * l * l / 4;
+        r->length[at] = l;
+        r->half[at] = l / 2;
+        r->stiffness[at] = joint ? t * t * arm_joint_stiffness(a, k + 1) : 0;
+        r->damping[at] = joint ? t * arm_joint_damping(a, k + 1) : 0;
+
+        // what it and those beyond show at its base
         const double c = r->start_c[at], sn = r->start_s[at];
         const double ptx = -pxx * sn + pxy * c, pty = -pxy * sn + pyy * c; // P t
         const double ux = l * ptx - m * l / 2 * sn, uy = l * pty + m * l / 2 * c;
@@ -46,7 +55,6 @@ void chain_series_prepare_contact(chain_series *s, const arm *a)
     chain_rows *r = &s->rows;
     const int last = s->links - 1;
     const bool point = a->wall.kind == WALL_POINT;
-    const double m = a->link_mass;
     const double ex = point ? -r->start_s[s->last_place] : -a->wall.sine;
     const double ey = point ? r->start_c[s->last_place] : a->wall.cosine;
     double qx = point ? 0 : ex, qy = point ? 0 : ey;
@@ -79,11 +87,7 @@ void chain_series_prepare_contact(chain_series *s, const arm *a)
         bx += r->vx[at] * r->unit[at];
         by += r->vy[at] * r->unit[at];
     }
-
-    // the first link's base rests
-    const size_t first = s->first_place, second = chain_place(r, 1), end = s->last_place;
-    r->unit_fx[first] = r->unit_fx[second] + m / 2 * r->vx[first] * r->unit[first];
-    r->unit_fy[first] = r->unit_fy[second] + m / 2 * r->vy[first] * r->unit[first];
+    const size_t end = s->last_place;
     s->response = point
                       ? ex * s->unit_x[end] + ey * s->unit_y[end] + s->along.term[0] * r->unit[end]
                       : ex * bx + ey * by;

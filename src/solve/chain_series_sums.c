@@ -1,23 +1,31 @@
 #include "src/solve/chain_series_parts.h"
 
+// Sums of a block's lanes.
+static inline double sum_of_lanes(const double sum[SERIES_LANES])
+{
+    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
 void chain_series_reach_point(chain_series *s, const arm *a, int n)
 {
     const chain_rows *r = &s->rows;
-    double x = 0, y = 0, along = 0;
+    double x[SERIES_LANES] = {0}, y[SERIES_LANES] = {0}, along = 0;
     for (int b = 0; b < r->blocks; b++) {
-        const double *cosine = r->cosine + chain_term(n, (size_t)b * SERIES_LANES);
-        const double *sine = r->sine + chain_term(n, (size_t)b * SERIES_LANES);
-        x += ((cosine[0] + cosine[1]) + (cosine[2] + cosine[3])) +
-             ((cosine[4] + cosine[5]) + (cosine[6] + cosine[7]));
-        y += ((sine[0] + sine[1]) + (sine[2] + sine[3])) +
-             ((sine[4] + sine[5]) + (sine[6] + sine[7]));
+        const size_t block = (size_t)b * SERIES_LANES;
+        const double *cosine = r->cosine + chain_term(n, block), *length = r->length + block;
+        const double *sine = r->sine + chain_term(n, block);
+        for (int j = 0; j < SERIES_LANES; j++) {
+            x[j] += length[j] * cosine[j];
+            y[j] += length[j] * sine[j];
+        }
     }
-    s->tip_x.term[n] = x;
-    s->tip_y.term[n] = y;
-    x -= last_of(s, r->cosine, n);
-    y -= last_of(s, r->sine, n);
-    s->reach_x.term[n] = (n == 0 ? a->wall.x : 0) - a->link_length * x;
-    s->reach_y.term[n] = (n == 0 ? a->wall.y : 0) - a->link_length * y;
+    s->tip_x.term[n] = sum_of_lanes(x);
+    s->tip_y.term[n] = sum_of_lanes(y);
+    const double last = r->length[s->last_place];
+    s->reach_x.term[n] =
+        (n == 0 ? a->wall.x : 0) - (s->tip_x.term[n] - last * last_of(s, r->cosine, n));
+    s->reach_y.term[n] =
+        (n == 0 ? a->wall.y : 0) - (s->tip_y.term[n] - last * last_of(s, r->sine, n));
     for (int i = 0; i <= n; i++) {
         along += last_of(s, r->cosine, i) * s->reach_x.term[n - i] +
                  last_of(s, r->sine, i) * s->reach_y.term[n - i];
@@ -30,8 +38,7 @@ void chain_series_sum_gap(chain_series *s, const arm *a)
     const chain_rows *r = &s->rows;
     for (int n = 0; n <= s->order + 1; n++) {
         chain_series_reach_point(s, a, n);
-        double gap =
-            a->link_length * (a->wall.sine * s->tip_x.term[n] - a->wall.cosine * s->tip_y.term[n]);
+        double gap = a->wall.sine * s->tip_x.term[n] - a->wall.cosine * s->tip_y.term[n];
         if (a->wall.kind == WALL_POINT) {
             gap = 0;
             for (int i = 0; i <= n; i++) {
@@ -53,25 +60,31 @@ static double square_term(const double *x, int count, int n)
     return 2 * sum + (n % 2 == 0 ? x[n / 2] * x[n / 2] : 0);
 }
 
-// The same of the bends' rates, summed over all inner joints.
-static double bend_square_term(const chain_series *s, int n)
+// The same of the terms of all links, each weighted.
+static double weighted_square_term(const chain_series *s, const double *terms,
+                                   const double *weights, int n)
 {
-    const chain_rows *r = &s->rows;
     double sum[SERIES_LANES] = {0};
-    for (int b = 0; b < r->blocks; b++) {
-        const double *of = r->bend_rate + chain_term(0, (size_t)b * SERIES_LANES);
+    for (int b = 0; b < s->rows.blocks; b++) {
+        const size_t block = (size_t)b * SERIES_LANES;
+        const double *of = terms + chain_term(0, block);
+        double square[SERIES_LANES] = {0};
         for (int i = n < s->order ? 0 : n - s->order + 1; 2 * i <= n; i++) {
             const double twice = 2 * i < n ? 2 : 1;
             for (int j = 0; j < SERIES_LANES; j++) {
-                sum[j] += twice * of[i * SERIES_LANES + j] * of[(n - i) * SERIES_LANES + j];
+                square[j] += twice * of[i * SERIES_LANES + j] * of[(n - i) * SERIES_LANES + j];
             }
         }
+        for (int j = 0; j < SERIES_LANES; j++) {
+            sum[j] += weights[block + (size_t)j] * square[j];
+        }
     }
-    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+    return sum_of_lanes(sum);
 }
 
 void chain_series_sum_losses(chain_series *s, const arm *a)
 {
+    const chain_rows *r = &s->rows;
     const int order = s->order;
     double rate[SERIES_TERMS];
     for (int i = 0; i < order; i++) {
@@ -80,10 +93,14 @@ void chain_series_sum_losses(chain_series *s, const arm *a)
 
     // each square to its last term: where the rates' series has ended, theirs has not
     s->square_terms = 2 * order - 1;
+    const double root = arm_joint_damping(a, 0), per_length = 1 / s->length;
     for (int n = 0; n < s->square_terms; n++) {
-        const double inner = s->damped ? bend_square_term(s, n) : 0;
-        const double root = s->damped ? square_term(s->root_rate.term, order, n) : 0;
         s->hub_square.term[n] = square_term(rate, order, n);
-        s->dissipation.term[n] = a->joint_damping * inner + a->hub_joint_damping * root;
+        s->dissipation.term[n] = 0;
+        if (s->damped) {
+            s->dissipation.term[n] =
+                per_length * weighted_square_term(s, r->bend_rate, r->damping, n) +
+                root * square_term(s->root_rate.term, order, n);
+        }
     }
 }

@@ -116,13 +116,17 @@ extern const engine explicit_engine; // Runge-Kutta of order 8, of order 6 in br
 extern const engine newmark_engine;  // implicit, stepping
 extern const engine generalized_alpha_engine; // the same step with other coefficients
 
-extern const engine series_engine; // power series of plain chains; dense
+extern const engine series_engine; // power series of chains; dense
 extern const engine modal_engine;  // exponential collocation for chains of many links; dense
 extern const engine taylor_engine; // power series of the two-link arm; dense
 
 // Whether the arm is one that the power series are for: two links, hub joint and damping of any
 // kind, and a rigid wall that is a point, a plane or none.
 bool taylor_engine_suits(const arm *a);
+
+// Whether the arm is one that the power series of chains are for: links and joints of any kind, a
+// mass at the tip, on a rigid wall or none.
+bool series_engine_suits(const arm *a);
 
 // Whether events and peaks are found in the stride itself.
 static inline bool engine_is_dense(const engine *e)

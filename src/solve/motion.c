@@ -24,14 +24,17 @@
 #define LAST_BITS 4e-4
 
 // The event method's engine: series of the two-link arm, modes of stiff plain chains, series of the
-// others; Runge-Kutta for arms and walls that those are not for. The time step has no say.
-static const engine *event_engine(const arm *a, const motion *m)
+// others; Runge-Kutta for what those are not for. The time step has no say.
+static const engine *event_engine(const arm *a)
 {
     if (taylor_engine_suits(a) && a->fastest_decay <= STIFF_PAIR) {
         return &taylor_engine;
     }
-    if (!arm_is_plain(a) || !motion_wall_is_rigid(m) || a->links < 2) {
+    if (!series_engine_suits(a)) {
         return &explicit_engine;
+    }
+    if (!arm_is_plain(a) || a->links < 2) {
+        return &series_engine;
     }
 
     // an arm that bounces passes errors on enlarged, a thousand times and more: unless decays make
@@ -62,7 +65,7 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = 0.5 - m->alpha_m + m->alpha_f;
         m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
     } else {
-        m->engine = chosen != NULL ? chosen : event_engine(a, m);
+        m->engine = chosen != NULL ? chosen : event_engine(a);
         m->chosen = chosen != NULL;
     }
 }
@@ -214,7 +217,7 @@ void motion_follow_arm(const arm *a, motion *m)
 {
     assert(a != NULL && m != NULL && a->dof == m->dof);
     const bool stays = motion_is_implicit(m) || m->chosen;
-    const engine *wanted = stays ? m->engine : event_engine(a, m);
+    const engine *wanted = stays ? m->engine : event_engine(a);
     if (wanted == m->engine && !m->starved) {
         return;
     }

@@ -34,7 +34,7 @@ static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
                       "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "
                       "none, has longer strides",
                       current);
-    } else if (m->engine == &series_engine && a->wall.restitution > 0) {
+    } else if (m->engine == &series_engine && a->wall.restitution > 0 && arm_is_plain(a)) {
         decimal_print(text, size,
                       "an arm that bounces undamped is followed as fast as its fastest mode "
                       "vibrates, %.3g rad/s; fewer links or softer joints have longer strides, and "

@@ -260,6 +260,13 @@ glance series_stride_force(const series_stride *s, double h)
 
 // --- as an engine of its own --------------------------------------------------------------------
 
+bool series_engine_suits(const arm *a)
+{
+    const bool rigid = !wall_stands(&a->wall) || !wall_gives(&a->wall);
+    return rigid && a->stiffening == 0 && a->air_drag == 0 && a->damped_modes == 0 &&
+           !a->motor.electric;
+}
+
 static double begin(const arm *a, motion *m, double remaining, double step)
 {
     (void)step;

@@ -1,4 +1,4 @@
-// A plain chain of links by power series (chain_series.h): a dense engine, exact to rounding. The
+// A chain of links by power series (chain_series.h): a dense engine, exact to rounding. The
 // two-link arm has its own (taylor_engine.h), which is the same mathematics written out.
 #pragma once
 
