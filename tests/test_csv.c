@@ -33,8 +33,9 @@ static void headings_carry_units(void **state)
     csv_heading(&m.csv, "impacts", "");
     csv_heading(&m.csv, "value", NULL);
     csv_heading(&m.csv, "a,b", "m");
+    csv_heading(&m.csv, "rate", "m, s");
     csv_end_row(&m.csv);
-    check_written(&m, "force[N],impacts[],value,\"a,b[m]\"\n");
+    check_written(&m, "force[N],impacts[],value,\"a,b[m]\",\"rate[m, s]\"\n");
 }
 
 static void texts_are_quoted_where_they_could_be_misread(void **state)

@@ -37,6 +37,7 @@ static void nobody_has_to_listen(void **state)
     (void)state;
     assert_int_equal(fault_set(NULL, STATUS_NO_MEMORY, "lost"), STATUS_NO_MEMORY);
     assert_int_equal(fault_set_at(NULL, STATUS_SINGULAR, "arm.k2", "lost"), STATUS_SINGULAR);
+    assert_int_equal(fault_set_place(NULL, STATUS_BAD_SCENARIO, 1, 2, "lost"), STATUS_BAD_SCENARIO);
 }
 
 static void long_sentences_are_cut(void **state)

@@ -68,6 +68,14 @@ static void objects_have_a_line_a_member(void **state)
     free(text);
 }
 
+static void lists_within_lists_have_lines_of_their_own(void **state)
+{
+    (void)state;
+    char *text = written(json_loads("[[1, 2], [], {}]", 0, NULL));
+    assert_string_equal(text, "[\n  [1, 2],\n  [],\n  {}\n]\n");
+    free(text);
+}
+
 static void what_cannot_be_put_is_noted_once(void **state)
 {
     (void)state;
@@ -96,6 +104,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_cannot_be_put_is_noted_once),
+        cmocka_unit_test(lists_within_lists_have_lines_of_their_own),
         cmocka_unit_test(objects_have_a_line_a_member),
         cmocka_unit_test(json_is_what_jansson_reads),
         cmocka_unit_test(text_without_utf8_is_made_readable),

@@ -62,6 +62,7 @@ static void what_is_no_list_of_its_numbers_is_refused(void **state)
     check_refused("arm.joint_stiffness", "10,nan", "not finite");
     check_refused("arm.joint_stiffness", "10 12", "expected N m/rad");
     check_refused("arm.link_lengths", "0.5,0", "0 is out of range");
+    check_refused("arm.link_lengths", "[0.5", "'[0.5' is not a number");
     check_refused("arm.link_lengths",
                   "1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1",
                   "at most 32 numbers");
@@ -106,8 +107,26 @@ static void lists_contradict_other_parameters(void **state)
                    "equal links and joints");
     check_conflict(SETTINGS("arm.modal_ratios", "0.1,0.2"), "arm.modal_ratios",
                    "expected at most 1");
+    check_conflict(
+        SETTINGS("arm.links", "24", "arm.modal_ratios", "0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0.1"),
+        "arm.modal_ratios", "has 17 numbers, expected at most 16");
+    check_conflict(SETTINGS("arm.links", "1", "arm.modal_ratios", "0.1,0.2"), "arm.modal_ratios",
+                   "expected at most 0: arm.links = 1");
+    check_conflict(SETTINGS("arm.links", "1", lengths, "0.5,0.5"), lengths, "has 2 numbers");
+    check_conflict(SETTINGS("arm.links", "3", lengths, "1"), lengths, "has 1 number, but");
     check_conflict(SETTINGS("arm.modal_ratios", "0.1", "arm.damping_ratio", "0.1"),
                    "arm.modal_ratios", "both given");
+}
+
+// Of a beam in one link only the root bends, and k2 is that spring.
+static void one_link_bends_at_its_root_alone(void **state)
+{
+    (void)state;
+    parameters one =
+        fixture_parameters(SETTINGS("arm.links=1", "arm.hub_joint=beam", "arm.joint_stiffness=5"));
+    assert_true(parameters_even_links(&one.arm));
+    check_close(one.arm.k2, 5, 1e-12);
+    check_close(one.arm.k1, 5, 1e-12);
 }
 
 // What follows from others does not change by itself during a run.
@@ -280,6 +299,7 @@ int main(void)
         cmocka_unit_test(lists_are_written_in_one_way),
         cmocka_unit_test(what_is_no_list_of_its_numbers_is_refused),
         cmocka_unit_test(lists_contradict_other_parameters),
+        cmocka_unit_test(one_link_bends_at_its_root_alone),
         cmocka_unit_test(what_follows_from_others_may_not_change),
         cmocka_unit_test(equal_numbers_are_the_uniform_arm_to_the_last_bit),
         cmocka_unit_test(the_general_way_meets_the_uniform_one),

@@ -232,6 +232,7 @@ static void an_endless_value_is_refused(void **state)
     memset(text, '1', sizeof text - 1);
     text[sizeof text - 1] = '\0';
     check_refused("arm.k2", text, "127");
+    check_refused("control.plugin", text, "127");
 }
 
 static void numbers_are_checked_too(void **state)
@@ -246,6 +247,14 @@ static void numbers_are_checked_too(void **state)
     assert_int_equal(parameter_set_number(&p, model, 2, &f), STATUS_BAD_SCENARIO);
     assert_int_equal(parameter_set_number(&p, links, 1025, NULL), STATUS_BAD_SCENARIO);
     assert_int_equal(p.set[links], 0);
+
+    // what takes no number says so
+    const int plugin = PARAMETER_INDEX(control.plugin), list = PARAMETER_INDEX(arm.link_lengths);
+    assert_int_equal(parameter_set_number(&p, plugin, 1, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.text, "control.plugin is a text and takes no number");
+    assert_int_equal(parameter_set_number(&p, list, 1, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.text, "arm.link_lengths is a list and takes no number");
+    assert_string_equal(f.path, "arm.link_lengths");
     assert_int_equal(p.arm.links, 2);
 }
 
@@ -346,6 +355,34 @@ static void impossible_combinations_are_refused(void **state)
     check_conflict("control.delay_periods", "0.8", "control.delay", "0.002", "period of 0.005 s");
 }
 
+// Two settings that look like a conflict and are none.
+static void check_goes_together(const char *const *settings)
+{
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    for (int i = 0; settings[i] != NULL; i += 2) {
+        give(&p, settings[i], settings[i + 1]);
+    }
+    if (parameters_resolve(&p, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+static void what_only_looks_like_a_conflict_is_none(void **state)
+{
+    (void)state;
+    // a limit that the amplifier holds by itself, a face that bounces
+    check_goes_together((const char *const[]){"method.name", "generalized-alpha", "motor.drive",
+                                              "current", "motor.current_limit", "5", NULL});
+    check_goes_together((const char *const[]){"wall.contact", "kelvin-voigt", "wall.mass", "0.5",
+                                              "wall.restitution", "0.5", NULL});
+
+    // and what is given as nothing
+    check_goes_together((const char *const[]){"method.name", "generalized-alpha",
+                                              "arm.joint_stiffness", "", "arm.stiffening", "0",
+                                              NULL});
+}
+
 // Of several that contradict one another the first that was given is to blame; defaults are not.
 static void defaults_are_never_to_blame(void **state)
 {
@@ -420,6 +457,7 @@ int main(void)
         cmocka_unit_test(defaults_follow_the_model),
         cmocka_unit_test(a_link_is_a_uniform_rod_unless_told),
         cmocka_unit_test(impossible_combinations_are_refused),
+        cmocka_unit_test(what_only_looks_like_a_conflict_is_none),
         cmocka_unit_test(defaults_are_never_to_blame),
         cmocka_unit_test(the_ledgers_bound_follows_the_method),
         cmocka_unit_test(resolving_twice_changes_nothing),

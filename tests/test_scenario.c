@@ -270,6 +270,18 @@ static void faults_of_one_line_are_told_from_left_to_right(void **state)
     }
 }
 
+// Blanks alone are no text, and a unit's sign is no control character.
+static void prose_is_text(void **state)
+{
+    (void)state;
+    check_fault("title: ' '\n", 1, 8, "expected text");
+    check_fault("title: t\ndescription: \" \\n \"\n", 2, 14, "expected text");
+    check_fault("title: \"a \\x9b\"\n", 1, 8, "a control character");
+    scenario s = good("title: '5 \u00b5s  '\n");
+    assert_string_equal(s.title, "5 \u00b5s");
+    scenario_finish(&s);
+}
+
 static void a_title_has_a_limit(void **state)
 {
     (void)state;
@@ -488,6 +500,36 @@ static void faults_come_in_the_order_of_their_places(void **state)
     assert_int_equal(all.count, 4);
 }
 
+// A list may be written as YAML's or as text; in either it has an end.
+static void lists_are_read_in_both_forms(void **state)
+{
+    (void)state;
+    scenario s = good("title: t\narm: {links: 3, joint_stiffness: [10, 12.5]}\n");
+    assert_string_equal(s.parameters.arm.joint_stiffness, "10, 12.5");
+    scenario_finish(&s);
+    s = good("title: t\narm: {links: 3, joint_stiffness: '10,12.5'}\n");
+    assert_string_equal(s.parameters.arm.joint_stiffness, "10, 12.5");
+    scenario_finish(&s);
+
+    char text[2000] = "arm: {links: 32, link_lengths: [0.03125";
+    for (int k = 1; k < 32; k++) {
+        strcat(text, ", 0.031250000000000000000000000000000000000");
+    }
+    strcat(text, "]}\n");
+    sentences all;
+    assert_int_equal(parse(&s, text, &all), STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(all.text, "arm.link_lengths is too long"));
+}
+
+// One that the law does not know from the start is said even where a script follows.
+static void the_first_lock_is_one_of_the_laws_modes(void **state)
+{
+    (void)state;
+    check_fault("title: t\ncontrol: {law: hybrid, lock: nonsense}\n"
+                "script: [{at: 0.1, set: {motor.voltage: 1}}]\n",
+                2, 30, "nonsense");
+}
+
 static void a_scripted_lock_is_one_of_the_laws_modes(void **state)
 {
     (void)state;
@@ -526,6 +568,9 @@ int main(void)
         cmocka_unit_test(impossible_combinations_point_at_the_key),
         cmocka_unit_test(what_does_not_go_together_is_refused),
         cmocka_unit_test(faults_of_one_line_are_told_from_left_to_right),
+        cmocka_unit_test(prose_is_text),
+        cmocka_unit_test(lists_are_read_in_both_forms),
+        cmocka_unit_test(the_first_lock_is_one_of_the_laws_modes),
         cmocka_unit_test(a_title_has_a_limit),
         cmocka_unit_test(faults_of_actions),
         cmocka_unit_test(faults_of_set),

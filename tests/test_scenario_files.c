@@ -204,7 +204,7 @@ static void every_folder_is_looked_into(void **state)
     for (int i = 1; i < FOLDERS; i++) {
         fprintf(list, "%s/deep:", folder);
     }
-    fprintf(list, "%s", folder);
+    fprintf(list, ":%s::", folder); // one without a name is none
     fclose(list);
     setenv("IMPACTLAB_SCENARIOS", all, 1);
 
@@ -409,6 +409,44 @@ static char *file_of(const scenario *s)
     return text;
 }
 
+// A lesson with every check, with and without what may be left out, is read back as it was.
+static void written_lessons_read_back(void **state)
+{
+    (void)state;
+    scenario s = good("title: t\n"
+                      "lesson:\n"
+                      "  parameters: [arm.k2]\n"
+                      "  steps:\n"
+                      "  - {say: \"with a bell\\a, and\\ttab\", hint: h, do: [seek 0, answer 1]}\n"
+                      "  - {say: b, number: {quantity: peak_force_N, within: 0.5}, then: right}\n"
+                      "  - {say: c, choice: {of: [x, y], right: 2}}\n"
+                      "  - {say: d, cursor: {at: first_contact_s, offset: 0.1, within: 0.01}}\n"
+                      "  - {say: e, value: {arm.k2: 5}}\n"
+                      "  - {say: f, pinned: 3}\n"
+                      "  - {say: g, ratio: {quantity: peak_force_N, from: 0.5, to: 2}}\n");
+    char *first = file_of(&s);
+    scenario back = good(first);
+    char *second = file_of(&back);
+    assert_string_equal(second, first);
+    assert_int_equal(back.lesson.step_count, 7);
+    for (int i = 0; i < 7; i++) {
+        const lesson_step *a = &s.lesson.steps[i], *b = &back.lesson.steps[i];
+        assert_int_equal(a->check, b->check);
+        assert_int_equal(a->command_count, b->command_count);
+        assert_string_equal(a->hint, b->hint);
+        assert_string_equal(a->then, b->then);
+    }
+    assert_int_equal(back.lesson.steps[2].right, 1);
+    check_close(back.lesson.steps[6].high, 2, 0);
+
+    // a control character does not leave the program
+    assert_string_equal(back.lesson.steps[0].say, "with a bell , and tab");
+    free(first);
+    free(second);
+    scenario_finish(&s);
+    scenario_finish(&back);
+}
+
 static void a_copy_shares_nothing_with_the_original(void **state)
 {
     (void)state;
@@ -455,6 +493,7 @@ int main(void)
         cmocka_unit_test(a_wrong_override_changes_nothing),
         cmocka_unit_test(an_endless_override_is_refused),
         cmocka_unit_test(written_scenarios_read_back),
+        cmocka_unit_test(written_lessons_read_back),
         cmocka_unit_test(a_copy_shares_nothing_with_the_original),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

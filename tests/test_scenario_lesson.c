@@ -61,6 +61,7 @@ static void faults_of_lessons(void **state)
     check_step("{hint: a}", "no 'say'");
     check_step("{say: [a]}", "say is a list, expected text");
     check_step("{say: ''}", "expected text");
+    check_step("{say: ' '}", "expected text");
     check_step("{say: a, saw: b}", "unknown key 'saw'");
     check_step("{say: a, do: seek}", "do is a single value, expected a list");
     check_step("{say: a, do: [a, b, c, d, e, f, g, h, i]}", "more than 8");
@@ -74,6 +75,8 @@ static void faults_of_lessons(void **state)
     check_step("{say: a, cursor: {at: first_contact_s}}", "no 'within'");
     check_step("{say: a, ratio: {quantity: peak_force_N, from: 1}}", "no 'to'");
     check_step("{say: a, choice: {right: 1}}", "no 'of'");
+    check_step("{say: a, choice: {of: [], right: 1}}", "no 'of'");
+    check_step("{say: a, choice: {of: a, right: 1}}", "of is a single value, expected a list");
     check_step("{say: a, choice: {of: [a, b]}}", "no 'right'");
     check_step("{say: a, choice: {of: [a, b], right: 3}}", "from 1 to 2");
     check_step("{say: a, choice: {of: [a, b], right: 1.5}}", "number of an answer");
@@ -85,10 +88,24 @@ static void faults_of_lessons(void **state)
     check_step("{say: a, value: {control.settings: a=1}}", "one value");
     check_step("{say: a, value: {motor.voltage: 1, arm.k2: 5}}", "one parameter");
     check_step("{say: a, value: {}}", "one parameter");
+    check_step("{say: a, value: {[motor.voltage]: 1}}", "the key is a list");
     check_step("{say: a, pinned: 1, value: {motor.voltage: 1}}", "second check");
     check_step("{say: a, pinned: 0}", "from 1 to 7");
     check_step("{say: a, pinned: 1e300}", "from 1 to 7");
     check_step("{say: a, pinned: [1]}", "expected a number");
+}
+
+// A key that is no word is said; what its value would have been is missing then.
+static void keys_of_a_check_are_words(void **state)
+{
+    (void)state;
+    scenario s;
+    sentences all;
+    const char *text =
+        "lesson: {steps: [{say: a, number: {[quantity]: peak_force_N, within: 1}}]}\n";
+    assert_int_equal(parse(&s, text, &all), STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(all.text, "the key is a list, expected a word"));
+    assert_non_null(strstr(all.text, "no quantity of a run"));
 }
 
 int main(void)
@@ -96,6 +113,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(faults_of_panes),
         cmocka_unit_test(faults_of_lessons),
+        cmocka_unit_test(keys_of_a_check_are_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -90,6 +90,22 @@ static void a_beginning_is_shared_and_the_rest_is_each_ones_own(void **state)
     shared_array_finish(&b);
 }
 
+// A plain array has no chunks that others could have too.
+static void the_beginning_of_a_plain_array_is_copied(void **state)
+{
+    (void)state;
+    shared_array plain, a;
+    shared_array_init(&plain, sizeof(uint64_t));
+    fill(&plain, 0, MANY);
+    assert_true(shared_array_reserve(&a, sizeof(uint64_t), MANY, 4 * MANY));
+    assert_true(shared_array_share(&a, &plain, MANY));
+    check_numbers(&a, MANY);
+    assert_int_equal(shared_array_same_chunks(&a, &plain, MANY), 0);
+    shared_array_finish(&plain);
+    check_numbers(&a, MANY);
+    shared_array_finish(&a);
+}
+
 static void equal_beginnings_are_found_and_merged(void **state)
 {
     (void)state;
@@ -116,6 +132,17 @@ static void a_difference_ends_what_is_equal(void **state)
     shared_array_finish(&b);
 }
 
+// As many as the shorter one has: neither is looked at beyond its end.
+static void the_shorter_array_ends_what_is_equal(void **state)
+{
+    (void)state;
+    shared_array a = filled(MANY), b = filled(PER_CHUNK);
+    assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 1);
+    assert_int_equal(shared_array_same_chunks(&b, &a, MANY), 1);
+    shared_array_finish(&a);
+    shared_array_finish(&b);
+}
+
 static void memory_goes_back_with_the_last_array(void **state)
 {
     (void)state;
@@ -133,8 +160,10 @@ int main(void)
         cmocka_unit_test(shared_arrays_keep_their_place_as_they_grow),
         cmocka_unit_test(growing_beyond_the_address_space_fails_and_changes_nothing),
         cmocka_unit_test(a_beginning_is_shared_and_the_rest_is_each_ones_own),
+        cmocka_unit_test(the_beginning_of_a_plain_array_is_copied),
         cmocka_unit_test(equal_beginnings_are_found_and_merged),
         cmocka_unit_test(a_difference_ends_what_is_equal),
+        cmocka_unit_test(the_shorter_array_ends_what_is_equal),
         cmocka_unit_test(memory_goes_back_with_the_last_array),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -347,6 +347,11 @@ static void a_strangers_link_is_not_followed(void **state)
         assert_int_equal(chmod("shared", 0755), 0);
         assert_int_equal(whole_file_open(&file, "shared/link", &f), STATUS_OK);
         whole_file_abandon(&file);
+
+        // one that belongs to whoever the folder belongs to is
+        assert_int_equal(chown("shared", 12345, 12345), 0);
+        assert_int_equal(chmod("shared", 01777), 0);
+        assert_int_equal(whole_file_check("shared/link", &f), STATUS_OK);
     }
     unlink("shared/link");
     assert_int_equal(rmdir("shared"), 0);
@@ -459,7 +464,7 @@ static void what_only_looks_left_behind_stays(void **state)
 {
     (void)state;
     static const char *const others[] = {".impactlab-1-2.party", ".impactlab-1.part",
-                                         ".impactlab-x-2.part"};
+                                         ".impactlab-x-2.part", ".impactlab-1-2.par"};
     const int before = files();
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         put(others[i], "mine");
@@ -472,7 +477,7 @@ static void what_only_looks_left_behind_stays(void **state)
     whole_file_clean_folder("nowhere");
     whole_file_clean_folder(".");
     assert_int_equal(access(".impactlab-1-6.part", F_OK), -1);
-    assert_int_equal(files(), before + 7);
+    assert_int_equal(files(), before + 8);
     assert_int_equal(rmdir(".impactlab-1-5.part"), 0);
     unlink(".impactlab-1-4.part");
     unlink(".impactlab-1-3.part");
@@ -480,6 +485,47 @@ static void what_only_looks_left_behind_stays(void **state)
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         unlink(others[i]);
     }
+}
+
+// Names that are all taken by others' temporaries are no reason to touch these.
+static void a_folder_without_a_free_name_is_said(void **state)
+{
+    (void)state;
+    whole_file first, w;
+    fault f = {0};
+    char name[64];
+    assert_int_equal(whole_file_open(&first, "kept", &f), STATUS_OK); // has looked for leftovers
+    for (int i = 0; i < 1000; i++) {
+        snprintf(name, sizeof name, ".impactlab-%ld-%d.part", (long)getpid(), i);
+        if (access(name, F_OK) != 0) {
+            put(name, "somebody's");
+        }
+    }
+    assert_int_equal(whole_file_open(&w, "other", &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, strerror(EEXIST)));
+    assert_holds(name, "somebody's");
+
+    // what was open is written all the same, and leftovers of nobody go
+    fputs("whole", first.stream);
+    assert_int_equal(whole_file_commit(&first, &f), STATUS_OK);
+    assert_holds("kept", "whole");
+    whole_file_clean_folder(".");
+    assert_int_not_equal(access(name, F_OK), 0);
+    unlink("kept");
+}
+
+// A stranger's file with a temporary's name is none of ours.
+static void what_another_user_left_stays(void **state)
+{
+    (void)state;
+    if (geteuid() != 0) {
+        skip(); // only root can make a file somebody else's
+    }
+    put(".impactlab-1-8.part", "a stranger's");
+    assert_int_equal(chown(".impactlab-1-8.part", 12345, 12345), 0);
+    whole_file_clean_folder(".");
+    assert_holds(".impactlab-1-8.part", "a stranger's");
+    unlink(".impactlab-1-8.part");
 }
 
 static void a_link_to_itself_leads_nowhere(void **state)
@@ -539,6 +585,8 @@ int main(void)
         cmocka_unit_test(devices_and_the_standard_output_can_be_abandoned),
         cmocka_unit_test(a_link_may_be_absolute),
         cmocka_unit_test(what_only_looks_left_behind_stays),
+        cmocka_unit_test(a_folder_without_a_free_name_is_said),
+        cmocka_unit_test(what_another_user_left_stays),
         cmocka_unit_test(a_link_to_itself_leads_nowhere),
         cmocka_unit_test(a_file_may_have_the_number_of_the_standard_input),
     };

@@ -103,6 +103,7 @@ static void what_turns_the_direction_of_text_becomes_question_marks(void **state
     check_printable("a\u202eb", "a???b");
     check_printable("\u2066x\u2069", "???x???");
     check_printable("\u200e\u061c", "?????");
+    check_printable("\u200f", "???");
     check_printable("\u2028\u2029", "??????");
     check_printable("\u200b\u2030", "\u200b\u2030"); // their neighbours stay
 }

@@ -11,8 +11,9 @@ int parameter_list_numbers(const char *list, double numbers[PARAMETER_LIST_MOST]
     int count = 0;
 
     // the text is canonical: numbers with commas between them
-    while (*list != '\0' && count < PARAMETER_LIST_MOST) {
+    while (*list != '\0') {
         char *end;
+        assert(count < PARAMETER_LIST_MOST);
         numbers[count++] = decimal_parse(list, &end);
         assert(end > list);
         list = end + (*end == ',');

@@ -344,10 +344,10 @@ _Static_assert(sizeof parameter_table / sizeof parameter_table[0] <= sizeof(((pa
 int parameter_at(size_t offset)
 {
     int index = 0;
-    while (index < parameter_count && parameter_table[index].offset != offset) {
+    while (parameter_table[index].offset != offset) {
         index++;
+        assert(index < parameter_count);
     }
-    assert(index < parameter_count);
     return index;
 }
 

@@ -77,6 +77,12 @@ status parameter_may_change(const parameters *p, int index, fault *f)
     return STATUS_OK;
 }
 
+// The ending of a noun of which there are so many.
+static const char *plural(int count)
+{
+    return count == 1 ? "" : "s";
+}
+
 // The two lists: as long as the arm has joints and links, and given once.
 static status check_lists(const parameters *p, fault *f)
 {
@@ -89,14 +95,14 @@ static status check_lists(const parameters *p, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.joint_stiffness, arm.links),
                             "arm.joint_stiffness has %d number%s, expected %d: arm.links = %d "
                             "have %s",
-                            stiffnesses, stiffnesses == 1 ? "" : "s", joints, a->links,
+                            stiffnesses, plural(stiffnesses), joints, a->links,
                             a->hub_joint == HUB_BEAM ? "a joint before each (arm.hub_joint = beam)"
                                                      : "a joint between each two");
     }
     if (lengths > 0 && lengths != a->links) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.link_lengths, arm.links),
                             "arm.link_lengths has %d number%s, but arm.links = %d", lengths,
-                            lengths == 1 ? "" : "s", a->links);
+                            plural(lengths), a->links);
     }
 
     // what a list takes the place of
@@ -138,9 +144,9 @@ static status check_damping(const parameters *p, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.modal_ratios, arm.links),
                             "arm.modal_ratios has %d number%s, expected at most %d: arm.links = %d "
                             "have %d mode%s with the hub held",
-                            ratios, ratios == 1 ? "" : "s",
+                            ratios, plural(ratios),
                             modes < PARAMETER_MODES_MOST ? modes : PARAMETER_MODES_MOST, a->links,
-                            modes, modes == 1 ? "" : "s");
+                            modes, plural(modes));
     }
     return STATUS_OK;
 }

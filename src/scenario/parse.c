@@ -12,16 +12,14 @@ enum { LONGEST_TITLE = 200 }; // bytes
 // Copies prose; only the description may have several lines. NULL after a fault.
 static char *parse_prose(reader *r, const tree_node *node, const char *what, bool many_lines)
 {
-    if (!node_is_scalar(node) || node->text[0] == '\0') {
+    // trailing blanks are no part of it
+    const size_t length = node_text_length(node);
+    if (length == 0) {
         report_node(r, node, "%s is %s, expected text", what, node_kind_name(node));
         return NULL;
     }
 
-    // trailing blanks are no part of it, control characters not allowed
-    size_t length = strlen(node->text);
-    while (length > 0 && strchr(" \t\r\n", node->text[length - 1]) != NULL) {
-        length--;
-    }
+    // control characters are not allowed
     for (size_t i = 0; i < length; i++) {
         unsigned char c = (unsigned char)node->text[i];
         bool control =
@@ -151,12 +149,13 @@ static void parse_root(reader *r, const tree_node *root)
 static void complete(reader *r, const char *name)
 {
     scenario *s = r->s;
-    s->name = strdup(name != NULL ? name : r->path);
+    const char *called = name != NULL ? name : r->path;
+    s->name = strdup(called);
     s->file = strdup(r->path);
 
     // the name stands in for a title
     if (s->title == NULL) {
-        s->title = strdup(name != NULL ? name : r->path);
+        s->title = strdup(called);
     }
     if (s->description == NULL) {
         s->description = strdup("");

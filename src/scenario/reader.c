@@ -85,6 +85,15 @@ bool node_is_null(const tree_node *node)
            (strcmp(node->text, "null") == 0 || strcmp(node->text, "~") == 0);
 }
 
+size_t node_text_length(const tree_node *node)
+{
+    size_t length = node_is_scalar(node) ? strlen(node->text) : 0;
+    while (length > 0 && strchr(" \t\r\n", node->text[length - 1]) != NULL) {
+        length--;
+    }
+    return length;
+}
+
 const char *node_kind_name(const tree_node *node)
 {
     static const char *const names[] = {"a single value", "a list", "a map of keys"};

@@ -44,6 +44,9 @@ void reader_report_all(reader *r, fault_handler report, void *context);
 bool node_is_scalar(const tree_node *node);
 bool node_is_empty(const tree_node *node);
 bool node_is_null(const tree_node *node);
+
+// Bytes of a node's text without the blanks at its end; 0 if it holds none.
+size_t node_text_length(const tree_node *node);
 // "a list", as a sentence names what stands there.
 const char *node_kind_name(const tree_node *node);
 

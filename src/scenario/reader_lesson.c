@@ -14,21 +14,19 @@
 // The text of a node in one line; NULL after a fault.
 static char *read_text(reader *r, const tree_node *node, const char *what)
 {
-    if (!node_is_scalar(node) || node->text[0] == '\0') {
+    const size_t length = node_text_length(node);
+    if (length == 0) {
         report_node(r, node, "%s is %s, expected text", what, node_kind_name(node));
         return NULL;
     }
 
-    // folded lines are one, blanks at the end go
-    char *text = strdup(node->text);
+    // folded lines are one
+    char *text = strndup(node->text, length);
     if (!reader_have_memory(r, text)) {
         return NULL;
     }
     for (char *c = text; *c != '\0'; c++) {
         *c = *c == '\n' || *c == '\t' ? ' ' : *c;
-    }
-    for (size_t n = strlen(text); n > 0 && text[n - 1] == ' '; n--) {
-        text[n - 1] = '\0';
     }
     return text;
 }
@@ -115,11 +113,12 @@ static void read_choice(reader *r, const tree_node *map, lesson_step *step)
     step->check = LESSON_CHOICE;
 
     // without answers there is nothing to choose
-    if (of == NULL || right == NULL) {
+    const bool answers = of != NULL && (of->kind != TREE_LIST || of->first != NULL);
+    if (!answers || right == NULL) {
         report_node(r, map,
                     "a choice has no '%s', expected answers under 'of' and the right one's "
                     "number under 'right'",
-                    of == NULL ? "of" : "right");
+                    answers ? "right" : "of");
         return;
     }
 
@@ -137,9 +136,12 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
     const tree_node *child = map->first;
     step->check = LESSON_VALUE;
     step->within = NEAR_ENOUGH;
-    const char *path = child != NULL ? reader_key(r, map, child) : NULL;
-    if (path == NULL || child->next != NULL) {
+    if (child == NULL || child->next != NULL) {
         report_node(r, map, "value takes one parameter, such as {motor.voltage: 0.5}");
+        return;
+    }
+    const char *path = reader_key(r, map, child);
+    if (path == NULL) {
         return;
     }
 

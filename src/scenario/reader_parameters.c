@@ -1,6 +1,7 @@
 // The groups of a scenario file: its parameters.
 #include "src/scenario/reader.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "src/base/words.h"
@@ -156,16 +157,11 @@ void reader_resolve(reader *r)
 {
     fault f;
     parameters trial = r->s->parameters;
-    const place *model = &r->given[PARAMETER_INDEX(arm.model)];
     while (parameters_resolve(&trial, &f) != STATUS_OK) {
-        // a parameter that the file gives is to blame, or the model that wants another default
-        int blamed = parameter_find(f.path);
-        bool given = blamed >= 0 && r->given[blamed].line > 0;
-        place at = given ? r->given[blamed] : model->line > 0 ? *model : (place){1, 1};
-        reader_report_at(r, at.line, at.column, "%s", f.text);
-        if (!given) {
-            break;
-        }
+        // defaults go together, so that a parameter which the file gives is to blame
+        const int blamed = parameter_find(f.path);
+        assert(blamed >= 0 && r->given[blamed].line > 0);
+        reader_report_at(r, r->given[blamed].line, r->given[blamed].column, "%s", f.text);
 
         // with its default the others may show faults of their own
         trial.set[blamed] = 0;

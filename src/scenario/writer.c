@@ -91,14 +91,14 @@ static void write_actions(FILE *stream, const scenario *s)
 
 // --- lessons ----------------------------------------------------------------------------------
 
-// A list of texts behind a key, nothing without any.
+// A list of at least one text behind a key.
 static void write_texts(FILE *stream, const char *key, char *const *texts, int count)
 {
     for (int i = 0; i < count; i++) {
         fprintf(stream, i == 0 ? "%s[" : ", ", key);
         write_text(stream, texts[i]);
     }
-    fputs(count > 0 ? "]" : "", stream);
+    fputc(']', stream);
 }
 
 // A number of a map.
@@ -162,8 +162,10 @@ static void write_step(FILE *stream, const parameters *p, const lesson_step *ste
             fputc('\n', stream);
         }
     }
-    write_texts(stream, "      do: ", step->commands, step->command_count);
-    fputs(step->command_count > 0 ? "\n" : "", stream);
+    if (step->command_count > 0) {
+        write_texts(stream, "      do: ", step->commands, step->command_count);
+        fputc('\n', stream);
+    }
 }
 
 static void write_lesson(FILE *stream, const scenario *s)
@@ -185,12 +187,12 @@ static void write_lesson(FILE *stream, const scenario *s)
 
 void scenario_write(FILE *stream, const scenario *s)
 {
-    assert(stream != NULL && s != NULL);
+    assert(stream != NULL && s != NULL && s->title != NULL && s->description != NULL);
 
     // prose
     fputs("title: ", stream);
-    write_text(stream, s->title != NULL ? s->title : "");
-    if (s->description != NULL && s->description[0] != '\0') {
+    write_text(stream, s->title);
+    if (s->description[0] != '\0') {
         fputs("\ndescription: ", stream);
         write_text(stream, s->description);
     }
