@@ -51,6 +51,11 @@ static void an_impact_throws_both_links_onto_one_motion(void **state)
     assert_true(pressed_after_impact(&p, &before, &after));
     check_relative(after.velocity, ((m11 - m12) * 0.5 + (m12 - m22) * 0.9) / m.inertia, 1e-4);
     check_close(after.x, 0.001, 1e-15);
+
+    // one that is no number throws them nowhere
+    p.arm.mass = 1000;
+    before.velocity[1] = before.velocity[2] = 1.5e308;
+    assert_false(pressed_after_impact(&p, &before, &after));
 }
 
 // With a motor that gives every force only the runaway mode counts, in closed form.
@@ -113,6 +118,8 @@ static void what_cannot_be_is_said(void **state)
         isnan(best_settling(&m, (pressed_state){0, 1}, 6, 0.05, 9))); // the motor is too weak
     // 0.58 N are needed to stop, so no less can lead down
     assert_true(isnan(best_settling(&m, (pressed_state){0, 1}, 0.4, 0.05, 0.5)));
+    // no force is none to be settled on
+    assert_true(isnan(best_settling(&m, (pressed_state){0, 1}, 0, 0.05, 0.5)));
     pressed_arm_model weak = model_of(SETTINGS("motor.voltage_limit=1.5"));
     check_below(1.02 * best_peak(&m, (pressed_state){0, 1.37}),
                 best_peak(&weak, (pressed_state){0, 1.37}));

@@ -132,6 +132,8 @@ static void where_there_is_no_way_it_says_so(void **state)
     assert_true(isnan(of(SETTINGS("arm.links=3", START), 1, 2).total));
     assert_true(isnan(of(SETTINGS("initial.angle=0", "wall.angle=0"), 1, 2).total));
     assert_true(isnan(of(SETTINGS(START), 0, 2).total));
+    assert_true(
+        isnan(of(SETTINGS(START, "motor.voltage_limit=0", "motor.stiction=0"), 1, 2).total));
 }
 
 int main(void)

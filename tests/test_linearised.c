@@ -209,6 +209,22 @@ static void a_receding_arm_does_not_touch(void **state)
     motion_destroy(m);
 }
 
+// Where no wall stands there is nothing to be touched.
+static void without_a_wall_there_is_no_touch(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(SETTINGS("wall.kind=none"));
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.8};
+    prediction out;
+    assert_int_equal(predict_linearised(&a, m, q, w, &out), STATUS_OK);
+    assert_false(out.holds);
+    assert_true(isnan(out.force));
+    motion_destroy(m);
+}
+
 // What the motion does under commands that are given after the touch: peak of the pulse, its delay,
 // and the energies that e_eq is made of.
 static prediction follow_motion(const arm *source, motion *m, const voltage_profile *command)
@@ -308,6 +324,7 @@ int main(void)
         cmocka_unit_test(a_damped_hub_is_predicted_too),
         cmocka_unit_test(in_flight_it_approaches_the_prediction_at_the_wall),
         cmocka_unit_test(a_receding_arm_does_not_touch),
+        cmocka_unit_test(without_a_wall_there_is_no_touch),
         cmocka_unit_test(a_prescribed_voltage_is_followed),
         cmocka_unit_test(an_elastic_impact_does_not_hold),
     };

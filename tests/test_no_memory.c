@@ -115,6 +115,18 @@ static status change_on_the_way(scenario *s, FILE *out)
     code = code == STATUS_OK ? t->run.summary.status : code;
     code = code == STATUS_OK ? session_redo(t, &f) : code;
     code = code == STATUS_OK ? t->run.summary.status : code;
+
+    // in small steps, without the first input, and with all of before
+    const session_input before[2] = {t->inputs[0], t->inputs[1]};
+    code = code == STATUS_OK ? session_adjust(t, PARAMETER_INDEX(arm.k2), "7", &f) : code;
+    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? session_adjust(t, PARAMETER_INDEX(arm.k2), "8", &f) : code;
+    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? session_keep_beside(t, &t->run, &f) : code;
+    code = code == STATUS_OK ? session_drop_input(t, 0, &f) : code;
+    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? session_take_inputs(t, before, 2, &f) : code;
+    code = code == STATUS_OK ? t->run.summary.status : code;
     code = code == STATUS_OK ? show(&t->effective, &t->run, out) : code;
     session_finish(t);
     return code;

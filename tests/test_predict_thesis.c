@@ -447,6 +447,47 @@ static void a_state_that_is_not_finite_is_refused(void **state)
         assert_non_null(strstr(f.text, "second link's velocity"));
         assert_false(out.holds);
     }
+
+    // an angle, and the velocities alone after an impact
+    fault f = {.text = ""};
+    double after[3], impulse;
+    s = (three_body_state){{0.1, (double)INFINITY, 0.1}, {1, 1, 1}};
+    assert_int_equal(predict_velocity_jump(&p, &s, after, &impulse, &f), STATUS_NOT_FINITE);
+    assert_non_null(strstr(f.text, "first link's angle is inf"));
+}
+
+// A state too fast for its impulse to be a number is said to have none.
+static void an_impact_without_a_finite_impulse_is_refused(void **state)
+{
+    (void)state;
+    const three_body_state s = {{0.1, 0.1, 0.1}, {1e308, 1e308, 1.5e308}};
+    for (int model = ARM_CORRECTED; model <= ARM_PRINTED; model++) {
+        parameters p = parameters_of((arm_model_kind)model);
+        p.arm.mass = 1000;
+        double after[3], impulse;
+        fault f = {.text = ""};
+        assert_int_equal(predict_velocity_jump(&p, &s, after, &impulse, &f), STATUS_SINGULAR);
+        assert_non_null(strstr(f.text, "no single impulse"));
+        for (int i = 0; i < 3; i++) {
+            prediction out;
+            assert_int_equal(predictors[i](&p, &s, &out, &f), STATUS_SINGULAR);
+            assert_false(out.holds);
+        }
+    }
+}
+
+// Joints damped beyond the critical give no energy back.
+static void an_overdamped_arm_gives_no_energy_back(void **state)
+{
+    (void)state;
+    parameters p = corrected_with(HUB_RIGID), plain = p;
+    p.arm.damping_ratio = 4;
+    const three_body_state s = {{0.11, 0.11, 0.09}, {1, 1, 1}};
+    prediction damped, free;
+    assert_int_equal(predict_energy(&p, &s, &damped, NULL), STATUS_OK);
+    assert_int_equal(predict_energy(&plain, &s, &free, NULL), STATUS_OK);
+    check_below(damped.force, free.force);
+    assert_true(isfinite(damped.force));
 }
 
 int main(void)
@@ -469,6 +510,8 @@ int main(void)
         cmocka_unit_test(faster_hits_harder),
         cmocka_unit_test(more_links_are_predicted_as_the_two_link_arm),
         cmocka_unit_test(a_state_that_is_not_finite_is_refused),
+        cmocka_unit_test(an_impact_without_a_finite_impulse_is_refused),
+        cmocka_unit_test(an_overdamped_arm_gives_no_energy_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -32,13 +32,17 @@ static void an_arm_that_moves_away_does_not_hold(void **state)
     (void)state;
     parameters p = fixture_parameters(NULL);
     const three_body_state away = {{0.1136, 0.1136, 0.0864}, {-1, -1, -1}};
-    const double back[2] = {-1, -1};
+    const double back[2] = {-1, -1}, at[] = {0.01}, volts[] = {1};
     prediction_answer answers[PREDICTOR_COUNT];
     predict_all(&(prediction_question){&p, away, links, back}, answers);
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         assert_int_equal(answers[i].outcome, PREDICTION_LOST);
         assert_true(prediction_known(&answers[i]) && !answers[i].prediction.holds);
     }
+
+    // whatever the command would be later
+    const prediction_question told = {&p, away, links, back, {1, at, volts}, false};
+    assert_int_equal(predict_with(PREDICTOR_IMPACT_QUADRATIC, &told).outcome, PREDICTION_LOST);
 }
 
 static void the_linearised_arm_says_what_it_lacks(void **state)
@@ -70,6 +74,13 @@ static void a_state_that_is_not_finite_fails_with_a_sentence(void **state)
     assert_int_equal(answer.fault.code, STATUS_NOT_FINITE);
     assert_ptr_equal(prediction_reason(&answer), answer.fault.text);
     assert_true(isnan(answer.prediction.force) && isnan(answer.prediction.delay));
+
+    // so does one that an iteration over commands would begin with
+    const double at[] = {0}, volts[] = {1};
+    answer = predict_with(PREDICTOR_IMPACT_DYNAMICS,
+                          &(prediction_question){&p, bad, links, rates, {1, at, volts}, false});
+    assert_int_equal(answer.outcome, PREDICTION_FAILED);
+    assert_int_equal(answer.fault.code, STATUS_NOT_FINITE);
 }
 
 // The force that a predictor says for commands from the touch on.
@@ -122,6 +133,8 @@ static void who_cannot_answer_says_why(void **state)
         {SETTINGS("arm.links=3", "arm.joint_stiffness=5,9"), PREDICTOR_IMPACT_QUADRATIC,
          PREDICTION_EQUAL_LINKS_ONLY},
         {SETTINGS("arm.stiffening=10"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
+        {SETTINGS("arm.links=3", "arm.modal_ratios=0.1,0.2"), PREDICTOR_ENERGY,
+         PREDICTION_EQUAL_LINKS_ONLY},
         {SETTINGS("arm.air_drag=0.1"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
         {SETTINGS("motor.inductance=1e-3"), PREDICTOR_LINEARISED, PREDICTION_CURRENT_AT_ONCE_ONLY},
         {SETTINGS("motor.current_limit=1"), PREDICTOR_ENERGY, PREDICTION_CURRENT_AT_ONCE_ONLY},
@@ -134,6 +147,12 @@ static void who_cannot_answer_says_why(void **state)
         assert_true(strlen(prediction_reason(&answer)) > 10);
         assert_true(isnan(answer.prediction.force));
     }
+
+    // an amplifier that holds its current by itself needs no limit told
+    parameters drive = fixture_parameters(
+        SETTINGS("motor.drive=current", "motor.current_limit=5", "motor.voltage=1"));
+    prediction_question limited = {.parameters = &drive, .bodies = closing};
+    assert_int_equal(predict_with(PREDICTOR_ENERGY, &limited).outcome, PREDICTION_HOLDS);
 
     // energy knows no time over which a command could act
     const double at[] = {0}, volts[] = {1};

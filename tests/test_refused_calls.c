@@ -41,6 +41,20 @@ static status write_whole_file(const char *path, FILE *out)
     return code;
 }
 
+// What is written in place: nothing of it is put back.
+static status write_in_place(const char *path, FILE *out)
+{
+    whole_file w;
+    fault f = {0};
+    status code = whole_file_open(&w, path, &f);
+    if (code == STATUS_OK) {
+        code = whole_file_close(&w, STATUS_OK, &f);
+    }
+    assert_true(code == STATUS_OK || strstr(f.text, "cannot be written: ") != NULL);
+    fputs("written", out);
+    return code;
+}
+
 // --- shared rows --------------------------------------------------------------------------------
 
 enum { PER_CHUNK = ARRAY_CHUNK / sizeof(uint64_t), ROWS = 5 * PER_CHUNK / 2 };
@@ -199,6 +213,8 @@ static void whole_files(void **state)
     assert_int_equal(symlink("file", link), 0);
     try_all(write_whole_file, path);
     try_all(write_whole_file, link);
+    try_all(write_in_place, "/dev/null");
+    try_all(write_in_place, "-");
     unlink(link);
     unlink(path);
     assert_int_equal(rmdir(folder), 0); // no temporary stays

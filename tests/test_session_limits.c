@@ -156,6 +156,51 @@ static void a_refused_drop_keeps_the_order(void **state)
     session_finish(&s);
 }
 
+// Where another input went meanwhile, the run has other rows at the instant that undoing leads to:
+// none, a later one, or another one with the number of the row that was shown.
+static void undoing_leads_to_the_instant_in_another_run(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *value;
+        double at;
+    } first[] = {{"run.duration", "0.6", 0.5},
+                 {"method.step", "0.0005", 0.1},
+                 {"method.step", "0.002", 0.1}};
+    for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) {
+        session s = opened(brief);
+        fault f = {0};
+        assert_int_equal(session_change(&s, parameter_find(first[i].path), first[i].value, &f),
+                         STATUS_OK);
+        session_seek(&s, first[i].at);
+        assert_int_equal(session_push(&s, 1e-4, &f), STATUS_OK);
+        assert_int_equal(session_drop_input(&s, 0, &f), STATUS_OK);
+        session_seek(&s, 0);
+        assert_int_equal(session_undo(&s, &f), STATUS_OK);
+        assert_int_equal(s.input_count, 0);
+        check_close(s.now, fmin(first[i].at, s.run.trace.rows[s.run.trace.row_count - 1].time),
+                    1e-9);
+        check_close(session_sample(&s)->time, s.now, 1e-3);
+        session_finish(&s);
+    }
+}
+
+// An arm that starts on the wall meets it at once: what is done at the row before is done at 0.
+static void a_push_before_a_contact_at_once_is_at_the_start(void **state)
+{
+    (void)state;
+    session s = opened("title: t\nwall: {angle: 0}\nrun: {duration: 0.1 s}\n"
+                       "initial: {velocity: 0.5}\n");
+    fault f = {0};
+    assert_true(s.run.summary.first_contact_s == 0);
+    session_seek(&s, 0);
+    while (session_step(&s, -1)) {
+    }
+    assert_int_equal(session_push(&s, 1e-4, &f), STATUS_OK);
+    assert_true(s.inputs[0].time == 0);
+    session_finish(&s);
+}
+
 // A session that takes the inputs of another one has its run to the last bit.
 static void taken_inputs_make_the_same_run(void **state)
 {
@@ -277,6 +322,8 @@ int main(void)
         cmocka_unit_test(adjusting_keeps_what_was_before),
         cmocka_unit_test(inputs_that_cannot_go_stay),
         cmocka_unit_test(a_refused_drop_keeps_the_order),
+        cmocka_unit_test(undoing_leads_to_the_instant_in_another_run),
+        cmocka_unit_test(a_push_before_a_contact_at_once_is_at_the_start),
         cmocka_unit_test(taken_inputs_make_the_same_run),
         cmocka_unit_test(a_change_at_an_event_belongs_to_its_row),
         cmocka_unit_test(a_stopped_run_goes_on),
