@@ -170,15 +170,7 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
 static status set_parameter(corrected_run *c, const action *todo, fault *f)
 {
     recording *r = c->recording;
-    status failed = action_apply(todo, &r->now, f);
-
-    // the rig has its own view of the parameters
-    if (failed == STATUS_OK && r->rig != NULL) {
-        failed = rig_lock(r->rig, r->now.control.lock, f);
-    }
-    if (failed == STATUS_OK && r->rig != NULL) {
-        failed = rig_retune(r->rig, &r->now, c->motion->state[SLOT_TIME], f);
-    }
+    status failed = recording_set(r, todo, c->motion->state[SLOT_TIME], f);
 
     // the motion goes on with the arm that is bound anew; a voltage changes nothing but its torque
     arm before = c->arm;

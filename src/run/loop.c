@@ -72,7 +72,7 @@ static uint64_t fingerprint_of(const run_loop *l)
 
 status loop_create(run_loop **created, const scenario *s, const loop_options *options, fault *f)
 {
-    assert(created != NULL && s != NULL && options != NULL);
+    assert(created != NULL && s != NULL && options != NULL && f != NULL);
     *created = NULL;
     run_loop *l = calloc(1, sizeof *l);
     if (l == NULL || scenario_copy(&l->scenario, s) != STATUS_OK) {
@@ -90,17 +90,13 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
                                .tape = l->tape};
 
     // the run at its start
-    fault why;
     l->run.model = stepped_model_of(&s->parameters);
-    status code = recording_begin(&l->recording, &l->scenario, &l->options, &l->result, &why);
+    status code = recording_begin(&l->recording, &l->scenario, &l->options, &l->result, f);
     if (code == STATUS_OK) {
         l->opened = true;
-        code = l->run.model->open(&l->run, &l->recording, &why);
+        code = l->run.model->open(&l->run, &l->recording, f);
     }
     if (code != STATUS_OK) {
-        if (f != NULL) {
-            *f = why;
-        }
         loop_destroy(l);
         return code;
     }
@@ -143,7 +139,7 @@ static status stay_failed(run_loop *l, fault *f)
     if (l->failed != STATUS_OK && l->fault.code == STATUS_OK) {
         fault_set(&l->fault, l->failed, "at t = %.9g s: %s", loop_time(l), status_text(l->failed));
     }
-    if (l->failed != STATUS_OK && f != NULL) {
+    if (l->failed != STATUS_OK) {
         *f = l->fault;
     }
     return l->failed;
@@ -174,14 +170,14 @@ static void stride_to(run_loop *l, double time)
 
 status loop_until(run_loop *l, double time, fault *f)
 {
-    assert(l != NULL && isfinite(time));
+    assert(l != NULL && isfinite(time) && f != NULL);
     stride_to(l, time);
     return stay_failed(l, f);
 }
 
 status loop_step(run_loop *l, fault *f)
 {
-    assert(l != NULL);
+    assert(l != NULL && f != NULL);
     const rig *on = l->recording.rig;
     const double interval = l->recording.now.method.step;
 
@@ -206,7 +202,6 @@ void loop_command(run_loop *l, double volts)
 // Carries out an input; one that is refused changes nothing.
 static status act(run_loop *l, const action *todo, fault *f)
 {
-    fault why = {.code = STATUS_OK, .text = "", .path = ""};
     if (l->failed != STATUS_OK) {
         return stay_failed(l, f);
     }
@@ -222,26 +217,23 @@ static status act(run_loop *l, const action *todo, fault *f)
     // tried on a copy, with what the rig will say
     parameters tried = l->recording.now;
     status code =
-        todo->kind == ACTION_SET ? parameter_may_change(&tried, todo->parameter, &why) : STATUS_OK;
-    code = code == STATUS_OK ? action_apply(todo, &tried, &why) : code;
+        todo->kind == ACTION_SET ? parameter_may_change(&tried, todo->parameter, f) : STATUS_OK;
+    code = code == STATUS_OK ? action_apply(todo, &tried, f) : code;
     const rig *on = l->recording.rig;
     if (code == STATUS_OK && on != NULL) {
         int mode;
-        code = rig_find_mode(on->law, tried.control.lock, &mode, &why);
+        code = rig_find_mode(on->law, tried.control.lock, &mode, f);
     }
     if (code == STATUS_OK) {
         code = l->failed = l->run.model->act(&l->run, todo, &l->fault);
         return stay_failed(l, f);
-    }
-    if (f != NULL) {
-        *f = why;
     }
     return code;
 }
 
 status loop_set_number(run_loop *l, int parameter, double value, fault *f)
 {
-    assert(l != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(l != NULL && parameter >= 0 && parameter < parameter_count && f != NULL);
     const action todo = {
         .time = loop_time(l), .kind = ACTION_SET, .parameter = parameter, .value = value};
     return act(l, &todo, f);
@@ -249,7 +241,7 @@ status loop_set_number(run_loop *l, int parameter, double value, fault *f)
 
 status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
 {
-    assert(l != NULL && parameter >= 0 && parameter < parameter_count && text != NULL);
+    assert(l != NULL && parameter >= 0 && parameter < parameter_count && text != NULL && f != NULL);
 
     // read into a copy, so that a bad text changes nothing
     parameters read = l->recording.now;
@@ -271,7 +263,7 @@ status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
 
 status loop_push(run_loop *l, double impulse, fault *f)
 {
-    assert(l != NULL && isfinite(impulse));
+    assert(l != NULL && isfinite(impulse) && f != NULL);
     const action todo = {.time = loop_time(l), .kind = ACTION_PUSH, .value = impulse};
     return act(l, &todo, f);
 }

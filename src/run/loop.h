@@ -18,6 +18,8 @@ typedef struct loop_options {
     struct given_law law; // in the place of control.law, if law.law is not NULL
 } loop_options;
 
+// Wherever something may fail, f says why and is not NULL.
+
 // Begins at the start. On failure f says why and there is nothing to be destroyed. The scenario is
 // copied.
 status loop_create(run_loop **created, const scenario *s, const loop_options *options, fault *f);

@@ -100,7 +100,7 @@ static void restore_rig(run_loop *l, const rig *saved, const char *at)
 
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
 {
-    assert(l != NULL && bytes != NULL);
+    assert(l != NULL && bytes != NULL && f != NULL);
     saved_head head;
     if (size != loop_saved_size(l)) {
         return fault_set(f, STATUS_BAD_ARGUMENT,

@@ -212,14 +212,7 @@ status printed_act(printed_run *p, const action *todo, int index, fault *f)
     recording *r = p->recording;
     const double time = p->motion.row.time;
 
-    // the rig has its own view of the parameters
-    status failed = action_apply(todo, &r->now, f);
-    if (failed == STATUS_OK && r->rig != NULL) {
-        failed = rig_lock(r->rig, r->now.control.lock, f);
-    }
-    if (failed == STATUS_OK && r->rig != NULL) {
-        failed = rig_retune(r->rig, &r->now, time, f);
-    }
+    status failed = recording_set(r, todo, time, f);
     if (failed == STATUS_OK) {
         failed = record_event(r, time, EVENT_CHANGE, index);
     }

@@ -53,6 +53,19 @@ void recording_publish(const recording *r, double time)
     }
 }
 
+status recording_set(recording *r, const action *todo, double time, fault *f)
+{
+    assert(r != NULL && todo != NULL && todo->kind == ACTION_SET);
+    status failed = action_apply(todo, &r->now, f);
+    if (failed != STATUS_OK || r->rig == NULL) {
+        return failed;
+    }
+
+    // the rig has its own view of the parameters
+    failed = rig_lock(r->rig, r->now.control.lock, f);
+    return failed == STATUS_OK ? rig_retune(r->rig, &r->now, time, f) : failed;
+}
+
 status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities)
 {

@@ -54,6 +54,10 @@ bool recording_asked_to_stop(const recording *r);
 // Tells those who look on how far the run is: what they count is complete.
 void recording_publish(const recording *r, double time);
 
+// Sets a parameter at an instant [s], which the rig is told, too. On failure f says why: a lock
+// that a law from outside does not know, a law that cannot be tuned.
+status recording_set(recording *r, const action *todo, double time, fault *f);
+
 // Adds a row with all angles [rad] and velocities [rad/s] and lets it be seen. STATUS_NO_MEMORY.
 status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities);

@@ -1,0 +1,145 @@
+// A run that a program steps: what holds at its end, after a failure, and of states and inputs that
+// are not its own.
+#include "src/run/loop.h"
+
+#include <stdlib.h>
+
+#include "tests/arm_fixture.h"
+
+static run_loop *begun(const char *const *settings, const given_law *law)
+{
+    scenario s = {.parameters = fixture_parameters(settings)};
+    s.parameters.code_allowed = true;
+    const loop_options options = {.law = law != NULL ? *law : (given_law){0}};
+    run_loop *l = NULL;
+    fault f = {.text = ""};
+    if (loop_create(&l, &s, &options, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return l;
+}
+
+#define BRIEF "initial.angle=-0.01", "wall.angle=0", "run.duration=0.1"
+
+// The end stays the end, however it is gone on from, with a law and without one.
+static void the_end_stays(void **state)
+{
+    (void)state;
+    const char *const *const cases[] = {SETTINGS(BRIEF), SETTINGS(BRIEF, "control.law=hybrid"),
+                                        SETTINGS("arm.model=printed", "run.duration=0.1")};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        run_loop *l = begun(cases[i], NULL);
+        fault f;
+        assert_int_equal(loop_summary(l).status, STATUS_STOPPED);
+        assert_int_equal(loop_until(l, 1, &f), STATUS_OK);
+        assert_true(loop_ended(l));
+        const double end = loop_time(l);
+        const sample last = loop_row(l);
+        check_close(end, 0.1, 2e-3);
+        assert_int_equal(loop_step(l, &f), STATUS_OK);
+        assert_int_equal(loop_until(l, 2, &f), STATUS_OK);
+        const sample still = loop_row(l);
+        assert_true(loop_time(l) == end);
+        assert_memory_equal(&still, &last, sizeof still);
+        assert_int_equal(loop_summary(l).status, STATUS_OK);
+        loop_destroy(l);
+    }
+}
+
+// One volt, and after a while none that is a number.
+static void give_up(void *memory, const controller_input *input, controller_output *output)
+{
+    (void)memory;
+    output->command = input->time < 0.0299 ? 1 : (double)NAN;
+}
+
+static const controller gives_up = {
+    .interface = CONTROLLER_INTERFACE, .name = "gives up", .memory_size = 16, .sample = give_up};
+
+static void what_stopped_it_is_said_again(void **state)
+{
+    (void)state;
+    const given_law law = {&gives_up, NULL};
+    run_loop *l = begun(SETTINGS(BRIEF), &law);
+    fault f = {.text = ""}, again = {.text = ""};
+    status code = STATUS_OK;
+    while (code == STATUS_OK && loop_time(l) < 0.09) {
+        code = loop_step(l, &f);
+    }
+    assert_int_equal(code, STATUS_NOT_FINITE);
+    const double time = loop_time(l);
+    check_close(time, 0.03, 1e-6);
+    assert_int_equal(loop_step(l, &again), code);
+    assert_string_equal(again.text, f.text);
+    assert_int_equal(loop_until(l, 1, &again), code);
+    assert_int_equal(loop_push(l, 0.01, &again), code);
+    assert_int_equal(loop_set_text(l, PARAMETER_INDEX(arm.k2), "7", &again), code);
+    assert_string_equal(again.text, f.text);
+    assert_true(loop_time(l) == time);
+    assert_int_equal(loop_summary(l).status, code);
+    loop_destroy(l);
+}
+
+static void a_refused_input_changes_nothing(void **state)
+{
+    (void)state;
+    run_loop *l = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
+    run_loop *same = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
+    fault f = {.text = ""};
+    assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k2), -1, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.path, "arm.k2");
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k1), 90, &f), STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(f.text, "arm.k1 is for arm.hub_joint = spring"));
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.links), 3, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "cannot change during this run"));
+    assert_int_equal(loop_until(l, 0.08, &f), STATUS_OK);
+    assert_int_equal(loop_until(same, 0.02, &f), STATUS_OK);
+    assert_int_equal(loop_until(same, 0.08, &f), STATUS_OK);
+    const sample here = loop_row(l), there = loop_row(same);
+    assert_memory_equal(&here, &there, sizeof here);
+    loop_destroy(l);
+    loop_destroy(same);
+}
+
+// A state goes back into the loop it is of; from another one, or cut, it is refused.
+static void a_state_belongs_to_its_loop(void **state)
+{
+    (void)state;
+    const given_law law = {&gives_up, NULL};
+    const given_law *const laws[] = {NULL, &law};
+    for (int i = 0; i < 2; i++) {
+        run_loop *l = begun(SETTINGS(BRIEF), laws[i]);
+        run_loop *other = begun(SETTINGS(BRIEF, "arm.k2=7"), laws[i]);
+        fault f = {.text = ""};
+        assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
+        const size_t size = loop_saved_size(l);
+        void *kept = malloc(size);
+        assert_non_null(kept);
+        loop_save(l, kept);
+        const sample before = loop_row(l);
+        assert_int_equal(loop_restore(l, kept, size - 1, &f), STATUS_BAD_ARGUMENT);
+        assert_int_equal(loop_restore(other, kept, size, &f), STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, "another scenario"));
+
+        // gone on with and put back
+        assert_int_equal(loop_until(l, 0.025, &f), STATUS_OK);
+        assert_int_equal(loop_restore(l, kept, size, &f), STATUS_OK);
+        const sample now = loop_row(l);
+        assert_memory_equal(&now, &before, sizeof now);
+        loop_destroy(l);
+        loop_destroy(other);
+        free(kept);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_end_stays),
+        cmocka_unit_test(what_stopped_it_is_said_again),
+        cmocka_unit_test(a_refused_input_changes_nothing),
+        cmocka_unit_test(a_state_belongs_to_its_loop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
