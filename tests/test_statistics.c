@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "src/base/random.h"
 #include "src/run/statistics.h"
 
 static void add(trace *t, double time, double force)
@@ -57,8 +58,87 @@ static void a_ramp_and_a_step(void **state)
     trace_finish(&t);
 }
 
+// Sums over the pieces between two rows, each cut, by Simpson's rule, which is exact for them.
+static signal_statistics by_pieces(const double *times, const double *values, int rows, double from,
+                                   double to)
+{
+    signal_statistics s = {.minimum = HUGE_VAL, .maximum = -HUGE_VAL};
+    double squares = 0;
+    for (int i = 0; i + 1 < rows; i++) {
+        const double begin = fmax(times[i], from), end = fmin(times[i + 1], to);
+        const bool last = from == times[rows - 1];
+        if (times[i] == times[i + 1] || end < begin || (times[i + 1] == from && !last) ||
+            isnan(values[i] + values[i + 1])) {
+            continue;
+        }
+        double at[3];
+        for (int k = 0; k < 3; k++) {
+            const double share =
+                (begin + k * (end - begin) / 2 - times[i]) / (times[i + 1] - times[i]);
+            at[k] = values[i] + share * (values[i + 1] - values[i]);
+            s.minimum = fmin(s.minimum, at[k]);
+            s.maximum = fmax(s.maximum, at[k]);
+        }
+        s.duration += end - begin;
+        s.integral += (end - begin) * (at[0] + 4 * at[1] + at[2]) / 6;
+        squares += (end - begin) * (at[0] * at[0] + 4 * at[1] * at[1] + at[2] * at[2]) / 6;
+    }
+    s.mean = s.duration > 0 ? s.integral / s.duration : s.minimum;
+    s.rms = s.duration > 0 ? sqrt(squares / s.duration) : fabs(s.minimum);
+    return s;
+}
+
+// Rows at eighths of a second, some of them twice, some without a value, cut at sixteenths.
+static void whatever_is_cut_is_the_sum_of_its_pieces(void **state)
+{
+    (void)state;
+    enum { ROWS = 12 };
+    random_generator g;
+    random_seed(&g, 9);
+    for (int trial = 0; trial < 3000; trial++) {
+        double times[ROWS], values[ROWS];
+        trace t;
+        trace_init(&t, 1);
+        for (int i = 0; i < ROWS; i++) {
+            times[i] = i == 0 ? 0 : times[i - 1] + (double)random_below(&g, 3) / 8;
+            values[i] = (double)random_below(&g, 17) - 8;
+            values[i] = trial % 3 == 0 && random_below(&g, 8) == 0 ? (double)NAN : values[i];
+            add(&t, times[i], values[i]);
+        }
+
+        // within the run, an instant among them
+        const double end = times[ROWS - 1];
+        const double a = (double)random_below(&g, (uint64_t)(16 * end) + 1) / 16;
+        const double b = (double)random_below(&g, (uint64_t)(16 * end) + 1) / 16;
+        const double from = fmin(a, b), to = trial % 5 == 0 ? from : fmax(a, b);
+        const signal_statistics s = trace_statistics(&t, SIGNAL_INDEX(force), from, to);
+        const signal_statistics x = by_pieces(times, values, ROWS, from, to);
+        if (from < end && x.maximum >= x.minimum) {
+            check_close(s.minimum, x.minimum, 1e-14);
+            check_close(s.maximum, x.maximum, 1e-14);
+            check_close(s.duration, x.duration, 1e-14);
+            check_close(s.integral, x.integral, 1e-13);
+            check_close(s.mean, x.mean, 1e-13);
+            check_close(s.rms, x.rms, 1e-13);
+        } else if (from == end && isfinite(values[ROWS - 1])) {
+            const double last = values[ROWS - 1];
+            check_close(s.minimum, last, 0);
+            check_close(s.maximum, last, 0);
+            check_close(s.mean, last, 0);
+            check_close(s.rms, fabs(last), 0);
+            check_close(fabs(s.integral) + s.duration, 0, 0);
+        } else {
+            check_close(s.duration, 0, 0);
+        }
+        trace_finish(&t);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_ramp_and_a_step)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_ramp_and_a_step),
+        cmocka_unit_test(whatever_is_cut_is_the_sum_of_its_pieces),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,16 +39,18 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
             add_piece(&s, &squares, stop - begin, a, b);
         }
     }
-    if (s.duration == 0) {
-        add_piece(&s, &squares, 0, signal_value(&t->rows[trace_row_at(t, from)], signal),
-                  signal_value(&t->rows[trace_row_at(t, from)], signal));
-    }
 
-    // of an instant the value itself
+    // at the end, or where pieces have no value, the row itself
+    if (!(s.maximum >= s.minimum)) {
+        const double value = signal_value(&t->rows[trace_row_at(t, from)], signal);
+        add_piece(&s, &squares, 0, value, value);
+    }
     if (!(s.maximum >= s.minimum)) {
         const double none = (double)NAN;
         return (signal_statistics){none, none, none, none, none, 0};
     }
+
+    // of an instant the value itself
     s.mean = s.duration > 0 ? s.integral / s.duration : s.minimum;
     s.rms = s.duration > 0 ? sqrt(squares / s.duration) : fabs(s.minimum);
     return s;
