@@ -134,6 +134,46 @@ static void first_mode_has_the_damping_asked_for(void **state)
     check_relative(a.hub_joint_damping / a.hub_stiffness, 2 * wanted / frequencies[0], 1e-6);
 }
 
+// So it is with links and joints that differ, with a mass at the tip, and without a root that
+// bends.
+static void any_arm_has_the_damping_asked_for(void **state)
+{
+    (void)state;
+    const char *const *const arms[] = {
+        SETTINGS("arm.links=2"),
+        SETTINGS("arm.links=5", "arm.tip_mass=0.1"),
+        SETTINGS("arm.links=5", "arm.hub_joint=beam", "arm.tip_mass=0.1"),
+        SETTINGS("arm.links=4", "arm.joint_stiffness=30,12,5"),
+        SETTINGS("arm.links=4", "arm.joint_stiffness=5,12,30", "arm.link_lengths=0.1,0.4,0.2,0.3"),
+        SETTINGS("arm.links=3", "arm.joint_stiffness=60,5,12", "arm.hub_joint=beam",
+                 "arm.tip_mass=0.05", "arm.link_lengths=0.2,0.5,0.3"),
+        SETTINGS("arm.links=1", "arm.hub_joint=beam"),
+    };
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+        parameters p = fixture_parameters(arms[i]);
+        arm a;
+        p.arm.damping_ratio = 0.02;
+        arm_init(&a, &p);
+        int count;
+        double frequencies[9], shapes[81];
+        assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
+                         STATUS_OK);
+        const double seconds = 2 * 0.02 / frequencies[0];
+        check_relative(a.joint_damping / a.joint_stiffness, seconds, 1e-5);
+        check_close(a.hub_joint_damping, a.hub_stiffness * seconds,
+                    1e-5 * a.hub_stiffness * seconds);
+        for (int k = 1; a.uneven && k < a.links; k++) {
+            check_relative(a.each.damping[k] / a.each.stiffness[k], seconds, 1e-5);
+        }
+    }
+
+    // a rigid arm has no mode
+    parameters p = fixture_parameters(SETTINGS("arm.links=1", "arm.damping_ratio=0.02"));
+    arm a;
+    arm_init(&a, &p);
+    check_close(a.joint_damping, 0, 0);
+}
+
 // No free mode is faster than what steps are chosen for, nor slower by a tenth, whatever the
 // joints.
 static void the_highest_frequency_bounds_the_modes(void **state)
@@ -168,6 +208,47 @@ static void an_overdamped_mode_decays_by_the_roots_of_its_equation(void **state)
     const double w = a.highest_frequency, fast = a.fastest_decay, slow = w * w / fast;
     assert_true(fast > 2 * w);
     check_relative(fast + slow, w * w * a.joint_damping / a.joint_stiffness, 1e-12);
+}
+
+// What is not the beam decays by itself: the hub under its friction and the back EMF, the current
+// through its inductance, the links in the air.
+static void whatever_decays_faster_is_followed(void **state)
+{
+    (void)state;
+    const double mass = 0.40108 / 2, l = 0.5;
+    for (int spring = 0; spring < 2; spring++) {
+        const char *joint = spring ? "arm.hub_joint=spring" : "arm.hub_joint=rigid";
+        parameters p = fixture_parameters(SETTINGS(joint, "motor.viscous_friction=1e3"));
+        arm a;
+        arm_init(&a, &p);
+        const motor_parameters *m = &p.motor;
+        const double emf = m->torque_constant * m->back_emf / m->resistance;
+        const double hub = p.arm.hub_inertia + (spring ? 0 : mass * l * l / 12);
+        check_relative(a.fastest_decay, (1e3 + emf) / hub, 1e-12);
+        check_relative(a.fastest_rate, fmax(a.highest_frequency, a.fastest_decay / 8), 1e-12);
+
+        // a limited current brakes no less
+        p = fixture_parameters(
+            SETTINGS(joint, "motor.viscous_friction=1e3", "motor.current_limit=2"));
+        arm_init(&a, &p);
+        check_relative(a.fastest_decay, (1e3 + emf) / hub, 1e-12);
+
+        p = fixture_parameters(SETTINGS(joint, "motor.inductance=1e-6"));
+        arm_init(&a, &p);
+        check_relative(a.fastest_decay, m->resistance / 1e-6, 1e-12);
+        check_relative(a.fastest_rate, m->resistance / 1e-6, 1e-12);
+
+        p = fixture_parameters(SETTINGS(joint, "arm.air_drag=1e4"));
+        arm_init(&a, &p);
+        check_relative(a.fastest_decay, 1e4 * l / mass, 1e-12);
+    }
+
+    // a hub that weighs nothing has nothing that brakes it, its link has
+    parameters p = fixture_parameters(SETTINGS("arm.links=2"));
+    arm a;
+    p.arm.hub_inertia = 0;
+    arm_init(&a, &p);
+    check_relative(a.fastest_decay, a.motor.damping / (mass * l * l / 12), 1e-12);
 }
 
 // beta L of the first mode of the clamped beam with a mass [kg] at its tip, mu its share of the
@@ -296,6 +377,8 @@ int main(void)
         cmocka_unit_test(joints_bent_by_the_moment_balance_the_load),
         cmocka_unit_test(frequencies_converge_at_second_order),
         cmocka_unit_test(first_mode_has_the_damping_asked_for),
+        cmocka_unit_test(any_arm_has_the_damping_asked_for),
+        cmocka_unit_test(whatever_decays_faster_is_followed),
         cmocka_unit_test(the_highest_frequency_bounds_the_modes),
         cmocka_unit_test(an_overdamped_mode_decays_by_the_roots_of_its_equation),
         cmocka_unit_test(a_mass_at_the_tip_lowers_the_frequencies),

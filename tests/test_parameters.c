@@ -439,6 +439,143 @@ static void resolving_twice_changes_nothing(void **state)
     assert_memory_equal(&p, &once, sizeof p);
 }
 
+// What a combination of settings is resolved to: accepted, or refused for one of them.
+static void conditions_hold_up_to_their_limits(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *settings[4]; // path=value
+        const char *blamed;      // NULL: accepted
+    } cases[] = {
+        // faces that are none
+        {{"wall.contact=kelvin-voigt", "wall.mass=0"}, NULL},
+        {{"wall.contact=kelvin-voigt", "wall.mass=1e-9"}, NULL},
+        {{"wall.contact=kelvin-voigt", "wall.mass=0.999e-9"}, "wall.mass"},
+        {{"wall.contact=hunt-crossley", "wall.mass=0"}, NULL},
+        {{"wall.contact=rigid", "wall.mass=0.1"}, "wall.mass"},
+        {{"wall.contact=hunt-crossley", "wall.mass=0.1"}, "wall.mass"},
+
+        // restitution is of what has a mass to be thrown back
+        {{"wall.contact=rigid", "wall.restitution=0.5"}, NULL},
+        {{"wall.contact=kelvin-voigt", "wall.restitution=0.5"}, "wall.restitution"},
+        {{"wall.contact=kelvin-voigt", "wall.restitution=0.5", "wall.mass=0.1"}, NULL},
+        {{"wall.contact=rigid", "method.name=newmark"}, NULL},
+        {{"wall.contact=hunt-crossley", "method.name=newmark"}, "wall.contact"},
+
+        // delays and jitter as long as the period allows, and beyond
+        {{"control.rate=100", "control.delay=0.01"}, NULL},
+        {{"control.rate=100", "control.delay=0.0101"}, "control.delay"},
+        {{"control.rate=64", "control.delay=0.0078125", "control.delay_periods=0.5"}, NULL},
+        {{"control.rate=64", "control.delay=0.0078125", "control.delay_periods=0.51"},
+         "control.delay_periods"},
+        {{"control.delay_periods=1"}, NULL},
+        {{"control.rate=64", "control.jitter=0.0078125"}, NULL},
+        {{"control.rate=64", "control.jitter=0.00782"}, "control.jitter"},
+
+        // a sensor that is asked for is there, unless it was left out
+        {{"control.impact_angle=film"}, NULL},
+        {{"control.impact_angle=film", "sensor.film=true"}, NULL},
+        {{"control.impact_angle=film", "sensor.film=false"}, "control.impact_angle"},
+        {{"sensor.film=false"}, NULL},
+        {{"control.impact_angle=accelerometer"}, NULL},
+        {{"control.impact_angle=accelerometer", "sensor.accelerometer=false"},
+         "control.impact_angle"},
+        {{"control.impact_angle=accelerometer", "sensor.film=false"}, NULL},
+        {{"sensor.force=piezo"}, NULL},
+        {{"sensor.force=piezo", "sensor.piezo=false"}, "sensor.force"},
+        {{"sensor.piezo=false"}, NULL},
+
+        // a band-pass has its edges in order
+        {{"sensor.piezo_leak_time=1e-3", "sensor.piezo_rise_time=1e-3"}, NULL},
+        {{"sensor.piezo_leak_time=0.99e-3", "sensor.piezo_rise_time=1e-3"},
+         "sensor.piezo_leak_time"},
+        {{"sensor.piezo_leak_time=0", "sensor.piezo_rise_time=1e-3"}, NULL},
+
+        // motors
+        {{"motor.inductance=1e-3"}, NULL},
+        {{"motor.inductance=1e-3", "method.name=newmark"}, "motor.inductance"},
+        {{"motor.inductance=1e-3", "motor.drive=current"}, "motor.inductance"},
+        {{"motor.current_limit=2", "method.name=newmark"}, "motor.current_limit"},
+        {{"motor.current_limit=2", "motor.drive=current", "method.name=newmark"}, NULL},
+        {{"motor.current_limit=2"}, NULL},
+        {{"motor.transconductance=1", "motor.drive=current"}, NULL},
+        {{"motor.transconductance=1"}, "motor.transconductance"},
+
+        // laws that are found elsewhere
+        {{"control.law=plugin"}, "control.law"},
+        {{"control.law=plugin", "control.plugin=x.so"}, NULL},
+        {{"control.law=process"}, "control.law"},
+        {{"control.law=process", "control.command=x"}, NULL},
+        {{"control.plugin=x.so", "control.command=x"}, NULL},
+
+        // the printed arm
+        {{"arm.model=printed"}, NULL},
+        {{"arm.model=printed", "wall.kind=none"}, NULL},
+        {{"arm.model=printed", "arm.links=1"}, "arm.links"},
+        {{"arm.model=printed", "method.name=generalized-alpha"}, "method.name"},
+        {{"arm.model=printed", "arm.hub_joint=spring"}, NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fresh(ARM_CORRECTED);
+        fault f = {0};
+        for (int k = 0; k < 4 && cases[i].settings[k] != NULL; k++) {
+            char path[64];
+            const char *equals = strchr(cases[i].settings[k], '=');
+            snprintf(path, sizeof path, "%.*s", (int)(equals - cases[i].settings[k]),
+                     cases[i].settings[k]);
+            give(&p, path, equals + 1);
+        }
+        const status code = parameters_resolve(&p, &f);
+        if ((code == STATUS_OK) != (cases[i].blamed == NULL) ||
+            (cases[i].blamed != NULL && strcmp(f.path, cases[i].blamed) != 0)) {
+            fail_msg("case %zu, %s ...: %s %s", i, cases[i].settings[0], f.path, f.text);
+        }
+    }
+}
+
+// What nobody gave follows from the rest.
+static void walls_motors_and_sensors_follow_what_was_given(void **state)
+{
+    (void)state;
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    give(&p, "motor.amplifier_gain", "3");
+    give(&p, "motor.resistance", "4");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_close(p.motor.transconductance, 0.75, 0);
+    assert_false(p.sensor.film || p.sensor.accelerometer || p.sensor.piezo);
+
+    // damping of a Hunt-Crossley wall is 3/2 of its loss times its stiffness
+    give(&p, "wall.contact", "hunt-crossley");
+    give(&p, "wall.stiffness", "2e5");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_relative(p.wall.damping, 0.3 * 2e5, 1e-15);
+    p = fresh(ARM_CORRECTED);
+    give(&p, "wall.contact", "hunt-crossley");
+    give(&p, "wall.damping", "7");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_close(p.wall.stiffness, 1e6, 0);
+    check_close(p.wall.damping, 7, 0);
+    p = fresh(ARM_CORRECTED);
+    give(&p, "wall.contact", "kelvin-voigt");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_close(p.wall.stiffness, 75e3, 0);
+    check_close(p.wall.damping, 20, 0);
+
+    // what a law or a signal is taken from is there
+    static const char *const asked[][2] = {{"control.impact_angle", "film"},
+                                           {"control.impact_angle", "accelerometer"},
+                                           {"sensor.force", "piezo"}};
+    for (int i = 0; i < 3; i++) {
+        p = fresh(ARM_CORRECTED);
+        give(&p, asked[i][0], asked[i][1]);
+        assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+        assert_int_equal(p.sensor.film, i == 0);
+        assert_int_equal(p.sensor.accelerometer, i == 1);
+        assert_int_equal(p.sensor.piezo, i == 2);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -458,6 +595,8 @@ int main(void)
         cmocka_unit_test(a_link_is_a_uniform_rod_unless_told),
         cmocka_unit_test(impossible_combinations_are_refused),
         cmocka_unit_test(what_only_looks_like_a_conflict_is_none),
+        cmocka_unit_test(conditions_hold_up_to_their_limits),
+        cmocka_unit_test(walls_motors_and_sensors_follow_what_was_given),
         cmocka_unit_test(defaults_are_never_to_blame),
         cmocka_unit_test(the_ledgers_bound_follows_the_method),
         cmocka_unit_test(resolving_twice_changes_nothing),
