@@ -98,6 +98,30 @@ static void initial_values_of_ones_own_parameters_take_effect(void **state)
     assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
     check_close(values[0], 2, 0);
 
+    // with a unit or a sentence it is the controller's own, whatever its name
+    const controller_parameter parts[] = {
+        {.name = "kp", .unit = "1/s", .initial = 5, .maximum = 6},
+        {.name = "kv", .description = "own", .initial = 3, .minimum = 1, .maximum = 4},
+        {.name = "kp"}};
+    const controller partly = {.name = "partly", .parameters = parts, .parameter_count = 3};
+    const parameter_info *info = &parameter_table[PARAMETER_INDEX(control.kp)];
+    p = rig_parameters(NULL);
+    assert_int_equal(controller_values(&partly, &p, values, &f), STATUS_OK);
+    check_close(values[0], 5, 0);
+    check_close(values[1], 3, 0);
+    check_close(values[2], info->default_corrected, 0);
+    for (int i = 0; i < 2; i++) {
+        const controller_parameter told = controller_parameter_at(&partly, i);
+        assert_memory_equal(&told, &parts[i], sizeof told);
+    }
+    const controller_parameter told = controller_parameter_at(&partly, 2);
+    assert_string_equal(told.name, "kp");
+    assert_ptr_equal(told.unit, info->unit);
+    assert_ptr_equal(told.description, info->description);
+    check_close(told.initial, info->default_corrected, 0);
+    check_close(told.minimum, info->minimum, 0);
+    check_close(told.maximum, info->maximum, 0);
+
     const controller_parameter unknown[] = {{.name = "nothing"}};
     const controller vague = {.name = "vague", .parameters = unknown, .parameter_count = 1};
     assert_int_equal(controller_values(&vague, &p, values, &f), STATUS_BAD_SCENARIO);

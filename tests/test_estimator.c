@@ -1,5 +1,6 @@
 // The Kalman filter that controllers use.
 #include "src/rig/estimator.h"
+#include "src/base/random.h"
 #include "tests/rig_fixture.h"
 
 static void estimator_finds_a_constant(void **state)
@@ -68,10 +69,105 @@ static void a_sampled_oscillator_has_its_closed_form(void **state)
     check_close(m.b[1], s / w, 1e-15);
 }
 
+// Any model of any number of states does what the matrices say; what lies behind its states is NaN
+// everywhere and reaches nothing.
+static void any_model_follows_its_matrices(void **state)
+{
+    (void)state;
+    enum { ALL = ESTIMATOR_STATES };
+    random_generator g;
+    random_seed(&g, 4);
+    for (int n = 1; n <= ALL; n++) {
+        const double nothing = (double)NAN;
+        double rate[ALL][ALL], input[ALL], row[ALL], noise[ALL];
+        estimator e;
+        for (int i = 0; i < ALL; i++) {
+            const bool own = i < n;
+            input[i] = own ? random_uniform(&g) - 0.5 : nothing;
+            row[i] = own ? random_uniform(&g) - 0.5 : nothing;
+            noise[i] = own ? 0.1 * random_uniform(&g) : nothing;
+            e.z[i] = own ? random_uniform(&g) - 0.5 : nothing;
+            for (int j = 0; j < ALL; j++) {
+                rate[i][j] = own && j < n ? 4 * random_uniform(&g) - 2 : nothing;
+                e.p[i][j] = own && j < n ? random_uniform(&g) + 2 * (i == j) : nothing;
+            }
+        }
+
+        // the sampled model by many small steps of the midpoint rule in time
+        sampled_model m;
+        sampled_model_init(&m, n, rate, input, 0.25);
+        for (int from = 0; from <= n; from++) {
+            double x[ALL] = {0};
+            x[from < n ? from : 0] = from < n;
+            const double u = from == n;
+            for (int step = 0; step < 2000; step++) {
+                double half[ALL], slope[ALL];
+                for (int pass = 0; pass < 2; pass++) {
+                    for (int i = 0; i < n; i++) {
+                        slope[i] = input[i] * u;
+                        for (int j = 0; j < n; j++) {
+                            slope[i] += rate[i][j] * (pass == 0 ? x[j] : half[j]);
+                        }
+                    }
+                    for (int i = 0; i < n; i++) {
+                        half[i] = x[i] + slope[i] * 0.25 / 4000;
+                    }
+                }
+                for (int i = 0; i < n; i++) {
+                    x[i] += slope[i] * 0.25 / 2000;
+                }
+            }
+            for (int i = 0; i < n; i++) {
+                check_close(from < n ? m.a[i][from] : m.b[i], x[i], 2e-6);
+            }
+        }
+
+        // one step ahead
+        estimator next = e;
+        estimator_predict(&next, &m, 0.7, noise);
+        for (int i = 0; i < n; i++) {
+            double z = 0.7 * m.b[i];
+            for (int j = 0; j < n; j++) {
+                double spread = i == j ? noise[i] : 0;
+                z += m.a[i][j] * e.z[j];
+                for (int k = 0; k < n; k++) {
+                    for (int l = 0; l < n; l++) {
+                        spread += m.a[i][k] * e.p[k][l] * m.a[j][l];
+                    }
+                }
+                check_close(next.p[i][j], spread, 1e-13);
+            }
+            check_close(next.z[i], z, 1e-14);
+        }
+
+        // one reading; p need not be symmetric for the formula
+        estimator seen = e;
+        double expected = 0.2, total = 0.3, gain[ALL] = {0};
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) {
+                gain[i] += e.p[i][j] * row[j];
+            }
+            expected += row[i] * e.z[i];
+            total += row[i] * gain[i];
+        }
+        estimator_correct(&seen, n, row, 0.2, 1.4, 0.3);
+        for (int i = 0; i < n; i++) {
+            check_close(seen.z[i], e.z[i] + gain[i] * (1.4 - expected) / total, 1e-13);
+            for (int j = 0; j < n; j++) {
+                check_close(seen.p[i][j], e.p[i][j] - gain[i] * gain[j] / total, 1e-13);
+            }
+        }
+        for (int i = n; i < ALL; i++) {
+            assert_true(isnan(next.z[i]) && isnan(seen.z[i]));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sampled_oscillator_has_its_closed_form),
+        cmocka_unit_test(any_model_follows_its_matrices),
         cmocka_unit_test(estimator_finds_a_constant),
         cmocka_unit_test(states_beyond_the_model_are_left_alone),
     };

@@ -47,6 +47,13 @@ static void it_is_written_as_it_was_read(void **state)
     assert_false(k2_table_write(&t, small, sizeof small));
     assert_int_equal(none.count, 0);
     assert_true(k2_table_write(&none, text, sizeof text));
+    assert_string_equal(text, "");
+
+    // with room for all of it and its end, and for less
+    for (size_t size = 1; size <= sizeof "0.5:4.8 1:5"; size++) {
+        assert_int_equal(k2_table_write(&t, text, size), size == sizeof "0.5:4.8 1:5");
+    }
+    assert_string_equal(text, "0.5:4.8 1:5");
 }
 
 static void what_is_no_table_is_refused(void **state)

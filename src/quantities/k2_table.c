@@ -52,6 +52,7 @@ bool k2_table_write(const k2_table *t, char *text, size_t size)
 {
     assert(t != NULL && text != NULL && size > 0);
     size_t length = 0;
+    text[0] = '\0';
     for (int i = 0; i < t->count && length < size; i++) {
         length += (size_t)decimal_print(text + length, size - length, "%s%.4g:%.4g",
                                         i > 0 ? " " : "", t->force[i], t->k2[i]);
