@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/arm/chain.h"
 #include "src/arm/modes.h"
 #include "tests/arm_fixture.h"
 
@@ -88,6 +89,92 @@ static void free_hub_has_one_mode_of_rigid_turning(void **state)
     check_relative(a.highest_frequency, w[4], 0.2);
 }
 
+static const char *const *const any_arms[] = {
+    SETTINGS("arm.links=1", "arm.hub_joint=beam"),
+    SETTINGS("arm.links=2"),
+    SETTINGS("arm.links=5", "arm.hub_joint=spring", "arm.tip_mass=0.1"),
+    SETTINGS("arm.links=5", "arm.hub_joint=beam"),
+    SETTINGS("arm.links=4", "arm.joint_stiffness=5,12,30", "arm.link_lengths=0.1,0.4,0.2,0.3"),
+    SETTINGS("arm.links=3", "arm.hub_joint=beam", "arm.joint_stiffness=60,5,12",
+             "arm.link_lengths=0.2,0.5,0.3", "arm.tip_mass=0.05"),
+};
+
+// A product x'A y is what the energy of both together has more than that of each.
+static void matrices_are_those_of_the_energies(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof any_arms / sizeof any_arms[0]; i++) {
+        parameters p = fixture_parameters(any_arms[i]);
+        arm a;
+        arm_init(&a, &p);
+        const int n = a.dof;
+        const double straight[9] = {0};
+        double mass[81] = {0}, stiffness[81] = {0};
+        modes_matrices(&a, mass, stiffness);
+        for (int j = 0; j < n; j++) {
+            for (int k = 0; k < n; k++) {
+                double x[9] = {0}, y[9] = {0}, both[9] = {0};
+                x[j] = y[k] = 1;
+                both[j] += 1;
+                both[k] += 1;
+                check_close(mass[j * n + k],
+                            chain_kinetic_energy(&a, straight, both) -
+                                chain_kinetic_energy(&a, straight, x) -
+                                chain_kinetic_energy(&a, straight, y),
+                            1e-15);
+                check_close(stiffness[j * n + k],
+                            chain_strain_energy(&a, both) - chain_strain_energy(&a, x) -
+                                chain_strain_energy(&a, y),
+                            1e-12 * (1 + stiffness[j * n + j] + stiffness[k * n + k]));
+            }
+        }
+    }
+}
+
+// (K - w^2 M) x is nothing but what holds the hub and a force on the tip, at whose levers the links
+// are; and the tip is where it is held.
+static void every_mode_balances_but_for_what_holds_the_arm(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 4 * sizeof any_arms / sizeof any_arms[0]; i++) {
+        const hub_end hub = i % 2 ? HUB_LOCKED : HUB_FREE;
+        const tip_end tip = i / 2 % 2 ? TIP_PINNED : TIP_FREE;
+        parameters p = fixture_parameters(any_arms[i / 4]);
+        arm a;
+        arm_init(&a, &p);
+        const int n = a.dof;
+        double mass[81] = {0}, stiffness[81] = {0}, w[9], shapes[81];
+        int count;
+        modes_matrices(&a, mass, stiffness);
+        assert_int_equal(modes_compute(&a, hub, tip, &count, w, shapes), STATUS_OK);
+        assert_int_equal(count, n - (hub == HUB_LOCKED) - (tip == TIP_PINNED));
+        for (int mode = 0; mode < count; mode++) {
+            const double *x = shapes + mode * n;
+            double left[9], largest = 0, deflection = 0, scale = 0;
+            for (int j = 0; j < n; j++) {
+                left[j] = 0;
+                for (int k = 0; k < n; k++) {
+                    left[j] += (stiffness[j * n + k] - w[mode] * w[mode] * mass[j * n + k]) * x[k];
+                }
+                scale = fmax(scale, stiffness[j * n + j]);
+                largest = fmax(largest, x[j]);
+                assert_true(fabs(x[j]) <= 1);
+                deflection += j >= a.first ? arm_link_length(&a, j - a.first) * x[j] : 0;
+            }
+            check_close(largest, 1, 0);
+            assert_true(mode == 0 || w[mode] >= w[mode - 1]);
+            check_close(hub == HUB_LOCKED ? x[0] : 0, 0, 0);
+            check_close(tip == TIP_PINNED ? deflection : 0, 0, 1e-12);
+            const double force =
+                tip == TIP_PINNED ? left[n - 1] / arm_link_length(&a, a.links - 1) : 0;
+            for (int j = hub == HUB_LOCKED; j < n; j++) {
+                const double lever = j >= a.first ? arm_link_length(&a, j - a.first) : 0;
+                check_close(left[j], force * lever, 1e-9 * scale);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -95,6 +182,8 @@ int main(void)
         cmocka_unit_test(clamped_pinned_modes_converge),
         cmocka_unit_test(two_links_with_locked_hub_have_the_closed_form),
         cmocka_unit_test(free_hub_has_one_mode_of_rigid_turning),
+        cmocka_unit_test(matrices_are_those_of_the_energies),
+        cmocka_unit_test(every_mode_balances_but_for_what_holds_the_arm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

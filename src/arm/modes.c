@@ -46,10 +46,11 @@ static int allowed_basis(const arm *a, hub_end hub, tip_end tip, double *basis)
             break; // the last angle follows from the others
         }
 
-        // a pinned tip moves the last link against each of the others
+        // a pinned tip moves the last link against each of the others, by their lengths
         basis[columns * n + k] = 1;
         if (tip == TIP_PINNED && link) {
-            basis[columns * n + n - 1] = -1;
+            basis[columns * n + n - 1] =
+                -arm_link_length(a, k - a->first) / arm_link_length(a, a->links - 1);
         }
         columns++;
     }

@@ -12,7 +12,7 @@ typedef enum tip_end { TIP_FREE, TIP_PINNED } tip_end; // in the air, or touchin
 //     K x = w^2 M x,
 //
 // solved on dense matrices (analysis, not simulation: cost N^3). A pinned tip leaves the angles
-// with sum l x_k = 0. count: how many modes there are (at most a->dof), in rising order.
+// with sum l_k x_k = 0. count: how many modes there are (at most a->dof), in rising order.
 // frequencies[dof]: w [rad/s]. shapes[dof * dof]: row i holds the angles of mode i at all degrees
 // of freedom, scaled to a largest angle of 1. STATUS_SINGULAR if M is not positive definite,
 // STATUS_NO_MEMORY.
