@@ -279,6 +279,37 @@ static void a_ledger_that_does_not_close_makes_a_run_inaccurate(void **state)
     run_finish(&r);
 }
 
+// A motion so small that the tolerances of events are a share of it does not go by either; a large
+// one, an arm that friction holds and one that the wall holds do.
+static void a_motion_too_small_to_follow_is_inaccurate(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *voltage, *stiction, *angle, *links;
+        bool inaccurate;
+    } cases[] = {{"1", "0.045", "0.1", "arm.links=2", false},
+                 {"1e-5", "4.5e-7", "1e-6", "arm.links=2", false},
+                 {"1e-8", "4.5e-10", "1e-9", "arm.links=2", true},
+                 {"1e-8", "4.5e-10", "1e-9", "arm.links=4", true},
+                 {"1e-8", "4.5e-10", "1e-9", "arm.tip_mass=0.01", true},
+                 {"1e-11", "4.5e-13", "0.1", "arm.links=2", true},
+                 {"1e-10", "0", "0.1", "arm.tip_mass=0.01", true},
+                 {"1e-8", "0.045", "0.1", "arm.links=2", false},
+                 {"0.1", "0", "0", "arm.links=1", false}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char voltage[32], stiction[32], angle[32];
+        snprintf(voltage, sizeof voltage, "motor.voltage=%s", cases[i].voltage);
+        snprintf(stiction, sizeof stiction, "motor.stiction=%s", cases[i].stiction);
+        snprintf(angle, sizeof angle, "wall.angle=%s", cases[i].angle);
+        run_result r = run(SETTINGS(voltage, stiction, angle, cases[i].links, "wall.kind=plane"));
+        if (r.summary.inaccurate != cases[i].inaccurate) {
+            fail_msg("%s, %s, %s: %s %s", voltage, angle, cases[i].links,
+                     summary_status(&r.summary), r.summary.message);
+        }
+        run_finish(&r);
+    }
+}
+
 // A fast arm's strides follow its rotation: where they may end does not matter.
 static void fast_rotation_is_resolved_whatever_the_step(void **state)
 {
@@ -335,6 +366,7 @@ int main(void)
         cmocka_unit_test(script_acts_at_its_time_and_is_booked),
         cmocka_unit_test(a_run_that_makes_energy_from_nothing_is_stopped),
         cmocka_unit_test(a_ledger_that_does_not_close_makes_a_run_inaccurate),
+        cmocka_unit_test(a_motion_too_small_to_follow_is_inaccurate),
         cmocka_unit_test(fast_rotation_is_resolved_whatever_the_step),
         cmocka_unit_test(elastic_chattering_is_bounded_and_said),
         cmocka_unit_test(structural_damping_does_not_upset_the_explicit_method),

@@ -14,7 +14,8 @@
 #include "src/base/instant.h"
 
 #define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
-#define LEDGER_ROUNDING 1e-13 // what the ledger may lack whatever was put in [J]
+#define SMALL_FLIGHT    1e-10 // motions of this size are followed to 1e-5 of it [rad, m, N m]
+#define SMALL_CONTACT   1e-7  // the same of those that meet the wall
 #define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
 
 enum { MOST_EVENTS_AT_ONCE = 100 }; // events without time passing before the run is given up
@@ -207,6 +208,38 @@ static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char 
     va_end(values);
 }
 
+// How far an arm turns or bends that has so much energy [J] [rad]: the beam as one spring, or one
+// rigid link in the time [s] it has.
+static double turn_of_energy(const arm *a, double energy, double duration)
+{
+    const double length = a->links * a->link_length;
+    const double inertia = a->hub_inertia + a->links * a->link_mass * length * length / 3;
+    const double beam = a->links > 1 ? 2 * a->joint_stiffness / a->links : a->hub_stiffness;
+    return sqrt(energy / (beam > 0 ? beam : inertia / (duration * duration)));
+}
+
+// Says so where the motion as a whole is so small that the tolerances of events, which are lengths,
+// speeds and torques of their own, are too large a share of it. An arm that has not moved is held
+// by friction, or by the wall with more than that.
+static void judge_size(const corrected_run *c, double energy)
+{
+    const arm *a = &c->arm;
+    summary *s = &c->recording->result->summary;
+    const double duration = c->recording->scenario->parameters.run.duration;
+    const double turn = turn_of_energy(a, energy, duration);
+    const double travel = turn * a->links * a->link_length;
+    const double torque = turn > 0 ? energy / turn : fabs(a->motor.torque) - a->motor.stiction;
+
+    const double size = turn > 0 ? smaller(smaller(turn, travel), torque) : torque;
+    if (size > 0 && size < (isnan(s->first_contact_s) ? SMALL_FLIGHT : SMALL_CONTACT)) {
+        s->inaccurate = true;
+        remark(s,
+               "with the %.3g J put in the arm moves so little (by some %.2g rad, %.2g m at the "
+               "tip, with torques of %.2g N m) that the tolerances of contact and friction show",
+               energy, turn, travel, torque);
+    }
+}
+
 // Whether the numbers may be relied on, and what the motion was spared.
 static void judge(const corrected_run *c)
 {
@@ -230,13 +263,14 @@ static void judge(const corrected_run *c)
                r->state.from_behind);
     }
 
-    s->inaccurate = s->energy_residual_J > bound * energy + LEDGER_ROUNDING;
+    s->inaccurate = s->energy_residual_J > bound * energy;
     if (s->inaccurate) {
         remark(s,
                "the energy ledger lacks up to %.3g J of the %.3g J put in, more than "
                "method.residual_bound = %g allows: the method was %s%s",
                s->energy_residual_J, energy, bound, m->engine->name, advice(m));
     }
+    judge_size(c, energy);
 }
 
 void corrected_sum_up(corrected_run *c, status failed)
