@@ -195,14 +195,20 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         i12 = choose(stuck, zero, i12);
         i22 = choose(stuck, 1 / m22, i22);
     }
-    real y1 = zero, y2 = zero, per_force = zero; // M^-1 J, 1/(J M^-1 J)
+    real y1 = zero, y2 = zero, per_force = zero; // M^-1 J/(J M^-1 J), 1/(J M^-1 J)
     const real j1 = point ? l * c0 : PART(DIRECTION1(&x, 0), 0);
     const real j2 = point ? C20 - l * c0 : C20;
     if (contact) {
-        y1 = i11 * j1 + i12 * j2;
-        y2 = i12 * j1 + i22 * j2;
-        per_force = 1 / (j1 * y1 + j2 * y2);
+        // in contact without what the wall takes of it, M^-1 - M^-1 J J' M^-1/(J M^-1 J)
+        const real r1 = i11 * j1 + i12 * j2, r2 = i12 * j1 + i22 * j2;
+        per_force = 1 / (j1 * r1 + j2 * r2);
+        y1 = r1 * per_force;
+        y2 = r2 * per_force;
+        i11 -= r1 * y1;
+        i12 -= r1 * y2;
+        i22 -= r2 * y2;
     }
+
     const real inverse_hub = hub_spring ? choose(stuck, zero, 1 / block[AT_HUB_INERTIA]) : zero;
 
     // as far as the terms matter
@@ -213,56 +219,60 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     mask open[TAYLOR_MOST / 2 + 1];
     ptrdiff_t order = TAYLOR_MOST;
 
-    real product = zero; // (w1 w2)_(n-1)
+    // An order waits for what is known last: the products with its rates, then those with the
+    // newest directions. Sums take these at their ends, so that little is left to do behind them.
+    const real first1 = w1[0], first2 = w2[0], first_hub = hub_spring ? w0[0] : first1;
+    real product = zero, rate1 = first1, rate2 = first2; // (w1 w2)_(n-1), w1_n, w2_n
     for (ptrdiff_t n = 0; n < order; n++) {
         // directions of the next order end what the last pass has left open
-        v[n] = w2[n] - w1[n];
-        keep_rates(&x, n, w1[n], w2[n]);
+        const double share = inverse[n + 1];
+        const real hub = hub_spring ? w0[n] : rate1;
+        v[n] = rate2 - rate1;
+        keep_rates(&x, n, rate1, rate2);
         ADD_TURNING(sum, &x, n, n - 1);
-        turn(&sum.turning, inverse[n + 1], &DIRECTIONS(&x, n + 1));
+        turn(&sum.turning, share, &DIRECTIONS(&x, n + 1));
         if (!point) {
             ADD_TURNING1(sum, &x, n, n - 1);
-            turn_one(&sum.turning1, inverse[n + 1], &DIRECTION1(&x, n + 1));
+            turn_one(&sum.turning1, share, &DIRECTION1(&x, n + 1));
         }
 
         // products: what is known of (c w2)_(n+1), (w1 w2)_n, (s w1 w2)_n, the hub's square; of the
         // turning of the order after next
-        keep_products(&x, n, w1[n], w2[n], product, hub_spring ? w0[n] : w1[n]);
+        keep_products(&x, n, rate1, rate2, product, hub);
         if (contact) {
             keep_levers(&x, n, point);
         }
         inner_sums(&x, n, contact, point, &sum);
-        ADD_PRODUCTS(sum, &x, 0, n);
-        ADD_TURNING(sum, &x, 0, n);
-        if (!point) {
-            ADD_TURNING1(sum, &x, 0, n);
-        }
         if (n > 0) {
-            ADD_PRODUCTS(sum, &x, n, n);
+            ADD_PRODUCTS(sum, &x, 0, n);
             ADD_TURNING(sum, &x, n, n);
             if (!point) {
                 ADD_TURNING1(sum, &x, n, n);
             }
         }
-        const real swung = PART(sum.products, 0), bent = PART(sum.turning, 0);
-        product = PART(sum.products, 1);
-        hub_square[n] = PART(sum.products, 3);
+        ADD_TURNING(sum, &x, 0, n);
+        if (!point) {
+            ADD_TURNING1(sum, &x, 0, n);
+        }
+        product = PART(sum.products, 1) + rate1 * first2;
+        hub_square[n] = PART(sum.products, 3) + hub * first_hub;
+        const real swung = PART(sum.products, 0) + PART(DIRECTIONS(&x, n + 1), 0) * first2;
+        const real turned = s0 * product + PART(sum.products, 2), bent = PART(sum.turning, 0);
 
-        // derivatives of the momenta, without what f_n gives
-        const real pull =
-            m12 * (s0 * product + PART(sum.products, 2)) + k * (q2[n] - q1[n]) + kd * v[n];
+        // derivatives of the momenta without what f_n and these give
+        const real pull = k * (q2[n] - q1[n]) + kd * v[n];
         const real driven = n == 0 ? drive : zero;
         real push1 = pull, push2 = -pull;
         if (hub_spring) {
-            hub_rate[n] = w1[n] - w0[n];
+            hub_rate[n] = rate1 - hub;
             const real hub_pull = kh * (q1[n] - q0[n]) + khd * hub_rate[n];
-            const real moment = driven - viscous * w0[n] + hub_pull;
+            const real moment = driven - viscous * hub + hub_pull;
             push1 -= hub_pull;
             hold[n] = -moment;
-            w0[n + 1] = moment * inverse_hub * inverse[n + 1];
-            q0[n + 1] = w0[n] * inverse[n + 1];
+            w0[n + 1] = moment * inverse_hub * share;
+            q0[n + 1] = hub * share;
         } else {
-            push1 += driven - viscous * w1[n];
+            push1 += driven - viscous * rate1;
         }
         if (contact && n > 0) {
             ADD_LEVERED(sum, &x, 0, n);
@@ -270,24 +280,27 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
             push1 -= first;
             push2 -= point ? PART(sum.levered, 1) - first : PART(sum.levered, 1);
         }
+        push1 += m12 * turned;
+        push2 -= m12 * turned;
 
         // velocities, and in contact the force that keeps the gap from changing
-        const real b1 = push1 * inverse[n + 1] - m12 * swung;
-        const real b2 = push2 * inverse[n + 1] - m12 * (swung - bent);
+        const real coupled = m12 * swung;
+        const real b1 = push1 * share - coupled, b2 = (push2 * share + m12 * bent) - coupled;
         real x1 = i11 * b1 + i12 * b2, x2 = i12 * b1 + i22 * b2;
         if (contact) {
             const real closing = point ? PART(sum.turning, 2) - l * bent
                                        : PART(sum.turning1, 0) + PART(sum.turning, 2);
-            const real share = (y1 * b1 + y2 * b2 + closing) * per_force;
-            f[n] = share * (double)(n + 1);
+            f[n] = ((y1 * b1 + y2 * b2) + per_force * closing) * (double)(n + 1);
             keep_force(&x, n, f[n]);
-            x1 -= y1 * share;
-            x2 -= y2 * share;
+            x1 -= y1 * closing;
+            x2 -= y2 * closing;
         }
         w1[n + 1] = x1;
         w2[n + 1] = x2;
-        q1[n + 1] = w1[n] * inverse[n + 1];
-        q2[n + 1] = w2[n] * inverse[n + 1];
+        q1[n + 1] = rate1 * share;
+        q2[n + 1] = rate2 * share;
+        rate1 = x1;
+        rate2 = x2;
 
         // what holds a stuck hub, and what springs lose
         if (!hub_spring && sticks) {
