@@ -12,7 +12,7 @@
 
 typedef struct modal_basis {
     int count;       // of modes, that vector included
-    double *rate;    // w[count] [rad/s], zero for that vector
+    double *rate;    // w[count] [rad/s], zero for that vector and up to a whole vector of eight
     int across;      // index of that vector, the last; -1 without contact
     double *pull;    // V' K times that vector, by mode and itself; zero without contact [1/s2]
     double *by_mode; // V, row k holds mode k's angles at all degrees of freedom

@@ -1,6 +1,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/solve/modal_loops.h"
 #include "src/solve/modal_parts.h"
 
 enum { FEW_SWEEPS = 4, MOST_SWEEPS = 30 };
@@ -16,24 +17,13 @@ static const double points[MODAL_NODES] = {0,
                                            0.88252766196473234643,
                                            1};
 
-// Coefficients of the polynomial through values at the points: row j gives that of (t/h)^j.
-static const double to_powers[MODAL_NODES][MODAL_NODES] = {
-    {1, 0, 0, 0, 0, 0},
-    {-15, 20.2828318726393386, -8.07237454061069601, 4.48936929635233365, -2.6998266283809762, 1},
-    {70, -131.581984462996828, 98.4982356860737689, -60.3544529094590041, 37.4382016863820634, -14},
-    {-140, 299.687857326012612, -289.4574355386068, 220.335880473893995, -146.566302261299807, 56},
-    {126, -288.460915381973069, 320.199031477787411, -285.638253945431009, 211.900137849616667,
-     -84},
-    {-42, 100.072210646317947, -121.167457084643684, 121.167457084643684, -100.072210646317947,
-     42}};
-
 void modal_polynomial(const double values[MODAL_NODES], double length, double out[MODAL_NODES])
 {
     double scale = 1;
     for (int j = 0; j < MODAL_NODES; j++) {
         out[j] = 0;
         for (int i = 0; i < MODAL_NODES; i++) {
-            out[j] += to_powers[j][i] * values[i];
+            out[j] += modal_to_powers[j][i] * values[i];
         }
         out[j] *= scale;
         scale *= (j + 1) / length;
@@ -53,8 +43,8 @@ static double last_terms(const modal_stride *s, double h)
         const double lasting = fmin(reach, 0.5 / fmax(s->damping[k], 1e-300));
         double drift = 0, force = 0;
         for (int i = 0; i < MODAL_NODES; i++) {
-            drift += to_powers[MODAL_NODES - 1][i] * s->drifts[i][k];
-            force += to_powers[MODAL_NODES - 1][i] * s->forces[i][k];
+            drift += modal_to_powers[MODAL_NODES - 1][i] * s->drifts[i][k];
+            force += modal_to_powers[MODAL_NODES - 1][i] * s->forces[i][k];
         }
         force *= k == s->modes->across ? 0 : lasting;
         drift *= rate * reach;
@@ -63,82 +53,11 @@ static double last_terms(const modal_stride *s, double h)
     return sqrt(square) / leading;
 }
 
-// The polynomials of r and s from their values; returns what changed, as the momenta and, times
-// their rates, coordinates that it makes in the stride.
-static double fit_polynomials(modal_stride *s, double h)
-{
-    const modal_table *end = &s->at[MODAL_NODES - 1];
-    double square = 0;
-    for (int k = 0; k < s->count; k++) {
-        const double twice = 2 * s->damping[k], rate = s->modes->rate[k];
-        double scale = 1, moved = 0, placed = 0, lower = end->impulse[k];
-
-        // power by power: the new coefficients, and what their change does until the end
-        for (int j = 0; j < MODAL_NODES; j++) {
-            double drift = 0, force = 0;
-            for (int i = 0; i < MODAL_NODES; i++) {
-                drift += to_powers[j][i] * s->drifts[i][k];
-                force += to_powers[j][i] * s->forces[i][k];
-            }
-            drift *= scale;
-            force *= scale;
-            const double dd = drift - s->drift[j][k], df = force - s->force[j][k];
-            const double power = end->power[j][k];
-            placed += df * power + dd * (lower + twice * power);
-            moved += df * lower - rate * rate * dd * power;
-            lower = power;
-            s->drift[j][k] = drift;
-            s->force[j][k] = force;
-            scale *= (j + 1) / h;
-        }
-
-        square += moved * moved + rate * rate * placed * placed;
-    }
-    return sqrt(square);
-}
-
-bool modal_is_fast(const modal_stride *s, int k)
+// Whether a mode vibrates too fast in the stride to be seen in r and s.
+static bool is_fast(const modal_stride *s, int k)
 {
     const double rate = s->modes->rate[k];
     return k != s->modes->across && s->damping[k] < rate && rate * s->length > s->shown_turn;
-}
-
-void modal_follow(const modal_stride *s, int k, double p[MODAL_NODES + 2])
-{
-    const double twice = 2 * s->damping[k], stiff = s->modes->rate[k] * s->modes->rate[k];
-    p[MODAL_NODES] = p[MODAL_NODES + 1] = 0;
-    for (int j = MODAL_NODES - 1; j >= 0; j--) {
-        const double turn = j + 1 < MODAL_NODES ? s->drift[j + 1][k] : 0;
-        const double n = s->force[j][k] + twice * s->drift[j][k] + turn;
-        p[j] = (n - twice * p[j + 1] - p[j + 2]) / stiff;
-    }
-}
-
-// Takes the vibrations of fast modes out of x and y in s->columns, from point `first` on: what is
-// left of them follows the polynomials.
-static void leave_out_vibrations(modal_stride *s, int first)
-{
-    const size_t pair = 2 * (size_t)s->dof;
-    for (int k = 0; k < s->count; k++) {
-        if (!modal_is_fast(s, k)) {
-            continue;
-        }
-        double p[MODAL_NODES + 2];
-        modal_follow(s, k, p);
-        for (int i = first; i < MODAL_NODES; i++) {
-            const double t = points[i] * s->length;
-            double *x = s->columns + (size_t)i * pair + k;
-            double place = 0, speed = 0, drift = 0, power = 1;
-            for (int j = 0; j < MODAL_NODES; j++) {
-                place += p[j] * power;
-                speed += p[j + 1] * power;
-                drift += s->drift[j][k] * power;
-                power *= t / (j + 1);
-            }
-            x[0] = place;
-            x[s->dof] = speed - drift;
-        }
-    }
 }
 
 // The modes' responses at the points of collocation: those of the lengths last met are kept.
@@ -170,7 +89,7 @@ static void take_tables(modal_stride *s, double length)
 static int first_point(modal_stride *s)
 {
     for (int k = 0; k < s->count && s->start_holds; k++) {
-        s->start_holds = !modal_is_fast(s, k);
+        s->start_holds = !is_fast(s, k);
     }
     return s->start_holds ? 1 : 0;
 }
@@ -178,45 +97,46 @@ static int first_point(modal_stride *s)
 // r and s at the points of collocation from the present polynomials.
 static void evaluate_points(modal_stride *s, const arm *a, const double *q)
 {
-    const int n = s->dof, first = first_point(s);
-    const size_t pair = 2 * (size_t)n;
+    const modal_loops *loops = modal_loops_here();
+    const int row = s->row, first = first_point(s);
+    const size_t pair = 2 * (size_t)row;
 
     // the modes' places and momenta, as angles
     for (int i = first; i < MODAL_NODES; i++) {
         double *x = s->columns + (size_t)i * pair;
         if (i > 0) {
-            modal_momenta_at(s, &s->at[i], x, x + n);
+            modal_momenta_at(s, &s->at[i], x, x + row);
         } else {
-            memset(x, 0, (size_t)n * sizeof *x);
-            memcpy(x + n, s->start, (size_t)s->count * sizeof *x);
+            memset(x, 0, (size_t)row * sizeof *x);
+            memcpy(x + row, s->start, (size_t)row * sizeof *x);
         }
-    }
-    if (first == 0) {
-        leave_out_vibrations(s, first);
-    }
-    for (int i = first; i < MODAL_NODES; i++) {
-        double *x = s->columns + (size_t)i * pair;
+        if (first == 0) {
+            loops->leave_out(s, points[i] * s->length, x, x + row);
+        }
         memcpy(s->modal + (size_t)i * pair, x, pair * sizeof *x);
-        modal_to_momenta(s, a, x, x + n);
+        modal_to_momenta(s, a, x, x + row);
     }
     const size_t skipped = (size_t)first * pair;
     const int columns = 2 * (MODAL_NODES - first);
-    modal_to_angles(s->modes, n, columns, s->columns + skipped, s->more_columns + skipped, n);
+    modal_to_angles(s->modes, s->dof, columns, s->columns + skipped, s->more_columns + skipped,
+                    row);
 
     // velocities and forces there by the sweeps
     modal_sweep_points(s, a, q, first);
 
     // brought back to the modes
-    modal_from_angles(s->modes, n, columns, s->more_columns + skipped, s->columns + skipped, n);
+    modal_from_angles(s->modes, s->dof, columns, s->more_columns + skipped, s->columns + skipped,
+                      row);
     for (int i = first; i < MODAL_NODES; i++) {
         const double *x = s->modal + (size_t)i * pair;
-        modal_take_remainders(s, i, x, x + n, s->columns + (size_t)i * pair);
+        modal_take_remainders(s, i, x, x + row, s->columns + (size_t)i * pair);
     }
 }
 
 modal_fit modal_stride_fit(modal_stride *s, const arm *a, const double *q, double length)
 {
-    const size_t size = (size_t)s->count * sizeof(double);
+    const size_t size = (size_t)s->row * sizeof(double);
+    const modal_loops *loops = modal_loops_here();
     s->length = length;
 
     // of all momenta, were the energy all kinetic, with what the motor adds
@@ -233,11 +153,11 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, const double *q, doubl
     // sweeps until nothing changes
     modal_fit fit = {0};
     double change = 0; // by a sweep
-    fit_polynomials(s, length);
+    (void)loops->fit(s);
     for (int i = 0; i < MOST_SWEEPS; i++) {
         evaluate_points(s, a, q);
         const double last = change;
-        change = fit_polynomials(s, length) / most;
+        change = sqrt(loops->fit(s)) / most;
         fit.sweeps = i + 1;
         const double share = i > 0 ? change / last : 1;
         fit.left = share < 1 ? change * share / (1 - share) : change;

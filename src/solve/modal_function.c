@@ -276,10 +276,10 @@ void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const ar
     // what the modes leave over at the points of collocation
     double values[MODAL_NODES] = {0};
     for (int i = 1; i < MODAL_NODES; i++) {
-        const double *x = s->modal + (size_t)(2 * i) * (size_t)s->dof;
+        const double *x = s->modal + (size_t)(2 * i) * (size_t)s->row;
         double exact =
             exact_at(kind, a, m, s->mode, s->point_angles[i], s->point_velocities[i], s->columns);
-        values[i] = exact - f->value - functional(f, s, x, x + s->dof, s->drifts[i], s->drifts[0]);
+        values[i] = exact - f->value - functional(f, s, x, x + s->row, s->drifts[i], s->drifts[0]);
     }
 
     // both parts as functions of time

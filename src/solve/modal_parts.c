@@ -1,3 +1,4 @@
+#include "src/solve/modal_loops.h"
 #include "src/solve/modal_parts.h"
 
 #include <math.h>
@@ -17,6 +18,14 @@ void modal_fill_table(const modal_stride *s, double t, int powers, int count, co
         at->impulse_rate[k] = r.impulse_rate;
         for (int j = 0; j < powers; j++) {
             at->power[j][k] = r.power[j];
+        }
+    }
+
+    // those behind them do nothing
+    for (int k = count; k % MODAL_LANES != 0; k++) {
+        at->impulse[k] = at->impulse_rate[k] = 0;
+        for (int j = 0; j < powers; j++) {
+            at->power[j][k] = 0;
         }
     }
 }
@@ -51,20 +60,7 @@ static void state_across(const modal_stride *s, const modal_table *at, double *x
 
 void modal_momenta_at(const modal_stride *s, const modal_table *at, double *x, double *y)
 {
-    // every mode for itself: from its start, then what the polynomials do to it
-    for (int k = 0; k < s->count; k++) {
-        const double twice = 2 * s->damping[k], stiff = s->modes->rate[k] * s->modes->rate[k];
-        double place = s->start[k] * at->impulse[k], rate = s->start[k] * at->impulse_rate[k];
-        double lower = at->impulse[k];
-        for (int j = 0; j < MODAL_NODES; j++) {
-            const double power = at->power[j][k], f = s->force[j][k], d = s->drift[j][k];
-            place += f * power + d * (lower + twice * power);
-            rate += f * lower - stiff * d * power;
-            lower = power;
-        }
-        x[k] = place;
-        y[k] = rate;
-    }
+    modal_loops_here()->momenta(s, at, x, y);
 
     // across the constraint they add up
     if (s->modes->across >= 0) {
@@ -97,17 +93,17 @@ void modal_stride_modes(modal_stride *s, double t)
 void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double t, const double *q,
                         double *qt, double *wt, double *impulse)
 {
-    const int n = s->dof;
-    double *x = s->columns, *y = x + n, *turn = s->more_columns, *momentum = turn + n;
+    const int n = s->dof, row = s->row;
+    double *x = s->columns, *y = x + row, *turn = s->more_columns, *momentum = turn + row;
 
     // of the modes
     modal_stride_modes(s, t);
-    memcpy(x, s->place, (size_t)n * sizeof *x);
-    memcpy(y, s->momenta, (size_t)n * sizeof *y);
+    memcpy(x, s->place, (size_t)row * sizeof *x);
+    memcpy(y, s->momenta, (size_t)row * sizeof *y);
     modal_to_momenta(s, a, x, y);
 
     // of the links
-    modal_to_angles(s->modes, n, 2, x, turn, n);
+    modal_to_angles(s->modes, n, 2, x, turn, row);
     modal_mass_times(a, momentum, y);
     for (int i = 0; i < n; i++) {
         qt[i] = q[i] + turn[i];
@@ -127,7 +123,11 @@ static void take_damping(modal_stride *s, const arm *a)
         const double rate = s->modes->rate[k], hub = s->modes->by_dof[k];
         s->viscous[k] = k == s->modes->across ? 0 : a->motor.damping * hub * hub;
         s->damping[k] = (s->per_stiffness * rate * rate + s->viscous[k]) / 2;
+        s->softness[k] = rate > 0 ? 1 / (rate * rate) : 0;
         square += hub * hub;
+    }
+    for (int k = s->modes->count; k < s->row; k++) {
+        s->viscous[k] = s->damping[k] = s->softness[k] = 0;
     }
     s->hub_response = sqrt(square);
 }
@@ -168,21 +168,14 @@ static bool take_basis(modal_stride *s, const arm *a, contact_state mode)
 void modal_prepare_remainders(modal_stride *s, const arm *a, const double *w, double *columns)
 {
     modal_mass_times(a, w, columns);
-    straight_forces_left(a, modal_hub_torque(s, a), s->angles, w, s->rates, columns + s->dof);
+    straight_forces_left(a, modal_hub_torque(s, a), s->angles, w, s->rates, columns + s->row);
 }
 
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
                            const double *modal)
 {
-    const double *v = modal, *force = modal + s->dof;
-
-    // less what the modes' own equations have
-    for (int k = 0; k < s->count; k++) {
-        const double rate = s->modes->rate[k];
-        s->drifts[point][k] = v[k] - y[k];
-        s->forces[point][k] =
-            force[k] - s->viscous[k] * v[k] + rate * rate * x[k] + 2 * s->damping[k] * y[k];
-    }
+    const double *v = modal, *force = modal + s->row;
+    modal_loops_here()->take(s, point, x, y, modal);
 
     // across the constraint there is only what the modes pull
     const int e = s->modes->across;
@@ -213,14 +206,17 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
     chain_from_momentum(a, links, mode, q, s->momentum, s->velocities, s->rates, &impulse);
     memcpy(s->angles, q, (size_t)n * sizeof *q);
     modal_prepare_remainders(s, a, w, s->columns);
-    memcpy(s->columns + 2 * n, s->momentum, (size_t)n * sizeof *q);
-    modal_from_angles(s->modes, n, 3, s->columns, s->more_columns, n);
+    memcpy(s->columns + 2 * s->row, s->momentum, (size_t)n * sizeof *q);
+    modal_from_angles(s->modes, n, 3, s->columns, s->more_columns, s->row);
 
     // the same of the modes
     for (int k = 0; k < s->count; k++) {
-        s->start[k] = s->more_columns[2 * n + k];
+        s->start[k] = s->more_columns[2 * s->row + k];
     }
-    memset(s->columns, 0, (size_t)n * sizeof *q);
+    for (int k = s->count; k < s->row; k++) {
+        s->start[k] = 0;
+    }
+    memset(s->columns, 0, (size_t)s->row * sizeof *q);
     modal_take_remainders(s, 0, s->columns, s->start, s->more_columns);
     return STATUS_OK;
 }

@@ -5,6 +5,7 @@
 //     modal_parts.c        bases, the start, the modes' own answer, states
 //     modal_collocation.c  r and s by Picard's sweeps
 //     modal_points.c       the chain at all points of a stride side by side
+//     modal_loops.c        all modes in the lanes of vectors (modal_loops.h)
 //     modal_losses.c       walks along the stride, energy lost in it
 #pragma once
 
@@ -27,7 +28,7 @@ void modal_momenta_at(const modal_stride *s, const modal_table *at, double *x, d
 void modal_to_momenta(const modal_stride *s, const arm *a, const double *x, double *y);
 
 // r and s of one instant from x, y, the velocities w[dof] there and dT/dq + J'^T L in s->rates:
-// what is to be brought to the modes into columns[2 dof], and, brought there as modal[2 dof], into
+// what is to be brought to the modes into columns[2 row], and, brought there as modal[2 row], into
 // s->drifts[point] and s->forces[point].
 void modal_prepare_remainders(modal_stride *s, const arm *a, const double *w, double *columns);
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
@@ -44,9 +45,3 @@ static inline double modal_hub_torque(const modal_stride *s, const arm *a)
 // place; angles and velocities go into s->point_angles and s->point_velocities.
 void modal_sweep_points(modal_stride *s, const arm *a, const double *q, int first);
 size_t modal_points_size(int dof); // of s->lanes in doubles, a whole number of cache lines
-
-// Whether a mode vibrates too fast in the stride to be seen in r and s.
-bool modal_is_fast(const modal_stride *s, int k);
-
-// What a mode with a spring does under the polynomials without vibrating: x = sum p[j] t^j / j!.
-void modal_follow(const modal_stride *s, int k, double p[MODAL_NODES + 2]);

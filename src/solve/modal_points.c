@@ -102,14 +102,15 @@ KERNEL void sweep_points(modal_stride *s, const arm *a, const double *q, int fir
 {
     const lanes l = lanes_of(s);
     const int n = s->dof;
+    const ptrdiff_t row = s->row;
     const bool stuck = s->mode.friction == HUB_STICK;
 
     // angles, and momenta by the straight chain's mass
     const double *turns[LANES], *moved[LANES];
     for (int i = 0; i < LANES; i++) {
         const int point = i < first ? first : i < MODAL_NODES ? i : MODAL_NODES - 1;
-        turns[i] = s->more_columns + (size_t)(2 * point) * (size_t)n;
-        moved[i] = turns[i] + n;
+        turns[i] = s->more_columns + 2 * point * row;
+        moved[i] = turns[i] + row;
     }
     for (int k = 0; k < n; k++) {
         l.angles[k] = q[k] + gather(turns, k);
@@ -136,7 +137,7 @@ KERNEL void sweep_points(modal_stride *s, const arm *a, const double *q, int fir
 
     // back to every point
     for (int i = first; i < MODAL_NODES; i++) {
-        double *columns = s->more_columns + (size_t)(2 * i) * (size_t)n, *forces = columns + n;
+        double *columns = s->more_columns + 2 * i * row, *forces = columns + row;
         for (int k = 0; k < n; k++) {
             columns[k] = l.products[k][i];
             forces[k] = l.momentum[k][i];

@@ -1,36 +1,43 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "src/solve/modal_loops.h"
 #include "src/solve/modal_parts.h"
 
-enum { COLUMNS = 2 * MODAL_NODES, CACHE_DOUBLES = 8 };
+enum { COLUMNS = 2 * MODAL_NODES };
 
-static size_t table_size(int n)
+// Doubles of an array by mode.
+static size_t row_of(int dof)
 {
-    return (size_t)n * (MODAL_POWERS + 2);
+    return ((size_t)dof + MODAL_LANES - 1) / MODAL_LANES * MODAL_LANES;
 }
 
-static size_t kept_size(int n)
+static size_t table_size(size_t n)
+{
+    return n * (MODAL_POWERS + 2);
+}
+
+static size_t kept_size(size_t n)
 {
     size_t doubles = 0;
     for (int i = 1; i < MODAL_NODES; i++) {
-        doubles += (size_t)n * (size_t)(modal_kept_powers(i) + 2);
+        doubles += n * (size_t)(modal_kept_powers(i) + 2);
     }
     return doubles;
 }
 
 size_t modal_stride_size(const arm *a)
 {
-    const size_t n = (size_t)a->dof;
+    const size_t n = row_of(a->dof);
 
     // bases and their scratch, tables, vectors
     size_t doubles =
         MODAL_CONTACT_STATES * (modal_basis_size(a->dof) + modal_vibrations_size(a->dof)) +
         modal_basis_scratch(a->dof);
-    doubles += 2 * table_size(a->dof);
-    doubles += MODAL_CONTACT_STATES * MODAL_KEPT * kept_size(a->dof);
-    doubles += n * (8 + 8 * MODAL_NODES + 3 * COLUMNS + 3);
-    doubles += modal_points_size(a->dof) + CACHE_DOUBLES;
+    doubles += 2 * table_size(n);
+    doubles += MODAL_CONTACT_STATES * MODAL_KEPT * kept_size(n);
+    doubles += n * (9 + 9 * MODAL_NODES + 3 * COLUMNS + 3);
+    doubles += modal_points_size(a->dof) + MODAL_LANES;
     return sizeof(modal_stride) + doubles * sizeof(double);
 }
 
@@ -59,18 +66,16 @@ static void place_kept(modal_kept *keep, double **storage, size_t n)
 
 void modal_stride_place(modal_stride *s, const arm *a)
 {
-    const size_t n = (size_t)a->dof;
+    const size_t n = row_of(a->dof);
     double *storage = (double *)(s + 1);
     memset(s, 0, sizeof *s);
     s->dof = a->dof;
+    s->row = (int)n;
 
-    // bases
-    for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
-        modal_basis_place(&s->basis[i], a->dof, take(&storage, modal_basis_size(a->dof)));
-        modal_vibrations_place(&s->vibrations[i], a->dof,
-                               take(&storage, modal_vibrations_size(a->dof)));
-    }
-    s->scratch = take(&storage, modal_basis_scratch(a->dof));
+    // lanes and arrays by mode begin at whole vectors
+    const size_t beyond = (uintptr_t)storage / sizeof(double) % MODAL_LANES;
+    (void)take(&storage, (MODAL_LANES - beyond) % MODAL_LANES);
+    s->lanes = take(&storage, modal_points_size(a->dof));
 
     // what there is once a point of collocation
     for (int i = 0; i < MODAL_NODES; i++) {
@@ -80,6 +85,7 @@ void modal_stride_place(modal_stride *s, const arm *a)
         s->walk.drift[i] = take(&storage, n);
         s->drift[i] = take(&storage, n);
         s->force[i] = take(&storage, n);
+        s->followed[i] = take(&storage, n);
         s->drifts[i] = take(&storage, n);
         s->forces[i] = take(&storage, n);
     }
@@ -87,16 +93,12 @@ void modal_stride_place(modal_stride *s, const arm *a)
     // what there is once a stride
     s->damping = take(&storage, n);
     s->viscous = take(&storage, n);
+    s->softness = take(&storage, n);
     s->start = take(&storage, n);
     s->momentum = take(&storage, n);
     s->columns = take(&storage, n * COLUMNS);
     s->more_columns = take(&storage, n * COLUMNS);
     s->modal = take(&storage, n * COLUMNS);
-
-    // lanes, from a whole cache line on
-    const size_t beyond = (uintptr_t)storage / sizeof(double) % CACHE_DOUBLES;
-    (void)take(&storage, (CACHE_DOUBLES - beyond) % CACHE_DOUBLES);
-    s->lanes = take(&storage, modal_points_size(a->dof));
 
     // what there is once an instant
     s->angles = take(&storage, n);
@@ -113,4 +115,12 @@ void modal_stride_place(modal_stride *s, const arm *a)
             place_kept(&s->kept[i][j], &storage, n);
         }
     }
+
+    // bases
+    for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
+        modal_basis_place(&s->basis[i], a->dof, take(&storage, modal_basis_size(a->dof)));
+        modal_vibrations_place(&s->vibrations[i], a->dof,
+                               take(&storage, modal_vibrations_size(a->dof)));
+    }
+    s->scratch = take(&storage, modal_basis_scratch(a->dof));
 }

@@ -1,0 +1,340 @@
+#include "src/solve/modal_loops.h"
+
+#include <assert.h>
+
+#include "src/solve/taylor_engine.h"
+
+// Vectors are handed to inline functions of this file only.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+#define LANES 8
+#include "src/solve/taylor_numbers.h"
+
+typedef double loose __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+
+// Modes k to k + 7 of an array by mode.
+#define OF(array, k) (*(loose *)((array) + (k)))
+#define IN(array, k) ((real) * (const loose *)((array) + (k)))
+
+static_assert(LANES == MODAL_LANES, "arrays go on to whole vectors");
+
+const double modal_to_powers[MODAL_NODES][MODAL_NODES] = {
+    {1, 0, 0, 0, 0, 0},
+    {-15, 20.2828318726393386, -8.07237454061069601, 4.48936929635233365, -2.6998266283809762, 1},
+    {70, -131.581984462996828, 98.4982356860737689, -60.3544529094590041, 37.4382016863820634, -14},
+    {-140, 299.687857326012612, -289.4574355386068, 220.335880473893995, -146.566302261299807, 56},
+    {126, -288.460915381973069, 320.199031477787411, -285.638253945431009, 211.900137849616667,
+     -84},
+    {-42, 100.072210646317947, -121.167457084643684, 121.167457084643684, -100.072210646317947,
+     42}};
+
+KERNEL void loop_momenta(const modal_stride *s, const modal_table *at, double *x, double *y)
+{
+    // every mode for itself: from its start, then what the polynomials do to it
+    for (int k = 0; k < s->row; k += LANES) {
+        const real rate = IN(s->modes->rate, k), twice = 2 * IN(s->damping, k);
+        const real stiff = rate * rate, start = IN(s->start, k);
+        real lower = IN(at->impulse, k);
+        real place = start * lower, speed = start * IN(at->impulse_rate, k);
+#pragma GCC unroll 6
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const real power = IN(at->power[j], k), f = IN(s->force[j], k), d = IN(s->drift[j], k);
+            place += f * power + d * (lower + twice * power);
+            speed += f * lower - stiff * d * power;
+            lower = power;
+        }
+        OF(x, k) = place;
+        OF(y, k) = speed;
+    }
+}
+
+KERNEL double total(real x)
+{
+    return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
+}
+
+KERNEL double loop_fit(modal_stride *s)
+{
+    const modal_table *end = &s->at[MODAL_NODES - 1];
+    real square = {0};
+    for (int k = 0; k < s->row; k += LANES) {
+        const real rate = IN(s->modes->rate, k), twice = 2 * IN(s->damping, k);
+        const real softness = IN(s->softness, k), zero = {0};
+        real drifts[MODAL_NODES], forces[MODAL_NODES], driven[MODAL_NODES];
+        for (int i = 0; i < MODAL_NODES; i++) {
+            drifts[i] = IN(s->drifts[i], k);
+            forces[i] = IN(s->forces[i], k);
+        }
+
+        // power by power: the new coefficients, and what their change does until the end
+        double scale = 1;
+        real moved = zero, placed = zero, lower = IN(end->impulse, k);
+#pragma GCC unroll 6
+        for (int j = 0; j < MODAL_NODES; j++) {
+            real drift = zero, force = zero;
+#pragma GCC unroll 6
+            for (int i = 0; i < MODAL_NODES; i++) {
+                drift += modal_to_powers[j][i] * drifts[i];
+                force += modal_to_powers[j][i] * forces[i];
+            }
+            drift *= scale;
+            force *= scale;
+            const real dd = drift - IN(s->drift[j], k), df = force - IN(s->force[j], k);
+            const real power = IN(end->power[j], k);
+            placed += df * power + dd * (lower + twice * power);
+            moved += df * lower - rate * rate * dd * power;
+            lower = power;
+            OF(s->drift[j], k) = drift;
+            OF(s->force[j], k) = force;
+            driven[j] = force + twice * drift;
+            scale *= (j + 1) / s->length;
+        }
+        square += moved * moved + rate * rate * placed * placed;
+
+        // what the modes do under them without vibrating
+        real last = zero, next = zero;
+#pragma GCC unroll 6
+        for (int j = MODAL_NODES - 1; j >= 0; j--) {
+            const real turn = j + 1 < MODAL_NODES ? IN(s->drift[j + 1], k) : zero;
+            const real p = (driven[j] + turn - twice * next - last) * softness;
+            OF(s->followed[j], k) = p;
+            last = next;
+            next = p;
+        }
+    }
+
+    return total(square);
+}
+
+KERNEL void loop_leave_out(const modal_stride *s, double t, double *x, double *y)
+{
+    for (int k = 0; k < s->row; k += LANES) {
+        const real rate = IN(s->modes->rate, k);
+        const mask fast =
+            MASK(IN(s->damping, k) < rate) & MASK(rate * s->length > (real){0} + s->shown_turn);
+        if (!any(fast)) {
+            continue;
+        }
+        real place = {0}, speed = {0};
+        double power = 1;
+#pragma GCC unroll 6
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const real next = j + 1 < MODAL_NODES ? IN(s->followed[j + 1], k) : (real){0};
+            place += IN(s->followed[j], k) * power;
+            speed += (next - IN(s->drift[j], k)) * power;
+            power *= t / (j + 1);
+        }
+        OF(x, k) = choose(fast, place, IN(x, k));
+        OF(y, k) = choose(fast, speed, IN(y, k));
+    }
+}
+
+KERNEL void loop_take(const modal_stride *s, int point, const double *x, const double *y,
+                      const double *modal)
+{
+    double *drifts = s->drifts[point], *forces = s->forces[point];
+    for (int k = 0; k < s->row; k += LANES) {
+        const real rate = IN(s->modes->rate, k), v = IN(modal, k), force = IN(modal + s->row, k);
+        OF(drifts, k) = v - IN(y, k);
+        OF(forces, k) = force - IN(s->viscous, k) * v + rate * rate * IN(x, k) +
+                        2 * IN(s->damping, k) * IN(y, k);
+    }
+    for (int k = s->count; k < s->row; k++) {
+        drifts[k] = forces[k] = 0;
+    }
+}
+
+KERNEL void loop_walk(const modal_stride *s, modal_walk *w)
+{
+    const modal_table *at = &w->at;
+    double step[MODAL_NODES] = {1}; // step^n / n!
+    for (int n = 1; n < MODAL_NODES; n++) {
+        step[n] = step[n - 1] * w->step / n;
+    }
+
+    for (int k = 0; k < w->count; k += LANES) {
+        const real twice = 2 * IN(s->damping, k), rate = IN(s->modes->rate, k);
+        const real stiff = rate * rate, x = IN(w->x, k), y = IN(w->y, k);
+        const real g = IN(at->impulse, k), gr = IN(at->impulse_rate, k);
+        real force[MODAL_NODES], drift[MODAL_NODES];
+        real place = x * (gr + twice * g) + y * g, speed = y * gr - stiff * g * x, lower = g;
+#pragma GCC unroll 6
+        for (int j = 0; j < MODAL_NODES; j++) {
+            force[j] = IN(w->force[j], k);
+            drift[j] = IN(w->drift[j], k);
+            const real power = IN(at->power[j], k);
+            place += force[j] * power + drift[j] * (lower + twice * power);
+            speed += force[j] * lower - stiff * drift[j] * power;
+            lower = power;
+        }
+        OF(w->x, k) = place;
+        OF(w->y, k) = speed;
+
+        // the polynomials about the next instant
+#pragma GCC unroll 6
+        for (int j = 0; j < MODAL_NODES - 1; j++) {
+#pragma GCC unroll 6
+            for (int higher = j + 1; higher < MODAL_NODES; higher++) {
+                force[j] += step[higher - j] * force[higher];
+                drift[j] += step[higher - j] * drift[higher];
+            }
+            OF(w->force[j], k) = force[j];
+            OF(w->drift[j], k) = drift[j];
+        }
+    }
+}
+
+// Integral of the product of two polynomials.
+KERNEL real product(const real p[MODAL_NODES], const real q[MODAL_NODES], modal_weights weights)
+{
+    real sum = {0};
+#pragma GCC unroll 6
+    for (int i = 0; i < MODAL_NODES; i++) {
+        real row = {0};
+#pragma GCC unroll 6
+        for (int j = 0; j < MODAL_NODES; j++) {
+            row += weights[i][j] * q[j];
+        }
+        sum += p[i] * row;
+    }
+    return sum;
+}
+
+// Moments of modes k and on: of x, integral of t^j / j! x, and of v = x', the same.
+KERNEL void moments(const modal_stride *s, int k, const double *term, const real *force,
+                    const real *drift, real *of_x, real *of_v)
+{
+    const modal_table *at = s->ending;
+    const real twice = 2 * IN(s->damping, k), start = IN(s->start, k), place = IN(s->place, k);
+    real power[2 * MODAL_NODES], repeated[MODAL_NODES];
+    for (int j = 0; j < 2 * MODAL_NODES; j++) {
+        power[j] = IN(at->power[j], k);
+    }
+
+    // x integrated i + 1 times
+#pragma GCC unroll 6
+    for (int i = 0; i < MODAL_NODES; i++) {
+        real sum = start * power[i];
+#pragma GCC unroll 6
+        for (int j = 0; j < MODAL_NODES; j++) {
+            const real lower = power[i + j], higher = power[i + j + 1];
+            sum += force[j] * higher + drift[j] * (lower + twice * higher);
+        }
+        repeated[i] = sum;
+    }
+
+    // by parts
+#pragma GCC unroll 6
+    for (int j = 0; j < MODAL_NODES; j++) {
+        real sum = {0};
+#pragma GCC unroll 6
+        for (int i = 0; i <= j; i++) {
+            sum += (i % 2 ? -term[j - i] : term[j - i]) * repeated[i];
+        }
+        of_x[j] = sum;
+        of_v[j] = term[j] * place - (j > 0 ? of_x[j - 1] : (real){0});
+    }
+}
+
+KERNEL void loop_losses(const modal_stride *s, modal_mode_losses *l)
+{
+    double term[MODAL_NODES] = {1}; // t^j / j!
+    for (int j = 1; j < MODAL_NODES; j++) {
+        term[j] = term[j - 1] * l->time / j;
+    }
+
+    for (int k = 0; k < s->row; k += LANES) {
+        const real rate = IN(s->modes->rate, k), twice = 2 * IN(s->damping, k);
+        real force[MODAL_NODES], drift[MODAL_NODES], of_x[MODAL_NODES], of_v[MODAL_NODES];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            force[j] = IN(s->force[j], k);
+            drift[j] = IN(s->drift[j], k);
+        }
+        moments(s, k, term, force, drift, of_x, of_v);
+
+        // 2 a v^2, from the change of y^2 + w^2 x^2
+        const real x = IN(s->place, k), y = IN(s->momenta, k), y0 = IN(s->start, k);
+        real loss = -0.5 * ((y - y0) * (y + y0) + rate * rate * x * x), crosses = {0};
+#pragma GCC unroll 6
+        for (int j = 0; j < MODAL_NODES; j++) {
+            force[j] += twice * drift[j];
+            loss += (force[j] + twice * drift[j]) * of_v[j] + rate * rate * drift[j] * of_x[j];
+            crosses += l->across[j] * of_v[j];
+        }
+        loss -= product(force, drift, l->weights);
+        OF(l->all, k) = loss;
+        OF(l->crosses, k) = crosses;
+
+        // less the same of what does not vibrate
+        real speed[MODAL_NODES];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            speed[j] = j + 1 < MODAL_NODES ? IN(s->followed[j + 1], k) : (real){0};
+        }
+        OF(l->vibrating, k) = loss - twice * product(speed, speed, l->weights);
+    }
+}
+
+KERNEL glance loop_decay(modal_decays *d)
+{
+    real value = {0}, slope = {0};
+    for (int k = 0; k < d->count; k += LANES) {
+        const real now = IN(d->now, k);
+        value += now;
+        slope -= IN(d->rate, k) * now;
+        OF(d->now, k) = now * IN(d->factor, k);
+    }
+    return (glance){total(value), total(slope)};
+}
+
+// --- for every width ----------------------------------------------------------------------------
+
+#define LOOPS(name, target_)                                                                       \
+    target_ static void momenta_##name(const modal_stride *s, const modal_table *at, double *x,    \
+                                       double *y)                                                  \
+    {                                                                                              \
+        loop_momenta(s, at, x, y);                                                                 \
+    }                                                                                              \
+    target_ static double fit_##name(modal_stride *s)                                              \
+    {                                                                                              \
+        return loop_fit(s);                                                                        \
+    }                                                                                              \
+    target_ static void leave_out_##name(const modal_stride *s, double t, double *x, double *y)    \
+    {                                                                                              \
+        loop_leave_out(s, t, x, y);                                                                \
+    }                                                                                              \
+    target_ static void take_##name(const modal_stride *s, int point, const double *x,             \
+                                    const double *y, const double *modal)                          \
+    {                                                                                              \
+        loop_take(s, point, x, y, modal);                                                          \
+    }                                                                                              \
+    target_ static void walk_##name(const modal_stride *s, modal_walk *w)                          \
+    {                                                                                              \
+        loop_walk(s, w);                                                                           \
+    }                                                                                              \
+    target_ static void losses_##name(const modal_stride *s, modal_mode_losses *l)                 \
+    {                                                                                              \
+        loop_losses(s, l);                                                                         \
+    }                                                                                              \
+    target_ static glance decay_##name(modal_decays *d)                                            \
+    {                                                                                              \
+        return loop_decay(d);                                                                      \
+    }                                                                                              \
+    static const modal_loops loops_##name = {momenta_##name, fit_##name,  leave_out_##name,        \
+                                             take_##name,    walk_##name, losses_##name,           \
+                                             decay_##name}
+
+LOOPS(plain, );
+#if defined(__x86_64__)
+LOOPS(avx2, __attribute__((target("avx2"))));
+LOOPS(avx512, __attribute__((target("avx512f,avx512dq,avx512vl"))));
+#endif
+
+const modal_loops *modal_loops_here(void)
+{
+#if defined(__x86_64__)
+    const int width = taylor_width();
+    return width >= 8 ? &loops_avx512 : width >= 4 ? &loops_avx2 : &loops_plain;
+#else
+    return &loops_plain;
+#endif
+}

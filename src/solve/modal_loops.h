@@ -1,0 +1,53 @@
+// The loops over all modes that a stride's sweeps and losses are made with, in the widest vectors
+// of the processor; the same bits in all of them. Arrays by mode go on to a whole number of vectors
+// (modal_stride.row); behind the last mode stand modes that do nothing.
+#pragma once
+
+#include "src/solve/engine.h"
+#include "src/solve/modal_stride.h"
+
+enum { MODAL_LANES = 8 };
+
+// Coefficients of the polynomial through values at the points: row j gives that of (t/length)^j.
+extern const double modal_to_powers[MODAL_NODES][MODAL_NODES];
+
+// Weights of products of two polynomials' coefficients in an integral until t:
+// t^(i+j+1) / ((i+j+1) i! j!).
+typedef double modal_weights[MODAL_NODES][MODAL_NODES];
+
+// What the losses until some instant are made of, by mode.
+typedef struct modal_mode_losses {
+    double time; // [s]
+    modal_weights weights;
+    double across[MODAL_NODES]; // drift of the vector across a constraint, 0 without one
+    double *all, *vibrating,
+        *crosses; // [row]: 2 a times the integral of v^2; of that what the
+                  // vibration adds to s->followed; integral of v times `across`
+} modal_mode_losses;
+
+// Decays side by side, on to a whole vector.
+typedef struct modal_decays {
+    int count;
+    double *now, *rate, *factor; // value, decay [1/s], what a step leaves
+} modal_decays;
+
+typedef struct modal_loops {
+    // modal_momenta_at without what there is across a constraint
+    void (*momenta)(const modal_stride *s, const modal_table *at, double *x, double *y);
+    // the polynomials of r and s from their values, and s->followed; returns the square of what
+    // changed, as the momenta and, times their rates, coordinates that it makes in the stride
+    double (*fit)(modal_stride *s);
+    // takes the vibrations of fast modes out of x and y at t: what is left follows the polynomials
+    void (*leave_out)(const modal_stride *s, double t, double *x, double *y);
+    // r and s of a point from x, y and what the sweeps say there, brought to the modes
+    void (*take)(const modal_stride *s, int point, const double *x, const double *y,
+                 const double *modal);
+    // a walk's next step of the modes and the polynomials
+    void (*walk)(const modal_stride *s, modal_walk *w);
+    void (*losses)(const modal_stride *s, modal_mode_losses *l);
+    // value and slope of all decays together, then a step of each
+    glance (*decay)(modal_decays *d);
+} modal_loops;
+
+// Those for this processor, or for vectors as narrow as taylor_limit_width (taylor_engine.h) takes.
+const modal_loops *modal_loops_here(void);
