@@ -70,6 +70,59 @@ static void a_program_hears_and_answers(void **state)
     assert_int_equal(kept_program_end(&p), 3);
 }
 
+// Signals that the lab ignores or holds back are a program's as usual.
+static void a_program_takes_every_signal(void **state)
+{
+    (void)state;
+    static const int some[] = {SIGHUP, SIGPIPE, SIGUSR1, SIGTERM, 64};
+    sigset_t held, before;
+    sigfillset(&held);
+    sigprocmask(SIG_SETMASK, &held, &before);
+    for (size_t i = 0; i < sizeof some / sizeof some[0]; i++) {
+        char command[64];
+        void (*was)(int) = signal(some[i], SIG_IGN);
+        snprintf(command, sizeof command, "kill -%d $$; exit 1", some[i]);
+        const int status = ended(command);
+        signal(some[i], was);
+        assert_int_equal(status, 128 + some[i]);
+    }
+    sigprocmask(SIG_SETMASK, &before, NULL);
+}
+
+// Its streams may have any numbers, those of the lab's own streams too.
+static void streams_may_be_closed_in_the_lab(void **state)
+{
+    (void)state;
+    kept_program p;
+    char line[64];
+    const int before = open_descriptors(), kept = dup(STDIN_FILENO);
+    close(STDIN_FILENO);
+    assert_int_equal(kept_program_start(&p, "read x; echo \"heard $x\"; exit 4"), 0);
+    const int input = p.input;
+    const ssize_t written = write(p.input, "this\n", 5);
+    read_line(&p, line, sizeof line);
+    const int status = kept_program_end(&p), left = open_descriptors();
+    dup2(kept, STDIN_FILENO);
+    close(kept);
+    assert_int_equal(input, STDIN_FILENO);
+    assert_int_equal(written, 5);
+    assert_string_equal(line, "heard this");
+    assert_int_equal(status, 4);
+    assert_int_equal(left, before);
+    assert_int_equal(open_descriptors(), before);
+}
+
+// Once ended there is nothing to end.
+static void an_end_is_told_once(void **state)
+{
+    (void)state;
+    kept_program p;
+    assert_int_equal(kept_program_start(&p, "exit 0"), 0);
+    kept_program_end(&p);
+    assert_int_equal(p.keeper, 0);
+    assert_int_equal(kept_program_end(&p), -1);
+}
+
 // A program that goes on, and what it left to itself, are gone when the keeper has ended.
 static void nothing_is_left_of_what_goes_on(void **state)
 {
@@ -120,6 +173,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_status_of_a_program_that_ended_is_told),
         cmocka_unit_test(a_program_hears_and_answers),
+        cmocka_unit_test(a_program_takes_every_signal),
+        cmocka_unit_test(streams_may_be_closed_in_the_lab),
+        cmocka_unit_test(an_end_is_told_once),
         cmocka_unit_test(nothing_is_left_of_what_goes_on),
         cmocka_unit_test(where_none_can_be_started_nothing_stays_open),
     };

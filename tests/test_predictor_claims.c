@@ -11,7 +11,7 @@
 #include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
 
-static long cases = 1000;
+static long cases = 100;
 static uint64_t seed = 20261122;
 
 // What the motion did after the touch.

@@ -133,6 +133,111 @@ static void a_refusal_says_what_is_expected(void **state)
     check_refused("arm.k2", "4:5:1", false, "no number of values");
 }
 
+// One number of a list is exchanged, the others stay as they are.
+static void a_number_of_a_list_is_set_alone(void **state)
+{
+    (void)state;
+    static const double numbers[] = {5.25, 12, 30.5};
+    for (int k = 1; k <= 3; k++) {
+        parameters p;
+        sweep_axis axis = {0};
+        fault f = {0};
+        char name[64], text[PARAMETER_TEXT_SIZE];
+        double found[PARAMETER_LIST_MOST];
+        parameters_defaults(&p, ARM_CORRECTED);
+        const int list = parameter_find("arm.joint_stiffness");
+        assert_int_equal(parameter_set_text(&p, list, "5.25,12,30.5", &f), STATUS_OK);
+        snprintf(name, sizeof name, "arm.joint_stiffness[%d]", k);
+        assert_int_equal(sweep_axis_find(&axis, name, &f), STATUS_OK);
+        assert_string_equal(axis.name, name);
+        assert_int_equal(axis.element, k);
+        assert_int_equal(axis.parameter, list);
+        assert_int_equal(sweep_axis_apply(&axis, 0.1, &p, &f), STATUS_OK);
+        parameter_format(&p, list, text, sizeof text);
+        assert_int_equal(parameter_list_numbers(text, found), 3);
+        for (int i = 0; i < 3; i++) {
+            check_close(found[i], i + 1 == k ? 0.1 : numbers[i], 0);
+        }
+
+        // a number that the list does not have, and one that it cannot have
+        axis.element = 4;
+        assert_int_equal(sweep_axis_apply(&axis, 1, &p, &f), STATUS_BAD_ARGUMENT);
+        assert_string_equal(f.path, "arm.joint_stiffness");
+        axis.element = k;
+        assert_int_not_equal(sweep_axis_apply(&axis, -1, &p, &f), STATUS_OK);
+        sweep_axis_finish(&axis);
+    }
+
+    // the last number that a list can have
+    sweep_axis axis = {0};
+    char name[64];
+    fault f = {0};
+    snprintf(name, sizeof name, "arm.joint_stiffness[%d]", PARAMETER_LIST_MOST);
+    assert_int_equal(sweep_axis_find(&axis, name, &f), STATUS_OK);
+    assert_int_equal(axis.element, PARAMETER_LIST_MOST);
+    snprintf(name, sizeof name, "arm.joint_stiffness[%d]", PARAMETER_LIST_MOST + 1);
+    assert_int_equal(sweep_axis_find(&axis, name, &f), STATUS_BAD_ARGUMENT);
+}
+
+// Every value of a grid, a list or a draw, and the text by which a database knows it.
+static void values_and_texts_are_those_that_were_asked_for(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *asked;
+        bool drawn;
+        size_t count;
+        double values[5];
+        const char *text;
+    } cases[] = {
+        {"arm.k2", "1:3:5", false, 5, {1, 1.5, 2, 2.5, 3}, "1:3:5"},
+        {"arm.k2", "3:1:3", false, 3, {3, 2, 1}, "3:1:3"},
+        {"arm.k2", "4:5:2", false, 2, {4, 5}, "4:5:2"},
+        {"arm.k2", "16:1:3:log", false, 3, {16, 4, 1}, "16:1:3:log"},
+        {"arm.links", "2:10:5", false, 5, {2, 4, 6, 8, 10}, "2:10:5"},
+        {"arm.links", "2:32:5:log", false, 5, {2, 4, 8, 16, 32}, "2:32:5:log"},
+        {"arm.k2", "7,3,5", false, 3, {7, 3, 5}, "7,3,5"},
+        {"arm.k2", "7", false, 1, {7}, "7"},
+        {"wall.kind",
+         "none,plane,point",
+         false,
+         3,
+         {WALL_NONE, WALL_PLANE, WALL_POINT},
+         "none,plane,point"},
+        {"sensor.ideal", "true,false", false, 2, {1, 0}, "true,false"},
+        {"arm.k2", "4:8", true, 0, {0}, "4:8"},
+        {"arm.k2", "4:8:9", true, 0, {0}, "4:8"},
+        {"arm.k2", "4:8:log", true, 0, {0}, "4:8:log"},
+        {"arm.joint_stiffness[2]", "4:6:3", false, 3, {4, 5, 6}, "4:6:3"},
+        {"arm.joint_stiffness[2]", "4.5,6", false, 2, {4.5, 6}, "4.5,6"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        sweep_axis axis = {0};
+        fault f = {0};
+        char text[64];
+        snprintf(text, sizeof text, "%s", cases[i].asked);
+        assert_int_equal(sweep_axis_find(&axis, cases[i].path, &f), STATUS_OK);
+        if (sweep_axis_parse(&axis, text, cases[i].drawn, &f) != STATUS_OK) {
+            fail_msg("%s=%s: %s", cases[i].path, cases[i].asked, f.text);
+        }
+        assert_int_equal(axis.count, cases[i].count);
+        assert_int_equal(axis.is_range, strchr(cases[i].asked, ':') != NULL);
+        for (size_t k = 0; k < axis.count; k++) {
+            check_relative(axis.values[k], cases[i].values[k], 1e-14);
+        }
+        assert_string_equal(axis.text, cases[i].text);
+        sweep_axis_finish(&axis);
+    }
+
+    // the same value twice is refused wherever it stands
+    check_refused("arm.k2", "5,3,5", false, "twice");
+    check_refused("arm.k2", "3,5,5", false, "twice");
+    check_refused("arm.links", "2:4:9:log", false, "9 values give 2 twice");
+    check_refused("arm.k2", "4:5:6:log:7", false, "a:b:n");
+    check_refused("arm.k2", "4:5:6:7", true, "a:b or a:b:n");
+    check_refused("arm.k2", "4:log", true, "log");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -140,6 +245,8 @@ int main(void)
         cmocka_unit_test(whole_numbers_have_equal_shares),
         cmocka_unit_test(values_of_a_list_have_equal_shares),
         cmocka_unit_test(a_grid_has_both_ends),
+        cmocka_unit_test(a_number_of_a_list_is_set_alone),
+        cmocka_unit_test(values_and_texts_are_those_that_were_asked_for),
         cmocka_unit_test(what_is_no_axis_is_refused),
         cmocka_unit_test(a_refusal_says_what_is_expected),
     };
