@@ -191,6 +191,110 @@ static void a_failed_run_says_so(void **state)
     free(csv);
 }
 
+// Every form to the last character: widths, marks, units, and a thousand without digits behind it.
+static void forms_are_written_to_the_letter(void **state)
+{
+    (void)state;
+    fault f;
+    const int varied[] = {PARAMETER_INDEX(control.force), PARAMETER_INDEX(sensor.ideal)};
+    compare_row rows[3] = {
+        {.scenario = "a", .law = "hybrid", .ok = true, .varied = {0.5, 1}, .values = {1.5}},
+        {.scenario = "much longer", .law = "none", .varied = {12.25, 0}, .values = {(double)NAN}},
+        {.scenario = "c", .law = "recovering", .ok = true, .varied = {1, 1}, .values = {1.6}}};
+    rows[0].values[7] = 1000;
+    rows[1].values[7] = 999.75;
+    rows[2].values[7] = -1000;
+    compare_table t = {.rows = rows,
+                       .count = 3,
+                       .varied = varied,
+                       .varied_count = 2,
+                       .against = rows,
+                       .group = 3,
+                       .tolerance = 0.05};
+    assert_int_equal(compare_choose(&t, "impacts,peak_force_N", &f), STATUS_OK);
+    char *page, *text, *csv;
+    keep(&page, &t, compare_markdown);
+    keep(&text, &t, compare_text);
+    keep(&csv, &t, compare_csv);
+    assert_string_equal(page, "| scenario | law | force [N] | ideal | peak [N] | impacts |\n"
+                              "|---|---|---|---|---|---|\n"
+                              "| a | hybrid | 0.5 | true | 1.5 | 1000 |\n"
+                              "| much longer | none | 12.25 | false | – | 1000 |\n"
+                              "| c | recovering | 1 | true | 1.6 | -1000 |\n");
+    assert_string_equal(
+        text, "scenario     law         force/N  ideal       peak/N       impacts \n"
+              "a            hybrid          0.5   true          1.5          1000 \n"
+              "much longer  none          12.25  false            -*        999.8  failed\n"
+              "c            recovering        1   true          1.6*        -1000*\n");
+    const char *rows_of_csv = strchr(csv, '\n') + 1;
+    assert_string_equal(rows_of_csv,
+                        "a,hybrid,0.5,true,ok,1.5,0,0,0,0,0,0,1000,0,0,0,0\n"
+                        "much longer,none,12.25,false,failed,,0,0,0,0,0,0,999.75,0,0,0,0\n"
+                        "c,recovering,1,true,ok,1.6,0,0,0,0,0,0,-1000,0,0,0,0\n");
+    free(page);
+    free(text);
+    free(csv);
+}
+
+// Each number of a row is the summary's, or a bound that holds for such an arm only.
+static void a_row_has_the_numbers_of_its_run(void **state)
+{
+    (void)state;
+    const char *const *const cases[] = {
+        SETTINGS("control.law=hybrid"),
+        SETTINGS("control.law=none"),
+        SETTINGS("control.law=hybrid", "initial.velocity=0.1"),
+        SETTINGS("control.law=hybrid", "wall.restitution=0.3"),
+        SETTINGS("control.law=hybrid", "arm.links=3"),
+        SETTINGS("control.law=force-pd", "control.force=0"),
+        SETTINGS("control.law=hybrid", "run.duration=0.01"),
+    };
+    const action push = {.time = 0.5, .kind = ACTION_PUSH, .parameter = -1, .value = 1e-3};
+    for (size_t i = 0; i < 1 + sizeof cases / sizeof cases[0]; i++) {
+        const bool scripted = i == sizeof cases / sizeof cases[0];
+        action script[1] = {push};
+        scenario s = {.name = (char *)"it",
+                      .parameters = rig_parameters(cases[scripted ? 0 : i]),
+                      .actions = scripted ? script : NULL,
+                      .action_count = scripted};
+        run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        const summary *m = &r.summary;
+        const compare_row row = compare_row_of(&s, &r);
+        const bool rig = i != 1 && i != 5;
+        const double expected[COMPARE_QUANTITIES] = {
+            [0] = m->peak_force_N,
+            [2] = rig ? 100 * m->force_over_command_N / m->force_command_N
+                      : m->force_overshoot_percent,
+            [3] = m->settling_time_s,
+            [5] = m->first_contact_s + m->settling_time_s,
+            [7] = m->impacts,
+            [8] = m->separations,
+            [9] = m->steady_error_N,
+            [10] = m->largest_command_V,
+            [11] = m->electrical_energy_J,
+        };
+        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+            if (k == 1 || k == 4 || k == 6) {
+                // bounds of a plastic impact of two links without a script; the least time is
+                // for an arm that starts at rest and wants a force
+                const bool impact = i < 3 || i == 5;
+                const bool known = k == 1 ? impact : k == 4 ? i == 0 || i == 2 : i == 0;
+                if (isnan(row.values[k]) == known) {
+                    fail_msg("case %zu: %s is %g", i, compare_quantities[k].key, row.values[k]);
+                }
+            } else if (!(row.values[k] == expected[k] ||
+                         (isnan(row.values[k]) && isnan(expected[k])))) {
+                fail_msg("case %zu: %s is %g, not %g", i, compare_quantities[k].key, row.values[k],
+                         expected[k]);
+            }
+        }
+        assert_true(row.ok);
+        assert_ptr_equal(row.scenario, s.name);
+        run_finish(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +302,8 @@ int main(void)
         cmocka_unit_test(rows_reach_every_form),
         cmocka_unit_test(varied_values_have_columns),
         cmocka_unit_test(a_failed_run_says_so),
+        cmocka_unit_test(forms_are_written_to_the_letter),
+        cmocka_unit_test(a_row_has_the_numbers_of_its_run),
         cmocka_unit_test(nothing_beats_the_best),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

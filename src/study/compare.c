@@ -295,7 +295,7 @@ void compare_markdown(FILE *stream, const compare_table *t)
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             double value = t->rows[i].values[k];
             if (!t->hidden[k]) {
-                decimal_print(text, sizeof text, fabs(value) >= 1000 ? "%.0f" : "%.3g", value);
+                decimal_print(text, sizeof text, fabs(value) >= 999.5 ? "%.0f" : "%.3g", value);
                 fprintf(stream, " %s |", isnan(value) ? "–" : text);
             }
         }
