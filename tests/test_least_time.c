@@ -1,5 +1,7 @@
 // The least time to the wanted force: its touch can be had, nothing does better, and limits that
 // leave less take longer.
+#include <stdlib.h>
+
 #include "src/base/random.h"
 #include "src/predict/least_time.h"
 #include "tests/arm_fixture.h"
@@ -126,6 +128,116 @@ static void a_stiff_arm_goes_as_a_rod(void **state)
         1e-2);
 }
 
+// --- the same by sorting ----------------------------------------------------------------------
+
+enum { LONGEST = 400 }; // steps that are looked at
+
+// What one step of torque comes to k steps after its beginning.
+typedef struct response {
+    double tip, press;
+} response;
+
+static int by_ratio(const void *a, const void *b)
+{
+    const response *x = a, *y = b;
+    const double first = x->press / x->tip, second = y->press / y->tip;
+    return (first > second) - (first < second);
+}
+
+// The largest press under torques up to `most` that bring the tip `way` on: a knapsack of n steps.
+// False if none do.
+static bool largest_press(const response *steps, int n, double most, double way, double *press)
+{
+    response sorted[LONGEST];
+    double tip = 0;
+    *press = 0;
+    for (int k = 0; k < n; k++) {
+        sorted[k] = steps[k + 1];
+        const double torque = sorted[k].tip > 0 ? most : -most;
+        tip += torque * sorted[k].tip;
+        *press += torque * sorted[k].press;
+    }
+    if (tip < way) {
+        return false;
+    }
+
+    // the steps that press least for their way are turned round until the way is right
+    qsort(sorted, (size_t)n, sizeof sorted[0], by_ratio);
+    for (int k = 0; k < n && tip > way; k++) {
+        const double back = 2 * most * fabs(sorted[k].tip), part = fmin(1, (tip - way) / back);
+        tip -= part * back;
+        *press -= part * back * sorted[k].press / sorted[k].tip;
+    }
+    return true;
+}
+
+static void it_is_the_best_of_all_touches(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *limit;
+        double force, peak;
+    } cases[] = {{"motor.voltage_limit=10", 1, 2},    {"motor.voltage_limit=10", 4, 4},
+                 {"motor.voltage_limit=5", 0.5, 0.6}, {"motor.voltage_limit=3", 2, 8},
+                 {"motor.voltage_limit=10", 0.05, 1}, {"motor.voltage_limit=2.5", 1, 1.05},
+                 {"motor.voltage_limit=10", 9, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fixture_parameters(SETTINGS(START, cases[i].limit, "arm.length=1.2"));
+        const double band = 0.05, most = motor_torque_per_volt(&p.motor) * p.motor.voltage_limit +
+                                         p.motor.stiction;
+        response steps[LONGEST + 1];
+        double kick[LONGEST] = {1}, rest[LONGEST] = {0}, at_rest[2];
+        pressed_arm_model m;
+        assert_true(pressed_arm_model_of(&p, &m));
+        const double s = sqrt(m.spring_force / m.mass_force);
+        least_time_follow(&p, rest, 1, &at_rest[0], &at_rest[1]);
+        const double a = cases[i].force * (1 - band), b = cases[i].force * (1 + band);
+        const double peak = fmax(cases[i].peak, b);
+
+        // later and later
+        least_time best = {.total = HUGE_VAL};
+        for (int n = 1; n <= LONGEST; n++) {
+            double highest, lowest;
+            response turned[LONGEST + 1];
+            least_time_follow(&p, kick, n, &steps[n].tip, &steps[n].press);
+            steps[n].tip -= at_rest[0];
+            steps[n].press -= at_rest[1];
+            for (int k = 1; k <= n; k++) {
+                turned[k] = (response){steps[k].tip, -steps[k].press};
+            }
+            if (!largest_press(steps, n, most, -at_rest[0], &highest) ||
+                !largest_press(turned, n, most, -at_rest[0], &lowest)) {
+                continue;
+            }
+            highest += at_rest[1];
+            lowest = at_rest[1] - lowest;
+
+            // into the band from the nearest side
+            const bool largest = highest < a;
+            const double press = largest ? highest : fmax(lowest, a);
+            double more = 0;
+            if (press > b) {
+                more = press < peak ? log((peak - b) / (peak - press)) / s : HUGE_VAL;
+            } else if (press < a) {
+                more = press > 0 ? log(a / press) / s : HUGE_VAL;
+            }
+            if (n * LEAST_TIME_STEP + more < best.total) {
+                best = (least_time){.total = n * LEAST_TIME_STEP + more,
+                                    .touch = n * LEAST_TIME_STEP,
+                                    .press = largest ? highest : lowest,
+                                    .largest = largest};
+            }
+        }
+
+        const least_time t = least_time_of(&p, cases[i].force, band, cases[i].peak);
+        check_relative(t.total, best.total, 1e-7);
+        check_close(t.touch, best.touch, 1e-12);
+        check_close(t.press, best.press, 1e-5 * (1 + fabs(best.press)));
+        assert_int_equal(t.largest, best.largest);
+        check_below(t.slack, 1e-9);
+    }
+}
+
 static void where_there_is_no_way_it_says_so(void **state)
 {
     (void)state;
@@ -141,6 +253,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(full_voltage_either_way_has_it),
         cmocka_unit_test(no_torque_does_better),
+        cmocka_unit_test(it_is_the_best_of_all_touches),
         cmocka_unit_test(less_voltage_and_less_force_take_longer),
         cmocka_unit_test(a_stiff_arm_goes_as_a_rod),
         cmocka_unit_test(where_there_is_no_way_it_says_so),
