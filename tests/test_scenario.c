@@ -522,6 +522,43 @@ static void lists_are_read_in_both_forms(void **state)
 }
 
 // One that the law does not know from the start is said even where a script follows.
+// A list may be as long as a text: with one character more it is refused where it becomes too long.
+static void a_list_has_a_limit(void **state)
+{
+    (void)state;
+    for (int over = -1; over < 2; over++) {
+        char number[PARAMETER_TEXT_SIZE + 8], text[2 * PARAMETER_TEXT_SIZE];
+        const int digits = PARAMETER_TEXT_SIZE - 1 - (int)strlen(", 7.5") + over;
+        snprintf(number, sizeof number, "6.%0*d", digits - 2, 0);
+        snprintf(text, sizeof text, "arm:\n  links: 3\n  joint_stiffness:\n  - %s\n  - 7.5\n",
+                 number);
+        if (over > 0) {
+            check_fault(text, 5, 5, "too long");
+            continue;
+        }
+        scenario s = good(text);
+        double numbers[PARAMETER_LIST_MOST];
+        assert_int_equal(parameter_list_numbers(s.parameters.arm.joint_stiffness, numbers), 2);
+        check_close(numbers[0], 6, 0);
+        check_close(numbers[1], 7.5, 0);
+        scenario_finish(&s);
+    }
+}
+
+// What the parser complains about at the end is not what stands behind the text.
+static void nothing_is_read_behind_the_end(void **state)
+{
+    (void)state;
+    scenario s;
+    sentences all = {0};
+    const char *text = "arm: [1\t";
+    assert_int_equal(
+        scenario_parse(&s, text, strlen(text) - 1, "f.yaml", NULL, keep_sentence, &all),
+        STATUS_BAD_SCENARIO);
+    assert_int_equal(all.count, 1);
+    assert_null(strstr(all.text, "a tab"));
+}
+
 static void the_first_lock_is_one_of_the_laws_modes(void **state)
 {
     (void)state;
@@ -570,6 +607,8 @@ int main(void)
         cmocka_unit_test(faults_of_one_line_are_told_from_left_to_right),
         cmocka_unit_test(prose_is_text),
         cmocka_unit_test(lists_are_read_in_both_forms),
+        cmocka_unit_test(a_list_has_a_limit),
+        cmocka_unit_test(nothing_is_read_behind_the_end),
         cmocka_unit_test(the_first_lock_is_one_of_the_laws_modes),
         cmocka_unit_test(a_title_has_a_limit),
         cmocka_unit_test(faults_of_actions),

@@ -1,4 +1,5 @@
 // Panes and lessons of scenario files: the place and sentence of everything that is none.
+#include "src/quantities/summary.h"
 #include "tests/scenario_fixture.h"
 
 static void faults_of_panes(void **state)
@@ -108,11 +109,101 @@ static void keys_of_a_check_are_words(void **state)
     assert_non_null(strstr(all.text, "no quantity of a run"));
 }
 
+// Every field of every kind of step, and what is left out.
+static void everything_of_a_lesson_is_read(void **state)
+{
+    (void)state;
+    scenario s =
+        good("lesson:\n"
+             "  parameters: [arm.k2, motor.voltage, arm.k1, arm.EI, arm.mass, arm.model]\n"
+             "  steps:\n"
+             "    - {say: one, then: a, hint: b, do: [1, 2, 3, 4, 5, 6, 7, 8]}\n"
+             "    - {say: two, number: {quantity: peak_force_N, within: 0.05}}\n"
+             "    - {say: three, cursor: {at: first_contact_s, within: 0.01}}\n"
+             "    - {say: four, cursor: {at: settling_time_s, offset: -0.2, within: 0.02}}\n"
+             "    - {say: five, ratio: {quantity: impacts, from: 0.5, to: 0.75}}\n"
+             "    - {say: six, pinned: 1}\n"
+             "    - {say: seven, pinned: 7}\n"
+             "    - {say: eight, value: {motor.voltage: 1.5}}\n"
+             "    - {say: nine, choice: {of: [a, b, c, d, e, f], right: 1}}\n"
+             "    - {say: ten, choice: {of: [a, b, c, d, e, f], right: 6}}\n"
+             "    - say: >\n"
+             "        eleven\n"
+             "        words\n");
+    static const lesson_check checks[] = {
+        LESSON_READ,   LESSON_NUMBER, LESSON_CURSOR, LESSON_CURSOR, LESSON_RATIO, LESSON_PINNED,
+        LESSON_PINNED, LESSON_VALUE,  LESSON_CHOICE, LESSON_CHOICE, LESSON_READ};
+    static const char *const says[] = {"one",   "two",   "three", "four", "five",        "six",
+                                       "seven", "eight", "nine",  "ten",  "eleven words"};
+    static const char *const paths[] = {"arm.k2", "motor.voltage", "arm.k1",
+                                        "arm.EI", "arm.mass",      "arm.model"};
+    const lesson *l = &s.lesson;
+    assert_int_equal(l->parameter_count, 6);
+    for (int i = 0; i < 6; i++) {
+        assert_int_equal(l->parameters[i], parameter_find(paths[i]));
+    }
+    assert_int_equal(l->step_count, 11);
+    for (int i = 0; i < 11; i++) {
+        const lesson_step *step = &l->steps[i];
+        assert_string_equal(step->say, says[i]);
+        assert_int_equal(step->check, checks[i]);
+        assert_string_equal(step->then, i == 0 ? "a" : "");
+        assert_string_equal(step->hint, i == 0 ? "b" : "");
+        assert_int_equal(step->command_count, i == 0 ? 8 : 0);
+        check_close(step->within,
+                    i == 1   ? 0.05
+                    : i == 2 ? 0.01
+                    : i == 3 ? 0.02
+                    : i == 7 ? 0.001
+                             : 0,
+                    0);
+        check_close(step->offset, i == 3 ? -0.2 : 0, 0);
+        check_close(step->low, i == 4 ? 0.5 : 0, 0);
+        check_close(step->high, i == 4 ? 0.75 : 0, 0);
+        assert_int_equal(step->pinned, i == 5 ? 1 : i == 6 ? 7 : 0);
+        assert_int_equal(step->choice_count, i == 8 || i == 9 ? 6 : 0);
+        assert_int_equal(step->right, i == 9 ? 5 : 0);
+        const char *quantity = i == 1   ? "peak_force_N"
+                               : i == 2 ? "first_contact_s"
+                               : i == 3 ? "settling_time_s"
+                               : i == 4 ? "impacts"
+                                        : NULL;
+        assert_int_equal(step->quantity, quantity != NULL ? summary_find(quantity) : 0);
+        for (int k = 0; k < step->command_count; k++) {
+            const char number[2] = {(char)('1' + k), '\0'};
+            assert_string_equal(step->commands[k], number);
+        }
+        for (int k = 0; k < step->choice_count; k++) {
+            const char answer[2] = {(char)('a' + k), '\0'};
+            assert_string_equal(step->choices[k], answer);
+        }
+    }
+    assert_int_equal(l->steps[7].parameter, parameter_find("motor.voltage"));
+    check_close(l->steps[7].value, 1.5, 0);
+    scenario_finish(&s);
+
+    // one beyond each limit, or below it
+    check_step("{say: a, pinned: 8}", "from 1 to 7");
+    check_step("{say: a, pinned: 1.5}", "from 1 to 7");
+    check_step("{say: a, choice: {of: [a, b], right: 0}}", "from 1 to 2");
+    check_step("{say: a, choice: {of: [a, b, c, d, e, f, g], right: 1}}", "more than 6");
+
+    // sentences stand where the fault is
+    check_fault("lesson: {steps: [{say: a, pinned: 8}]}\n", 1, 35, "pinned = 8");
+    check_fault("lesson: {steps: [{say: a}, {hint: a}]}\n", 1, 28, "no 'say'");
+    check_fault("lesson: {steps: [{say: a, ratio: {quantity: impacts, to: 1}}]}\n", 1, 34,
+                "no 'from'");
+    check_fault("lesson: {steps: [{say: a, number: {quantity: peek, within: 1}}]}\n", 1, 46,
+                "no quantity");
+    check_fault("lesson: {steps: [{say: a}], parameters: [arm.k2, arm.kk]}\n", 1, 41, "arm.kk");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(faults_of_panes),
         cmocka_unit_test(faults_of_lessons),
+        cmocka_unit_test(everything_of_a_lesson_is_read),
         cmocka_unit_test(keys_of_a_check_are_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

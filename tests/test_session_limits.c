@@ -34,6 +34,59 @@ static session opened(const char *text)
 static const char brief[] = "title: t\nwall: {angle: 0}\ninitial: {angle: -0.02}\n"
                             "run: {duration: 0.3 s}\n";
 
+// Pushes of one gesture are undone and redone together, and a new gesture has a number of its own.
+static void a_gesture_is_one_step(void **state)
+{
+    (void)state;
+    session s = opened(brief);
+    fault f = {0};
+    assert_int_equal(session_new_gesture(&s), 1);
+    static const struct {
+        double time;
+        unsigned gesture;
+    } pushes[] = {{0.05, 0}, {0.1, 4}, {0.12, 4}, {0.14, 4}, {0.16, 2}, {0.18, 0}, {0.2, 0}};
+    for (int i = 0; i < 7; i++) {
+        session_seek(&s, pushes[i].time);
+        assert_int_equal(session_pull(&s, 1e-4 * (i + 1), pushes[i].gesture, &f), STATUS_OK);
+        const session_input *in = &s.inputs[i];
+        assert_int_equal(in->kind, SESSION_INPUT_PUSH);
+        assert_int_equal(in->gesture, pushes[i].gesture);
+        check_close(in->value, 1e-4 * (i + 1), 0);
+        check_close(in->time, pushes[i].time, 1e-3);
+        check_close(in->seen_at, in->time, 0);
+        assert_int_equal(in->parameter, -1);
+        assert_true(isnan(in->before));
+    }
+    assert_int_equal(session_new_gesture(&s), 5);
+
+    // those without a gesture one by one
+    static const int left[] = {6, 5, 4, 1, 0};
+    for (int i = 0; i < 5; i++) {
+        assert_int_equal(session_undo(&s, &f), STATUS_OK);
+        assert_int_equal(s.input_count, left[i]);
+        assert_int_equal(s.input_total, 7);
+        assert_int_equal(session_new_gesture(&s), 5);
+        check_close(s.now, s.inputs[left[i]].seen_at, 0);
+    }
+    assert_int_equal(session_undo(&s, &f), STATUS_BAD_ARGUMENT);
+    static const int again[] = {1, 4, 5, 6, 7};
+    for (int i = 0; i < 5; i++) {
+        assert_int_equal(session_redo(&s, &f), STATUS_OK);
+        assert_int_equal(s.input_count, again[i]);
+        check_close(s.now, s.inputs[again[i] - 1].time, 0);
+    }
+    assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
+
+    // room for more than there was at first
+    while (s.input_count < 40) {
+        assert_int_equal(session_push(&s, 1e-6, &f), STATUS_OK);
+    }
+    assert_int_equal(session_new_gesture(&s), 5);
+    assert_int_equal(session_push(&s, (double)INFINITY, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(s.input_total, 40);
+    session_finish(&s);
+}
+
 static void what_is_too_long_or_no_value_is_refused(void **state)
 {
     (void)state;
@@ -318,6 +371,7 @@ static void code_that_cannot_be_loaded_stays_withheld(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_gesture_is_one_step),
         cmocka_unit_test(what_is_too_long_or_no_value_is_refused),
         cmocka_unit_test(adjusting_keeps_what_was_before),
         cmocka_unit_test(inputs_that_cannot_go_stay),
