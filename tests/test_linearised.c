@@ -313,6 +313,78 @@ static void an_elastic_impact_does_not_hold(void **state)
     motion_destroy(m);
 }
 
+// A gentle touch is one damped oscillation of the hub, x'' = a - c x' - k x, and the force
+// (2 k2 x + 2 d x' + (m33 - m23) x'')/l, l a link's length, d the joint's damping. The closed form
+// and the chain of linear arms are both compared with it.
+static void a_gentle_touch_is_one_oscillation(void **state)
+{
+    (void)state;
+    static const struct {
+        double bend, speed, second, volts; // [rad], first and second link [rad/s], [V]
+    } touches[] = {{0, 1, 1, 0},        {0, 1, 1, 0.7},      {0, 1, 1, -0.4},
+                   {0.01, 1, 1.3, 0.5}, {0.02, 0.8, 0.5, 0}, {-0.004, 1.2, 1, 0.2}};
+    static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
+    static const double ratios[] = {0, 0.01, 0.05, 0.12};
+    for (int i = 0; i < 48; i++) {
+        const double size = 1e-3; // of all of it, so that nothing bends far
+        const double ratio = ratios[i / 12];
+        parameters p = fixture_parameters(
+            SETTINGS(walls[i / 6 % 2], "motor.stiction=0", "wall.angle=0", "method.rest_speed=0"));
+        p.arm.damping_ratio = ratio;
+        p.motor.voltage = size * touches[i % 6].volts;
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        const double x0 = size * touches[i % 6].bend;
+        const double q[2] = {x0, -x0};
+        const double w[2] = {size * touches[i % 6].speed, size * touches[i % 6].second};
+
+        // masses of the two angles, and of the one that is left: both turn against each other
+        const double l = 0.5, ml2 = 0.20054 * l * l, m33 = p.arm.link_inertia + ml2 / 4;
+        const double m23 = ml2 / 2, m22 = m33 + ml2 + p.arm.hub_inertia;
+        const double mass = m22 + m33 - 2 * m23, d = a.joint_damping;
+        const double c = (a.motor.damping + 4 * d) / mass, k = 4 * p.arm.k2 / mass;
+        const double drive = a.motor.torque / mass;
+
+        // after the touch, and on until the first rest
+        double x = x0, v = ((m22 - m23) * w[0] + (m23 - m33) * w[1]) / mass;
+        const double rest = drive / k, decay = c / 2, turn = sqrt(k - decay * decay);
+        double peak = -HUGE_VAL, delay = 0;
+        const double sine = (v + decay * (x0 - rest)) / turn;
+        for (int step = 0; step < 20000; step++) {
+            const double t = step * (2 * M_PI / turn) / 20000, e = exp(-decay * t);
+            const double co = cos(turn * t), si = sin(turn * t);
+            x = rest + e * ((x0 - rest) * co + sine * si);
+            v = e * ((sine * turn - decay * (x0 - rest)) * co -
+                     (sine * decay + turn * (x0 - rest)) * si);
+            const double acceleration = drive - c * v - k * x;
+            const double force = (2 * p.arm.k2 * x + 2 * d * v + (m33 - m23) * acceleration) / l;
+            if (force < 0) {
+                break;
+            }
+            if (force > peak) {
+                peak = force;
+                delay = t;
+            }
+        }
+
+        prediction one, other;
+        assert_int_equal(predict_linearised(&a, m, q, w, &one), STATUS_OK);
+        assert_int_equal(predict_pulse(&a, m, q, w, NULL, &other), STATUS_OK);
+        assert_int_equal(one.holds, isfinite(peak));
+        assert_int_equal(other.holds, isfinite(peak));
+        if (one.holds) {
+            // the instants that are looked at lie a ten thousandth apart
+            const bool plain = ratio > 0.01 || i % 6 == 2 || i % 6 == 4;
+            check_relative(one.force, peak, ratio > 0.01 ? 1e-5 : 1e-7);
+            check_relative(one.delay, delay, 6e-4);
+            check_relative(other.force, peak, plain || ratio > 0 ? 1e-5 : 3e-4);
+            check_relative(other.delay, delay, plain || ratio > 0 ? 6e-4 : 0.015);
+        }
+        motion_destroy(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -327,6 +399,7 @@ int main(void)
         cmocka_unit_test(without_a_wall_there_is_no_touch),
         cmocka_unit_test(a_prescribed_voltage_is_followed),
         cmocka_unit_test(an_elastic_impact_does_not_hold),
+        cmocka_unit_test(a_gentle_touch_is_one_oscillation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
