@@ -168,6 +168,46 @@ static void decimals(void **state)
     }
 }
 
+// Numbers of so many digits times a power of ten, written out by hand.
+static void digits_and_points_stand_where_they_belong(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 12);
+    for (int trial = 0; trial < 40000; trial++) {
+        char digits[24], source[64], expected[64], text[NUMBER_TEXT];
+        const int count = 1 + (int)random_below(&g, 15), place = (int)random_below(&g, 44) - 22;
+        digits[0] = (char)('1' + random_below(&g, 9));
+        for (int i = 1; i < count; i++) {
+            digits[i] = (char)('0' + random_below(&g, 10));
+        }
+        digits[count - 1] = count > 1 && digits[count - 1] == '0' ? '7' : digits[count - 1];
+        digits[count] = '\0';
+        snprintf(source, sizeof source, "%c.%se%d", digits[0], digits + 1, place);
+        const double value = strtod(source, NULL) * (trial % 2 ? -1 : 1);
+
+        // without an exponent from 1e-4 to as many digits as there are, or at least 15 or 6
+        for (int brief = 0; brief < 2; brief++) {
+            const int least = brief ? 6 : 15, most = count > least ? count : least;
+            char *to = expected;
+            to += sprintf(to, "%s", trial % 2 ? "-" : "");
+            if (place < -4 || place >= most) {
+                sprintf(to, "%c%s%se%c%02d", digits[0], count > 1 ? "." : "", digits + 1,
+                        place < 0 ? '-' : '+', abs(place));
+            } else if (place < 0) {
+                sprintf(to, "0.%.*s%s", -place - 1, "0000", digits);
+            } else {
+                for (int i = 0; i <= place || i < count; i++) {
+                    to +=
+                        sprintf(to, "%s%c", i == place + 1 ? "." : "", i < count ? digits[i] : '0');
+                }
+            }
+            (brief ? number_format_short : number_format)(text, value);
+            assert_string_equal(text, expected);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -175,6 +215,7 @@ int main(void)
         cmocka_unit_test(digits_are_as_few_as_read_back),
         cmocka_unit_test(digits_of_known_numbers),
         cmocka_unit_test(numbers_are_short_and_read_back),
+        cmocka_unit_test(digits_and_points_stand_where_they_belong),
         cmocka_unit_test(short_numbers_have_exponents_from_a_million),
         cmocka_unit_test(what_is_not_finite_has_a_word),
         cmocka_unit_test(decimals_are_read_with_what_follows),

@@ -258,6 +258,40 @@ static void numbers_are_checked_too(void **state)
     assert_int_equal(p.arm.links, 2);
 }
 
+// Every number may be its least and its largest value, nothing beyond, and whole ones no other.
+static void ranges_include_their_ends(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        if (parameter_is_text(info)) {
+            continue;
+        }
+        const bool real = info->type == PARAMETER_REAL;
+        const double ends[2] = {info->minimum, info->maximum};
+        for (int k = 0; k < 2; k++) {
+            parameters p = fresh(ARM_CORRECTED);
+            fault f = {0};
+            const double away = k == 0 ? -HUGE_VAL : HUGE_VAL;
+            const double beyond = real ? nextafter(ends[k], away) : ends[k] + (k == 0 ? -1 : 1);
+            assert_int_equal(parameter_set_number(&p, i, ends[k], &f), STATUS_OK);
+            check_close(parameter_get(&p, i), ends[k], 0);
+            assert_int_equal(p.set[i], 1);
+            if (isfinite(beyond)) {
+                assert_int_equal(parameter_set_number(&p, i, beyond, &f), STATUS_BAD_SCENARIO);
+                assert_string_equal(f.path, info->path);
+                assert_non_null(strstr(f.text, "is out of range, expected "));
+            }
+            if (!real) {
+                const double between = ends[k] + (k == 0 ? 0.5 : -0.5);
+                assert_int_equal(parameter_set_number(&p, i, between, &f), STATUS_BAD_SCENARIO);
+                assert_non_null(strstr(f.text, "is not a whole number"));
+            }
+            check_close(parameter_get(&p, i), ends[k], 0);
+        }
+    }
+}
+
 static void a_misspelt_path_suggests_the_nearest(void **state)
 {
     (void)state;
@@ -590,6 +624,7 @@ int main(void)
         cmocka_unit_test(wrong_values_are_refused),
         cmocka_unit_test(an_endless_value_is_refused),
         cmocka_unit_test(numbers_are_checked_too),
+        cmocka_unit_test(ranges_include_their_ends),
         cmocka_unit_test(a_misspelt_path_suggests_the_nearest),
         cmocka_unit_test(defaults_follow_the_model),
         cmocka_unit_test(a_link_is_a_uniform_rod_unless_told),

@@ -59,6 +59,35 @@ static void indices_lead_to_their_numbers(void **state)
     assert_int_equal(SUMMARY_INDEX(wall_time_s), summary_count - 1);
 }
 
+// Every number has a place of its own, from the first to the last.
+static void every_index_leads_to_another_number(void **state)
+{
+    (void)state;
+    summary s;
+    summary_init(&s);
+    double *first = &s.first_contact_s;
+    assert_ptr_equal(first + summary_count - 1, &s.wall_time_s);
+    for (int i = 0; i < summary_count; i++) {
+        memcpy((char *)first + (size_t)i * sizeof(double), &(double){i + 0.5}, sizeof(double));
+    }
+    for (int i = 0; i < summary_count; i++) {
+        check_close(summary_value(&s, i), i + 0.5, 0);
+    }
+
+    // how it ended, in a word and as a fault
+    fault f = {0};
+    assert_string_equal(summary_status(&s), "ok");
+    s.inaccurate = true;
+    assert_string_equal(summary_status(&s), "inaccurate");
+    s.status = STATUS_NOT_FINITE;
+    s.path = "arm.k2";
+    snprintf(s.message, sizeof s.message, "it broke");
+    assert_string_equal(summary_status(&s), "failed");
+    assert_int_equal(summary_fault(&s, &f), STATUS_NOT_FINITE);
+    assert_string_equal(f.text, "it broke");
+    assert_string_equal(f.path, "arm.k2");
+}
+
 static void nothing_is_known_at_first(void **state)
 {
     (void)state;
@@ -80,6 +109,7 @@ int main(void)
         cmocka_unit_test(keys_are_names_with_units),
         cmocka_unit_test(indices_lead_to_their_numbers),
         cmocka_unit_test(nothing_is_known_at_first),
+        cmocka_unit_test(every_index_leads_to_another_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -143,10 +143,116 @@ static void the_first_characters_of_each_length_are_whole(void **state)
     check_printable("\xf4\x90\x80\x80", "????");
 }
 
+// Every character there is, written in UTF-8: as long as it is, but for those that a terminal must
+// not get; cut short anywhere or with a byte that is none of its own it is none.
+static void every_character_is_whole_or_hidden(void **state)
+{
+    (void)state;
+    for (uint32_t number = 1; number < 0x110400; number++) {
+        const int length = number < 0x80 ? 1 : number < 0x800 ? 2 : number < 0x10000 ? 3 : 4;
+        char text[5] = "";
+        for (int i = length - 1, left = (int)number; i >= 0; i--, left >>= 6) {
+            const int mark = i > 0 ? 0x80 : length == 1 ? 0 : 0xf00 >> length & 0xff;
+            text[i] = (char)(mark | (i > 0 ? left & 0x3f : left));
+        }
+        const bool control = number < 0x20 || (number >= 0x7f && number <= 0x9f);
+        const bool turning = number == 0x61c || number == 0x200e || number == 0x200f ||
+                             (number >= 0x202a && number <= 0x202e) ||
+                             (number >= 0x2066 && number <= 0x2069);
+        const bool hidden = control || turning || number == 0x2028 || number == 0x2029;
+        const bool none = (number >= 0xd800 && number <= 0xdfff) || number > 0x10ffff;
+        assert_int_equal(is_unprintable(number), hidden);
+        if (printable_length(text) != (hidden || none ? 0 : length)) {
+            fail_msg("U+%04X has %d bytes", number, printable_length(text));
+        }
+
+        // of some of them: cut short, and with another byte in each place
+        for (int i = 1; i < length && number % 509 == 0; i++) {
+            const char was = text[i];
+            text[i] = '\0';
+            assert_int_equal(printable_length(text), 0);
+            text[i] = 'a';
+            assert_int_equal(printable_length(text), 0);
+            text[i] = (char)0xc3;
+            assert_int_equal(printable_length(text), 0);
+            text[i] = was;
+        }
+    }
+
+    // a byte that begins none
+    for (int byte = 0x80; byte < 0x100; byte++) {
+        const char text[5] = {(char)byte, 'a', 'b', 'c', '\0'};
+        assert_int_equal(printable_length(text), 0);
+    }
+}
+
+// The distance as its definition has it: of the ends, one way or another.
+static int distance_of(const char *a, int la, const char *b, int lb)
+{
+    if (la == 0 || lb == 0) {
+        return la + lb;
+    }
+    int least = distance_of(a, la - 1, b, lb - 1) + (a[la - 1] != b[lb - 1]);
+    const int without_a = distance_of(a, la - 1, b, lb) + 1;
+    const int without_b = distance_of(a, la, b, lb - 1) + 1;
+    least = without_a < least ? without_a : least;
+    least = without_b < least ? without_b : least;
+    if (la > 1 && lb > 1 && a[la - 1] == b[lb - 2] && a[la - 2] == b[lb - 1]) {
+        const int swapped = distance_of(a, la - 2, b, lb - 2) + 1;
+        least = swapped < least ? swapped : least;
+    }
+    return least;
+}
+
+static void all_short_words_have_their_distance(void **state)
+{
+    (void)state;
+    enum { WORDS = 121 }; // of up to four letters out of three
+    char words[WORDS][5] = {""};
+    int count = 1;
+    for (int length = 1, from = 0; length <= 4; length++) {
+        const int until = count;
+        for (int i = from; i < until; i++) {
+            for (char c = 'a'; c <= 'c' && (int)strlen(words[i]) == length - 1; c++) {
+                snprintf(words[count++], sizeof words[0], "%.3s%c", words[i], c);
+            }
+        }
+        from = until;
+    }
+    assert_int_equal(count, WORDS);
+    for (int i = 0; i < WORDS; i++) {
+        for (int j = 0; j < WORDS; j++) {
+            const int distance =
+                distance_of(words[i], (int)strlen(words[i]), words[j], (int)strlen(words[j]));
+            assert_int_equal(edit_distance(words[i], words[j], 9), distance);
+            assert_int_equal(edit_distance(words[i], words[j], 2), distance < 2 ? distance : 2);
+        }
+    }
+
+    // as long as the table has room for, and how far a word may be off
+    char longest[66] = "", text[66];
+    memset(longest, 'a', 64);
+    snprintf(text, sizeof text, "%.63s", longest);
+    assert_int_equal(edit_distance(longest, longest, 7), 0);
+    assert_int_equal(edit_distance(longest, text, 7), 1);
+    assert_int_equal(edit_distance(text, longest, 7), 1);
+    longest[64] = 'a';
+    assert_int_equal(edit_distance(text, longest, 7), 7);
+    assert_int_equal(edit_distance(longest, text, 7), 7);
+    static const int off[] = {1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 5, 5};
+    for (int i = 0; i < 12; i++) {
+        snprintf(text, sizeof text, "%.*s", i, longest);
+        assert_int_equal(nearest_begin(text).distance, off[i]);
+        assert_null(nearest_begin(text).best);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_characters_of_each_length_are_whole),
+        cmocka_unit_test(every_character_is_whole_or_hidden),
+        cmocka_unit_test(all_short_words_have_their_distance),
         cmocka_unit_test(distances_of_words),
         cmocka_unit_test(distances_count_single_edits),
         cmocka_unit_test(distances_are_symmetric_and_obey_the_triangle),
