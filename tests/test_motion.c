@@ -226,6 +226,33 @@ static void script_acts_at_its_time_and_is_booked(void **state)
     run_finish(&r);
 }
 
+// What rounding leaves of the gap's rate in contact neither strikes nor lifts off.
+static void a_push_of_nothing_changes_nothing(void **state)
+{
+    (void)state;
+    static const char *const arms[] = {"arm.links=2", "arm.links=12", "arm.tip_mass=0.01"};
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+        enum { PUSHES = 20 };
+        action todo[PUSHES];
+        for (int k = 0; k < PUSHES; k++) {
+            todo[k] = (action){.time = 0.1 + 0.093 * k, .kind = ACTION_PUSH};
+        }
+        scenario s = {.parameters = fixture_parameters(
+                          SETTINGS(arms[i], "arm.damping_ratio=0.05", "run.duration=2")),
+                      .actions = todo};
+        run_result r[2];
+        for (int k = 0; k < 2; k++) {
+            s.action_count = k * PUSHES;
+            assert_int_equal(run_scenario(&s, false, &r[k]), STATUS_OK);
+        }
+        check_close(r[1].summary.impacts, r[0].summary.impacts, 0);
+        check_close(r[1].summary.separations, r[0].summary.separations, 0);
+        check_relative(r[1].summary.steady_force_N, r[0].summary.steady_force_N, 1e-7);
+        run_finish(&r[0]);
+        run_finish(&r[1]);
+    }
+}
+
 static void a_step_that_cannot_be_taken_stops_with_time_and_reason(void **state)
 {
     (void)state;
@@ -364,6 +391,7 @@ int main(void)
         cmocka_unit_test(the_located_peak_does_not_depend_on_the_step),
         cmocka_unit_test(without_a_trace_the_summary_is_the_same),
         cmocka_unit_test(script_acts_at_its_time_and_is_booked),
+        cmocka_unit_test(a_push_of_nothing_changes_nothing),
         cmocka_unit_test(a_run_that_makes_energy_from_nothing_is_stopped),
         cmocka_unit_test(a_ledger_that_does_not_close_makes_a_run_inaccurate),
         cmocka_unit_test(a_motion_too_small_to_follow_is_inaccurate),

@@ -397,6 +397,23 @@ static void a_stiff_wall_holds_like_a_rigid_one(void **state)
 
 // A face that is damped far more than the mass can push parts from it, and the arm leaves it
 // behind.
+// A wall without a damper takes nothing, to the last bit, however often the arm meets it.
+static void a_wall_without_damping_takes_nothing(void **state)
+{
+    (void)state;
+    static const char *const walls[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
+    static const char *const stiffness[] = {"wall.stiffness=100", "wall.stiffness=1e5",
+                                            "wall.stiffness=1e15"};
+    for (size_t i = 0; i < 6; i++) {
+        const parameters p =
+            fixture_parameters(SETTINGS(walls[i / 3], stiffness[i % 3], "wall.damping=0"));
+        run_result r = run_of(&p, false);
+        assert_false(isnan(r.summary.first_contact_s));
+        check_close(r.summary.wall_loss_J, 0, 0);
+        run_finish(&r);
+    }
+}
+
 static void a_slow_face_lets_go_behind_the_wall(void **state)
 {
     (void)state;
@@ -461,6 +478,7 @@ int main(void)
         cmocka_unit_test(a_stiff_wall_bounces_like_a_rigid_one),
         cmocka_unit_test(a_stiff_wall_holds_like_a_rigid_one),
         cmocka_unit_test(a_mass_at_the_tip_strikes_a_rigid_wall),
+        cmocka_unit_test(a_wall_without_damping_takes_nothing),
         cmocka_unit_test(a_slow_face_lets_go_behind_the_wall),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -88,7 +88,10 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
             wall_power = a->wall.damping * rate * rate;
         } else {
             pressed = mode.contact ? wall_force(&a->wall, depth, rate) : 0;
-            wall_power = (pressed - wall_spring_force(&a->wall, depth)) * rate;
+            // a step tries Kelvin-Voigt's law in front of the wall, too, and loses nothing there
+            const bool damper = mode.contact && a->wall.law == WALL_KELVIN_VOIGT;
+            wall_power = damper ? a->wall.damping * rate * rate
+                                : (pressed - wall_spring_force(&a->wall, depth)) * rate;
         }
     }
 

@@ -376,11 +376,12 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
         resolve(a, m, face_follows(a, m), MOTION_REACHED);
     } else {
         const double speed = chain_penetration_rate(a, q, w) - m->state[SLOT_FACE_VELOCITY];
-        if (contact && speed > 0) {
+        if (contact && speed > TOUCH_SPEED) {
             report->event = MOTION_IMPACT;
             impact(a, m, report);
         } else {
-            resolve(a, m, contact && speed == 0, MOTION_REACHED);
+            // what rounding leaves of a speed neither strikes nor lifts off
+            resolve(a, m, contact && speed >= -TOUCH_SPEED, MOTION_REACHED);
         }
     }
     report->holds = m->state[SLOT_CONTACT] != 0;

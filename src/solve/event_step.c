@@ -9,9 +9,8 @@
 #include "src/solve/dense_location.h"
 #include "src/solve/locate.h"
 
-#define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
-#define MOST_HALVINGS   8     // of a step that does not converge or makes energy
-#define LEAST_AFTER_CUT 1e-9  // share of a step; what is left of one before a cut is longer
+#define MOST_HALVINGS   8    // of a step that does not converge or makes energy
+#define LEAST_AFTER_CUT 1e-9 // share of a step; what is left of one before a cut is longer
 // Angles, velocities and accelerations below this are zero [rad, rad/s, rad/s2]. The square of what
 // is left is a normal number: a motion that dies away never computes with denormal ones, which some
 // processors do many times more slowly.

@@ -4,7 +4,8 @@
 
 #include "src/solve/motion.h"
 
-#define FORCE_TOLERANCE 1e-9 // tension that counts as a release [N]
+#define FORCE_TOLERANCE 1e-9  // tension that counts as a release [N]
+#define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
 
 // Whether the function says anything about the contact state that the motion is in.
 static inline bool watch_active(const arm *a, const motion *m, watch w)
