@@ -190,6 +190,21 @@ static void what_cannot_be_viewed_is_said(void **state)
     assert_int_equal(atomic_load(&monitor.pieces), 0);
 }
 
+// Modes that are too fast to follow are told beforehand, with what would make them slower.
+static void modes_too_fast_to_follow_are_refused(void **state)
+{
+    (void)state;
+    scenario s = fast_touch();
+    sensor_study study;
+    fault f;
+    run_monitor monitor = {0};
+    assert_int_equal(parameter_set_text(&s.parameters, parameter_index("arm.k2"), "1e9", &f),
+                     STATUS_OK);
+    assert_int_equal(sensor_study_compute(&s, &monitor, &study, &f), STATUS_NO_PROGRESS);
+    assert_non_null(strstr(f.text, "arm.k2"));
+    assert_int_equal(atomic_load(&monitor.pieces), 0);
+}
+
 // A stride of no length brings nothing.
 static void a_force_without_time_is_not_felt(void **state)
 {
@@ -236,6 +251,7 @@ int main(void)
         cmocka_unit_test(two_links_read_as_one_impulse),
         cmocka_unit_test(the_beams_limit_is_the_lag_of_an_inverse_root),
         cmocka_unit_test(what_cannot_be_viewed_is_said),
+        cmocka_unit_test(modes_too_fast_to_follow_are_refused),
         cmocka_unit_test(a_force_without_time_is_not_felt),
         cmocka_unit_test(the_study_is_its_views),
     };

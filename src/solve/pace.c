@@ -6,9 +6,9 @@
 #include "src/base/numbers.h"
 
 // A run is given up where its strides are shorter than this, as a share of its duration or of a
-// second, whichever is less: it would take fifty million of them, hours with many links. Steps that
+// second, whichever is less: it would take ten million of them, hours with many links. Steps that
 // method.step asks for are none of these.
-#define SLOWEST_PACE 2e-8
+#define SLOWEST_PACE 1e-7
 #define ASKED_FOR    1e-3 // share of method.step
 
 // Says what of the arm or the wall makes strides short, and what would make them longer.

@@ -12,6 +12,7 @@
 #define PARABOLA_REACH 0.25
 
 #define BRIEF_SHARE    1e-3 // of a time constant, below which a force is its mean and its tilt
+#define MOST_WORK      2e7  // strides in the window times links; more takes minutes
 #define RESOLVING      20.0 // fastest rate times step, at most: the event method then steps explicitly
 
 const double sensor_constants[SENSOR_CONSTANTS] = {0.5e-3, 1e-3, 2e-3};
@@ -235,28 +236,46 @@ static status check_scenario(const scenario *s, fault *f)
     return STATUS_OK;
 }
 
-status sensor_view_compute(const scenario *s, int links, run_monitor *monitor, sensor_view *view,
-                           fault *f)
+// The scenario's parameters and arm with another number of links. STATUS_NO_PROGRESS, with a
+// sentence, where its modes are too fast to follow through the window.
+static status change_links(const scenario *s, int links, parameters *p, arm *a, fault *f)
 {
-    assert(s != NULL && view != NULL && links > 0);
-    parameters p = s->parameters;
-    arm a;
-    *view = (sensor_view){.links = links};
-
-    // the same scenario with another number of links
+    *p = s->parameters;
     status code = check_scenario(s, f);
     if (code == STATUS_OK) {
-        code = parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, f);
+        code = parameter_set_number(p, PARAMETER_INDEX(arm.links), links, f);
     }
     if (code == STATUS_OK) {
-        code = parameters_resolve(&p, f);
+        code = parameters_resolve(p, f);
     }
     if (code != STATUS_OK) {
         return code;
     }
 
+    arm_init(a, p);
+    const double strides = SENSOR_WINDOW * a->highest_frequency / PARABOLA_REACH;
+    return strides * links <= MOST_WORK
+               ? STATUS_OK
+               : fault_set(f, STATUS_NO_PROGRESS,
+                           "%s: with %d links the fastest mode vibrates at %.3g rad/s, which asks "
+                           "for %.2g strides in the %g s after contact; expected a smaller arm.k2 "
+                           "or arm.EI",
+                           s->name, links, a->highest_frequency, strides, SENSOR_WINDOW);
+}
+
+status sensor_view_compute(const scenario *s, int links, run_monitor *monitor, sensor_view *view,
+                           fault *f)
+{
+    assert(s != NULL && view != NULL && links > 0);
+    parameters p;
+    arm a;
+    *view = (sensor_view){.links = links};
+    status code = change_links(s, links, &p, &a, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
     // resolved by explicit steps, which keep every mode
-    arm_init(&a, &p);
     p.method.name = METHOD_EVENT;
     p.method.step = fmin(p.method.step, RESOLVING / a.fastest_rate);
     motion *m = motion_create(&a, &p.method);
@@ -311,6 +330,15 @@ status sensor_study_compute(const scenario *s, run_monitor *monitor, sensor_stud
     static const int links[SENSOR_LENGTHS] = {2, 3, 5, 8, 12, 16, 24, 32};
     assert(s != NULL && study != NULL);
     *study = (sensor_study){0};
+
+    // the longest one tells beforehand whether it can be done
+    parameters longest;
+    arm a;
+    status possible = change_links(s, links[SENSOR_LENGTHS - 1], &longest, &a, f);
+    if (possible != STATUS_OK) {
+        return possible;
+    }
+
     for (int i = 0; i < SENSOR_LENGTHS; i++) {
         sensor_view *view = &study->views[i];
         status code = sensor_view_compute(s, links[i], monitor, view, f);

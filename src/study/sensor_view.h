@@ -47,8 +47,8 @@ typedef struct sensor_view {
 
 // Runs the scenario with `links` links until SENSOR_WINDOW after first contact, by the event method
 // with steps that resolve the chain. STATUS_BAD_SCENARIO for the printed model, a script, or if
-// there is no contact within run.duration. STATUS_STOPPED if `monitor` (NULL: nobody looks on)
-// asked for it.
+// there is no contact within run.duration. STATUS_NO_PROGRESS for modes that take too many strides
+// to follow. STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it.
 status sensor_view_compute(const scenario *s, int links, run_monitor *monitor, sensor_view *view,
                            fault *f);
 
@@ -78,5 +78,5 @@ typedef struct sensor_study {
 } sensor_study;
 
 // sensor_view_compute for every number of links. Fails as that does; the study then has those
-// before.
+// before, none where the modes of the largest number are too fast.
 status sensor_study_compute(const scenario *s, run_monitor *monitor, sensor_study *study, fault *f);
