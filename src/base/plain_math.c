@@ -67,7 +67,7 @@ double plain_exp(double x)
     return value * double_of_bits((uint64_t)(power + (DBL_MAX_EXP - 1)) << (DBL_MANT_DIG - 1));
 }
 
-// The exponent n of a number x = 2^n m above zero, and m from sqrt(1/2) to sqrt(2).
+// The exponent n of a number x = 2^n m above zero, and m, above sqrt(1/2) and up to sqrt(2).
 static int split_number(double x, double *m)
 {
     // one that is not normal has fewer digits
@@ -75,14 +75,11 @@ static int split_number(double x, double *m)
         return split_number(x * 0x1p54, m) - 54;
     }
 
-    const uint64_t bits = double_bits(x);
-    int n = (int)(bits >> (DBL_MANT_DIG - 1)) - (DBL_MAX_EXP - 1);
-    *m = double_of_bits(bits - ((uint64_t)n << (DBL_MANT_DIG - 1)));
-    if (*m > M_SQRT2) {
-        *m /= 2;
-        n++;
-    }
-    return n;
+    // counted from the number behind sqrt(1/2) exponents are what they are to be
+    const int64_t least = (int64_t)double_bits(M_SQRT1_2) + 1, bits = (int64_t)double_bits(x);
+    const int64_t n = (bits - least) >> (DBL_MANT_DIG - 1);
+    *m = double_of_bits((uint64_t)bits - ((uint64_t)n << (DBL_MANT_DIG - 1)));
+    return (int)n;
 }
 
 // For c of few digits near 64/i: -log(c) in two parts, the first one so short that its sum with a

@@ -17,37 +17,42 @@
 
 static const double turn = 2 * 3.14159265358979323846; // [rad]
 
-// Draws two numbers of the standard normal distribution by Marsaglia's polar method.
-static void draw_pair(noise_source *n)
+// Draws numbers of the standard normal distribution by Marsaglia's polar method, some at a time, as
+// their logarithms and roots then need not wait for each other.
+static void draw_ahead(noise_source *n)
 {
-    double x, y, r;
-    do {
-        x = 2 * random_uniform(&n->random) - 1;
-        y = 2 * random_uniform(&n->random) - 1;
-        r = x * x + y * y;
-    } while (!(r > 0 && r < 1));
+    enum { PAIRS = NOISE_AHEAD / 2 };
+    double x[PAIRS], y[PAIRS], r[PAIRS];
 
-    const double factor = sqrt(-2 * plain_log(r) / r);
-    n->pair[0] = x * factor;
-    n->pair[1] = y * factor;
+    // points within the unit circle: one that is not makes room for the next
+    for (int i = 0; i < PAIRS;) {
+        x[i] = 2 * random_uniform(&n->random) - 1;
+        y[i] = 2 * random_uniform(&n->random) - 1;
+        r[i] = x[i] * x[i] + y[i] * y[i];
+        i += (r[i] > 0) & (r[i] < 1);
+    }
+
+    for (int i = 0; i < PAIRS; i++) {
+        const double factor = sqrt(-2 * plain_log(r[i]) / r[i]);
+        n->normal[2 * i] = x[i] * factor;
+        n->normal[2 * i + 1] = y[i] * factor;
+    }
     n->taken = 0;
 }
 
 static void noise_start(noise_source *n, uint64_t seed)
 {
     random_seed(&n->random, seed);
-    draw_pair(n);
+    n->taken = NOISE_AHEAD;
 }
 
-// A number of the standard normal distribution. The next ones are drawn as soon as there are none
-// left, so that whoever takes them does not wait for the logarithm.
+// A number of the standard normal distribution.
 static double random_normal(noise_source *n)
 {
-    const double taken = n->pair[n->taken++];
-    if (n->taken == 2) {
-        draw_pair(n);
+    if (n->taken == NOISE_AHEAD) {
+        draw_ahead(n);
     }
-    return taken;
+    return n->normal[n->taken++];
 }
 
 converter converter_of(int bits, double range)
@@ -72,6 +77,12 @@ static void idealise(sensor_parameters *p)
     p->accelerometer_rise_time = p->accelerometer_range = p->accelerometer_noise = 0;
 }
 
+static void set_lag(first_order_lag *y, double time_constant)
+{
+    y->time_constant = time_constant;
+    y->stretch = 0;
+}
+
 void sensors_retune(sensors *s, const sensor_parameters *p)
 {
     assert(s != NULL && p != NULL);
@@ -87,11 +98,12 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
     // no force, no volts is on every curve
     s->felt = (fsr_point){0, 0};
     memset(s->read, 0, sizeof s->read);
-    s->fsr.time_constant = s->p.fsr_rise_time / RISE_OVER_TIME_CONSTANT;
-    s->piezo_rise.time_constant = s->p.piezo_rise_time / RISE_OVER_TIME_CONSTANT;
-    s->piezo_leak.time_constant = s->p.piezo_leak_time;
-    s->film_leak.time_constant = s->p.film_leak_time;
-    s->acceleration.time_constant = s->p.accelerometer_rise_time / RISE_OVER_TIME_CONSTANT;
+    s->seen_angle = (double)NAN;
+    set_lag(&s->fsr, s->p.fsr_rise_time / RISE_OVER_TIME_CONSTANT);
+    set_lag(&s->piezo_rise, s->p.piezo_rise_time / RISE_OVER_TIME_CONSTANT);
+    set_lag(&s->piezo_leak, s->p.piezo_leak_time);
+    set_lag(&s->film_leak, s->p.film_leak_time);
+    set_lag(&s->acceleration, s->p.accelerometer_rise_time / RISE_OVER_TIME_CONSTANT);
 }
 
 void sensors_init(sensors *s, const sensor_parameters *p, int seed)
@@ -112,6 +124,22 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed)
 
 // A stride shorter than this share of the time constant leaves the closed form too few digits.
 #define SHORT_STRIDE 1e-3
+
+// Lengths that differ by less than this share of the time constant are the same but for rounding:
+// the square of the share is nothing.
+#define SAME_STRETCH 1e-9
+
+// exp(-h/time_constant).
+static double left_after(first_order_lag *y, double h)
+{
+    const double longer = h - y->stretch;
+    if (!(fabs(longer) < SAME_STRETCH * y->time_constant) || y->stretch == 0) {
+        y->stretch = h;
+        y->left = plain_exp(-h / y->time_constant);
+        return y->left;
+    }
+    return y->left - y->left * (longer / y->time_constant);
+}
 
 // Over a time h [s], the input being the parabola through `first` and `last` with the given mean:
 // y' = (f - y)/lag with f = first + slope u + curve u^2, u = t/h.
@@ -137,7 +165,7 @@ static void lag_follow(first_order_lag *y, double h, double first, double last, 
     double r = lag / h;
     double at_start = first - r * slope + 2 * r * r * curve;
     double at_end = last - r * (slope + 2 * curve) + 2 * r * r * curve;
-    y->value = at_end + (y->value - at_start) * plain_exp(-h / lag);
+    y->value = at_end + (y->value - at_start) * left_after(y, h);
 }
 
 // Under a pulse of the input, given by its integral.
@@ -248,10 +276,16 @@ static double read_force(sensors *s, double volts)
     return known->force;
 }
 
-static double read_encoder(const sensors *s, double angle)
+// Encoder and ripple, which stay where the hub stays; the ripple turns with the shaft.
+static void see_angle(sensors *s, double angle)
 {
     const double count = s->encoder_step;
-    return count == 0 ? angle : count * floor(angle / count + 0.5);
+    if (angle == s->seen_angle) {
+        return;
+    }
+    s->seen_angle = angle;
+    s->counted = count == 0 ? angle : count * floor(angle / count + 0.5);
+    s->ripple = 1 + s->p.tachometer_ripple * inline_sin(s->p.tachometer_ripple_count * angle);
 }
 
 // Through the A/D converter, noise added before it.
@@ -301,18 +335,15 @@ static double read_accelerometer(sensors *s, const sensed_motion *now)
 sensor_reading sensors_read(sensors *s, const sensed_motion *now)
 {
     const sensor_parameters *p = &s->p;
-    // the ripple turns with the shaft
-    double wave, unused;
-    inline_sincos(p->tachometer_ripple_count * now->angle, &wave, &unused);
-    double ripple = 1 + p->tachometer_ripple * wave;
+    see_angle(s, now->angle);
     double tachometer =
-        convert(s, &s->noise, p->tachometer_gain * now->velocity * ripple, p->tachometer_noise);
+        convert(s, &s->noise, p->tachometer_gain * now->velocity * s->ripple, p->tachometer_noise);
 
     double fsr =
         convert(s, &s->noise, felt_volts(s, lag_output(&s->fsr, now->force)), p->fsr_noise);
 
     // the others draw from noise of their own, in any order
-    return (sensor_reading){.encoder = read_encoder(s, now->angle),
+    return (sensor_reading){.encoder = s->counted,
                             .tachometer = tachometer / p->tachometer_gain,
                             .force_reading = read_force(s, fsr),
                             .piezo_force = p->piezo ? read_piezo(s, now->force) : (double)NAN,

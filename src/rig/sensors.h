@@ -27,13 +27,18 @@ typedef struct sensed_motion {
 typedef struct first_order_lag {
     double time_constant; // [s], 0 for a sensor without it
     double value;         // in the input's unit
+    // what a stretch of that length leaves of a transient: most are as long as the one before, but
+    // for rounding
+    double stretch; // [s], 0: none
+    double left;    // exp(-stretch/time_constant)
 } first_order_lag;
 
 // White noise of its own.
+enum { NOISE_AHEAD = 16 };
 typedef struct noise_source {
     random_generator random;
-    double pair[2]; // of normal numbers, drawn before they are asked for
-    int taken;      // of them
+    double normal[NOISE_AHEAD]; // normal numbers, drawn so many at a time
+    int taken;                  // of them
 } noise_source;
 
 // An A/D or D/A converter.
@@ -70,6 +75,10 @@ typedef struct sensors {
     // a force that stays, and the few codes of the A/D that noise goes to and fro between
     fsr_point felt;
     fsr_point read[FSR_POINTS_READ];
+    // the hub's angle last read, and what follows from it
+    double seen_angle; // [rad], NaN before
+    double counted;    // by the encoder [rad]
+    double ripple;     // of the tachometer, a factor
 } sensors;
 
 // What the sensors read, under the names of the recorded signals: volts read back through their

@@ -120,27 +120,23 @@ static double largest_between(const run_result *r, const window_end *front, cons
     return largest;
 }
 
-// Whether no window that ends within the front's step holds more than `largest` [N s]: where no
-// event is, by the bounds of the few steps that such windows reach over. Those before *bounded are
-// known to hold no more over a window; it goes on with the steps that are found so.
-static bool holds_no_more(const run_result *r, const window_end *front, const window_end *back,
-                          double window, double largest, size_t *bounded)
+// How far no window that ends in the front's step or a later one holds more than `largest` [N s],
+// an instant [s]; before the front's step if its own may: from the back's step on, as far as no
+// event is and no force by which a window could. Steps before *bounded are known to have none.
+static double holds_no_more(const run_result *r, const window_end *front, const window_end *back,
+                            double window, double largest, size_t *bounded)
 {
-    enum { MOST_STEPS = 8 };
-    const force_step *steps = force_steps(&r->history.forces);
+    const force_history *h = &r->history.forces;
+    const force_step *steps = force_steps(h);
     const trace *t = &r->trace;
-    if (front->step - back->step > MOST_STEPS ||
-        (back->event < t->event_count && t->events[back->event].time <= steps[front->step].end)) {
-        return false;
+    const double met = back->event < t->event_count ? t->events[back->event].time : HUGE_VAL;
+    size_t i = *bounded > back->step ? *bounded : back->step;
+    while (i < h->count && steps[i].end < met &&
+           (larger(steps[i].first, steps[i].last) + step_bulge(&steps[i])) * window <= largest) {
+        i++;
     }
-    for (size_t i = *bounded > back->step ? *bounded : back->step; i <= front->step; i++) {
-        const double most = larger(steps[i].first, steps[i].last) + step_bulge(&steps[i]);
-        if (most * window > largest) {
-            return false;
-        }
-        *bounded = i + 1;
-    }
-    return true;
+    *bounded = i;
+    return i > front->step ? steps[i - 1].end : -HUGE_VAL;
 }
 
 double force_largest_mean(const run_result *result, double from, double window)
@@ -159,8 +155,10 @@ double force_largest_mean(const run_result *result, double from, double window)
         // at the instant itself, impulses on both edges counting
         advance(result, &front, time, 0, true);
         advance(result, &back, time, window, false);
-        if (time < end && holds_no_more(result, &front, &back, window, largest, &bounded)) {
-            time = fmin(force_steps(h)[front.step].end, end);
+        const double passed =
+            time < end ? holds_no_more(result, &front, &back, window, largest, &bounded) : time;
+        if (passed > time) {
+            time = fmin(passed, end);
             continue;
         }
         largest = fmax(largest, integral_to(result, &front, time) -
