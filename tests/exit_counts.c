@@ -1,13 +1,17 @@
 // Linked into the programs that tests/coverage counts: a process that ends by _exit, as the
-// children of a fork do, leaves its counts like any other (ld's --wrap=_exit), and so does one in
-// which tests/fail_kth.c lets something fail: not while they are written.
+// children of a fork do, or becomes another program leaves its counts like any other (ld's
+// --wrap=_exit, execv and execl), and so does one in which tests/fail_kth.c lets something fail:
+// not while they are written.
 #include <dlfcn.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 _Noreturn void __wrap__exit(int status);
 _Noreturn void __real__exit(int status);
 void __gcov_dump(void);
+void __gcov_reset(void);
 
 // gcc writes the counts after this.
 __attribute__((destructor)) static void let_nothing_fail(void)
@@ -27,4 +31,31 @@ void __wrap__exit(int status)
     let_nothing_fail();
     __gcov_dump();
     __real__exit(status);
+}
+
+int __wrap_execv(const char *path, char *const words[]);
+int __real_execv(const char *path, char *const words[]);
+int __wrap_execl(const char *path, const char *first, ...);
+
+// Where there is no such program this one goes on, and counts anew.
+int __wrap_execv(const char *path, char *const words[])
+{
+    let_nothing_fail();
+    __gcov_dump();
+    const int failed = __real_execv(path, words);
+    __gcov_reset();
+    return failed;
+}
+
+int __wrap_execl(const char *path, const char *first, ...)
+{
+    enum { MOST_WORDS = 16 };
+    char *words[MOST_WORDS] = {(char *)first};
+    va_list list;
+    va_start(list, first);
+    for (int i = 1; i < MOST_WORDS - 1 && words[i - 1] != NULL; i++) {
+        words[i] = va_arg(list, char *);
+    }
+    va_end(list);
+    return __wrap_execv(path, words);
 }

@@ -45,9 +45,6 @@ int __wrap_openat64(int folder, const char *path, int flags, ...)
 
 REFUSABLE(refuses(), FILE *, fopen64, NULL, EMFILE, (const char *path, const char *mode),
           (path, mode))
-REFUSABLE(refuses(), FILE *, fopencookie, NULL, ENOMEM,
-          (void *cookie, const char *mode, cookie_io_functions_t functions),
-          (cookie, mode, functions))
 REFUSABLE(refuses(), FILE *, tmpfile64, NULL, ENOSPC, (void), ())
 REFUSABLE(refuses(), int, mkstemp64, -1, ENOSPC, (char *path), (path))
 REFUSABLE(refuses(), int, flock, -1, ENOLCK, (int fd, int how), (fd, how))

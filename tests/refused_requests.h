@@ -99,6 +99,9 @@ REFUSABLE(refuses_memory(), int, fallocate64, -1, ENOSPC,
 REFUSABLE(refuses_memory(), void *, mmap64, MAP_FAILED, ENOMEM,
           (void *at, size_t length, int protection, int flags, int fd, off_t offset),
           (at, length, protection, flags, fd, offset))
+REFUSABLE(refuses_memory(), FILE *, fopencookie, NULL, ENOMEM,
+          (void *cookie, const char *mode, cookie_io_functions_t functions),
+          (cookie, mode, functions))
 REFUSABLE(refuses_memory(), int, pthread_create, EAGAIN, EAGAIN,
           (pthread_t * thread, const pthread_attr_t *attributes, void *(*function)(void *),
            void *argument),

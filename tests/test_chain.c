@@ -422,6 +422,14 @@ static void an_arm_is_folded_where_a_flat_wall_moves_no_link(void **state)
         assert_false(chain_is_folded(&flat, q));
     }
 
+    // without a wall nothing is penetrated, whoever asks
+    arm alone = make_arm(2, "rigid", "none");
+    double gap = 1, rate = 1;
+    const double q[2] = {3, 3}, w[2] = {1, 1};
+    chain_penetration(&alone, q, w, &gap, NULL);
+    chain_penetration(&alone, q, w, NULL, &rate);
+    assert_true(gap == -HUGE_VAL && rate == 0);
+
     // a rod across the wall stands away from it
     arm rod = make_arm(1, "rigid", "plane");
     assert_false(chain_is_folded(&rod, (double[]){0.1 + M_PI / 2}));

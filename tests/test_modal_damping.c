@@ -45,6 +45,34 @@ static void only_joints_that_are_there_are_damped(void **state)
     }
 }
 
+// Of links and joints that differ, too, structural damping gives the first mode its ratio; a rod
+// that cannot bend has none.
+static void structural_damping_is_of_the_first_mode(void **state)
+{
+    (void)state;
+    const char *const *const arms[] = {
+        SETTINGS("arm.damping_ratio=0.03", "arm.links=4", "arm.link_lengths=0.2,0.3,0.1,0.4",
+                 "arm.joint_stiffness=9,5,12"),
+        SETTINGS("arm.damping_ratio=0.03", "arm.links=3", "arm.hub_joint=beam",
+                 "arm.link_lengths=0.2,0.3,0.5", "arm.joint_stiffness=20,9,5"),
+        SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=beam",
+                 "arm.joint_stiffness=7")};
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+        parameters p = fixture_parameters(arms[i]);
+        held_modes m = modes_of(&p);
+        const double per_stiffness = 2 * 0.03 / m.frequencies[0];
+        for (int k = p.arm.hub_joint == HUB_BEAM ? 0 : 1; k < p.arm.links; k++) {
+            check_relative(arm_joint_damping(&m.arm, k),
+                           per_stiffness * arm_joint_stiffness(&m.arm, k), 1e-6);
+        }
+    }
+
+    parameters rod = fixture_parameters(SETTINGS("arm.damping_ratio=0.03", "arm.links=1"));
+    held_modes none = modes_of(&rod);
+    assert_int_equal(none.count, 0);
+    check_close(none.arm.joint_damping, 0, 0);
+}
+
 // x' M y over the bodies beyond the hub.
 static double product(const held_modes *m, const double *x, const double *y)
 {
@@ -209,6 +237,7 @@ static void an_arm_that_turns_as_a_whole_is_not_damped(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(structural_damping_is_of_the_first_mode),
         cmocka_unit_test(only_joints_that_are_there_are_damped),
         cmocka_unit_test(modes_decay_with_the_ratios_of_the_list),
         cmocka_unit_test(air_takes_from_all_modes_alike),

@@ -91,6 +91,16 @@ static void a_current_drive_knows_no_back_emf(void **state)
     check_close(m.voltage, 2.5, 0);
     check_relative(m.torque, 0.5 * 2.5, 1e-15);
 
+    // an amplifier that gives no current reaches no limit
+    motor_parameters idle = p;
+    idle.transconductance = 0;
+    check_close(motor_command_limit(&idle), 10, 0);
+
+    // where the current takes its time, what goes in is not known from the command alone
+    motor_parameters coil = drive();
+    coil.inductance = 1e-3;
+    assert_true(isnan(motor_electrical_energy(&coil, 2, 0.3, 0.51)));
+
     // what goes in: heat, and work against back EMF
     const double duration = 0.3, turn = 0.51, heat = 0.4 * 0.4 * p.resistance * duration;
     check_relative(motor_electrical_energy(&p, 2, duration, turn), heat + p.back_emf * 0.4 * turn,

@@ -1,10 +1,10 @@
-// Controllers from shared objects: test_plugin SOFT_PUSH BROKEN OUTDATED.
+// Controllers from shared objects: test_plugin SOFT_PUSH BROKEN OUTDATED SILENT.
 #include <string.h>
 
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
-static const char *soft_push_file, *broken_file, *outdated_file;
+static const char *soft_push_file, *broken_file, *outdated_file, *silent_file;
 
 static const char *plugin_setting(char *text, size_t size, const char *file)
 {
@@ -54,6 +54,12 @@ static void wrong_plugins_are_refused(void **state)
     check_refused(SETTINGS("control.law=plugin", file, "motor.amplifier_gain=0"), "no torque");
     plugin_setting(file, sizeof file, outdated_file);
     check_refused(SETTINGS("control.law=plugin", file), "compile it again");
+    plugin_setting(file, sizeof file, silent_file);
+    check_refused(SETTINGS("control.law=plugin", file), "has no function `sample`");
+
+    // a shared object that is no controller
+    check_refused(SETTINGS("control.law=plugin", "control.plugin=libm.so.6"),
+                  "libm.so.6 has no function " CONTROLLER_ENTRY);
 }
 
 // The modes of one that is open to code, and none of one that is not or cannot be opened.
@@ -123,12 +129,13 @@ int main(int count, char **arguments)
         cmocka_unit_test(modes_of_a_plugin_are_its_own),
         cmocka_unit_test(command_that_is_not_finite_stops_the_run),
     };
-    if (count != 4) {
-        fprintf(stderr, "usage: test_plugin SOFT_PUSH.so BROKEN.so OUTDATED.so\n");
+    if (count != 5) {
+        fprintf(stderr, "usage: test_plugin SOFT_PUSH.so BROKEN.so OUTDATED.so SILENT.so\n");
         return 2;
     }
     soft_push_file = arguments[1];
     broken_file = arguments[2];
     outdated_file = arguments[3];
+    silent_file = arguments[4];
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -123,7 +123,23 @@ static void a_soft_walls_force_has_its_slope_and_energy(void **state)
         }
         check_relative(wall_stored_energy(&w, depth), stored, 1e-6);
         check_close(wall_stored_energy(&w, -depth), 0, 0);
+        check_close(wall_stored_energy(&w, 0), 0, 0);
     }
+
+    // a sphere that only touches presses with nothing, and with nothing more at first
+    const wall_model sphere = wall_of(SETTINGS("wall.contact=hunt-crossley"));
+    check_close(wall_force_slope(&sphere, 0, 0.4, -35), 0, 0);
+}
+
+// A face swings back at its own rate; one that rests in its place does nothing.
+static void a_face_at_rest_has_no_rate(void **state)
+{
+    (void)state;
+    const wall_model w = wall_of(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=1e4",
+                                          "wall.damping=1", "wall.mass=0.04"));
+    check_close(wall_face_rate(&w, (wall_face){0, 0}), 0, 0);
+    check_relative(wall_face_rate(&w, (wall_face){0, 0.1}), 500.0, 1e-12);
+    check_relative(wall_face_rate(&w, (wall_face){1e-3, 0}), 500.0, 1e-12);
 }
 
 // A mass that meets the wall: its rate is that of the wall's spring where it is deepest, or of its
@@ -161,6 +177,7 @@ int main(void)
         cmocka_unit_test(the_contact_point_lies_the_arms_length_from_the_hub),
         cmocka_unit_test(rates_are_the_derivatives_of_the_penetration),
         cmocka_unit_test(a_straight_arm_at_the_walls_angle_touches_it),
+        cmocka_unit_test(a_face_at_rest_has_no_rate),
         cmocka_unit_test(slow_impacts_are_plastic),
         cmocka_unit_test(the_rate_is_that_at_the_deepest_point),
     };

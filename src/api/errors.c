@@ -1,5 +1,6 @@
 #include "src/api/handles.h"
 
+#include <assert.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,9 +43,10 @@ static void copy_text(char *to, size_t size, const char *from)
 
 int api_error(impactlab_error *error, const fault *f)
 {
+    assert(f->path != NULL);
     if (error != NULL) {
         *error = (impactlab_error){.status = (int)f->code, .line = f->line, .column = f->column};
-        copy_text(error->parameter, sizeof error->parameter, f->path != NULL ? f->path : "");
+        copy_text(error->parameter, sizeof error->parameter, f->path);
         const char *sentence = f->text[0] != '\0' ? f->text : status_text(f->code);
         copy_text(error->sentence, sizeof error->sentence, sentence);
     }

@@ -124,18 +124,17 @@ void impactlab_scenario_allow_code(impactlab_scenario *handle, int allowed)
 
 const char *impactlab_scenario_name(const impactlab_scenario *handle)
 {
-    return handle != NULL && handle->scenario.name != NULL ? handle->scenario.name : "";
+    return handle != NULL ? handle->scenario.name : "";
 }
 
 const char *impactlab_scenario_title(const impactlab_scenario *handle)
 {
-    return handle != NULL && handle->scenario.title != NULL ? handle->scenario.title : "";
+    return handle != NULL ? handle->scenario.title : "";
 }
 
 const char *impactlab_scenario_description(const impactlab_scenario *handle)
 {
-    const bool known = handle != NULL && handle->scenario.description != NULL;
-    return known ? handle->scenario.description : "";
+    return handle != NULL ? handle->scenario.description : "";
 }
 
 int impactlab_scenario_number(const impactlab_scenario *handle, const char *path, double *value,

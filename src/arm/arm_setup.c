@@ -63,8 +63,9 @@ static double first_clamped_frequency(const arm *a)
             numerator += shape[k] * sum;
             denominator += sum * sum;
         }
-        frequency = denominator > 0 ? sqrt(numerator / denominator) : 0;
-        double scale = denominator > 0 ? 1 / sqrt(denominator) : 0;
+        assert(denominator > 0); // some joint bends
+        frequency = sqrt(numerator / denominator);
+        const double scale = 1 / sqrt(denominator);
         for (int k = 0; k < a->links; k++) {
             shape[k] = next[k] * scale;
         }
@@ -149,10 +150,11 @@ static double fastest_decay(const arm *a)
 {
     double w = a->highest_frequency, stiffest = fmax(a->joint_stiffness, a->hub_stiffness);
     double damping = fmax(a->joint_damping, a->hub_joint_damping);
-    double ratio = stiffest > 0 ? 0.5 * w * damping / stiffest : 0;
+    const double ratio = 0.5 * w * damping / stiffest;
     double decay = ratio > 1 ? w * (ratio + sqrt(ratio * ratio - 1)) : 0;
     double reach = arm_link_length(a, 0) * (a->hub_spring ? 0 : 1);
     double hub = a->hub_inertia + arm_link_mass(a, 0) * reach * reach / 12;
+    assert(stiffest > 0 && hub > 0);
     decay = fmax(decay, a->air_drag * a->link_length / a->link_mass);
     if (a->damped_modes > 0) {
         decay = fmax(decay, 1.05 * largest_eigenvalue(a, true));
@@ -165,7 +167,7 @@ static double fastest_decay(const arm *a)
         braking += motor->torque_constant * motor->back_emf / motor->resistance;
         decay = motor->inductance > 0 ? fmax(decay, motor->resistance / motor->inductance) : decay;
     }
-    return fmax(decay, hub > 0 ? braking / hub : 0);
+    return fmax(decay, braking / hub);
 }
 
 // Links and joints one by one, where lists make them differ; equal ones are a chain like any other.

@@ -127,7 +127,6 @@ static void loops_say_what_they_lack(void **state)
 // What has no error to fill answers as if there were nothing.
 static void nothing_has_nothing(void **state)
 {
-    (void)state;
     impactlab_event event;
     double value;
     assert_string_equal(impactlab_scenario_name(NULL), "");
@@ -140,6 +139,10 @@ static void nothing_has_nothing(void **state)
     assert_true(impactlab_run_quantities(NULL, &value, 1) > 10);
     assert_int_equal(impactlab_run_event_count(NULL), 0);
     assert_int_equal(impactlab_run_event(NULL, 0, &event), 0);
+    handles *h = *state;
+    assert_int_equal(impactlab_run_event(h->run, 0, NULL), 0);
+    assert_int_equal(impactlab_loop_step(h->loop, NULL), IMPACTLAB_OK);
+    assert_true(impactlab_loop_time(h->loop) > 0);
     assert_true(isnan(impactlab_loop_time(NULL)));
     assert_int_equal(impactlab_loop_ended(NULL), 1);
     assert_int_equal(impactlab_loop_state_size(NULL), 0);
@@ -194,6 +197,7 @@ static void numbers_that_cannot_be(void **state)
     check_refused(h, impactlab_scenario_add_change(s, 0.1, "motor.voltage", "much", error),
                   "motor.voltage");
     check_refused(h, impactlab_scenario_add_change(s, 0.1, "arm.links", "4", error), "arm.links");
+    check_refused(h, impactlab_scenario_set_number(s, "arm.k2", -1, error), "arm.k2");
     check_refused(h, impactlab_loop_set_input(h->loop, "arm.links", 4, error), "arm.links");
 
     // none of it has left anything
@@ -205,15 +209,26 @@ static void numbers_that_cannot_be(void **state)
     check_done(impactlab_loop_step(h->loop, error), error);
 }
 
+// What follows from another parameter does not change by itself, neither now nor later.
+static void what_follows_cannot_be_scripted(void **state)
+{
+    handles *h = *state;
+    impactlab_error *error = &h->error;
+    check_done(impactlab_scenario_set(h->scenario, "arm.hub_joint", "beam", error), error);
+    check_refused(h, impactlab_scenario_add_change(h->scenario, 0.1, "arm.k1", "90", error),
+                  "arm.hub_joint = spring");
+    assert_string_equal(error->parameter, "arm.k1");
+}
+
 static void sets_are_taken_whole_or_not(void **state)
 {
     handles *h = *state;
     const char *const wrong[] = {"motor.voltage=3", "arm.k2=soft"};
-    const char *const holed[] = {"motor.voltage=3", NULL};
+    const char *const holed[] = {"motor.voltage=3", NULL, "arm.k2=5"};
     const char *const together[] = {"arm.links=4", "wall.kind=plane", "motor.voltage=3 V"};
     double value;
     check_refused(h, impactlab_scenario_set_all(h->scenario, wrong, 2, &h->error), "arm.k2");
-    check_refused(h, impactlab_scenario_set_all(h->scenario, holed, 2, &h->error),
+    check_refused(h, impactlab_scenario_set_all(h->scenario, holed, 3, &h->error),
                   "assignments[i]");
     check_done(impactlab_scenario_number(h->scenario, "motor.voltage", &value, &h->error),
                &h->error);
@@ -264,6 +279,16 @@ static void controllers_are_whole(void **state)
     }
     check_done(impactlab_run_create_with(&run, h->scenario, 0, &whole, NULL, &h->error), &h->error);
     impactlab_run_destroy(run);
+
+    // and one with a number of its own
+    const controller_parameter gain = {
+        .name = "gain", .unit = "", .initial = 1, .maximum = 2, .description = "of nothing"};
+    controller numbered = whole;
+    numbered.parameters = &gain;
+    numbered.parameter_count = 1;
+    check_done(impactlab_run_create_with(&run, h->scenario, 0, &numbered, NULL, &h->error),
+               &h->error);
+    impactlab_run_destroy(run);
 }
 
 static int take(void *context, const impactlab_outcome *outcome)
@@ -295,6 +320,12 @@ static void batches_look_before_they_run(void **state)
     check_done(impactlab_batch(s, paths, 1, volts, 3, 1000000, take, &taken, error), error);
     check_done(impactlab_batch(s, NULL, 0, NULL, 2, 1, take, &taken, error), error);
     check_done(impactlab_batch(s, paths, 1, NULL, 0, 1, take, &taken, error), error);
+    assert_int_equal(taken, 8);
+
+    // a value that cannot be is told before any run
+    const char *const two[] = {"arm.k2", "motor.voltage"};
+    const double values[] = {5, 1, -5, 1};
+    check_refused(h, impactlab_batch(s, two, 2, values, 2, 1, take, &taken, error), "arm.k2");
     assert_int_equal(taken, 8);
 }
 
@@ -365,7 +396,7 @@ int main(void)
         TEST(names_that_are_not_known),     TEST(numbers_that_cannot_be),
         TEST(sets_are_taken_whole_or_not),  TEST(controllers_are_whole),
         TEST(batches_look_before_they_run), TEST(states_of_others_are_refused),
-        TEST(an_error_may_be_left_out),
+        TEST(an_error_may_be_left_out),     TEST(what_follows_cannot_be_scripted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
