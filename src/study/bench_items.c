@@ -23,17 +23,33 @@
 
 double bench_window = 0.5;
 
-// Resolved parameters of the corrected arm with the given settings, a list that ends with NULL.
-static status timed_parameters(parameters *p, const char *const (*settings)[2], fault *f)
+// Resolved parameters of the corrected arm with the given settings, which go together; the list
+// ends with NULL.
+static parameters timed_parameters(const char *const (*settings)[2])
 {
-    parameters_defaults(p, ARM_CORRECTED);
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
     for (int i = 0; settings[i][0] != NULL; i++) {
-        status code = parameter_set_text(p, parameter_index(settings[i][0]), settings[i][1], f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        const status set =
+            parameter_set_text(&p, parameter_index(settings[i][0]), settings[i][1], NULL);
+        assert(set == STATUS_OK);
+        (void)set;
     }
-    return parameters_resolve(p, f);
+    const status resolved = parameters_resolve(&p, NULL);
+    assert(resolved == STATUS_OK);
+    (void)resolved;
+    return p;
+}
+
+// A scenario of that arm, which owns nothing.
+static scenario timed_scenario(const char *const (*settings)[2])
+{
+    static char name[] = "bench", none[] = "";
+    return (scenario){.name = name,
+                      .file = none,
+                      .title = none,
+                      .description = none,
+                      .parameters = timed_parameters(settings)};
 }
 
 static status run_once(void *context)
@@ -56,12 +72,8 @@ static status run_with_rows(void *context)
 static status time_run(const char *const (*settings)[2], status (*run)(void *context),
                        double *value, fault *f)
 {
-    char name[] = "bench", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
-    status code = timed_parameters(&s.parameters, settings, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    scenario s = timed_scenario(settings);
+    status code;
     double seconds = bench_seconds_per_call(run, &s, bench_window, &code);
     *value = 1e6 * seconds / (1e3 * s.parameters.run.duration);
     return code == STATUS_OK ? code : fault_set(f, code, "the run failed: %s", status_text(code));
@@ -182,12 +194,11 @@ static status time_chain(int links, bool contact, double *seconds, fault *f)
                                        {"wall.kind", "plane"},
                                        {"method.name", "generalized-alpha"},
                                        {NULL, NULL}};
-    parameters p;
     snprintf(count, sizeof count, "%d", links);
-    status code = timed_parameters(&p, settings, f);
+    const parameters p = timed_parameters(settings);
     double from = !contact ? 0.05 : links == 2 ? 0.30 : 0.7;
     double to = !contact ? 0.25 : links == 2 ? 0.36 : 0.9;
-    return code == STATUS_OK ? time_stretch(&p, from, to, seconds, f) : code;
+    return time_stretch(&p, from, to, seconds, f);
 }
 
 status bench_step_cost(int links, double *free_us, double *contact_us, fault *f)
@@ -243,17 +254,12 @@ static status predict_once(void *context)
 // The predictor at the instant before the first contact of two links at 1 V.
 static status measure_predict(double *value, fault *f)
 {
-    char name[] = "bench", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
     static const char *const settings[][2] = {{NULL, NULL}};
-    status code = timed_parameters(&s.parameters, settings, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    scenario s = timed_scenario(settings);
 
     // a run tells the state before its first impact
     run_result result;
-    code = run_scenario(&s, false, &result);
+    status code = run_scenario(&s, false, &result);
     touching t = {.q = result.before_impact,
                   .w = result.before_impact ? result.before_impact + 2 : NULL};
 
@@ -290,14 +296,8 @@ typedef struct timed_batch {
 
 static status prepare_batch(timed_batch *b, fault *f)
 {
-    static char name[] = "bench", none[] = "";
     static const char *const settings[][2] = {{NULL, NULL}};
-    *b =
-        (timed_batch){.scenario = {.name = name, .file = none, .title = none, .description = none}};
-    status code = timed_parameters(&b->scenario.parameters, settings, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    *b = (timed_batch){.scenario = timed_scenario(settings)};
     b->summaries = malloc(BATCH_RUNS * sizeof *b->summaries);
     return b->summaries != NULL ? STATUS_OK : fault_no_memory(f);
 }
@@ -379,18 +379,15 @@ static status write_once(void *context)
 // The rows of that run as CSV into a file that is written over and over.
 static status measure_csv(double *value, fault *f)
 {
-    char name[] = "bench", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
     static const char *const settings[][2] = {{NULL, NULL}};
-    status code = timed_parameters(&s.parameters, settings, f);
+    scenario s = timed_scenario(settings);
     FILE *stream = tmpfile();
-    if (code != STATUS_OK || stream == NULL) {
-        return code != STATUS_OK ? code
-                                 : fault_set(f, STATUS_CANNOT_WRITE, "no file for CSV can be made");
+    if (stream == NULL) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "no file for CSV can be made");
     }
 
     run_result result;
-    code = run_scenario(&s, true, &result);
+    status code = run_scenario(&s, true, &result);
     written_trace w = {&result.trace, stream};
     if (code == STATUS_OK) {
         const double seconds = bench_seconds_per_call(write_once, &w, bench_window, &code);
@@ -405,10 +402,10 @@ static status measure_csv(double *value, fault *f)
 // A run of a sweep of voltages, on one thread into a database that is removed afterwards.
 static status measure_sweep(double *value, fault *f)
 {
-    char name[] = "bench", none[] = "", vary[] = "motor.voltage=0.5:1.5:2000", *varied[] = {vary};
+    char vary[] = "motor.voltage=0.5:1.5:2000", *varied[] = {vary};
     char path[] = "/tmp/impactlab-bench-XXXXXX";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
     static const char *const settings[][2] = {{NULL, NULL}};
+    scenario s = timed_scenario(settings);
     const sweep_request request = {.vary = varied, .vary_count = 1};
     const sweep_options options = {.jobs = 1};
     const int file = mkstemp(path);
@@ -421,8 +418,7 @@ static status measure_sweep(double *value, fault *f)
     sweep of;
     sweep_store *store = NULL;
     sweep_progress progress = {0};
-    status code = timed_parameters(&s.parameters, settings, f);
-    code = code == STATUS_OK ? sweep_init(&of, &s, &request, f) : code;
+    status code = sweep_init(&of, &s, &request, f);
     if (code == STATUS_OK) {
         code = sweep_store_open(&store, path, &of, f);
         code = code == STATUS_OK ? sweep_run(&of, store, &options, &progress, f) : code;

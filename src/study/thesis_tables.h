@@ -29,8 +29,8 @@ status tables_compute(thesis_tables *t, fault *f);
 // (docs/thesis.md): force and delay of the simulation with seven numbers and switches of the
 // printed model fitted to its 24 cells, the delay counted from the step before contact; and the
 // printed model's delay of the impact dynamics times sqrt(3)/2, by the integral that belongs to
-// (4.19). Fails as tables_compute does.
-status tables_compute_fitted(thesis_tables *t, fault *f);
+// (4.19).
+void tables_compute_fitted(thesis_tables *t);
 
 // What the thesis prints at the four voltages, 1, 2, 5 and 10 V: values[TABLE_VOLTAGES] of a
 // quantity of Table "4.1", "4.2" or "4.3" [N] or [s]. False if there is no such row.
