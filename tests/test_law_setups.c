@@ -1,0 +1,150 @@
+// What the laws on the rig are told: delays, motors, arms and changes at the ends of their ranges.
+// A law works with them, or says why it cannot.
+#include <string.h>
+
+#include "src/rig/rig.h"
+#include "tests/rig_fixture.h"
+
+// The run under these settings cannot be made, and the sentence says why.
+static void check_refused(const char *const *settings, const char *sentence)
+{
+    run_result r;
+    scenario s = {.parameters = rig_parameters(settings)};
+    assert_int_not_equal(run_scenario(&s, false, &r), STATUS_OK);
+    if (strstr(r.summary.message, sentence) == NULL) {
+        fail_msg("'%s' does not say '%s'", r.summary.message, sentence);
+    }
+    run_finish(&r);
+}
+
+// A model-based law waits for its command not at all, for part of a period, or for all of it.
+static void laws_know_any_delay(void **state)
+{
+    (void)state;
+    static const char *const laws[] = {"control.law=optimal", "control.law=observer"};
+    static const char *const delays[] = {"control.delay_periods=0", "control.delay_periods=0.5",
+                                         "control.delay_periods=1"};
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < 3; k++) {
+            const summary s =
+                rig_summary(SETTINGS(laws[i], delays[k], "control.delay=0", "control.force=1"));
+            assert_true(s.impacts >= 1);
+            check_relative(s.steady_force_N, 1.0, 0.1);
+        }
+    }
+}
+
+static void a_motor_without_torque_is_said(void **state)
+{
+    (void)state;
+    static const char *const laws[] = {"control.law=optimal", "control.law=observer"};
+    for (int i = 0; i < 2; i++) {
+        check_refused(SETTINGS(laws[i], "motor.amplifier_gain=0"), "it needs a motor");
+    }
+}
+
+// Links that throw the force of an impact nowhere: the law brakes by the spring alone.
+static void links_without_a_force_of_their_own_are_pressed(void **state)
+{
+    (void)state;
+    const summary s = rig_summary(SETTINGS("control.law=optimal", "arm.mass=0.4",
+                                           "arm.link_inertia=0.0125", "control.force=1"));
+    assert_true(s.impacts >= 1);
+    assert_true(isfinite(s.peak_force_N));
+}
+
+// A mass that takes no time to take up its speed moves as fast as it is told to.
+static void an_admittance_may_have_no_mass(void **state)
+{
+    (void)state;
+    const summary s = rig_summary(
+        SETTINGS("control.law=admittance", "control.settings=mass_time=0", "run.duration=3"));
+    check_relative(s.steady_force_N, 1.0, 0.2);
+}
+
+// A forecast of the touch knows the spring that carries the beam.
+static void a_forecast_knows_the_hubs_spring(void **state)
+{
+    (void)state;
+    const char *const *const joints[] = {
+        SETTINGS("control.law=speed-limit", "control.force_limit=2", "arm.hub_joint=spring",
+                 "arm.k1=2000"),
+        SETTINGS("control.law=speed-limit", "control.force_limit=2")};
+    for (int i = 0; i < 2; i++) {
+        const summary s = rig_summary(joints[i]);
+        assert_true(s.impacts >= 1);
+        check_below(s.peak_force_N, 2);
+    }
+}
+
+// The run of a script with one change at an instant.
+static status run_with_change(const char *const *settings, const char *path, const char *text,
+                              double time, run_result *r)
+{
+    fault f = {.text = ""};
+    scenario s = {.parameters = rig_parameters(settings)};
+    parameters p = s.parameters;
+    const int index = parameter_index(path);
+    if (parameter_set_text(&p, index, text, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    action change = {
+        .time = time, .kind = ACTION_SET, .parameter = index, .value = parameter_get(&p, index)};
+    if (parameter_is_text(&parameter_table[index])) {
+        parameter_format(&p, index, change.text, sizeof change.text);
+    }
+    s.actions = &change;
+    s.action_count = 1;
+    return run_scenario(&s, true, r);
+}
+
+// A transition under way is planned anew to another force, or to another end; with no time left it
+// goes on as it was.
+static void a_transition_leads_where_it_is_told(void **state)
+{
+    (void)state;
+    const char *const *const settings = SETTINGS("control.law=hybrid", "control.force=1");
+    const double touch = rig_summary(settings).first_contact_s;
+    static const struct {
+        const char *path, *text;
+        double after, force;
+    } changes[] = {{"control.force", "1.4", 0.05, 1.4},
+                   {"control.transition_time", "0.35", 0.05, 1},
+                   {"control.transition_time", "0.06", 0.1, 1}};
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+        run_result r;
+        assert_int_equal(run_with_change(settings, changes[i].path, changes[i].text,
+                                         touch + changes[i].after, &r),
+                         STATUS_OK);
+        check_relative(r.summary.steady_force_N, changes[i].force, 0.1);
+        run_finish(&r);
+    }
+}
+
+// A limit that comes and goes is told to the forecast, too.
+static void a_limit_may_change(void **state)
+{
+    (void)state;
+    run_result r;
+    const char *const *const settings =
+        SETTINGS("control.law=speed-limit", "control.force_limit=4", "control.approach_voltage=5",
+                 "control.speed_limit=100", "control.force=0.3", "initial.angle=-0.4");
+    assert_int_equal(run_with_change(settings, "control.force_limit", "1", 0.05, &r), STATUS_OK);
+    const summary high = rig_summary(settings);
+    check_below(r.summary.peak_force_N, high.peak_force_N);
+    run_finish(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(laws_know_any_delay),
+        cmocka_unit_test(a_motor_without_torque_is_said),
+        cmocka_unit_test(links_without_a_force_of_their_own_are_pressed),
+        cmocka_unit_test(an_admittance_may_have_no_mass),
+        cmocka_unit_test(a_forecast_knows_the_hubs_spring),
+        cmocka_unit_test(a_transition_leads_where_it_is_told),
+        cmocka_unit_test(a_limit_may_change),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
