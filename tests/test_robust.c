@@ -264,12 +264,68 @@ static void tables_have_a_line_a_law(void **state)
     laws[1].case_title = "late";
     check_table(robust_markdown, &table, '|', 4);
     check_table(robust_csv, &table, ',', 3);
+    table.against = NULL;
+    check_table(robust_markdown, &table, '|', 4);
+}
+
+// The text says how many runs failed and rounds large numbers; JSON names what there is.
+static void texts_and_json_say_what_is_there(void **state)
+{
+    (void)state;
+    robust_law laws[] = {{.law = "hybrid", .runs = 10, .failed = 3, .overshoot = {12345.6, 2, 3}}};
+    robust_table table = {"test", laws, 1, NULL};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    robust_text(stream, &table);
+    fclose(stream);
+    assert_non_null(strstr(text, "3 failed"));
+    assert_non_null(strstr(text, "12346"));
+    free(text);
+
+    json_t *json = robust_json(&table);
+    assert_null(json_object_get(json, "against"));
+    assert_null(json_object_get(json_array_get(json_object_get(json, "laws"), 0), "case"));
+    json_decref(json);
+    laws[0].case_title = "plain";
+    table.against = "hybrid";
+    json = robust_json(&table);
+    assert_string_equal(json_string_value(json_object_get(json, "against")), "hybrid");
+    assert_string_equal(json_string_value(json_object_get(
+                            json_array_get(json_object_get(json, "laws"), 0), "case")),
+                        "plain");
+    json_decref(json);
+}
+
+// A force limit is what a run may not exceed, where one is told; chains are judged by the smoothed
+// force.
+static void a_limit_says_what_is_too_much(void **state)
+{
+    (void)state;
+    char *const low[] = {"control.force_limit=0.5"}, *const high[] = {"control.force_limit=100"};
+    char *const links[] = {"arm.links=3"};
+    robust_law found;
+    free(judged(LAW_HYBRID, low, 1, 1, 1, &found));
+    check_close(found.exceeded, 1, 0);
+    robust_law_finish(&found);
+    free(judged(LAW_HYBRID, high, 1, 1, 1, &found));
+    check_close(found.exceeded, 0, 0);
+    robust_law_finish(&found);
+
+    free(judged(LAW_HYBRID, links, 1, 1, 1, &found));
+    const summary s = rig_summary(SETTINGS("control.law=hybrid", "run.duration=1", "arm.links=3"));
+    check_relative(found.overshoot[ROBUST_MEDIAN],
+                   100 * s.smoothed_over_command_N / s.force_command_N, 1e-12);
+    robust_law_finish(&found);
+    robust_law_finish(NULL);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_have_a_line_a_law),
+        cmocka_unit_test(texts_and_json_say_what_is_there),
+        cmocka_unit_test(a_limit_says_what_is_too_much),
         cmocka_unit_test(a_set_is_its_lines),
         cmocka_unit_test(cases_are_what_differs),
         cmocka_unit_test(threads_change_nothing),

@@ -302,6 +302,109 @@ static void another_sweep_is_refused_with_the_difference(void **state)
     unlink("one.sqlite");
 }
 
+// A script belongs to what is swept, and an empty text is told as such.
+static void a_changed_script_is_another_sweep(void **state)
+{
+    (void)state;
+    fault f;
+    scenario with = base, without = base, settled = base;
+    action script[] = {{.time = 0.1,
+                        .kind = ACTION_SET,
+                        .parameter = PARAMETER_INDEX(control.lock),
+                        .text = "none"},
+                       {.time = 0.2, .kind = ACTION_PUSH, .parameter = -1, .value = 0.01}};
+    with.actions = script;
+    with.action_count = 2;
+    assert_int_equal(scenario_override(&settled, "control.settings=kp=2", &f), STATUS_OK);
+    sweep s, other;
+    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+    other = s;
+    s.base = &with;
+    sweep_store_close(must_open("script.sqlite", &s));
+    sweep_store_close(must_open("script.sqlite", &s));
+    other.base = &without;
+    assert_refused("script.sqlite", &other, STATUS_BAD_ARGUMENT,
+                   "script was at 0.1 control.lock = none; at 0.2 push = 0.01, now it is empty");
+    unlink("script.sqlite");
+
+    sweep_store_close(must_open("script.sqlite", &other));
+    s.base = &settled;
+    assert_refused("script.sqlite", &s, STATUS_BAD_ARGUMENT,
+                   "control.settings was empty, now it is kp=2");
+    sweep_finish(&other);
+    unlink("script.sqlite");
+}
+
+// A name that begins with a colon is a file like any other.
+static void a_colon_begins_a_name(void **state)
+{
+    (void)state;
+    sweep s;
+    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+    sweep_store_close(must_open(":memory:", &s));
+    assert_int_equal(access("./:memory:", F_OK), 0);
+    unlink("./:memory:");
+    sweep_finish(&s);
+}
+
+static void more_axes_than_there_may_be_are_refused(void **state)
+{
+    (void)state;
+    enum { TOO_MANY = SWEEP_MOST_AXES + 1 };
+    char text[TOO_MANY][48], *vary[TOO_MANY];
+    int count = 0;
+    for (int i = 0; i < parameter_count && count < TOO_MANY; i++) {
+        const parameter_info *info = &parameter_table[i];
+        if (info->type == PARAMETER_REAL && info->minimum <= 1 && info->maximum >= 2) {
+            snprintf(text[count], sizeof text[count], "%s=1:2:2", info->path);
+            vary[count] = text[count];
+            count++;
+        }
+    }
+    assert_int_equal(count, TOO_MANY);
+    sweep s;
+    fault f = {.text = ""};
+    const sweep_request request = {
+        .vary = vary, .vary_count = TOO_MANY, .sampling = SWEEP_LATIN, .runs = 3};
+    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "at most 32 parameters"));
+}
+
+// Rows of runs that the sweep does not have are the work of others.
+static void rows_that_are_no_runs_are_refused(void **state)
+{
+    (void)state;
+    static const char *const changes[] = {"UPDATE run SET run = 0 WHERE run = 1",
+                                          "UPDATE run SET run = 9 WHERE run = 1"};
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+        sweep s;
+        must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+        sweep_store *store = must_open("rows.sqlite", &s);
+        must_run(&s, store, 1);
+        sweep_store_close(store);
+        sqlite3 *database;
+        assert_int_equal(sqlite3_open("rows.sqlite", &database), SQLITE_OK);
+        assert_int_equal(sqlite3_exec(database, changes[i], NULL, NULL, NULL), SQLITE_OK);
+        sqlite3_close(database);
+
+        // whoever goes on with it, and whoever reads from it
+        double values[3];
+        size_t failed;
+        fault f = {.text = ""};
+        sweep_progress progress;
+        const sweep_options options = {.jobs = 1};
+        store = must_open("rows.sqlite", &s);
+        assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, "of a sweep of 3"));
+        assert_int_equal(sweep_store_quantity(store, "peak_force_N", values, &failed, &f),
+                         STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, "no run of the sweep"));
+        sweep_store_close(store);
+        sweep_finish(&s);
+        unlink("rows.sqlite");
+    }
+}
+
 static void what_is_no_sweep_is_left_alone(void **state)
 {
     (void)state;
@@ -377,6 +480,10 @@ int main(void)
         cmocka_unit_test(a_killed_sweep_goes_on_and_loses_and_doubles_nothing),
         cmocka_unit_test(a_stopped_sweep_keeps_what_it_has_and_goes_on),
         cmocka_unit_test(another_sweep_is_refused_with_the_difference),
+        cmocka_unit_test(a_changed_script_is_another_sweep),
+        cmocka_unit_test(a_colon_begins_a_name),
+        cmocka_unit_test(more_axes_than_there_may_be_are_refused),
+        cmocka_unit_test(rows_that_are_no_runs_are_refused),
         cmocka_unit_test(what_is_no_sweep_is_left_alone),
         cmocka_unit_test(two_sweeps_do_not_write_to_one_file_at_once),
         cmocka_unit_test(a_failed_run_is_a_row_with_its_message),
