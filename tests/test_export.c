@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/run/run.h"
 #include "tests/check.h"
 
 static void print_fault(void *context, const char *sentence)
@@ -85,6 +86,53 @@ static void object_holds_every_key(void **state)
     scenario_finish(&s);
 }
 
+// A change of a word is told as the word; one whose place in the script is not known as an event
+// alone.
+static void changes_are_told_as_they_were_written(void **state)
+{
+    (void)state;
+    scenario s = parse("title: T\ncontrol: {law: hybrid}\n"
+                       "script:\n  - {at: 0.1 s, set: {control.lock: force}}\n");
+    run_result result = stopped_result();
+    trace_add_event(&result.trace, (event){0.3, EVENT_CHANGE, 0, 0, 0, 7});
+    trace_add_event(&result.trace, (event){0.4, EVENT_CHANGE, 0, 0, 0, -1});
+    json_t *object = export_run(&s, &result), *events = json_object_get(object, "events");
+    json_t *change = json_array_get(events, 0);
+    assert_string_equal(json_string_value(json_object_get(change, "parameter")), "control.lock");
+    assert_string_equal(json_string_value(json_object_get(change, "value")), "force");
+    for (size_t i = 3; i < 5; i++) {
+        assert_non_null(json_array_get(events, i));
+        assert_null(json_object_get(json_array_get(events, i), "parameter"));
+    }
+    json_decref(object);
+    run_finish(&result);
+    scenario_finish(&s);
+}
+
+// What a missed expectation says, one sentence after the other.
+static void keep_sentences(void *context, const char *sentence)
+{
+    strcat(context, sentence);
+    strcat(context, "\n");
+}
+
+static void missed_expectations_say_what_is_and_what_was_expected(void **state)
+{
+    (void)state;
+    char said[1024] = "";
+    scenario s = parse("title: T\nexpect:\n"
+                       "  impacts: null\n"
+                       "  peak_force_N: {value: 2, tolerance: 0.5}\n"
+                       "  first_contact_s: {value: 0.25, tolerance: 0.01}\n");
+    run_result result = stopped_result();
+    assert_int_equal(run_check_expectations(&s, &result, keep_sentences, said), 2);
+    assert_string_equal(said,
+                        "t.yaml:3:3: impacts is 1, expected null\n"
+                        "t.yaml:4:3: peak_force_N is nothing (null), expected 2 within 0.5\n");
+    run_finish(&result);
+    scenario_finish(&s);
+}
+
 // CSV of a trace of two rows with three angles each, on the heap.
 // A run's CSV, with or without a value of a sensor that need not be there.
 static char *csv_of(int links, double film)
@@ -161,6 +209,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(object_holds_every_key),
+        cmocka_unit_test(changes_are_told_as_they_were_written),
+        cmocka_unit_test(missed_expectations_say_what_is_and_what_was_expected),
         cmocka_unit_test(csv_has_one_header_and_a_column_for_each_value),
         cmocka_unit_test(csv_has_columns_of_fitted_sensors_only),
     };

@@ -72,6 +72,24 @@ static void an_impulse_counts_over_the_window(void **state)
     finish(&r);
 }
 
+// Steps without a length, impacts without an impulse and events of another kind change nothing.
+static void what_has_no_impulse_changes_nothing(void **state)
+{
+    (void)state;
+    run_result r = empty_run();
+    assert_true(isnan(force_largest_mean(&r, 0, 0.1)));
+    add_step(&r, 0, 0.5, 1, 0, 0);
+    add_step(&r, 0.5, 0.5, 7, 0, 0);
+    add_step(&r, 0.5, 1, 1, 0, 0);
+    add_impulse(&r, 0.3, 0, false);
+    const event release = {.time = 0.4, .kind = EVENT_RELEASE, .impulse = 5, .index = -1};
+    assert_int_equal(trace_add_event(&r.trace, release), STATUS_OK);
+    check_close(force_largest_mean(&r, 0, 0.1), 1, 1e-12);
+    check_close(force_largest_mean(&r, 0.45, 0.1), 1, 1e-12);
+    check_close(force_largest_mean(&r, 0, 1), 1, 1e-12);
+    finish(&r);
+}
+
 // The force of a run at an instant, from its history [N].
 static double force_at(const run_result *r, double time)
 {
@@ -181,6 +199,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_hump_is_met_in_its_middle),
         cmocka_unit_test(an_impulse_counts_over_the_window),
+        cmocka_unit_test(what_has_no_impulse_changes_nothing),
         cmocka_unit_test(it_is_the_largest_of_many),
         cmocka_unit_test(no_window_of_random_forces_has_more),
         cmocka_unit_test(a_run_on_the_rig_has_it_and_the_bare_arm_has_not),

@@ -1,5 +1,6 @@
 // One question to all predictors: which answer, and why the others do not.
-#include "src/predict/predictors.h"
+#include "src/run/first_contact.h"
+#include "src/run/run.h"
 
 #include <math.h>
 #include <string.h>
@@ -161,6 +162,35 @@ static void who_cannot_answer_says_why(void **state)
     assert_int_equal(predict_with(PREDICTOR_ENERGY, &question).outcome, PREDICTION_KNOWS_NO_TIME);
 }
 
+// The row of a run that is asked about: none where it begins in contact, and of the printed model
+// what three bodies tell.
+static void the_row_before_contact_is_asked_about(void **state)
+{
+    (void)state;
+    const double none[1] = {0};
+    const sample on_the_wall = {.contact = 1}, struck = {.impulse = 0.1};
+    for (int i = 0; i < 2; i++) {
+        trace t;
+        trace_init(&t, 1);
+        assert_null(row_before_contact(&t));
+        assert_int_equal(trace_add_row(&t, i == 0 ? &on_the_wall : &struck, none, none), STATUS_OK);
+        assert_null(row_before_contact(&t));
+        trace_finish(&t);
+    }
+
+    scenario s = {.name = (char *)"printed"};
+    parameters_defaults(&s.parameters, ARM_PRINTED);
+    assert_int_equal(parameters_resolve(&s.parameters, NULL), STATUS_OK);
+    run_result r;
+    prediction_answer answers[PREDICTOR_COUNT];
+    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    assert_null(r.before_impact);
+    assert_non_null(predict_first_contact(&s, &r, NULL, answers));
+    assert_int_equal(answers[PREDICTOR_LINEARISED].outcome, PREDICTION_CORRECTED_ONLY);
+    assert_true(answers[PREDICTOR_ENERGY].prediction.force > 0);
+    run_finish(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -168,6 +198,7 @@ int main(void)
         cmocka_unit_test(an_arm_that_moves_away_does_not_hold),
         cmocka_unit_test(the_linearised_arm_says_what_it_lacks),
         cmocka_unit_test(commands_after_the_touch_count_while_it_lasts),
+        cmocka_unit_test(the_row_before_contact_is_asked_about),
         cmocka_unit_test(who_cannot_answer_says_why),
         cmocka_unit_test(a_state_that_is_not_finite_fails_with_a_sentence),
     };

@@ -44,6 +44,20 @@ static void a_ramp_and_a_step(void **state)
     check_close(s.maximum, 5, 0);
     check_close(s.integral, 1, 1e-15);
 
+    // a value that is missing ends the pieces on both of its sides
+    for (int missing = 0; missing < 2; missing++) {
+        trace part;
+        trace_init(&part, 1);
+        add(&part, 0, missing == 0 ? (double)NAN : 1);
+        add(&part, 1, missing == 1 ? (double)NAN : 1);
+        add(&part, 2, 1);
+        add(&part, 3, 1);
+        s = trace_statistics(&part, force, 0, 3);
+        check_close(s.duration, missing == 0 ? 2 : 1, 0);
+        check_close(s.mean, 1, 1e-15);
+        trace_finish(&part);
+    }
+
     // of an instant, beyond the run, and of what has no value
     s = trace_statistics(&t, force, 1.5, 1.5);
     check_close(s.mean, 5, 0);
