@@ -435,9 +435,47 @@ static void an_arm_is_folded_where_a_flat_wall_moves_no_link(void **state)
     assert_false(chain_is_folded(&rod, (double[]){0.1 + M_PI / 2}));
 }
 
+// Nodes lie a link apart from one another, each in the direction of its link; and the strain is the
+// work that it takes to bend the joints.
+static void nodes_follow_the_links(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) {
+        for (int links = 1 + (kind == 1); links <= 8; links++) {
+            arm a = kind == 1 ? make_uneven_arm(links, "point", links % 2)
+                              : make_arm(links, kind ? "spring" : "rigid", "plane");
+            double q[LARGEST], w[LARGEST], x = 0, y = 0, before_x, before_y;
+            some_state(&a, links, q, w);
+            chain_node(&a, q, 0, &x, &y);
+            check_close(fabs(x) + fabs(y), 0, 0);
+            for (int k = 0; k < links; k++) {
+                before_x = x, before_y = y;
+                chain_node(&a, q, k + 1, &x, &y);
+                check_close(x - before_x, beam.length[k] * cos(q[a.first + k]), 1e-15);
+                check_close(y - before_y, beam.length[k] * sin(q[a.first + k]), 1e-15);
+            }
+
+            // a push on the tip turns it the way that it pushes, by the force over the compliance
+            double response[LARGEST], moved[LARGEST], ahead_x, ahead_y;
+            chain_link work[LARGEST];
+            chain_tip_response(&a, work, q, response);
+            const int last = a.dof - 1;
+            for (int k = 0; k < a.dof; k++) {
+                moved[k] = q[k] + 1e-6 * response[k];
+            }
+            chain_node(&a, moved, links, &ahead_x, &ahead_y);
+            const double across = -(ahead_x - x) * sin(q[last]) + (ahead_y - y) * cos(q[last]);
+
+            // what the push gives in energy is half its way
+            check_relative(across * 1e6 / 2, chain_kinetic_energy(&a, q, response), 1e-4);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nodes_follow_the_links),
         cmocka_unit_test(a_mass_at_the_tip_adds_its_own_energy),
         cmocka_unit_test(satisfies_the_lagrangian),
         cmocka_unit_test(satisfies_it_with_any_links_and_joints),

@@ -143,12 +143,106 @@ static void the_speed_limit_law_keeps_to_a_force(void **state)
     }
 }
 
+// What is told is what the predictor is asked with, and the bend between samples is that of its
+// equation, whatever the hub does.
+static void the_bend_obeys_its_equation(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        const bool spring = kind % 2;
+        parameters p =
+            rig_parameters(SETTINGS("control.law=open-loop", "control.force_limit=1",
+                                    "belief.torque_factor=1.1", "belief.friction_factor=0.7"));
+        const controller_setup setup = {.stiction = 0.03,
+                                        .hub_inertia = 6e-3,
+                                        .link_mass = 0.19,
+                                        .link_length = 0.6,
+                                        .link_inertia = 5e-3,
+                                        .k2 = 6,
+                                        .hub_spring = spring ? 80 : HUGE_VAL,
+                                        .damping_ratio = kind > 1 ? 0.02 : 0};
+        touch_forecast t = {0};
+        touch_forecast_tell(&t, &p, &setup);
+        const double m33 = 5e-3 + 0.19 * 0.36 / 4, m32 = 0.19 * 0.36 / 2;
+        check_relative(t.frequency * t.frequency, 6 / m33, 1e-14);
+        check_relative(t.lag, 1 + m32 / m33, 1e-14);
+        check_close(t.decay, setup.damping_ratio * t.frequency, 1e-14);
+        const arm_parameters *a = &t.arm.arm;
+        assert_int_equal(a->model, ARM_CORRECTED);
+        assert_int_equal(a->links, 2);
+        assert_int_equal(a->hub_joint, spring ? HUB_SPRING : HUB_RIGID);
+        check_close(a->k1, spring ? 80 : p.arm.k1, 0);
+        check_close(a->k2, 6, 0);
+        check_close(a->mass, 0.38, 1e-16);
+        check_close(a->link_inertia, 5e-3, 0);
+        check_close(a->hub_inertia, 6e-3, 0);
+        check_relative(t.arm.motor.torque_constant, 1.1 * p.motor.torque_constant, 1e-15);
+        check_relative(t.arm.motor.viscous_friction, 0.7 * p.motor.viscous_friction, 1e-15);
+        check_close(t.arm.motor.stiction, 0.03, 0);
+
+        // samples at uneven times; between them many small steps of the equation
+        double time = 0.3, bend = 0, rate = 0, hub = 0.5, before = hub;
+        t.bend = 1;
+        t.bend_rate = 1; // of another flight
+        for (int k = 0; k < 40; k++) {
+            const controller_input in = {.time = time,
+                                         .encoder = -0.1 + 0.001 * k,
+                                         .tachometer = hub,
+                                         .force = k % 3 == 0 ? p.control.contact_threshold : 0,
+                                         .voltage = 0.5 + 0.01 * k};
+            const double told = touch_forecast_sample(&t, &in);
+            check_close(t.bend, bend, kind > 1 ? 1e-14 : 1e-6);
+            check_close(t.bend_rate, rate, kind > 1 ? 1e-12 : 1e-4);
+            assert_true(t.flies);
+
+            // the predictor itself, asked for the same state
+            prediction touch;
+            parameters asked = t.arm;
+            asked.motor.voltage = in.voltage;
+            const three_body_state now = {.angle = {in.encoder, in.encoder, in.encoder + t.bend},
+                                          .velocity = {hub, hub, hub + t.bend_rate}};
+            assert_int_equal(predict_impact_dynamics(&asked, &now, &touch, NULL), STATUS_OK);
+            check_close(told, touch.impulse > 0 && touch.force > 0 ? touch.force : 0, 0);
+
+            // a second look at the same instant changes nothing
+            assert_true(touch_forecast_sample(&t, &in) == told);
+            const double h = 0.003 + 0.001 * (k % 4);
+            before = hub;
+            hub = 0.5 + 0.3 * sin(0.4 * k);
+            for (int step = 0; step < 4000 && kind < 2; step++) {
+                const double s = h / 4000;
+                rate += s * (-t.lag * (hub - before) / h - t.frequency * t.frequency * bend);
+                bend += s * rate;
+            }
+
+            // damping shrinks the turn about the bend that the acceleration holds
+            if (kind > 1) {
+                const double f = t.frequency, held = -t.lag * (hub - before) / (h * f * f);
+                const double left = exp(-t.decay * h), away = bend - held, turn = rate / f;
+                bend = held + left * (away * cos(f * h) + turn * sin(f * h));
+                rate = f * left * (turn * cos(f * h) - away * sin(f * h));
+            }
+            time += h;
+        }
+
+        // above the threshold it touches, and the next flight begins straight
+        const controller_input touching = {.time = time,
+                                           .force = 1.001 * p.control.contact_threshold};
+        assert_true(isnan(touch_forecast_sample(&t, &touching)));
+        assert_false(t.flies);
+        const controller_input free_again = {.time = time + 0.01, .tachometer = 0.4};
+        touch_forecast_sample(&t, &free_again);
+        check_close(fabs(t.bend) + fabs(t.bend_rate), 0, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(readings_of_the_hub_say_what_the_state_says),
         cmocka_unit_test(there_is_none_in_contact_or_without_a_limit),
         cmocka_unit_test(a_receding_tip_predicts_nothing),
+        cmocka_unit_test(the_bend_obeys_its_equation),
         cmocka_unit_test(the_speed_limit_law_keeps_to_a_force),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
