@@ -398,9 +398,99 @@ static void negative_forces_change_no_peak(void **state)
     free(free_sign);
 }
 
+// Every step under every combination of switches: Newmark's relations between both ends, the
+// equations at its end, what is re-evaluated there, and what the next step starts from.
+static void every_step_solves_what_its_switches_say(void **state)
+{
+    (void)state;
+    int constrained = 0, released = 0, steps = 0, unsolved = 0;
+    for (unsigned switches = 0; switches < 96; switches++) {
+        parameters p = printed_parameters_of(switches % 2 ? 2 : 5, 0.5);
+        p.printed.spring_counted_twice = switches & 1;
+        p.printed.force_at_link_end = switches & 2;
+        p.printed.feed_newmark_acceleration = switches & 4;
+        p.printed.clamp_force = switches & 8;
+        p.printed.force_after_release = switches & 16;
+        p.printed.reevaluation = (int)(switches / 32);
+        p.printed.newton_iterations = 40;
+        p.method.beta = 0.3025;
+        p.method.gamma = 0.6;
+        p.motor.stiction = 0; // whose jump Newton may go back and forth over
+        const double h = p.method.step, beta = p.method.beta, gamma = p.method.gamma;
+        printed_motion m;
+        fault f;
+        printed_motion_start(&m, &p);
+        double fed[3] = {0}; // as listed, from zero
+        for (int k = 0; k < 500; k++) {
+            assert_false(printed_motion_ended(&m));
+            const printed_row from = m.row;
+            const double force_before = m.force;
+            if (printed_motion_step(&m, &f) != STATUS_OK) {
+                break; // some combinations overflow
+            }
+            const printed_row *to = &m.row;
+            check_close(to->time, (k + 1) * h, 1e-15);
+            for (int i = 0; i < 3; i++) {
+                const double next = to->newmark_acceleration[i];
+                const double size = 1e-9 * (1 + fabs(next) + fabs(fed[i]));
+                check_close(to->angle[i],
+                            from.angle[i] + h * from.velocity[i] +
+                                h * h * ((0.5 - beta) * fed[i] + beta * next),
+                            size * h);
+                check_close(to->velocity[i],
+                            from.velocity[i] + h * ((1 - gamma) * fed[i] + gamma * next), size);
+            }
+
+            // the equations to Newton's tolerance; without contact the wall is not passed unless
+            // the force of a release is still there
+            double residual[4], alpha[3] = {0}, force;
+            printed_residual(&m.arm, to->angle, to->velocity, to->newmark_acceleration,
+                             m.newmark_force, residual);
+            double largest = 0;
+            for (int i = 0; i < (to->contact ? 4 : 3); i++) {
+                largest = fmax(largest, fabs(residual[i]));
+            }
+            unsolved += largest > 2e-3 * (1 + fabs(m.newmark_force));
+            steps++;
+            assert_true(to->contact || m.newmark_force == 0);
+            check_close(to->gap, -printed_penetration(&m.arm, to->angle), 0);
+            constrained += to->contact;
+            released += from.contact && !to->contact;
+            assert_true(!from.contact || to->contact == (force_before > 1e-6));
+
+            // accelerations and force of that instant
+            const bool wanted = p.printed.force_after_release
+                                    ? force_before > 0 || m.contact_steps == 1
+                                    : to->contact;
+            if (!wanted) {
+                check_close(to->force, 0, 0);
+                assert_memory_equal(to->acceleration, to->newmark_acceleration, sizeof alpha);
+            } else if (p.printed.reevaluation == REEVALUATE_NONE) {
+                const double own = m.newmark_force;
+                check_close(to->force, p.printed.clamp_force ? fmax(own, 0) : own, 0);
+                assert_memory_equal(to->acceleration, to->newmark_acceleration, sizeof alpha);
+            } else {
+                assert_true(printed_reevaluate(&m.arm, to->angle, to->velocity, alpha, &force));
+                check_close(to->force, p.printed.clamp_force ? fmax(force, 0) : force, 0);
+                assert_memory_equal(to->acceleration, alpha, sizeof alpha);
+            }
+            check_close(m.force, to->force, 0);
+            memcpy(fed,
+                   p.printed.feed_newmark_acceleration ? to->newmark_acceleration
+                                                       : to->acceleration,
+                   sizeof fed);
+        }
+    }
+    assert_true(constrained > 1000 && released > 50);
+
+    // Newton's method goes back and forth in a few of them
+    assert_true(unsolved < steps / 10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_step_solves_what_its_switches_say),
         cmocka_unit_test(rows_stand_on_the_time_grid_from_the_initial_state),
         cmocka_unit_test(first_contact_comes_when_the_thesis_says),
         cmocka_unit_test(contact_keeps_the_constraint_and_never_pulls),

@@ -183,6 +183,75 @@ static void test_setpoints_are_steps_ramps_and_waves(void **state)
     }
 }
 
+// The force that is wanted at an instant: as far along the ramp as its rate allows, up or down, the
+// wave upon it, and never below zero.
+static void test_the_wanted_force_is_its_ramp_and_its_wave(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        const double rate = kind & 1 ? 2 : 0, amplitude = kind & 2 ? 0.4 : 0;
+        parameters p = rig_parameters(
+            SETTINGS("control.law=hybrid", "control.force=1", "control.force_frequency=3"));
+        p.control.force_rate = rate;
+        p.control.force_amplitude = amplitude;
+        rig *r;
+        fault f = {0};
+        assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+        double ramp = 1;
+        check_close(r->wanted_force, 1, 0);
+        for (int k = 0; k < 300; k++) {
+            const double time = 0.01 * k, before = 0.01 * (k - 1);
+            if (k == 50 || k == 150) {
+                p.control.force = k == 50 ? 2.5 : 0.2;
+                assert_int_equal(rig_retune(r, &p, time, &f), STATUS_OK);
+            }
+            const double way = p.control.force - ramp, most = rate * (k > 0 ? time - before : 0);
+            ramp = rate == 0 || fabs(way) <= most ? p.control.force
+                   : way > 0                      ? ramp + most
+                                                  : ramp - most;
+            assert_int_equal(rig_follow_setpoint(r, time, &f), STATUS_OK);
+            check_close(r->ramp, ramp, 1e-12);
+            check_close(r->ramp_time, time, 0);
+            const double wave = amplitude * sin(2 * M_PI * 3 * time);
+            check_close(r->wanted_force, fmax(ramp + wave, 0), 1e-12);
+        }
+        rig_destroy(r);
+    }
+}
+
+// What a change of the rig's own numbers makes of delay, jitter, limits and periods.
+static void test_delays_and_limits_follow_a_change(void **state)
+{
+    (void)state;
+    parameters p = rig_parameters(SETTINGS("control.law=hybrid", "control.delay=1e-3",
+                                           "control.delay_periods=0.25", "control.rate=200"));
+    rig *r;
+    fault f = {0};
+    assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+    check_close(r->delay, 1e-3 + 0.25 / 200, 1e-15);
+    check_close(r->period, 5e-3, 1e-17);
+    p.control.delay = 2e-3;
+    p.control.jitter = 1e-4;
+    p.motor.voltage_limit = 3;
+    assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+    check_close(r->delay, 2e-3 + 0.25 / 200, 1e-15);
+    check_close(r->jitter, 1e-4, 0);
+    check_close(r->voltage_limit, 3, 0);
+    check_close(r->dac.range, 3, 0);
+    p.control.rate = 100;
+    p.control.delay_periods = 0.5;
+    assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+    check_close(r->delay, 2e-3 + 0.5 / 100, 1e-15);
+    check_close(r->period, 1e-2, 1e-17);
+
+    // sensors alone do not ask the law
+    p.sensor.dac_bits = 8;
+    assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+    check_relative(r->dac.step, 6.0 / 256, 1e-14);
+    check_close(r->told.control.rate, 100, 0);
+    rig_destroy(r);
+}
+
 static void test_a_law_that_plans_at_its_start_takes_no_dated_change(void **state)
 {
     (void)state;
@@ -243,6 +312,8 @@ static void what_nobody_took_at_the_start_can_change(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_wanted_force_is_its_ramp_and_its_wave),
+        cmocka_unit_test(test_delays_and_limits_follow_a_change),
         cmocka_unit_test(what_nobody_took_at_the_start_can_change),
         cmocka_unit_test(test_a_gain_holds_from_the_next_sample_on),
         cmocka_unit_test(test_another_rate_samples_at_its_own_period),
