@@ -67,7 +67,7 @@ chain_outcome chain_outcome_of(const chain_start *start)
     o.motor_work = m->state[SLOT_MOTOR_WORK];
     o.put_in += m->start_energy;
     o.peak = m->pulse_peak;
-    o.peak_time = m->pulse_peak_time;
+    o.peak_time = m->dof > 1 ? m->pulse_peak_time : 0;
     const double *quadrature = state_quadratures(m, m->state);
     const double lost[] = {m->state[SLOT_FRICTION_LOSS], m->state[SLOT_IMPACT_LOSS],
                            quadrature[QUADRATURE_VISCOUS], quadrature[QUADRATURE_DAMPING],

@@ -15,7 +15,8 @@ typedef struct chain_outcome {
     double first_impulse;    // [N s]
     double motor_work;       // [J]
     double residual, put_in; // the ledger's largest; energy and work that went in [J]
-    double peak, peak_time;  // of the force in contact [N], [s]
+    double peak, peak_time;  // of the force in contact; when, of an arm that it does not hold still
+                             // [N], [s]
     double lost[5]; // to friction, impacts, viscous friction, structural damping, the wall [J]
     int impacts, samples; // samples: of momentum
     // that the wall took until instants REFERENCE_INTERVAL apart, from first contact on [N s]

@@ -4,9 +4,10 @@
 //     random_chains [COUNT [FIRST [LEAST [MOST [KIND]]]]]     default: 200 0 6 20 plain
 //
 // LEAST to MOST links. KIND: `plain`, equal bare links; `uneven`, links and joints given one by
-// one, or a mass at the tip; `modes`, the straight chain's modes compared with power series alone,
-// which costs a hundredth of the formula, for arms that modes are used for: not those that bounce
-// undamped.
+// one, or a mass at the tip; `loaded`, joints that stiffen, damping by mode, air; `electric`, a
+// motor with inductance or a limit of its current; `modes`, the straight chain's modes compared
+// with power series alone, which costs a hundredth of the formula, for arms that modes are used
+// for: not those that bounce undamped.
 //
 // Run i is made of its own number. Compared are first contact (1 us), its impulse (1e-4), the
 // momentum after 1 and up to 50 ms (1e-3) and what a 1 ms sensor reads (5e-3, root mean square); of
@@ -31,8 +32,15 @@
 enum { MOST_SETTINGS = 16 };
 
 // What is compared.
-typedef enum chain_kind { KIND_PLAIN, KIND_MODES, KIND_UNEVEN, KINDS } chain_kind;
-static const char *const kind_names[KINDS] = {"plain", "modes", "uneven"};
+typedef enum chain_kind {
+    KIND_PLAIN,
+    KIND_MODES,
+    KIND_UNEVEN,
+    KIND_LOADED,
+    KIND_ELECTRIC,
+    KINDS
+} chain_kind;
+static const char *const kind_names[KINDS] = {"plain", "modes", "uneven", "loaded", "electric"};
 
 // A random arm in front of its wall.
 typedef struct random_chain {
@@ -133,6 +141,40 @@ static void make_uneven(random_chain *c, random_generator *g, int links, bool ri
     }
 }
 
+// Joints that stiffen, damping by mode, air, a mass at the tip: one or two of them.
+static void make_loaded(random_chain *c, random_generator *g, int links, bool rigid, double k2)
+{
+    const int modes = links - (rigid ? 1 : 0);
+    const int kind = (int)random_below(g, 4);
+    set(c, "arm.k2=%.17g", k2);
+    if (kind == 0 || kind == 3) {
+        set(c, "arm.stiffening=%.17g", between(g, 0.1, 30));
+    }
+    if ((kind == 1 || kind == 3) && modes > 0) {
+        set(c, "arm.damping_ratio=0");
+        set_list(c, g, "arm.modal_ratios", modes < 4 ? modes : 4, 0.01, 8);
+    }
+    if (kind == 2 || random_uniform(g) < 0.3) {
+        set(c, "arm.air_drag=%.17g", between(g, 1e-2, 5));
+    }
+    if (random_uniform(g) < 0.3) {
+        set(c, "arm.tip_mass=%.17g", between(g, 1e-3, 0.5));
+    }
+}
+
+// A motor whose current follows through an inductance, or that has a limit, or both.
+static void make_electric(random_chain *c, random_generator *g, double k2)
+{
+    const int kind = (int)random_below(g, 3);
+    set(c, "arm.k2=%.17g", k2);
+    if (kind != 0) {
+        set(c, "motor.inductance=%.17g", between(g, 1e-4, 0.1));
+    }
+    if (kind != 1) {
+        set(c, "motor.current_limit=%.17g", between(g, 0.1, 5));
+    }
+}
+
 static void make_chain(random_chain *c, int number, int least, int most, chain_kind kind)
 {
     random_generator g;
@@ -158,6 +200,10 @@ static void make_chain(random_chain *c, int number, int least, int most, chain_k
     c->angle = 0.1 - c->velocity * between(&g, 2e-3, 2e-2);
     if (kind == KIND_UNEVEN) {
         make_uneven(c, &g, links, !beam, k2);
+    } else if (kind == KIND_LOADED) {
+        make_loaded(c, &g, links, rigid, k2);
+    } else if (kind == KIND_ELECTRIC) {
+        make_electric(c, &g, k2);
     } else {
         set(c, "arm.k2=%.17g", k2);
     }

@@ -151,7 +151,7 @@ static status check_damping(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// What only the explicit steps of the event method take.
+// What only the event method takes.
 static status check_beam_method(const parameters *p, fault *f)
 {
     const int special[] = {PARAMETER_INDEX(arm.joint_stiffness), PARAMETER_INDEX(arm.link_lengths),

@@ -170,11 +170,9 @@ LOOP void loop_products(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_torques(chain_rows *r, const chain_order *o)
+LOOP void loop_bends(chain_rows *r, const chain_order *o)
 {
     const int last = r->blocks - 1;
-
-    // of the joints beyond
     for (int b = 0; b <= last; b++) {
         const block angle = TERM(r->angle, o->n, b), rate = TERM(r->rate, o->n, b);
         const block angle_beyond =
@@ -185,22 +183,17 @@ LOOP void loop_torques(chain_rows *r, const chain_order *o)
         TERM(r->bend_rate, o->n, b) = turn;
         AT(r->torque, b) = AT(r->stiffness, b) * (angle_beyond - angle) + AT(r->damping, b) * turn;
     }
-
-    // what each link feels of both of its own
-    block inner = lane_before(&AT(r->torque, last), -o->root);
-    for (int b = 0; b <= last; b++) {
-        const block outer = AT(r->torque, b);
-        AT(r->moment, b) = (outer - inner) - AT(r->moment, b);
-        inner = outer;
-    }
 }
 
 LOOP void loop_prepare(chain_rows *r, const chain_order *o)
 {
     const block turns = all(o->n + 1);
+    block inner = lane_before(&AT(r->torque, r->blocks - 1), -o->root);
     for (int b = 0; b < r->blocks; b++) {
         const block x = -turns * AT(r->known_s, b), y = turns * AT(r->known_c, b);
-        const block moment = AT(r->moment, b) - AT(r->back_x, b) * x - AT(r->back_y, b) * y;
+        const block outer = AT(r->torque, b), known = (outer - inner) - AT(r->moment, b);
+        const block moment = known - AT(r->back_x, b) * x - AT(r->back_y, b) * y;
+        inner = outer;
         const block turn = moment * AT(r->inv_d, b);
         AT(r->rho_x, b) = x;
         AT(r->rho_y, b) = y;
@@ -307,9 +300,9 @@ LOOP void loop_hand(chain_rows *r, const chain_order *o)
     {                                                                                              \
         loop_products(r, o);                                                                       \
     }                                                                                              \
-    target_ static void torques_##name(chain_rows *r, const chain_order *o)                        \
+    target_ static void bends_##name(chain_rows *r, const chain_order *o)                          \
     {                                                                                              \
-        loop_torques(r, o);                                                                        \
+        loop_bends(r, o);                                                                          \
     }                                                                                              \
     target_ static void prepare_##name(chain_rows *r, const chain_order *o)                        \
     {                                                                                              \
@@ -327,7 +320,7 @@ LOOP void loop_hand(chain_rows *r, const chain_order *o)
     {                                                                                              \
         loop_hand(r, o);                                                                           \
     }                                                                                              \
-    static const chain_loops loops_##name = {join_##name,    products_##name, torques_##name,      \
+    static const chain_loops loops_##name = {join_##name,    products_##name, bends_##name,        \
                                              prepare_##name, sweep_##name,    finish_##name,       \
                                              hand_##name}
 

@@ -20,15 +20,18 @@ enum {
 // Arrays by link: [chain_place], and by coefficient and link: [chain_term].
 typedef struct chain_rows {
     int blocks;
-    double *angle, *rate;      // [rad], [rad]; coefficients to order + 1 and order
-    double *cosine, *sine;     // of the angle; to order + 1
-    double *gx, *gy;           // G, to order - 1 [kg m2]
-    double *bend_rate;         // of the joint beyond each link [rad]; to order - 1
-    double *start_c, *start_s; // c and s at the start
-    double *length, *half;     // of the link, and half of it [m]
-    double *stiffness;         // of the joint beyond it, times L^2; none beyond the last [kg m2]
-    double *damping;           // of that joint, times L [kg m2]
-    double *torque;            // of that joint, times L^2
+    double *angle, *rate;       // [rad], [rad]; coefficients to order + 1 and order
+    double *cosine, *sine;      // of the angle; to order + 1
+    double *gx, *gy;            // G, to order - 1 [kg m2]
+    double *bend_rate;          // of the joint beyond each link [rad]; to order - 1
+    double *bend, *bend_square; // of that joint, where joints stiffen; to order - 1
+    double *air_x, *air_y;      // velocity of the link's middle, where air drags [m]; to order - 1
+    double *start_c, *start_s;  // c and s at the start
+    double *length, *half;      // of the link, and half of it [m]
+    double *stiffness;          // of the joint beyond it, times L^2; none beyond the last [kg m2]
+    double *damping;            // of that joint, times L [kg m2]
+    double *torque;             // of that joint, times L^2
+    double *air, *air_turning;  // drag per velocity, times L, and per rate [kg], [kg m2]
 
     // the stride's matrices
     double *ux, *uy, *inv_d;          // of chain.h
@@ -73,9 +76,8 @@ typedef struct chain_loops {
     // order by order: sums over i = 1..n+1 of s_i w_(n+1-i) and c_i w_(n+1-i) into known_s and
     // known_c, over i = 1..n of c_i Gy_(n-i) - s_i Gx_(n-i) into moment
     void (*products)(chain_rows *r, const chain_order *o);
-    // moment: torques of joints and hub less those sums
-    void (*torques)(chain_rows *r, const chain_order *o);
-    // rho, the moment less what it costs, what goes into Q
+    void (*bends)(chain_rows *r, const chain_order *o); // rates of joints and their torques
+    // rho; moment: torques of joints and hub less those sums and what rho costs; what goes into Q
     void (*prepare)(chain_rows *r, const chain_order *o);
     // Q of all links, accelerations of links whose base rests, those of the bases
     void (*sweep)(chain_rows *r);

@@ -42,12 +42,20 @@ typedef struct series_square {
     double term[2 * SERIES_TERMS];
 } series_square;
 
+// What a drive's current follows (motor.h).
+typedef enum chain_drive {
+    DRIVE_FOLLOWS, // the voltage at once
+    DRIVE_FLOWS,   // through the inductance
+    DRIVE_HELD     // nothing: it is at its limit
+} chain_drive;
+
 typedef struct chain_series {
     int links, order; // order: of the velocities
     contact_state mode;
     double length;                  // L [s]
     double allowed;                 // how far the series are good [s]
     bool damped;                    // the springs lose energy
+    bool pinned;                    // the wall alone holds the arm still: friction has no say
     chain_rows rows;                // the links
     size_t first_place, last_place; // of first and last link in an array by link
     double *unit_x, *unit_y;        // by link: A of a unit contact force
@@ -60,21 +68,39 @@ typedef struct chain_series {
     series_terms force;                   // in contact, times L^2 [N s2]
     series_terms hold;                    // friction torque on a stuck hub, times L^2 [N m s2]
     series_square hub_square;             // of the hub's w
-    series_square dissipation;            // power lost in the springs, times L^2 [J s]
+    series_square dissipation;            // power lost in the springs and air, times L^2 [J s2]
     int square_terms;                     // of these two
     series_terms tip_x, tip_y;            // of the tip [m]
     series_terms reach_x, reach_y, along; // from the last link's base to a point wall, and along it
+
+    // of a root that stiffens, and of damping by mode
+    series_terms root_bend, root_square;          // [rad], [rad2]
+    series_terms mode_rate[PARAMETER_MODES_MOST]; // g'(bend rates)
+
+    // of an electric drive
+    chain_drive drive;
+    int limit_side;            // of the limit that the current is nearer to or at: 1 or -1
+    series_terms current;      // [A]
+    series_terms to_limit;     // to it, or of a held one what the voltage would drive beyond [A]
+    series_terms to_far_limit; // [A]
+    series_square motor_work;  // power of the torque, times L [J]
 } chain_series;
 
 // Bytes that the series of an arm want, and its arrays laid into so many behind it.
 size_t chain_series_size(const arm *a);
 void chain_series_place(chain_series *s, const arm *a);
 
-// How far a stride may go by the arm's rates and velocities w[dof] [s].
-double chain_series_reach(const arm *a, const double *w);
+// How far a stride may go by the arm's rates and its angles and velocities q[dof], w[dof] [s].
+double chain_series_reach(const arm *a, const double *q, const double *w);
+
+// Says what the current of an electric drive follows in the stride to come, from what it is where
+// it is a state of its own [A], and the hub's velocity and acceleration [rad/s], [rad/s2].
+void chain_series_choose_drive(chain_series *s, const arm *a, double current, double w,
+                               double acceleration);
 
 // Computes the series of an arm with series_engine_suits from q[dof] and w[dof] [rad/s] in a
-// contact state, for a stride of `length` up to chain_series_reach [s]. s->allowed is then that
+// contact state, for a stride of `length` up to chain_series_reach [s]; of an electric drive after
+// chain_series_choose_drive, with its current in `mode`. s->allowed is then that
 // length, or less where the last terms of the velocities are not below `last_terms` of the largest
 // velocity.
 void chain_series_compute(chain_series *s, const arm *a, contact_state mode, const double *q,

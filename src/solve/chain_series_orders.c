@@ -20,7 +20,7 @@ enum { LEAST_ORDER = 8, MOST_SHORTENINGS = 400, CACHE_LINE = 64 };
 
 // --- storage ------------------------------------------------------------------------------------
 
-enum { ROWS_OF_TERMS = 7, SINGLE_ROWS = 63 };
+enum { ROWS_OF_TERMS = 11, SINGLE_ROWS = 65 };
 
 static int blocks_of(const arm *a)
 {
@@ -47,22 +47,23 @@ void chain_series_place(chain_series *s, const arm *a)
     s->last_place = chain_place(r, a->links - 1);
 
     // by coefficient and link
-    double **const terms[ROWS_OF_TERMS] = {&r->angle, &r->rate, &r->cosine,   &r->sine,
-                                           &r->gx,    &r->gy,   &r->bend_rate};
+    double **const terms[ROWS_OF_TERMS] = {&r->angle,       &r->rate,  &r->cosine,    &r->sine,
+                                           &r->gx,          &r->gy,    &r->bend_rate, &r->bend,
+                                           &r->bend_square, &r->air_x, &r->air_y};
     for (int i = 0; i < ROWS_OF_TERMS; i++) {
         *terms[i] = storage;
         storage += SERIES_TERMS * row;
     }
 
     // by link
-    double **const rows[] = {&r->start_c, &r->start_s,      &r->length,  &r->half,    &r->stiffness,
-                             &r->damping, &r->torque,       &r->ux,      &r->uy,      &r->inv_d,
-                             &r->vx,      &r->vy,           &r->pxx,     &r->pxy,     &r->pyy,
-                             &r->back_x,  &r->back_y,       &r->rho_xx,  &r->rho_xy,  &r->rho_yy,
-                             &r->unit,    &r->unit_fx,      &r->unit_fy, &r->known_c, &r->known_s,
-                             &r->moment,  &r->rho_x,        &r->rho_y,   &r->add_x,   &r->add_y,
-                             &r->free,    &r->acceleration, &r->qx,      &r->qy,      &r->base_x,
-                             &r->base_y,  &s->unit_x,       &s->unit_y};
+    double **const rows[] = {
+        &r->start_c, &r->start_s,     &r->length,  &r->half,         &r->stiffness, &r->damping,
+        &r->air,     &r->air_turning, &r->torque,  &r->ux,           &r->uy,        &r->inv_d,
+        &r->vx,      &r->vy,          &r->pxx,     &r->pxy,          &r->pyy,       &r->back_x,
+        &r->back_y,  &r->rho_xx,      &r->rho_xy,  &r->rho_yy,       &r->unit,      &r->unit_fx,
+        &r->unit_fy, &r->known_c,     &r->known_s, &r->moment,       &r->rho_x,     &r->rho_y,
+        &r->add_x,   &r->add_y,       &r->free,    &r->acceleration, &r->qx,        &r->qy,
+        &r->base_x,  &r->base_y,      &s->unit_x,  &s->unit_y};
     enum { ROWS = sizeof rows / sizeof rows[0] };
     _Static_assert(ROWS + 16 + 3 * (SERIES_TOGETHER - 1) == SINGLE_ROWS, "rows by link");
     for (int i = 0; i < ROWS; i++) {
@@ -86,7 +87,19 @@ void chain_series_place(chain_series *s, const arm *a)
 
 // --- the stride's start -------------------------------------------------------------------------
 
-double chain_series_reach(const arm *a, const double *w)
+// How many times faster the arm vibrates for its joints' bends: they stiffen by 3 s b^2, of a root
+// by four times that, which may grow a little within a stride.
+static double stiffened(const arm *a, const double *q)
+{
+    double most = 0;
+    for (int i = 1; i < a->dof && a->stiffening > 0; i++) {
+        const double bend = (i == a->first ? 2 : 1) * (q[i] - q[i - 1]);
+        most = fmax(most, bend * bend);
+    }
+    return a->stiffening > 0 ? sqrt(1 + 4.5 * a->stiffening * most) : 1;
+}
+
+double chain_series_reach(const arm *a, const double *q, const double *w)
 {
     double turning = 0, last = 0;
     for (int i = 0; i < a->dof; i++) {
@@ -95,7 +108,8 @@ double chain_series_reach(const arm *a, const double *w)
         turning = bending > turning ? bending : turning;
         last = w[i];
     }
-    const double rate = fmax(fmax(a->highest_frequency, a->fastest_decay), TURNING * turning);
+    const double vibrating = a->highest_frequency * stiffened(a, q);
+    const double rate = fmax(fmax(vibrating, a->fastest_decay), TURNING * turning);
     return REACH / fmax(rate, 1e-3);
 }
 
@@ -113,19 +127,26 @@ static int order_for(double turn)
 
 // --- one order after the other ------------------------------------------------------------------
 
-// Torque of the hub on the first link, and, where it is a body of its own, on itself into *hub.
-static double root_torque(chain_series *s, const arm *a, int n, double *hub)
+// Torque of the hub on the first link, whose joint has one beyond its linear one, and, where it is
+// a body of its own, on itself into *hub.
+static double root_torque(chain_series *s, const arm *a, int n, double beyond, double *hub)
 {
     const double t = s->length, rate = s->rows.rate[chain_term(n, s->first_place)];
-    const double drive =
-        n == 0 ? t * t * (a->motor.torque - s->mode.friction * a->motor.stiction) : 0;
+    double drive = 0;
+    if (n == 0) {
+        const double friction = s->pinned ? 0 : s->mode.friction * a->motor.stiction;
+        drive = t * t * (a->motor.torque - friction);
+    }
+    if (a->motor.electric) {
+        drive += chain_series_drive_torque(s, a, n);
+    }
     if (!a->hub_spring) {
         return drive - t * a->motor.damping * rate;
     }
     const double angle = s->rows.angle[chain_term(n, s->first_place)];
     const double turn = rate - s->hub_rate.term[n];
     const double spring = t * t * arm_joint_stiffness(a, 0) * (angle - s->hub_angle.term[n]) +
-                          t * arm_joint_damping(a, 0) * turn;
+                          t * arm_joint_damping(a, 0) * turn + beyond;
     s->root_rate.term[n] = turn;
     *hub = drive + spring - t * a->motor.damping * s->hub_rate.term[n];
     return -spring;
@@ -213,6 +234,10 @@ static void force_at_hub(chain_series *s, const arm *a, const chain_order *o, co
     const double half = arm_link_mass(a, 0) / 2;
     r->qx[first] = r->qx[second] + half * (r->vx[first] * turn + l * r->rho_x[first]);
     r->qy[first] = r->qy[second] + half * (r->vy[first] * turn + l * r->rho_y[first]);
+    if (a->air_drag > 0) {
+        r->qx[first] += r->air[first] * r->air_x[chain_term(o->n, first)];
+        r->qy[first] += r->air[first] * r->air_y[chain_term(o->n, first)];
+    }
     if (s->links == 1 && s->mode.contact && a->wall.kind == WALL_POINT) {
         r->qx[first] += push[0] - o->force * r->start_s[first];
         r->qy[first] += push[1] + o->force * r->start_c[first];
@@ -226,19 +251,26 @@ static void next_order(chain_series *s, const arm *a, const chain_loops *loops, 
     const bool contact = s->mode.contact, point = contact && a->wall.kind == WALL_POINT;
     const size_t first = s->first_place, end = s->last_place;
     double hub = 0, push[2] = {0};
-    chain_order o = {.n = n, .root = root_torque(s, a, n, &hub)};
+    chain_order o = {.n = n};
 
     // what is known
     loops->products(r, &o);
-    loops->torques(r, &o);
-    const double on_first = r->moment[first];
+    loops->bends(r, &o);
+    o.root = root_torque(s, a, n, chain_series_load_joints(s, a, n), &hub);
+    const double on_first = r->torque[first] + o.root - r->moment[first];
+    if (a->air_drag > 0) {
+        chain_series_drag(s, n);
+    }
     if (point) {
         chain_series_reach_point(s, a, n + 1);
-        r->moment[end] -= earlier_force(s, n, push);
+        r->moment[end] += earlier_force(s, n, push);
     }
     loops->prepare(r, &o);
     r->add_x[end] += push[0];
     r->add_y[end] += push[1];
+    if (a->air_drag > 0) {
+        chain_series_add_drag(s, n);
+    }
 
     // the sweeps, and the force
     loops->sweep(r);
@@ -331,8 +363,9 @@ void chain_series_compute(chain_series *s, const arm *a, contact_state mode, con
     chain_rows *r = &s->rows;
     const size_t size = (size_t)(r->blocks * SERIES_LANES) * sizeof(double);
     s->mode = mode;
+    s->pinned = mode.contact && a->dof == 1;
     s->length = length;
-    s->order = order_for(REACH * length / chain_series_reach(a, w));
+    s->order = order_for(REACH * length / chain_series_reach(a, q, w));
     s->damped = a->joint_damping > 0 || a->hub_joint_damping > 0;
 
     // what all orders share
@@ -356,6 +389,9 @@ void chain_series_compute(chain_series *s, const arm *a, contact_state mode, con
         chain_series_sum_gap(s, a);
     }
     chain_series_sum_losses(s, a);
+    if (a->motor.electric) {
+        chain_series_sum_drive(s, a);
+    }
     s->allowed = length * small_terms(s, last_terms);
 }
 
@@ -401,7 +437,7 @@ void chain_series_state(const chain_series *s, const arm *a, double t, double *q
         q[0] = value;
         w[0] = slope / s->length;
     }
-    if (s->mode.friction == HUB_STICK) {
+    if (s->mode.friction == HUB_STICK || s->pinned) {
         w[0] = 0;
     }
 }

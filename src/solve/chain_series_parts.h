@@ -3,6 +3,8 @@
 //     chain_series_start.c   what all orders share
 //     chain_series_orders.c  one order after the other, the stride
 //     chain_series_sums.c    functions of all links: the tip's place, gap, losses
+//     chain_series_loads.c   joints that stiffen, damping by mode, air
+//     chain_series_drive.c   the current of an electric drive
 //     chain_loops.c          loops over all links
 #pragma once
 
@@ -24,6 +26,18 @@ void chain_series_prepare_contact(chain_series *s, const arm *a);
 // The n-th coefficients of the tip's place and of the way from the last link's base to a point
 // wall.
 void chain_series_reach_point(chain_series *s, const arm *a, int n);
+
+// Torques of order n beyond the linear ones added to those of the inner joints; returns what the
+// root has beyond its own, times L^2.
+double chain_series_load_joints(chain_series *s, const arm *a, int n);
+
+// What air adds to the known moments of order n, and to Q.
+void chain_series_drag(chain_series *s, int n);
+void chain_series_add_drag(chain_series *s, int n);
+
+// Torque of an electric drive's current of order n, times L^2; what bounds the current, its work.
+double chain_series_drive_torque(chain_series *s, const arm *a, int n);
+void chain_series_sum_drive(chain_series *s, const arm *a);
 
 // The gap in free flight, to order + 1; what is lost, squares of the hub's velocity and of the
 // joints', to the last terms of the squares.

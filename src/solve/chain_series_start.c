@@ -17,6 +17,8 @@ void chain_series_prepare_sweep(chain_series *s, const arm *a)
         r->half[at] = l / 2;
         r->stiffness[at] = joint ? t * t * arm_joint_stiffness(a, k + 1) : 0;
         r->damping[at] = joint ? t * arm_joint_damping(a, k + 1) : 0;
+        r->air[at] = t * a->air_drag * l;
+        r->air_turning[at] = r->air[at] * l * l / 12;
 
         // what it and those beyond show at its base
         const double c = r->start_c[at], sn = r->start_s[at];
@@ -24,7 +26,7 @@ void chain_series_prepare_sweep(chain_series *s, const arm *a)
         const double ux = l * ptx - m * l / 2 * sn, uy = l * pty + m * l / 2 * c;
         double d = own + l * l * (c * pty - sn * ptx);
         d += k == 0 && !a->hub_spring ? a->hub_inertia : 0;
-        const bool held = k == 0 && !a->hub_spring && s->mode.friction == HUB_STICK;
+        const bool held = k == 0 && !a->hub_spring && s->mode.friction == HUB_STICK && !s->pinned;
         const double inv_d = held ? 0 : 1 / d, vx = -l * sn, vy = l * c;
 
         // what rho does here: l^2 P t + m l^2/4 t, and l P + m l/2

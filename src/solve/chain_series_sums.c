@@ -102,5 +102,14 @@ void chain_series_sum_losses(chain_series *s, const arm *a)
                 per_length * weighted_square_term(s, r->bend_rate, r->damping, n) +
                 root * square_term(s->root_rate.term, order, n);
         }
+        for (int i = 0; i < a->damped_modes; i++) {
+            s->dissipation.term[n] += square_term(s->mode_rate[i].term, order, n);
+        }
+        if (a->air_drag > 0) {
+            const double moving = weighted_square_term(s, r->air_x, r->air, n) +
+                                  weighted_square_term(s, r->air_y, r->air, n);
+            const double turning = weighted_square_term(s, r->rate, r->air_turning, n);
+            s->dissipation.term[n] += per_length * (moving + turning);
+        }
     }
 }

@@ -124,7 +124,7 @@ void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *
     *first = WATCH_GAP;
 
     // each function that is watched, as far as the first fall so far
-    for (watch w = WATCH_GAP; w <= WATCH_STICTION; w++) {
+    for (watch w = WATCH_GAP; w < WATCHES; w++) {
         if (!watch_active(a, m, w) || (m->engine->clear != NULL && m->engine->clear(a, m, w, *h))) {
             continue;
         }

@@ -30,6 +30,9 @@ typedef enum watch {
     WATCH_FORCE,    // the contact force [N]
     WATCH_HUB,      // the hub's velocity in the direction it slides [rad/s]
     WATCH_STICTION, // what friction has left while the hub sticks, kst - |friction| [N m]
+    WATCH_CURRENT,  // what an electric drive's current has left to its limit, or to leave it [A];
+                    // dense engines, whose strides end there: no event
+    WATCHES
 } watch;
 
 // A function at an instant.
@@ -124,8 +127,7 @@ extern const engine taylor_engine; // power series of the two-link arm; dense
 // kind, and a rigid wall that is a point, a plane or none.
 bool taylor_engine_suits(const arm *a);
 
-// Whether the arm is one that the power series of chains are for: links and joints of any kind, a
-// mass at the tip, on a rigid wall or none.
+// Whether the arm is one that the power series of chains are for: any, on a rigid wall or none.
 bool series_engine_suits(const arm *a);
 
 // Whether events and peaks are found in the stride itself.

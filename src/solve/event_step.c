@@ -67,6 +67,9 @@ static motion_event event_of(const motion *m, watch w)
         return MOTION_STICK;
     case WATCH_STICTION:
         return MOTION_SLIP;
+    case WATCH_CURRENT:
+    case WATCHES:
+        break;
     }
     return MOTION_REACHED;
 }

@@ -45,6 +45,9 @@ static double watch_value(const arm *a, const motion *m, const double *state, wa
         return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
     case WATCH_STICTION:
         return a->motor.stiction - fabs(state[SLOT_FRICTION_TORQUE]);
+    case WATCH_CURRENT:
+    case WATCHES:
+        break;
     }
     return 1;
 }

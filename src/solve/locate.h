@@ -24,6 +24,10 @@ static inline bool watch_active(const arm *a, const motion *m, watch w)
         return !stuck && !held && a->motor.stiction > 0;
     case WATCH_STICTION:
         return stuck && !held;
+    case WATCH_CURRENT:
+        return m->electric && a->motor.current_limit < HUGE_VAL;
+    case WATCHES:
+        break;
     }
     return false;
 }

@@ -7,10 +7,11 @@
 
 // What is nothing but rounding in the first coefficients of a watched function at its edge: of the
 // value and of its derivatives, over which nothing is known but that they are small.
-#define EDGE_VALUE 1e-9
-#define EDGE_RATE  1e-9
-#define EDGE_MORE  1e-7
-#define EDGE_GAP   1e-12 // [m]
+#define EDGE_VALUE   1e-9
+#define EDGE_RATE    1e-9
+#define EDGE_MORE    1e-7
+#define EDGE_GAP     1e-12 // [m]
+#define EDGE_CURRENT 1e-10 // of its limit
 // As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
 #define EDGE_DEPTH 1e-6 // [m]
 
@@ -47,6 +48,15 @@ static double spread_of(const series_function *p, double x)
         sum = (sum + fabs(p->term[n])) * x;
     }
     return sum * (1 + 1e-12);
+}
+
+static double polynomial_at(const double *term, int count, double x)
+{
+    double sum = 0;
+    for (int n = count - 1; n >= 0; n--) {
+        sum = sum * x + term[n];
+    }
+    return sum;
 }
 
 static double integral_to(const double *term, int count, double x)
@@ -142,6 +152,17 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m)
         s->far_limit.term[0] += stiction;
     }
 
+    // the current: on either side of a limit it begins there
+    if (a->motor.electric && a->motor.current_limit < HUGE_VAL) {
+        const motor_model *motor = &a->motor;
+        const double rounding = EDGE_CURRENT * motor->current_limit;
+        const double rate = motor->inductance > 0 ? motor->resistance / motor->inductance : 0;
+        const double edge[] = {rounding, rounding * rate, 0};
+        set_function(&s->watched[WATCH_CURRENT], c->to_limit.term, order, 1);
+        set_function(&s->far_current, c->to_far_limit.term, order, 1);
+        leave_edge(&s->watched[WATCH_CURRENT], edge, c->length);
+    }
+
     // just after an event they may begin at zero, as the gap does after a bounce cut short
     const double acceleration = EDGE_RATE * (wall_at_edge || jumped ? motion_rounding(a, m) : 0);
     const double reaction[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
@@ -162,17 +183,24 @@ double series_stride_begin(series_stride *s, const arm *a, motion *m, double rem
                            double last_terms)
 {
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
-    const double length = fmin(remaining, chain_series_reach(a, w));
-    chain_series_compute(s->series, a, contact_state_of(m->state), q, w, length, last_terms);
+    const double length = fmin(remaining, chain_series_reach(a, q, w));
+    contact_state mode = contact_state_of(m->state);
+    if (a->motor.electric) {
+        mode.current = state_quadratures(m, m->state)[QUADRATURE_CURRENT];
+        chain_series_choose_drive(s->series, a, mode.current, w[0],
+                                  state_accelerations(m, m->state)[0]);
+    }
+    chain_series_compute(s->series, a, mode, q, w, length, last_terms);
     s->force_until = -1;
 
     // nothing is to be found in what is not finite: its end says so
     if (!(s->series->allowed > 0)) {
         static const double one = 1;
-        for (int i = WATCH_GAP; i <= WATCH_STICTION; i++) {
+        for (int i = WATCH_GAP; i < WATCHES; i++) {
             set_function(&s->watched[i], &one, 1, 1);
         }
         set_function(&s->far_limit, &one, 1, 1);
+        set_function(&s->far_current, &one, 1, 1);
         set_function(&s->force, &one, 1, 1);
         return length;
     }
@@ -193,8 +221,16 @@ status series_stride_state(const series_stride *s, const arm *a, motion *m, doub
         before[QUADRATURE_VISCOUS] +
         per * a->motor.damping * integral_to(c->hub_square.term, c->square_terms, x);
     after[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
-    if (c->damped) {
+    if (c->damped || a->damped_modes > 0 || a->air_drag > 0) {
         after[QUADRATURE_DAMPING] += per * integral_to(c->dissipation.term, c->square_terms, x);
+    }
+    if (a->motor.electric) {
+        const double most = a->motor.current_limit;
+        const double current = polynomial_at(c->current.term, c->order, x);
+        after[QUADRATURE_MOTOR] =
+            before[QUADRATURE_MOTOR] + integral_to(c->motor_work.term, c->square_terms, x);
+        after[QUADRATURE_CURRENT] =
+            a->motor.inductance > 0 ? fmax(-most, fmin(current, most)) : before[QUADRATURE_CURRENT];
     }
     after[QUADRATURE_FORCE] = before[QUADRATURE_FORCE];
     if (c->mode.contact) {
@@ -217,8 +253,8 @@ glance series_stride_look(const series_stride *s, watch w, double h)
 {
     const double x = h / s->series->length;
     glance near = glance_at(&s->watched[w], x);
-    if (w == WATCH_STICTION) {
-        const glance far = glance_at(&s->far_limit, x);
+    if (w >= WATCH_STICTION) {
+        const glance far = glance_at(w == WATCH_CURRENT ? &s->far_current : &s->far_limit, x);
         near = near.value < far.value ? near : far;
     }
     return (glance){near.value, near.slope / s->series->length};
@@ -230,21 +266,29 @@ double series_stride_bend(const series_stride *s, watch w, double to)
     double bend = bend_of(&s->watched[w], x);
     if (w == WATCH_FORCE && s->watched[w].divided) {
         bend = fmax(bend, bend_of(&s->force, x)); // the force itself may bend more
-    } else if (w == WATCH_STICTION) {
-        bend = fmax(bend, bend_of(&s->far_limit, x));
+    } else if (w >= WATCH_STICTION) {
+        bend = fmax(bend, bend_of(w == WATCH_CURRENT ? &s->far_current : &s->far_limit, x));
     }
     return bend / (length * length);
 }
 
+// Whether the current stays clear of the limit that it is farther from.
+static bool far_is_clear(const series_stride *s, double h)
+{
+    return s->far_current.term[0] > spread_of(&s->far_current, h / s->series->length);
+}
+
 bool series_stride_clear(series_stride *s, watch w, double h)
 {
-    const series_function *p = &s->watched[w]; // of stiction the nearer limit, as far as the other
+    // of two limits the nearer one, as far as the other
+    const series_function *p = &s->watched[w];
     const double spread = spread_of(p, h / s->series->length);
     if (w == WATCH_FORCE && !p->divided) {
         s->force_most = p->term[0] + spread;
         s->force_until = h;
     }
-    return p->term[0] > spread;
+    const bool far = w == WATCH_CURRENT && p->divided; // else it is as far as that
+    return p->term[0] > spread && (!far || far_is_clear(s, h));
 }
 
 bool series_stride_bounded(const series_stride *s, double h, double most)
@@ -263,8 +307,7 @@ glance series_stride_force(const series_stride *s, double h)
 bool series_engine_suits(const arm *a)
 {
     const bool rigid = !wall_stands(&a->wall) || !wall_gives(&a->wall);
-    return rigid && a->stiffening == 0 && a->air_drag == 0 && a->damped_modes == 0 &&
-           !a->motor.electric;
+    return rigid;
 }
 
 static double begin(const arm *a, motion *m, double remaining, double step)

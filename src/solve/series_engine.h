@@ -13,11 +13,10 @@ typedef struct series_function {
 } series_function;
 
 typedef struct series_stride {
-    series_function
-        watched[WATCH_STICTION + 1]; // those of the contact state; stiction: nearer limit
-    series_function far_limit;       // of stiction
-    series_function force;           // never divided
-    double force_most, force_until;  // the force's bound, for times up to the second [N], [s]
+    series_function watched[WATCHES]; // those of the contact state; stiction, current: nearer limit
+    series_function far_limit, far_current; // the other ones
+    series_function force;                  // never divided
+    double force_most, force_until; // the force's bound, for times up to the second [N], [s]
     chain_series *series;
 } series_stride;
 
