@@ -1,0 +1,146 @@
+// A program in the place of a control law: odd ways to answer, and states of a run that it is led
+// back to and on from.
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/run/loop.h"
+#include "tests/rig_fixture.h"
+
+// The arm under a program in the shell, asked a hundred times a second.
+static scenario under(const char *program)
+{
+    char command[PARAMETER_TEXT_SIZE];
+    snprintf(command, sizeof command, "control.command=%s", program);
+    return (scenario){
+        .name = (char *)"program",
+        .parameters = rig_parameters(SETTINGS("control.law=process", command, "control.rate=100",
+                                              "run.duration=0.2", "initial.angle=-0.01"))};
+}
+
+#define ANSWERS "while read -r l; do echo '{\"command\": 1}'; done"
+
+static void odd_programs_are_understood(void **state)
+{
+    (void)state;
+    static const char *const programs[] = {
+        ANSWERS,
+        "exec 2>&-; " ANSWERS,        // has nothing to complain to
+        "echo started >&2; " ANSWERS, // complains of nothing
+    };
+    double peak[3];
+    for (int i = 0; i < 3; i++) {
+        scenario s = under(programs[i]);
+        run_result r;
+        if (run_scenario(&s, false, &r) != STATUS_OK) {
+            fail_msg("%s: %s", programs[i], r.summary.message);
+        }
+        peak[i] = r.summary.peak_force_N;
+        assert_true(i == 0 || peak[i] == peak[0]);
+        run_finish(&r);
+    }
+}
+
+static void programs_without_an_answer_are_said(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *program, *sentence;
+    } cases[] = {
+        {"exec 0<&-; sleep 0.2; exit 3", "without an answer"},
+        {"read -r l; exit 0", "without an answer"},
+        {"read -r l; echo no", "no"},
+        {"read -r l; echo 'out of order' >&2; exit 1", "out of order"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        scenario s = under(cases[i].program);
+        run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_CONTROLLER_FAILED);
+        if (strstr(r.summary.message, cases[i].sentence) == NULL) {
+            fail_msg("'%s' does not say '%s'", r.summary.message, cases[i].sentence);
+        }
+        run_finish(&r);
+    }
+}
+
+// A state of the loop, to be freed.
+static void *kept(const run_loop *l)
+{
+    void *bytes = malloc(loop_saved_size(l));
+    assert_non_null(bytes);
+    loop_save(l, bytes);
+    return bytes;
+}
+
+static sample gone_to(run_loop *l, double time)
+{
+    fault f = {.text = ""};
+    if (loop_until(l, time, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return loop_row(l);
+}
+
+// Led back the program is started anew, and led on from where it is on the way; the rows are the
+// same.
+static void a_program_is_led_back_and_on(void **state)
+{
+    (void)state;
+    const scenario s = under(ANSWERS);
+    const loop_options options = {.keep_trace = false};
+    run_loop *l;
+    fault f = {.text = ""};
+    assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+    const size_t size = loop_saved_size(l);
+    (void)gone_to(l, 0.055);
+    void *early = kept(l);
+    const sample middle = gone_to(l, 0.105);
+    void *late = kept(l);
+    const sample end = gone_to(l, 0.155);
+
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(loop_restore(l, early, size, &f), STATUS_OK);
+        const sample again = gone_to(l, i == 0 ? 0.105 : 0.065);
+        assert_true(i == 1 || memcmp(&again, &middle, sizeof again) == 0);
+        assert_int_equal(loop_restore(l, late, size, &f), STATUS_OK);
+        const sample there = gone_to(l, 0.155);
+        assert_memory_equal(&there, &end, sizeof there);
+    }
+    free(early);
+    free(late);
+    loop_destroy(l);
+}
+
+// A program that answers otherwise when it is asked again cannot be led back.
+static void a_program_that_answers_otherwise_is_said(void **state)
+{
+    (void)state;
+    const scenario s = under("n=$$; while read -r l; do echo \"{\\\"command\\\": 0.$n}\"; done");
+    const loop_options options = {.keep_trace = false};
+    run_loop *l;
+    fault f = {.text = ""};
+    assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+    (void)gone_to(l, 0.055);
+    void *early = kept(l);
+    (void)gone_to(l, 0.105);
+    assert_int_equal(loop_restore(l, early, loop_saved_size(l), &f), STATUS_OK);
+
+    // another command leads to other questions, for which the program is asked all again
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k2), 7, &f), STATUS_OK);
+    assert_int_equal(loop_until(l, 0.105, &f), STATUS_CONTROLLER_FAILED);
+    assert_non_null(strstr(f.text, "not"));
+    free(early);
+    loop_destroy(l);
+}
+
+int main(void)
+{
+    alarm(120); // where somebody waits for what never comes, this fails
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(odd_programs_are_understood),
+        cmocka_unit_test(programs_without_an_answer_are_said),
+        cmocka_unit_test(a_program_is_led_back_and_on),
+        cmocka_unit_test(a_program_that_answers_otherwise_is_said),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
