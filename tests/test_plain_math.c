@@ -53,6 +53,7 @@ static void logarithms_are_right_to_two_units(void **state)
     assert_true(units_off(plain_log(DBL_MIN / 3), logl((long double)(DBL_MIN / 3))) < 2);
     assert_true(units_off(plain_log(DBL_MAX), logl((long double)DBL_MAX)) < 2);
     assert_true(isinf(plain_log(0)) && plain_log(0) < 0);
+    assert_true(plain_log(HUGE_VAL) == HUGE_VAL && isnan(plain_log((double)NAN)));
 }
 
 static void powers_are_those_of_the_library(void **state)

@@ -399,6 +399,10 @@ static void broken_text_is_placed_exactly(void **state)
     check_fault("title: a: b\n", 1, 9, "not valid YAML");
     check_fault("title: x\ndescription: \xc3\xa4\xff\n", 2, 15, "UTF-8");
     check_fault("title: \x01\n", 1, 8, "control characters");
+
+    // whatever ends the lines
+    check_fault("title: x\r\ndescription: \x01\r\n", 2, 14, "control characters");
+    check_fault("title: x\rdescription: \x01\r", 2, 14, "control characters");
     check_fault("title: \xc3\n", 1, 9, "UTF-8"); // where the character should go on
 }
 
@@ -521,6 +525,20 @@ static void lists_are_read_in_both_forms(void **state)
     assert_non_null(strstr(all.text, "arm.link_lengths is too long"));
 }
 
+// A value that the parameter does not take changes nothing, whoever made the action.
+static void an_action_that_cannot_be_changes_nothing(void **state)
+{
+    (void)state;
+    scenario s = good("title: t\n");
+    const parameters before = s.parameters;
+    const action wrong = {.kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k2), .value = -1};
+    fault f = {.text = ""};
+    assert_int_equal(action_apply(&wrong, &s.parameters, &f), STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(f.text, "arm.k2"));
+    assert_memory_equal(&s.parameters, &before, sizeof before);
+    scenario_finish(&s);
+}
+
 // One that the law does not know from the start is said even where a script follows.
 // A list may be as long as a text: with one character more it is refused where it becomes too long.
 static void a_list_has_a_limit(void **state)
@@ -609,6 +627,7 @@ int main(void)
         cmocka_unit_test(lists_are_read_in_both_forms),
         cmocka_unit_test(a_list_has_a_limit),
         cmocka_unit_test(nothing_is_read_behind_the_end),
+        cmocka_unit_test(an_action_that_cannot_be_changes_nothing),
         cmocka_unit_test(the_first_lock_is_one_of_the_laws_modes),
         cmocka_unit_test(a_title_has_a_limit),
         cmocka_unit_test(faults_of_actions),

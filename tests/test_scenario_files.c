@@ -35,6 +35,7 @@ static int make_folder(void **state)
     write_file("deep/alpha-10.yaml", "title: Ten\n");
     write_file("deep/alpha-9.yaml", "title: Nine\n");
     write_file("deep/notes.txt", "not a scenario\n");
+    write_file("deep/n", "nor is this\n");
     write_file(".hidden.yaml", "title: Hidden\n");
     return 0;
 }
@@ -46,6 +47,7 @@ static int remove_folder(void **state)
                                         "deep/alpha-10.yaml",
                                         "deep/alpha-9.yaml",
                                         "deep/notes.txt",
+                                        "deep/n",
                                         ".hidden.yaml",
                                         "deep",
                                         ""};
@@ -329,6 +331,20 @@ static void a_wrong_override_changes_nothing(void **state)
     check_override("{}", "arm.k2=1=2", "expected N m/rad");
     check_override("arm: {links: 5}", "arm.model=printed", "two links");
     check_override("script: [{at: 0.5, push: 1}]", "arm.model=printed", "push");
+    check_override("script: [{at: 0.5, push: 1}, {at: 0.6, push: 1}]", "arm.model=printed",
+                   "0.5 s");
+    check_override("arm: {hub_joint: spring}\n"
+                   "script: [{at: 0.1, set: {arm.k1: 90}}, {at: 0.2, set: {arm.k2: 5}}]",
+                   "arm.hub_joint=beam", "arm.k1");
+
+    // nor does a whole set of parameters that contradict one another
+    scenario s = good("{}");
+    parameters wrong = s.parameters, before = s.parameters;
+    fault f = {0};
+    assert_int_equal(parameter_set_text(&wrong, PARAMETER_INDEX(wall.angle), "-2", &f), STATUS_OK);
+    assert_int_equal(scenario_take_parameters(&s, &wrong, &f), STATUS_BAD_SCENARIO);
+    assert_memory_equal(&s.parameters, &before, sizeof before);
+    scenario_finish(&s);
 }
 
 static void an_endless_override_is_refused(void **state)
