@@ -93,6 +93,25 @@ int __wrap_fcntl64(int fd, int command, ...)
     return __real_fcntl64(fd, command, value);
 }
 
+// An older kernel does not close a range of descriptors at once.
+long __real_syscall(long number, ...);
+long __wrap_syscall(long number, ...);
+long __wrap_syscall(long number, ...)
+{
+    long words[3];
+    va_list list;
+    va_start(list, number);
+    for (int i = 0; i < 3; i++) {
+        words[i] = va_arg(list, long);
+    }
+    va_end(list);
+    if (refuses()) {
+        errno = ENOSYS;
+        return -1;
+    }
+    return __real_syscall(number, words[0], words[1], words[2]);
+}
+
 // A signal interrupts the k-th, and does not go on for ever.
 static bool interrupts(void)
 {
