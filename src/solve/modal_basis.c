@@ -129,7 +129,7 @@ __attribute__((target("avx2"))) static void combine_by_four(const double *matrix
 // Eight elements of an out[column], whose sums stay in registers for `columns` columns and a panel
 // of so many rows, read side by side.
 typedef double block __attribute__((vector_size(64), aligned(8), may_alias));
-enum { LANES = 8, TOGETHER = 6, PANEL = 16, NEAR_ROWS = 256 };
+enum { LANES = 8, TOGETHER = 12, PANEL = 16, NEAR_ROWS = 256 };
 
 __attribute__((target("avx512f"))) static inline __attribute__((always_inline)) void
 combine_block(const double *matrix, int side, int from, int end, int columns, const double *in,
@@ -137,7 +137,7 @@ combine_block(const double *matrix, int side, int from, int end, int columns, co
 {
     // what the panels before have left
     block sum[TOGETHER] = {0};
-#pragma GCC unroll 6
+#pragma GCC unroll 12
     for (int c = 0; c < columns && from > 0; c++) {
         sum[c] = *(const block *)(out + (size_t)c * (size_t)stride);
     }
@@ -148,7 +148,7 @@ combine_block(const double *matrix, int side, int from, int end, int columns, co
         const double *row = matrix + (size_t)i * (size_t)side;
         const block r0 = *(const block *)row, r1 = *(const block *)(row + side);
         const block r2 = *(const block *)(row + 2 * side), r3 = *(const block *)(row + 3 * side);
-#pragma GCC unroll 6
+#pragma GCC unroll 12
         for (int c = 0; c < columns; c++) {
             const double *x = in + (size_t)c * (size_t)stride + i;
             sum[c] += (x[0] * r0 + x[1] * r1) + (x[2] * r2 + x[3] * r3);
@@ -156,13 +156,13 @@ combine_block(const double *matrix, int side, int from, int end, int columns, co
     }
     for (; i < end; i++) {
         const block row = *(const block *)(matrix + (size_t)i * (size_t)side);
-#pragma GCC unroll 6
+#pragma GCC unroll 12
         for (int c = 0; c < columns; c++) {
             sum[c] += in[(size_t)c * (size_t)stride + (size_t)i] * row;
         }
     }
 
-#pragma GCC unroll 6
+#pragma GCC unroll 12
     for (int c = 0; c < columns; c++) {
         *(block *)(out + (size_t)c * (size_t)stride) = sum[c];
     }
@@ -187,6 +187,10 @@ __attribute__((target("avx512f"))) static void combine_by_eight(const double *ma
                 combine_block(matrix + j, side, from, end, TOGETHER, x, y, stride);
                 x += (size_t)TOGETHER * (size_t)stride;
                 y += (size_t)TOGETHER * (size_t)stride;
+            }
+            if (left == TOGETHER - 2) { // a stride's points without its start
+                combine_block(matrix + j, side, from, end, TOGETHER - 2, x, y, stride);
+                left = 0;
             }
             for (; left > 1; left -= 2) {
                 combine_block(matrix + j, side, from, end, 2, x, y, stride);
