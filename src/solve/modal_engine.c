@@ -158,8 +158,12 @@ static bool find_event(const arm *a, motion *m, double h)
         }
 
         const double limit = trusted(m, w);
-        const double exact =
-            limit < HUGE_VAL ? modal_function_exact(f, memory->stride, a, m, memory->event) : 0;
+        double exact = 0;
+        if (limit < HUGE_VAL && memory->event == memory->length) {
+            exact = modal_function_of(f, memory->stride, a, m, memory->end);
+        } else if (limit < HUGE_VAL) {
+            exact = modal_function_exact(f, memory->stride, a, m, memory->event);
+        }
         if (!(exact >= -limit) || (falls && exact > limit)) {
             return false;
         }

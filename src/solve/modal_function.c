@@ -136,15 +136,6 @@ static void slow_mode(double damping, double rate, double speed, const double *n
     }
 }
 
-// The same of what a mode does under n(t) without vibrating.
-static void followed(double damping, double rate, const double *n, double *g)
-{
-    memset(g, 0, (MODAL_SERIES + 1) * sizeof *g);
-    for (int j = MODAL_NODES - 1; j >= 0; j--) {
-        g[j] = (n[j] - 2 * damping * g[j + 1] - g[j + 2]) / (rate * rate);
-    }
-}
-
 // The vibration that takes a mode from `place` and `speed` [of x], into the function's amplitudes.
 static void add_vibration(modal_function *f, const modal_vibrations *v, int mode, double place,
                           double speed)
@@ -161,21 +152,21 @@ static void add_vibration(modal_function *f, const modal_vibrations *v, int mode
 static void add_decay(double rate, double length, double start, const double *n, double weight,
                       double *amplitude, double *total)
 {
-    double g[MODAL_SERIES] = {0};
+    double g = start;
     if (rate * length <= SLOW_TURN) {
-        g[0] = start;
-        for (int j = 0; j + 1 < MODAL_SERIES; j++) {
-            g[j + 1] = (j < MODAL_NODES ? n[j] : 0) - rate * g[j];
+        for (int j = 0; j < MODAL_SERIES; j++) {
+            total[j] += weight * g;
+            g = (j < MODAL_NODES ? n[j] : 0) - rate * g;
         }
-    } else {
-        for (int j = MODAL_NODES - 1; j >= 0; j--) {
-            g[j] = (n[j] - g[j + 1]) / rate;
-        }
-        *amplitude = weight * (start - g[0]);
+        return;
     }
-    for (int j = 0; j < MODAL_SERIES; j++) {
-        total[j] += weight * g[j];
+    const double per_rate = 1 / rate;
+    g = 0;
+    for (int j = MODAL_NODES - 1; j >= 0; j--) {
+        g = (n[j] - g) * per_rate;
+        total[j] += weight * g;
     }
+    *amplitude = weight * (start - g);
 }
 
 // An overdamped mode from x = 0 with a speed under n(t). With decays a and b, u = x' + b x and
@@ -213,6 +204,7 @@ static void fit_sum(modal_function *f, const modal_stride *s)
         const double rate = s->modes->rate[k], damping = s->damping[k];
         const double speed =
             k == s->modes->across ? s->drifts[0][k] : s->start[k] + s->drifts[0][k];
+        int terms = MODAL_NODES; // of g that there are
         double n[MODAL_NODES];
         for (int j = 0; j < MODAL_NODES; j++) {
             const double turn = j + 1 < MODAL_NODES ? s->drift[j + 1][k] : 0;
@@ -220,22 +212,27 @@ static void fit_sum(modal_function *f, const modal_stride *s)
         }
         total[0] -= f->speed[k] * speed;
         if (k == s->modes->across) {
-            memset(g, 0, sizeof g);
+            g[0] = 0;
             for (int j = 0; j < MODAL_NODES; j++) {
                 g[j + 1] = s->drift[j][k];
             }
+            g[++terms] = 0;
         } else if (v->entry[k] < 0 || (rate * h <= SLOW_TURN && 2 * damping * h <= SLOW_TURN)) {
             slow_mode(damping, rate, speed, n, g);
+            terms = MODAL_SERIES;
             sum->first =
                 v->entry[k] >= 0 && v->entry[k] == sum->first ? sum->first + 1 : sum->first;
         } else if (v->entry[k] >= v->vibrating) {
             add_overdamped(f, v, k, speed, n, total);
             continue;
         } else {
-            followed(damping, rate, n, g);
+            for (int j = 0; j < MODAL_NODES; j++) {
+                g[j] = s->followed[j][k];
+            }
+            g[terms] = 0;
             add_vibration(f, v, k, -g[0], speed - g[1]);
         }
-        for (int j = 0; j < MODAL_SERIES; j++) {
+        for (int j = 0; j < terms; j++) {
             total[j] += f->place[k] * g[j] + f->speed[k] * g[j + 1];
         }
     }

@@ -112,9 +112,6 @@ KERNEL void loop_leave_out(const modal_stride *s, double t, double *x, double *y
         const real rate = IN(s->modes->rate, k);
         const mask fast =
             MASK(IN(s->damping, k) < rate) & MASK(rate * s->length > (real){0} + s->shown_turn);
-        if (!any(fast)) {
-            continue;
-        }
         real place = {0}, speed = {0};
         double power = 1;
 #pragma GCC unroll 6

@@ -72,6 +72,18 @@ static look_at least_of(const modal_function *f, const arm *a, look_at lo, look_
     return best;
 }
 
+double modal_function_of(const modal_function *f, const modal_stride *s, const arm *a,
+                         const motion *m, double *state)
+{
+    const double hub = state_velocities(m, state)[0];
+    const glance g = {f->kind == WATCH_GAP     ? state[SLOT_GAP]
+                      : f->kind == WATCH_FORCE ? state[SLOT_FORCE]
+                      : f->kind == WATCH_HUB   ? s->mode.friction * hub
+                                               : state[SLOT_FRICTION_TORQUE],
+                      0};
+    return modal_function_watched(f, a, g).value;
+}
+
 double modal_function_exact(const modal_function *f, modal_stride *s, const arm *a, motion *m,
                             double t)
 {
@@ -81,11 +93,7 @@ double modal_function_exact(const modal_function *f, modal_stride *s, const arm 
     }
     memcpy(state, m->state, SLOT_COUNT * sizeof *state);
     (void)modal_state_at(s, a, m, t, state);
-    glance g = {f->kind == WATCH_FORCE ? state[SLOT_FORCE]
-                : f->kind == WATCH_HUB ? s->mode.friction * state_velocities(m, state)[0]
-                                       : state[SLOT_FRICTION_TORQUE],
-                0};
-    return modal_function_watched(f, a, g).value;
+    return modal_function_of(f, s, a, m, state);
 }
 
 // The root of the exact function in [lo, hi], on its far side by a little.

@@ -41,6 +41,10 @@ glance modal_function_at(const modal_function *f, const arm *a, double t);
 // The first instant in (0, *h] at which it leaves its admissible side; *h is then moved there.
 bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, motion *m, double *h);
 
+// The exact function of a state, less its edge.
+double modal_function_of(const modal_function *f, const modal_stride *s, const arm *a,
+                         const motion *m, double *state);
+
 // The exact function at t, less its edge, of the state that a stride to there ends in; leaves that
 // state in m->between.
 double modal_function_exact(const modal_function *f, modal_stride *s, const arm *a, motion *m,
