@@ -192,6 +192,10 @@ __attribute__((target("avx512f"))) static void combine_by_eight(const double *ma
                 combine_block(matrix + j, side, from, end, TOGETHER - 2, x, y, stride);
                 left = 0;
             }
+            if (left == 3) {
+                combine_block(matrix + j, side, from, end, 3, x, y, stride);
+                left = 0;
+            }
             for (; left > 1; left -= 2) {
                 combine_block(matrix + j, side, from, end, 2, x, y, stride);
                 x += 2 * (size_t)stride;

@@ -57,7 +57,7 @@ static double last_terms(const modal_stride *s, double h)
 static bool is_fast(const modal_stride *s, int k)
 {
     const double rate = s->modes->rate[k];
-    return k != s->modes->across && s->damping[k] < rate && rate * s->length > s->shown_turn;
+    return k != s->modes->across && s->damping[k] < rate && rate > s->shown_turn / s->length;
 }
 
 // The modes' responses at the points of collocation: those of the lengths last met are kept.

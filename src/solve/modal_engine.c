@@ -28,7 +28,7 @@
 #define OPEN         1e-8   // share of the energy that a stride's ledger may lack
 #define FAINT        1e-8   // share of it that vibrations may have to be left out of the points
 #define GROWTH       4      // from stride to stride
-#define FIRST_TURN   3      // of the fastest vibration in the stride after an event [rad]
+#define FIRST_TURN   3      // of the fastest vibration in the first stride of a contact [rad]
 #define TURN         0.05   // of the fastest link in a stride [rad]
 #define LAST_TERMS   1e-9   // of the series between the modes' strides
 
@@ -185,7 +185,7 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
     // as proposed, and no longer than turning, events and vibrations allow
     double longest = m->state[SLOT_STRIDE] > 0 ? m->state[SLOT_STRIDE] : LONGEST;
     longest = fmin(longest, TURN / fmax(fabs(w[0]), 1e-9));
-    if (m->state[SLOT_JUMPED] != 0) {
+    if (m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0) {
         longest = fmin(longest, FIRST_TURN / modal_stride_fastest(s));
     }
     longest = fmin(longest, s->shown_turn / modal_stride_shown(s, FAINT * s->start_energy));

@@ -56,6 +56,11 @@ KERNEL double total(real x)
 KERNEL double loop_fit(modal_stride *s)
 {
     const modal_table *end = &s->at[MODAL_NODES - 1];
+    double scale[MODAL_NODES] = {1}; // j! / length^j
+    for (int j = 1; j < MODAL_NODES; j++) {
+        scale[j] = scale[j - 1] * (j / s->length);
+    }
+
     real square = {0};
     for (int k = 0; k < s->row; k += LANES) {
         const real rate = IN(s->modes->rate, k), twice = 2 * IN(s->damping, k);
@@ -67,7 +72,6 @@ KERNEL double loop_fit(modal_stride *s)
         }
 
         // power by power: the new coefficients, and what their change does until the end
-        double scale = 1;
         real moved = zero, placed = zero, lower = IN(end->impulse, k);
 #pragma GCC unroll 6
         for (int j = 0; j < MODAL_NODES; j++) {
@@ -77,8 +81,8 @@ KERNEL double loop_fit(modal_stride *s)
                 drift += modal_to_powers[j][i] * drifts[i];
                 force += modal_to_powers[j][i] * forces[i];
             }
-            drift *= scale;
-            force *= scale;
+            drift *= scale[j];
+            force *= scale[j];
             const real dd = drift - IN(s->drift[j], k), df = force - IN(s->force[j], k);
             const real power = IN(end->power[j], k);
             placed += df * power + dd * (lower + twice * power);
@@ -87,7 +91,6 @@ KERNEL double loop_fit(modal_stride *s)
             OF(s->drift[j], k) = drift;
             OF(s->force[j], k) = force;
             driven[j] = force + twice * drift;
-            scale *= (j + 1) / s->length;
         }
         square += moved * moved + rate * rate * placed * placed;
 
@@ -108,18 +111,21 @@ KERNEL double loop_fit(modal_stride *s)
 
 KERNEL void loop_leave_out(const modal_stride *s, double t, double *x, double *y)
 {
+    const double slowest = s->shown_turn / s->length;
+    double power[MODAL_NODES] = {1}; // t^j / j!
+    for (int j = 1; j < MODAL_NODES; j++) {
+        power[j] = power[j - 1] * (t / j);
+    }
+
     for (int k = 0; k < s->row; k += LANES) {
         const real rate = IN(s->modes->rate, k);
-        const mask fast =
-            MASK(IN(s->damping, k) < rate) & MASK(rate * s->length > (real){0} + s->shown_turn);
+        const mask fast = MASK(IN(s->damping, k) < rate) & MASK(rate > (real){0} + slowest);
         real place = {0}, speed = {0};
-        double power = 1;
 #pragma GCC unroll 6
         for (int j = 0; j < MODAL_NODES; j++) {
             const real next = j + 1 < MODAL_NODES ? IN(s->followed[j + 1], k) : (real){0};
-            place += IN(s->followed[j], k) * power;
-            speed += (next - IN(s->drift[j], k)) * power;
-            power *= t / (j + 1);
+            place += IN(s->followed[j], k) * power[j];
+            speed += (next - IN(s->drift[j], k)) * power[j];
         }
         OF(x, k) = choose(fast, place, IN(x, k));
         OF(y, k) = choose(fast, speed, IN(y, k));
