@@ -1,4 +1,5 @@
 #include "src/study/sensor_view.h"
+#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 static void an_impulse_jumps_and_decays(void **state)
@@ -237,6 +238,89 @@ static void the_study_is_its_views(void **state)
             check_close(study.sensed[k][i], view.sensed[k], 0);
         }
     }
+
+    // every column, for every number of links
+    for (int i = 0; i < SENSOR_LENGTHS; i++) {
+        const sensor_view *v = &study.views[i];
+        check_close(study.links[i], v->links, 0);
+        check_close(study.impulse[i], v->impulse, 0);
+        check_close(study.peak[i], v->peak, 0);
+        check_close(study.momentum[i], v->momentum, 0);
+        check_close(study.beam_momentum[i],
+                    sensor_beam_momentum(&s.parameters, v->speed, MOMENTUM_WINDOW), 0);
+        for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+            check_close(study.sensed[k][i], v->sensed[k], 0);
+            check_close(study.beam_peak[k][i],
+                        sensor_beam_peak(&s.parameters, v->speed, sensor_constants[k]), 0);
+        }
+    }
+}
+
+// What a run of the same arm comes to, by its rows and events: momentum, impacts, and a lag that is
+// stepped finely through all of it.
+static void a_view_is_what_a_run_comes_to(void **state)
+{
+    (void)state;
+    static const int links[] = {2, 3, 6};
+    for (int kind = 0; kind < 6; kind++) {
+        scenario s = fast_touch();
+        char n[32];
+        snprintf(n, sizeof n, "arm.links=%d", links[kind % 3]);
+        s.parameters = fixture_parameters(
+            SETTINGS("wall.kind=plane", "motor.voltage=5", "run.duration=0.5", n,
+                     kind < 3 ? "wall.restitution=0" : "wall.restitution=0.3", "method.step=1e-5"));
+        const run_options options = {.keep_trace = true};
+        run_result r;
+        sensor_view view;
+        fault f;
+        assert_int_equal(run_scenario_with(&s, &options, &r), STATUS_OK);
+        assert_int_equal(sensor_view_compute(&s, links[kind % 3], NULL, &view, &f), STATUS_OK);
+        const double touch = r.summary.first_contact_s, end = touch + SENSOR_WINDOW;
+        assert_int_equal(view.links, links[kind % 3]);
+
+        // the impacts in both windows
+        double momentum = 0, first = (double)NAN, speed = (double)NAN;
+        int impacts = 0;
+        for (size_t i = 0; i < r.trace.event_count; i++) {
+            const event *e = &r.trace.events[i];
+            if (e->kind == EVENT_IMPACT && e->time <= end) {
+                first = isnan(first) ? e->impulse : first;
+                speed = isnan(speed) ? e->speed : speed;
+                impacts += e->impulse > 0;
+                momentum += e->time <= touch + MOMENTUM_WINDOW ? e->impulse : 0;
+            }
+        }
+        check_relative(view.impulse, first, 1e-9);
+        check_relative(view.speed, speed, 1e-9);
+        check_close(view.impacts, impacts, 0);
+
+        // forces and a lag of 1 ms between them
+        double peak = 0, value = 0, largest = 0, largest_time = 0;
+        size_t next = 0;
+        for (size_t i = 0; i + 1 < r.trace.row_count; i++) {
+            const sample *a = &r.trace.rows[i], *b = a + 1;
+            for (; next < r.trace.event_count && r.trace.events[next].time <= a->time; next++) {
+                const event *e = &r.trace.events[next];
+                value += e->kind == EVENT_IMPACT && e->time <= end ? e->impulse / 1e-3 : 0;
+            }
+            if (a->time < touch || b->time > end + 1e-9) {
+                continue;
+            }
+            if (value > largest) {
+                largest = value;
+                largest_time = a->time;
+            }
+            const double h = b->time - a->time, mean = (a->force + b->force) / 2;
+            momentum += b->time <= touch + MOMENTUM_WINDOW + 1e-9 ? h * mean : 0;
+            peak = fmax(peak, fmax(a->force, b->force));
+            value = mean + (value - mean) * exp(-h / 1e-3);
+        }
+        check_relative(view.momentum, momentum, 1e-3);
+        check_close(view.peak, peak, 1e-3 * peak);
+        check_relative(view.sensed[1], largest, 1e-4);
+        check_close(view.delay[1], largest_time - touch, 1e-5);
+        run_finish(&r);
+    }
 }
 
 int main(void)
@@ -254,6 +338,7 @@ int main(void)
         cmocka_unit_test(modes_too_fast_to_follow_are_refused),
         cmocka_unit_test(a_force_without_time_is_not_felt),
         cmocka_unit_test(the_study_is_its_views),
+        cmocka_unit_test(a_view_is_what_a_run_comes_to),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
