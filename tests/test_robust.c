@@ -146,6 +146,94 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
     return text;
 }
 
+// Sets as short and as long as they may be, cases with as many pushes and settings as there are.
+static void sets_have_limits(void **state)
+{
+    (void)state;
+    enum { LONGEST = 65536 };
+    char path[32];
+    robust_set set;
+    fault f = {0};
+    write_set(path, "x");
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(set.count, 1);
+    assert_string_equal(set.lines[0], "x");
+    robust_set_finish(&set);
+    unlink(path);
+
+    // lines of one character, and one with as many as the file may have, or one more
+    static char text[LONGEST + 2];
+    for (int i = 0; i < 200; i++) {
+        text[2 * i] = (char)('a' + i % 26);
+        text[2 * i + 1] = '\n';
+    }
+    text[400] = '\0';
+    write_set(path, text);
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(set.count, 200);
+    for (int i = 0; i < 200; i++) {
+        assert_int_equal(set.lines[i][0], 'a' + i % 26);
+        assert_int_equal(set.lines[i][1], '\0');
+    }
+    robust_set_finish(&set);
+    unlink(path);
+    for (int over = 0; over < 2; over++) {
+        memset(text, '1', LONGEST + 1);
+        text[LONGEST + over] = '\0';
+        write_set(path, text);
+        assert_int_equal(robust_set_read(&set, path, &f), over ? STATUS_BAD_ARGUMENT : STATUS_OK);
+        if (!over) {
+            assert_int_equal(strlen(set.lines[0]), LONGEST);
+            robust_set_finish(&set);
+        }
+        unlink(path);
+    }
+
+    // a byte that ends texts
+    FILE *file = fopen(path, "w");
+    fwrite("a=1\0b=2\n", 1, 8, file);
+    fclose(file);
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+    unlink(path);
+
+    // four pushes, from the start on, and settings of several cases behind one another
+    write_set(path, "a=1\ncase one: a=1; push=1@0; push=-2@0.5;push=3@1 ; push=4@2; b=2;\n"
+                    "\t# nothing\n  case  two : c=3 \ncase three:;\nb=2");
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(set.count, 2);
+    assert_string_equal(set.lines[1], "b=2");
+    assert_int_equal(set.case_count, 3);
+    const robust_case *c = set.cases;
+    assert_string_equal(c[0].title, "one");
+    assert_string_equal(c[1].title, "two");
+    assert_string_equal(c[2].title, "three");
+    static const int settings[] = {2, 1, 0};
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(c[i].setting_count, settings[i]);
+        assert_int_equal(c[i].push_count, i == 0 ? 4 : 0);
+    }
+    assert_string_equal(c[0].settings[0], "a=1");
+    assert_string_equal(c[0].settings[1], "b=2");
+    assert_string_equal(c[1].settings[0], "c=3");
+    static const double impulses[] = {1, -2, 3, 4}, times[] = {0, 0.5, 1, 2};
+    for (int i = 0; i < 4; i++) {
+        check_close(c[0].push_impulse[i], impulses[i], 0);
+        check_close(c[0].push_time[i], times[i], 0);
+    }
+    robust_set_finish(&set);
+    assert_int_equal(set.count + set.case_count, 0);
+    assert_null(set.text);
+    unlink(path);
+
+    // one push too many, with the line that has it
+    write_set(path, "a=1\n\ncase one: push=1@1; push=1@1; push=1@1; push=1@1; push=1@1\n");
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+    char place[64];
+    snprintf(place, sizeof place, "%s:3: no case", path);
+    assert_non_null(strstr(f.text, place));
+    unlink(path);
+}
+
 static void threads_change_nothing(void **state)
 {
     (void)state;
@@ -328,6 +416,7 @@ int main(void)
         cmocka_unit_test(a_limit_says_what_is_too_much),
         cmocka_unit_test(a_set_is_its_lines),
         cmocka_unit_test(cases_are_what_differs),
+        cmocka_unit_test(sets_have_limits),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(one_run_is_all_its_quantiles),
         cmocka_unit_test(quantiles_rise_and_the_observer_law_stands_the_set),
