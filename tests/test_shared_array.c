@@ -2,7 +2,9 @@
 #include "tests/check.h"
 
 #include <stdint.h>
+#include <string.h>
 
+#include "src/base/random.h"
 #include "src/base/shared_array.h"
 
 enum { PER_CHUNK = ARRAY_CHUNK / sizeof(uint64_t), MANY = 5 * PER_CHUNK / 2 };
@@ -153,6 +155,96 @@ static void memory_goes_back_with_the_last_array(void **state)
     assert_int_equal(shared_array_memory(), before);
 }
 
+// Many arrays that grow, begin like others, are merged and go, in any order: each keeps its
+// elements, equal chunks are found, and there is memory for as many different chunks as there are.
+static void any_number_of_arrays_share_their_chunks(void **state)
+{
+    (void)state;
+    enum { ARRAYS = 60, MOST = 40, WORDS = ARRAY_CHUNK / 4 / sizeof(uint64_t), STEPS = 1500 };
+    static shared_array arrays[ARRAYS];
+    static uint64_t values[ARRAYS][MOST + 4];
+    size_t counts[ARRAYS] = {0};
+    bool live[ARRAYS] = {false};
+    const size_t before = shared_array_memory();
+    size_t largest = 0;
+    random_generator g;
+    random_seed(&g, 5);
+    for (int step = 0; step < STEPS; step++) {
+        const size_t i = random_below(&g, ARRAYS), j = random_below(&g, ARRAYS);
+        shared_array *a = &arrays[i];
+        const uint64_t what = random_below(&g, 8);
+        if (live[i] && what == 0) {
+            shared_array_finish(a);
+            live[i] = false;
+            counts[i] = 0;
+        } else if (!live[i]) {
+            // from nothing, or as another one begins
+            live[i] = true;
+            assert_true(shared_array_reserve(a, ARRAY_CHUNK / 4, 1, MOST));
+            if (live[j] && j != i) {
+                counts[i] = random_below(&g, counts[j] + 1);
+                assert_true(shared_array_share(a, &arrays[j], counts[i]));
+                memcpy(values[i], values[j], counts[i] * sizeof values[i][0]);
+                assert_true(a->capacity >= counts[i]);
+            }
+        } else if (what < 5) {
+            // a few elements more, often the same ones in all arrays
+            const size_t more = random_below(&g, 12), until = counts[i] + more;
+            const size_t count = until < MOST ? until : (size_t)MOST;
+            assert_true(shared_array_grow(a, count));
+            assert_int_equal(a->capacity, a->chunk_count * 4);
+            for (; counts[i] < count; counts[i]++) {
+                const uint64_t value = random_below(&g, 20) == 0 ? (uint64_t)step : counts[i];
+                uint64_t *element = (uint64_t *)a->base + counts[i] * WORDS;
+                values[i][counts[i]] = element[0] = element[WORDS - 1] = value;
+            }
+        } else if (live[j] && i != j) {
+            // what both begin with
+            const size_t count = counts[i] < counts[j] ? counts[i] : counts[j];
+            size_t equal = 0;
+            while (equal < count && values[i][equal] == values[j][equal]) {
+                equal++;
+            }
+            assert_int_equal(shared_array_same_chunks(a, &arrays[j], count), equal / 4);
+            shared_array_merge(a, &arrays[j], equal / 4);
+            for (size_t k = 0; k < equal / 4; k++) {
+                assert_int_equal(a->chunks[k], arrays[j].chunks[k]);
+            }
+        }
+
+        // every now and then all of them
+        size_t different = 0;
+        unsigned char seen[ARRAYS * 11] = {0};
+        for (size_t k = 0; k < ARRAYS; k++) {
+            for (size_t e = 0; live[k] && e < counts[k] && step % 10 == 0; e++) {
+                const uint64_t *element = (const uint64_t *)arrays[k].base + e * WORDS;
+                assert_true(element[0] == values[k][e] && element[WORDS - 1] == values[k][e]);
+            }
+            for (size_t c = 0; live[k] && c < arrays[k].chunk_count; c++) {
+                assert_true(arrays[k].chunks[c] < sizeof seen);
+                different += !seen[arrays[k].chunks[c]];
+                seen[arrays[k].chunks[c]] = 1;
+            }
+        }
+        assert_int_equal(shared_array_memory() - before, different * ARRAY_CHUNK);
+        largest = different > largest ? different : largest;
+    }
+    assert_true(largest > 130);
+
+    // to the last chunk of the place that was reserved, and no further
+    for (size_t k = 0; k < ARRAYS; k++) {
+        if (live[k] && k % 2 == 0) {
+            assert_true(shared_array_grow(&arrays[k], MOST + 4));
+            assert_false(shared_array_grow(&arrays[k], MOST + 5));
+            assert_int_equal(arrays[k].capacity, MOST + 4);
+        }
+        if (live[k]) {
+            shared_array_finish(&arrays[k]);
+        }
+    }
+    assert_int_equal(shared_array_memory(), before);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -165,6 +257,7 @@ int main(void)
         cmocka_unit_test(a_difference_ends_what_is_equal),
         cmocka_unit_test(the_shorter_array_ends_what_is_equal),
         cmocka_unit_test(memory_goes_back_with_the_last_array),
+        cmocka_unit_test(any_number_of_arrays_share_their_chunks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
