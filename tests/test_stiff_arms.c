@@ -130,6 +130,29 @@ static void an_arm_made_stiff_changes_its_engine(void **state)
     }
 }
 
+// A stride of the modes begins with what its decays make of rounding, over at once: the force does
+// not leave its band for that, and has settled when its rows have.
+static void a_stride_that_begins_does_not_unsettle_the_force(void **state)
+{
+    (void)state;
+    scenario s = {
+        .parameters = fixture_parameters(SETTINGS(
+            "arm.links=7", "arm.hub_joint=spring", "arm.k1=28214.187", "arm.length=0.384470708390",
+            "arm.mass=0.230311454988", "arm.hub_inertia=2.421274642e-4", "arm.k2=3.677424150693",
+            "arm.damping_ratio=1", "wall.kind=plane", "wall.angle=1.722191930126",
+            "motor.stiction=0.01", "motor.voltage=-0.965138971621489", "run.duration=2"))};
+    run_result r;
+    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    const double steady = r.summary.steady_force_N;
+    size_t outside = 0;
+    for (size_t i = 0; i < r.trace.row_count; i++) {
+        outside = fabs(r.trace.rows[i].force - steady) > 0.05 * steady ? i : outside;
+    }
+    const double settled = r.trace.rows[outside + 1].time - r.summary.first_contact_s;
+    check_close(r.summary.settling_time_s, settled, 2e-3);
+    run_finish(&r);
+}
+
 // The series have no way round such a decay: a run that could not end says so after a bounded
 // effort.
 static void a_run_that_could_not_end_says_so(void **state)
@@ -566,6 +589,7 @@ int main(void)
         cmocka_unit_test(a_stiff_hub_takes_few_strides),
         cmocka_unit_test(a_stiff_pair_moves_as_by_the_formula),
         cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
+        cmocka_unit_test(a_stride_that_begins_does_not_unsettle_the_force),
         cmocka_unit_test(a_run_that_could_not_end_says_so),
         cmocka_unit_test(a_run_that_could_not_end_says_why),
         cmocka_unit_test(an_arm_without_damping_loses_nothing_to_it),

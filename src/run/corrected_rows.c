@@ -17,6 +17,9 @@
 #define FORCE_REACH  0.25
 #define SENSOR_REACH 0.5
 
+// A slope that promises so many times what a piece shows otherwise is that of a decay.
+#define FALLS_AT_ONCE 4
+
 enum { SEPARATION_BISECTIONS = 30, MOST_PIECES = 64 };
 
 // corrected_audit for a state that holds that energy.
@@ -313,9 +316,18 @@ static bool go_to(const corrected_run *c, way *w, double time)
     return true;
 }
 
-// Keeps the force over equal pieces of the step just made, from `since` its start on [s]: each has
-// the mean of the cubic through both ends' values and slopes.
-static status record_equal_pieces(corrected_run *c, const force_step *rest, double since, int count)
+// Whether a force falls at once from where it begins: what is left of it shows in its slope there
+// alone, which then says nothing of its mean.
+static bool falls_at_once(glance first, glance last, double width)
+{
+    const double shown = fabs(last.value - first.value) + fabs(last.slope) * width;
+    return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
+}
+
+// Keeps the force over equal pieces of the rest of the step just made, from w on: each has the mean
+// of the cubic through both ends' values and slopes. A stride of the modes may begin with a decay
+// that is over at once, which only the motion's own integral knows.
+static status record_equal_pieces(corrected_run *c, const force_step *rest, way w, int count)
 {
     const motion *m = c->motion;
     glance at[MOST_PIECES + 1];
@@ -325,7 +337,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
     }
 
     // the force at the start and at the ends of all pieces
-    const double width = (m->made - since) / count;
+    const double since = w.time - m->trial[SLOT_TIME], width = (m->made - since) / count;
     if (m->engine->forces_at != NULL && since == 0) {
         m->engine->forces_at(&c->arm, m, m->made, count, at);
     } else {
@@ -344,6 +356,14 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
         kept[i] = (force_step){
             .start = start, .end = end, .first = first.value, .last = last.value, .mean = mean};
         start = end;
+    }
+
+    if (falls_at_once(at[0], at[1], width)) {
+        const double before = w.integral;
+        if (!go_to(c, &w, kept[0].end)) {
+            return STATUS_NOT_FINITE;
+        }
+        kept[0].mean = (w.integral - before) / width;
     }
     return STATUS_OK;
 }
@@ -386,7 +406,7 @@ static status record_force(corrected_run *c, const force_step *whole)
         rest.mean = (all - w.integral) / length;
     }
     const int pieces = pieces_of_step(c, since > 0 ? length : m->made, FORCE_REACH);
-    return pieces > 1 ? record_equal_pieces(c, &rest, since, pieces) : recording_add_step(r, rest);
+    return pieces > 1 ? record_equal_pieces(c, &rest, w, pieces) : recording_add_step(r, rest);
 }
 
 // Lets the sensors follow the arm on to an instant within the step, a stretch of this length [s].
