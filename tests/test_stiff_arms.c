@@ -354,7 +354,8 @@ static void slow_modes_of_many_links_keep_their_digits(void **state)
     assert_true(storage != NULL && scratch != NULL);
     modal_basis_place(&b, a.dof, storage);
     for (int i = 0; i < 4; i++) {
-        assert_int_equal(modal_basis_compute(&b, &a, i & 1, i & 2, scratch), STATUS_OK);
+        assert_int_equal(modal_basis_compute(&b, &a, (modal_ends){i & 1, 0, i & 2}, scratch),
+                         STATUS_OK);
         const bool rigid = i == 0; // free in flight
         assert_true(rigid ? b.rate[0] == 0 : b.rate[0] > 1);
         for (int j = rigid; j < 12; j++) {

@@ -5,6 +5,9 @@
 
 #include "src/solve/taylor_engine.h"
 
+typedef double real;
+#include "src/solve/modal_straight.h"
+
 // Rates that may be read behind the last, as of modes that do nothing.
 enum { BEHIND = 7 };
 
@@ -22,51 +25,63 @@ void modal_basis_place(modal_basis *b, int n, double *storage)
 {
     b->count = 0;
     b->rate = storage;
-    b->pull = storage + n + BEHIND;
-    b->by_mode = b->pull + n;
+    b->shared = storage + n + BEHIND;
+    b->by_mode = b->shared + n;
     b->by_dof = b->by_mode + (size_t)n * (size_t)n;
 }
 
 // --- modes ------------------------------------------------------------------------------------
 
-// The vector M0^-1 of the gradient of sum q_k, of unit length in M0, as one more mode.
-static void add_gradient(modal_basis *b, const arm *a, bool stuck, double *scratch)
+static double product_of(int n, const double *x, const double *y)
 {
-    double *row = b->by_mode + (size_t)b->count * (size_t)a->dof, *product = scratch + 2 * a->dof;
-    modal_tip_answer(a, stuck, row, scratch);
-    modal_mass_times(a, row, product);
-    double square = 0;
-    for (int i = 0; i < a->dof; i++) {
-        square += row[i] * product[i];
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        sum += x[i] * y[i];
     }
-    for (int i = 0; i < a->dof; i++) {
-        row[i] /= sqrt(square);
-    }
+    return sum;
+}
 
-    // what the modes and it itself pull at it
-    modal_stiffness_times(a, row, product);
-    for (int k = 0; k <= b->count; k++) {
-        const double *mode = b->by_mode + (size_t)k * (size_t)a->dof;
-        for (int i = 0; i < a->dof; i++) {
-            b->pull[k] += mode[i] * product[i];
-        }
+// The vector e, of unit length in M0, as one more mode.
+static void add_shift(modal_basis *b, const arm *a, modal_ends ends, double *scratch)
+{
+    const int n = a->dof;
+    double *row = b->by_mode + (size_t)b->count * (size_t)n, *product = scratch;
+    modal_tip_shift(a, ends, row);
+    modal_mass_times(a, row, product);
+    const double length = sqrt(product_of(n, row, product));
+    for (int i = 0; i < n; i++) {
+        row[i] /= length;
+        product[i] /= length;
     }
+    b->reach = modal_basis_across(b, a, row);
+
+    // what it has in common with the modes, and its stiffness
+    for (int k = 0; k < b->count; k++) {
+        b->shared[k] = product_of(n, b->by_mode + (size_t)k * (size_t)n, product);
+    }
+    modal_stiffness_times(a, row, product);
+    b->stiff = ends.stuck ? product_of(n, row, product) : 0;
     b->across = b->count;
     b->rate[b->count++] = 0;
 }
 
-status modal_basis_compute(modal_basis *b, const arm *a, bool contact, bool stuck, double *scratch)
+double modal_basis_across(const modal_basis *b, const arm *a, const double *x)
+{
+    return straight_across(a, b->lever, x);
+}
+
+status modal_basis_compute(modal_basis *b, const arm *a, modal_ends ends, double *scratch)
 {
     const size_t n = (size_t)a->dof;
-    const int modes = modal_shapes(a, contact, stuck, b->rate, b->by_mode, scratch);
+    const int modes = modal_shapes(a, ends, b->rate, b->by_mode, scratch);
     if (modes < 0) {
         return STATUS_SINGULAR;
     }
     b->count = modes;
     b->across = -1;
-    memset(b->pull, 0, n * sizeof *b->pull);
-    if (contact) {
-        add_gradient(b, a, stuck, scratch);
+    b->lever = ends.lever;
+    if (ends.contact) {
+        add_shift(b, a, ends, scratch);
     }
 
     // the same by degree of freedom

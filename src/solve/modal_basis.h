@@ -2,9 +2,16 @@
 //
 // M0 and K of the straight chain are the same for any rotation of the whole. With V the modes,
 // V' M0 V = 1, V' K V = diag(w^2), structural damping, being proportional to K, is diagonal too:
-// V' C V = diag(c w^2). A stuck hub takes no part; a touching tip leaves the angles with
-// sum q_k = const, and one more vector, M0^-1 times the gradient of that sum, completes the basis
-// for what the exact constraint needs beyond.
+// V' C V = diag(c w^2). A stuck hub takes no part; contact leaves the angles with g' q = const, g'
+// q being the sum of the links' angles, the last one's counted as many times more as the wall holds
+// it link lengths beyond its end, and one more vector e completes the basis for what the exact
+// constraint needs beyond. Of all that are not held by the wall it is the one
+// that moves no mode by springs or damping, V' K e = 0: K e is a multiple of g. (Any other, as
+// M0^-1 g, bends joints near the tip, and what the modes do against that has to cancel it.) In M0
+// it is not across the modes, so that angles turn x = V x_k + e x_e and momenta P are
+//
+//     x_e = g' x / g' e,                     x_k = V_k' M0 (x - e x_e),
+//     P = M0 sum_k V_k V_k' P + g lambda,    lambda = (e' P - sum_k (V_k' M0 e) V_k' P) / g' e.
 #pragma once
 
 #include "src/base/status.h"
@@ -12,9 +19,12 @@
 
 typedef struct modal_basis {
     int count;       // of modes, that vector included
-    double *rate;    // w[count] [rad/s], zero for that vector and up to a whole vector of eight
-    int across;      // index of that vector, the last; -1 without contact
-    double *pull;    // V' K times that vector, by mode and itself; zero without contact [1/s2]
+    double *rate;    // w[count] [rad/s], zero for e and up to a whole vector of eight
+    int across;      // index of e, the last; -1 without contact
+    double *shared;  // V' M0 e, by mode
+    double lever;    // of the wall, in link lengths beyond the last link's end
+    double reach;    // g' e, e being of unit length in M0
+    double stiff;    // e' K e [1/s2]
     double *by_mode; // V, row k holds mode k's angles at all degrees of freedom
     double *by_dof;  // the same, row i holds angle i of all modes
 } modal_basis;
@@ -26,8 +36,11 @@ size_t modal_basis_scratch(int n);
 // Lays the arrays of a basis into storage of modal_basis_size(n) doubles.
 void modal_basis_place(modal_basis *b, int n, double *storage);
 
-// Computes the basis of the arm in contact or not, its hub stuck or not. STATUS_SINGULAR.
-status modal_basis_compute(modal_basis *b, const arm *a, bool contact, bool stuck, double *scratch);
+// Computes the basis of the arm as it is held. STATUS_SINGULAR.
+status modal_basis_compute(modal_basis *b, const arm *a, modal_ends ends, double *scratch);
+
+// g' x of angles or velocities x[dof].
+double modal_basis_across(const modal_basis *b, const arm *a, const double *x);
 
 // angles[column][dof] = sum over modes of coordinates[column][mode] V, for some columns at once;
 // columns are `stride` doubles apart.

@@ -114,7 +114,7 @@ static void evaluate_points(modal_stride *s, const arm *a, const double *q)
             loops->leave_out(s, points[i] * s->length, x, x + row);
         }
         memcpy(s->modal + (size_t)i * pair, x, pair * sizeof *x);
-        modal_to_momenta(s, a, x, x + row);
+        s->tip[i] = modal_to_momenta(s, a, x, x + row);
     }
     const size_t skipped = (size_t)first * pair;
     const int columns = 2 * (MODAL_NODES - first);

@@ -257,16 +257,14 @@ KERNEL void loop_losses(const modal_stride *s, modal_mode_losses *l)
 
         // 2 a v^2, from the change of y^2 + w^2 x^2
         const real x = IN(s->place, k), y = IN(s->momenta, k), y0 = IN(s->start, k);
-        real loss = -0.5 * ((y - y0) * (y + y0) + rate * rate * x * x), crosses = {0};
+        real loss = -0.5 * ((y - y0) * (y + y0) + rate * rate * x * x);
 #pragma GCC unroll 6
         for (int j = 0; j < MODAL_NODES; j++) {
             force[j] += twice * drift[j];
             loss += (force[j] + twice * drift[j]) * of_v[j] + rate * rate * drift[j] * of_x[j];
-            crosses += l->across[j] * of_v[j];
         }
         loss -= product(force, drift, l->weights);
         OF(l->all, k) = loss;
-        OF(l->crosses, k) = crosses;
 
         // less the same of what does not vibrate
         real speed[MODAL_NODES];

@@ -19,10 +19,8 @@ typedef double modal_weights[MODAL_NODES][MODAL_NODES];
 typedef struct modal_mode_losses {
     double time; // [s]
     modal_weights weights;
-    double across[MODAL_NODES]; // drift of the vector across a constraint, 0 without one
-    double *all, *vibrating,
-        *crosses; // [row]: 2 a times the integral of v^2; of that what the
-                  // vibration adds to s->followed; integral of v times `across`
+    double *all, *vibrating; // [row]: 2 a times the integral of v^2; of that what the vibration
+                             // adds to s->followed
 } modal_mode_losses;
 
 // Decays side by side, on to a whole vector.

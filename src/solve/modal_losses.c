@@ -179,37 +179,31 @@ modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t)
     }
 
     // mode by mode
-    modal_mode_losses losses = {.time = t,
-                                .all = s->more_columns,
-                                .vibrating = s->more_columns + row,
-                                .crosses = s->more_columns + 2 * row};
+    modal_mode_losses losses = {
+        .time = t, .all = s->more_columns, .vibrating = s->more_columns + row};
     set_weights(losses.weights, t);
-    for (int j = 0; e >= 0 && j < MODAL_NODES; j++) {
-        losses.across[j] = s->drift[j][e];
-    }
     modal_loops_here()->losses(s, &losses);
     for (int k = 0; k < s->count; k++) {
         const double rate = s->modes->rate[k], twice = 2 * s->damping[k];
-        if (k == e || (twice == 0 && (e < 0 || s->per_stiffness == 0))) {
+        if (k == e || twice == 0) {
             continue;
         }
 
         // in the springs, and at the hub beyond what the slow modes do together
-        if (twice > 0) {
-            lost.damping += losses.all[k] * s->per_stiffness * rate * rate / twice;
-        }
+        lost.damping += losses.all[k] * s->per_stiffness * rate * rate / twice;
         if (a->motor.damping > 0 && k >= low) {
             lost.viscous += add_to_hub(s, k, &losses, &rest);
         }
-
-        // between this mode and the vector across the constraint
-        lost.damping += 2 * s->per_stiffness * s->modes->pull[k] * losses.crosses[k];
     }
 
     // that vector's own, and the slow modes' at the hub
     if (e >= 0) {
-        lost.damping += s->per_stiffness * s->modes->pull[e] *
-                        product_integral(losses.across, losses.across, losses.weights);
+        double across[MODAL_NODES];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            across[j] = s->drift[j][e];
+        }
+        lost.damping +=
+            s->per_stiffness * s->modes->stiff * product_integral(across, across, losses.weights);
     }
     lost.viscous += a->motor.damping > 0 ? hub_loss(s, a, t, low, &rest) : 0;
     return lost;

@@ -4,6 +4,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/sincos.h"
+
+#define REACH_STEP 1.05
+#define MOST_REACH 1e3 // a fold of the arm would have any
+
 typedef double real;
 #include "src/solve/modal_straight.h"
 
@@ -30,45 +35,23 @@ void modal_fill_table(const modal_stride *s, double t, int powers, int count, co
     }
 }
 
-// Across the constraint of a contact nothing vibrates: x' = r(t), while y' = s(t) less what the
-// modes pull, x and its integral by K and C, carries the force's impulse.
-static void state_across(const modal_stride *s, const modal_table *at, double *x, double *y)
-{
-    const int e = s->modes->across;
-
-    // its own polynomials
-    double place = 0, rate = s->start[e], lower = at->impulse[e];
-    for (int j = 0; j < MODAL_NODES; j++) {
-        place += s->drift[j][e] * lower;
-        rate += s->force[j][e] * lower;
-        lower = at->power[j][e];
-    }
-
-    // what the modes pull
-    for (int k = 0; k < e; k++) {
-        const double twice = 2 * s->damping[k];
-        double integral = s->start[k] * at->power[0][k];
-        for (int j = 0; j < MODAL_NODES; j++) {
-            const double power = at->power[j + 1][k];
-            integral += s->force[j][k] * power + s->drift[j][k] * (at->power[j][k] + twice * power);
-        }
-        rate -= s->modes->pull[k] * (integral + s->per_stiffness * x[k]);
-    }
-    x[e] = place;
-    y[e] = rate;
-}
-
 void modal_momenta_at(const modal_stride *s, const modal_table *at, double *x, double *y)
 {
     modal_loops_here()->momenta(s, at, x, y);
 
-    // across the constraint they add up
-    if (s->modes->across >= 0) {
-        state_across(s, at, x, y);
+    // across the constraint of a contact nothing vibrates: x' = r(t), y' = s(t)
+    const int e = s->modes->across;
+    if (e >= 0) {
+        double place = 0, lower = at->impulse[e];
+        for (int j = 0; j < MODAL_NODES; j++) {
+            place += s->drift[j][e] * lower;
+            lower = at->power[j][e];
+        }
+        x[e] = place;
     }
 }
 
-void modal_to_momenta(const modal_stride *s, const arm *a, const double *x, double *y)
+double modal_to_momenta(const modal_stride *s, const arm *a, const double *x, double *y)
 {
     const double *hub = s->modes->by_dof;
     double turned = 0;
@@ -78,6 +61,18 @@ void modal_to_momenta(const modal_stride *s, const arm *a, const double *x, doub
     for (int k = 0; k < s->count; k++) {
         y[k] += s->viscous[k] * x[k] - a->motor.damping * hub[k] * turned - s->start[k];
     }
+
+    // what is beyond the modes acts where the wall does
+    const int e = s->modes->across;
+    if (e < 0) {
+        return 0;
+    }
+    double tip = y[e];
+    for (int k = 0; k < e; k++) {
+        tip -= s->modes->shared[k] * y[k];
+    }
+    y[e] = 0;
+    return tip / s->modes->reach;
 }
 
 void modal_stride_modes(modal_stride *s, double t)
@@ -94,21 +89,22 @@ void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double
                         double *qt, double *wt, double *impulse)
 {
     const int n = s->dof, row = s->row;
-    double *x = s->columns, *y = x + row, *turn = s->more_columns, *momentum = turn + row;
+    double *x = s->columns, *y = x + row, *turn = s->more_columns;
 
     // of the modes
     modal_stride_modes(s, t);
     memcpy(x, s->place, (size_t)row * sizeof *x);
     memcpy(y, s->momenta, (size_t)row * sizeof *y);
-    modal_to_momenta(s, a, x, y);
+    const double tip = modal_to_momenta(s, a, x, y);
 
     // of the links
     modal_to_angles(s->modes, n, 2, x, turn, row);
-    modal_mass_times(a, momentum, y);
+    modal_mass_times(a, turn + row, y);
     for (int i = 0; i < n; i++) {
         qt[i] = q[i] + turn[i];
-        y[i] += s->momentum[i];
+        y[i] += s->momentum[i] + (i >= a->first ? tip : 0);
     }
+    y[n - 1] += s->modes->lever * tip;
     chain_from_momentum(a, links, s->mode, qt, y, wt, s->rates, impulse);
 }
 
@@ -132,8 +128,33 @@ static void take_damping(modal_stride *s, const arm *a)
     s->hub_response = sqrt(square);
 }
 
-// Takes the basis of a contact state, computed when it is first wanted. False if it is singular.
-static bool take_basis(modal_stride *s, const arm *a, contact_state mode)
+// How far beyond the last link's end the wall holds it at angles q, in link lengths, in steps of a
+// twentieth of its distance from the link's base: a basis may be as far from the arm as that.
+static double lever_of(const arm *a, const double *q)
+{
+    if (a->wall.kind != WALL_POINT) {
+        return 0;
+    }
+    const int last = a->dof - 1;
+    double x = 0, y = 0, c = 1, s = 0;
+    for (int k = a->first; k < last; k++) {
+        inline_sincos(q[k], &s, &c);
+        x += a->link_length * c;
+        y += a->link_length * s;
+    }
+    inline_sincos(q[last], &s, &c);
+    const wall_contact at = wall_contact_at(&a->wall, a->link_length, x, y, 0, 0, c, s, 0);
+    const double reach = fmin(1 + at.lever / a->link_length, MOST_REACH);
+    double taken = 1;
+    while (taken * REACH_STEP < reach) {
+        taken *= REACH_STEP;
+    }
+    return taken - 1;
+}
+
+// Takes the basis of a contact state at angles q, computed when it is first wanted. False if it is
+// singular.
+static bool take_basis(modal_stride *s, const arm *a, contact_state mode, const double *q)
 {
     const double now[5] = {a->hub_stiffness, a->joint_stiffness, a->hub_joint_damping,
                            a->joint_damping, a->motor.damping};
@@ -146,10 +167,10 @@ static bool take_basis(modal_stride *s, const arm *a, contact_state mode)
 
     const bool stuck = mode.friction == HUB_STICK;
     const int i = mode.contact + 2 * stuck;
-    if (!s->known[i]) {
-        if (modal_basis_compute(&s->basis[i], a, mode.contact, stuck, s->scratch) != STATUS_OK) {
-            return false;
-        }
+    const modal_ends ends = {mode.contact, mode.contact ? lever_of(a, q) : 0, stuck};
+    s->known[i] = s->known[i] && s->basis[i].lever == ends.lever;
+    if (!s->known[i] && modal_basis_compute(&s->basis[i], a, ends, s->scratch) != STATUS_OK) {
+        return false;
     }
 
     s->modes = &s->basis[i];
@@ -165,27 +186,35 @@ static bool take_basis(modal_stride *s, const arm *a, contact_state mode)
     return true;
 }
 
-void modal_prepare_remainders(modal_stride *s, const arm *a, const double *w, double *columns)
+void modal_prepare_remainders(modal_stride *s, const arm *a, int point, const double *w,
+                              double *columns)
 {
-    modal_mass_times(a, w, columns);
+    // velocities without what is across the constraint
+    const int e = s->modes->across;
+    double *along = columns + s->row;
+    memcpy(along, w, (size_t)s->dof * sizeof *w);
+    if (e >= 0) {
+        const double *shift = s->modes->by_mode + (ptrdiff_t)e * s->dof;
+        s->drifts[point][e] = modal_basis_across(s->modes, a, w) / s->modes->reach;
+        for (int k = 0; k < s->dof; k++) {
+            along[k] -= s->drifts[point][e] * shift[k];
+        }
+    }
+
+    // their momenta, and the forces
+    modal_mass_times(a, along, columns);
     straight_forces_left(a, modal_hub_torque(s, a), s->angles, w, s->rates, columns + s->row);
 }
 
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
                            const double *modal)
 {
-    const double *v = modal, *force = modal + s->row;
-    modal_loops_here()->take(s, point, x, y, modal);
-
-    // across the constraint there is only what the modes pull
+    // the speed across the constraint is there already
     const int e = s->modes->across;
+    const double speed = e >= 0 ? s->drifts[point][e] : 0;
+    modal_loops_here()->take(s, point, x, y, modal);
     if (e >= 0) {
-        double sum = force[e];
-        for (int k = 0; k < e; k++) {
-            sum += s->modes->pull[k] * (x[k] + s->per_stiffness * v[k]);
-        }
-        s->drifts[point][e] = v[e];
-        s->forces[point][e] = sum;
+        s->drifts[point][e] = speed;
     }
 }
 
@@ -193,7 +222,7 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
                           const double *q, const double *w)
 {
     const int n = a->dof;
-    if (!take_basis(s, a, mode)) {
+    if (!take_basis(s, a, mode, q)) {
         return STATUS_SINGULAR;
     }
 
@@ -205,7 +234,7 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
     double impulse;
     chain_from_momentum(a, links, mode, q, s->momentum, s->velocities, s->rates, &impulse);
     memcpy(s->angles, q, (size_t)n * sizeof *q);
-    modal_prepare_remainders(s, a, w, s->columns);
+    modal_prepare_remainders(s, a, 0, w, s->columns);
     memcpy(s->columns + 2 * s->row, s->momentum, (size_t)n * sizeof *q);
     modal_from_angles(s->modes, n, 3, s->columns, s->more_columns, s->row);
 

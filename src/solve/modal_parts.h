@@ -24,13 +24,15 @@ void modal_fill_table(const modal_stride *s, double t, int powers, int count,
 // x[count] and y[count] of all modes at the instant of the responses `at`.
 void modal_momenta_at(const modal_stride *s, const modal_table *at, double *x, double *y);
 
-// From x and y to what stands for angles and momenta: in `y` the change of V' P.
-void modal_to_momenta(const modal_stride *s, const arm *a, const double *x, double *y);
+// From x and y to what stands for angles and momenta: in `y` the change of V' P, zero of e; returns
+// that of lambda (modal_basis.h) [N m s].
+double modal_to_momenta(const modal_stride *s, const arm *a, const double *x, double *y);
 
 // r and s of one instant from x, y, the velocities w[dof] there and dT/dq + J'^T L in s->rates:
 // what is to be brought to the modes into columns[2 row], and, brought there as modal[2 row], into
 // s->drifts[point] and s->forces[point].
-void modal_prepare_remainders(modal_stride *s, const arm *a, const double *w, double *columns);
+void modal_prepare_remainders(modal_stride *s, const arm *a, int point, const double *w,
+                              double *columns);
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
                            const double *modal);
 
@@ -40,8 +42,8 @@ static inline double modal_hub_torque(const modal_stride *s, const arm *a)
     return a->motor.torque - s->mode.friction * a->motor.stiction;
 }
 
-// The same from the angles and V y of the points from `first` on, in s->more_columns, for all
-// points side by side in the lanes of a vector: what is to be brought to the modes takes their
-// place; angles and velocities go into s->point_angles and s->point_velocities.
+// The same from the angles and V y of the points from `first` on, in s->more_columns, and s->tip
+// for all points side by side in the lanes of a vector: what is to be brought to the modes takes
+// their place; angles and velocities go into s->point_angles and s->point_velocities.
 void modal_sweep_points(modal_stride *s, const arm *a, const double *q, int first);
 size_t modal_points_size(int dof); // of s->lanes in doubles, a whole number of cache lines

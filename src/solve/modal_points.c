@@ -106,20 +106,23 @@ KERNEL void sweep_points(modal_stride *s, const arm *a, const double *q, int fir
     const bool stuck = s->mode.friction == HUB_STICK;
 
     // angles, and momenta by the straight chain's mass
-    const double *turns[LANES], *moved[LANES];
+    const double *turns[LANES], *moved[LANES], *tips[LANES];
     for (int i = 0; i < LANES; i++) {
         const int point = i < first ? first : i < MODAL_NODES ? i : MODAL_NODES - 1;
         turns[i] = s->more_columns + 2 * point * row;
         moved[i] = turns[i] + row;
+        tips[i] = &s->tip[point];
     }
     for (int k = 0; k < n; k++) {
         l.angles[k] = q[k] + gather(turns, k);
         l.products[k] = gather(moved, k);
     }
     straight_mass_times(a, l.products, l.momentum);
+    const real tip = gather(tips, 0);
     for (int k = 0; k < n; k++) {
-        l.momentum[k] += s->momentum[k];
+        l.momentum[k] += s->momentum[k] + (k >= a->first ? tip : (real){0});
     }
+    l.momentum[n - 1] += s->modes->lever * tip;
 
     // velocities and forces
     directions(a, &l);
@@ -132,17 +135,28 @@ KERNEL void sweep_points(modal_stride *s, const arm *a, const double *q, int fir
         momentum_sweep(a, false, stuck, l.links, &none, l.momentum, l.velocities, l.rates,
                        &impulse);
     }
-    straight_mass_times(a, l.velocities, l.products);
     straight_forces_left(a, modal_hub_torque(s, a), l.angles, l.velocities, l.rates, l.momentum);
+
+    // momenta of the straight chain without what is across the constraint
+    const real speed = straight_across(a, s->modes->lever, l.velocities) / s->modes->reach;
+    const double *shift =
+        s->modes->by_mode + (s->modes->across > 0 ? s->modes->across : 0) * (ptrdiff_t)n;
+    for (int k = 0; k < n; k++) {
+        l.products[k] = l.velocities[k] - (s->mode.contact ? speed * shift[k] : (real){0});
+    }
+    straight_mass_times(a, l.products, l.rates);
 
     // back to every point
     for (int i = first; i < MODAL_NODES; i++) {
         double *columns = s->more_columns + 2 * i * row, *forces = columns + row;
         for (int k = 0; k < n; k++) {
-            columns[k] = l.products[k][i];
+            columns[k] = l.rates[k][i];
             forces[k] = l.momentum[k][i];
             s->point_angles[i][k] = l.angles[k][i];
             s->point_velocities[i][k] = l.velocities[k][i];
+        }
+        if (s->mode.contact) {
+            s->drifts[i][s->modes->across] = speed[i];
         }
     }
 }

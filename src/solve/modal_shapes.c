@@ -31,6 +31,7 @@ void modal_stiffness_times(const arm *a, const double *x, double *y)
 typedef struct straight {
     int links;
     bool contact, stuck, spring;
+    double reach;                               // of the wall, from the last link's base
     double inertia, hub_inertia, hub_stiffness; // of a link about its centre, of the hub
     double across;                              // c
     double *lever, *pivot;                      // by link, of the elimination last made
@@ -49,9 +50,11 @@ static int slower_modes(straight *c, double y)
     for (int k = n - 2; k >= 0; k--) {
         double along, both, turn;
         if (c->contact && k == n - 2) {
-            // the tip rests: the last link turns as far as its base moves
-            along = c->inertia + 0.25 - 1 / y;
-            both = turn = -1 / y;
+            // held: the last link turns as its base moves
+            const double r = 1 / c->reach;
+            along = a - 2 * b * r + d * r * r - r * r / y;
+            both = -r / y;
+            turn = -1 / y;
         } else {
             // joint k + 1, then its link's angle
             double pivot = 1 - y * d;
@@ -98,7 +101,7 @@ static void eliminated_shape(const straight *c, double *angle, double *hub)
     for (k++; k < n; k++) {
         base += angle[k - 1];
         const bool held = c->contact && k == n - 1;
-        angle[k] = held ? -base : (angle[k - 1] + c->lever[k] * base) / c->pivot[k];
+        angle[k] = held ? -base / c->reach : (angle[k - 1] + c->lever[k] * base) / c->pivot[k];
     }
 }
 
@@ -138,12 +141,34 @@ typedef struct amplitudes {
     double cosine, sine, near, far;
 } amplitudes;
 
+// The same for a tip that a wall holds `lever` links beyond it with a force f: u_0 + lever (u_0 -
+// u_1) = 0, and what the recurrence, gone on with beyond the tip, has too much there is
+// kappa (d2 u)_0 = lever f, of which the tip's own equation has the rest.
+static void at_held_tip(const straight *c, const wave *v, amplitudes out[2])
+{
+    const double lever = c->reach - 1, square = v->s * v->s, grown = v->sinh * v->sinh;
+    const double sine = 2 * v->s * v->half_cosine;
+    const double both = 2 * v->sinh * sqrt(1 + grown), step = v->step * v->step;
+
+    // of cosine, sine, near and far: what they leave of the two equations
+    const amplitudes moment = {-square, lever * grown * sine, grown + lever * square * both,
+                               v->all * (grown - lever * square * both)};
+    const amplitudes place = {1 + 2 * lever * square, -lever * sine, 1 + lever * (1 - step),
+                              v->all * (1 + lever * (1 - 1 / step))};
+
+    // the first without far, the second without sine
+    const double size = moment.near * place.cosine - moment.cosine * place.near;
+    out[0] = (amplitudes){(moment.sine * place.near - moment.near * place.sine) / size, 1,
+                          (moment.cosine * place.sine - moment.sine * place.cosine) / size, 0};
+    out[1] = (amplitudes){(moment.far * place.near - moment.near * place.far) / size, 0,
+                          (moment.cosine * place.far - moment.far * place.cosine) / size, 1};
+}
+
 // The two motions that the tip allows, the first decaying from there, the second from the hub.
 static void at_tip(const straight *c, const wave *v, amplitudes out[2])
 {
     if (c->contact) {
-        out[0] = (amplitudes){.sine = 1};
-        out[1] = (amplitudes){.near = -v->all, .far = 1};
+        at_held_tip(c, v, out);
         return;
     }
 
@@ -306,14 +331,14 @@ static void isolate(straight *c, double low, int first, double high, int last, d
     isolate(c, middle, slower, high, last, phi);
 }
 
-// The last link turns as far as all others have moved its base: the tip rests to the last bit.
-static void keep_tip(int links, double *angle)
+// The last link turns as all others have moved its base: held to the last bit.
+static void keep_tip(int links, double reach, double *angle)
 {
     double base = 0;
     for (int i = 0; i < links - 1; i++) {
         base += angle[i];
     }
-    angle[links - 1] = -base;
+    angle[links - 1] = -base / reach;
 }
 
 // Scales a mode to unit length in M0 and, in rounding, takes the slowest modes out of it: `slowest`
@@ -347,15 +372,16 @@ static bool scale_shape(const arm *a, int number, double *shapes, double *slowes
     return isfinite(scale);
 }
 
-int modal_shapes(const arm *a, bool contact, bool stuck, double *rate, double *shapes,
-                 double *scratch)
+int modal_shapes(const arm *a, modal_ends ends, double *rate, double *shapes, double *scratch)
 {
+    const bool contact = ends.contact, stuck = ends.stuck;
     const int N = a->links;
     const double unit = a->link_mass * a->link_length * a->link_length;
     straight c = {.links = N,
                   .contact = contact,
                   .stuck = stuck,
                   .spring = a->hub_spring,
+                  .reach = 1 + ends.lever,
                   .inertia = a->link_inertia / unit,
                   .hub_inertia = a->hub_inertia / unit,
                   .hub_stiffness = a->hub_stiffness / a->joint_stiffness,
@@ -397,7 +423,7 @@ int modal_shapes(const arm *a, bool contact, bool stuck, double *rate, double *s
         rate[k] = sqrt(y * a->joint_stiffness / unit);
         row[0] = stuck ? 0 : a->first > 0 ? hub : row[0];
         if (contact) {
-            keep_tip(N, angle);
+            keep_tip(N, c.reach, angle);
         }
         if (!scale_shape(a, k, shapes, scratch + 2 * a->dof)) {
             return -1;
@@ -406,32 +432,12 @@ int modal_shapes(const arm *a, bool contact, bool stuck, double *rate, double *s
     return modes;
 }
 
-void modal_tip_answer(const arm *a, bool stuck, double *answer, double *scratch)
+void modal_tip_shift(const arm *a, modal_ends ends, double *angles)
 {
-    const int N = a->links;
-    const double unit = a->link_mass * a->link_length * a->link_length;
-    const double turn = a->link_inertia / unit + 0.25, hub = a->hub_inertia / unit;
-    double *free = scratch, *lever = scratch + N;
-
-    // tip to hub: each link's angle if its base rested, and what its base takes from that
-    double weight = 1, both = 0.5, inertia = turn, push = 1;
-    for (int k = N - 1; k >= 0; k--) {
-        inertia += k == 0 && !a->hub_spring ? hub : 0;
-        const bool held = k == 0 && !a->hub_spring && stuck;
-        free[k] = held ? 0 : push / inertia;
-        lever[k] = held ? 0 : both / inertia;
-        const double beyond = weight - both * lever[k];
-        push -= both * free[k];
-        weight = 1 + beyond;
-        both = 0.5 + beyond;
-        inertia = turn + beyond;
-    }
-
-    // hub to tip
-    double base = 0;
-    answer[0] = 0;
-    for (int k = 0; k < N; k++) {
-        answer[a->first + k] = free[k] - lever[k] * base;
-        base += answer[a->first + k];
+    // turned as a whole, or bent by a force that has so many links beyond a joint for its lever
+    angles[0] = ends.stuck ? 0 : 1;
+    for (int k = 1; k < a->dof; k++) {
+        const double s = k == a->first ? a->hub_stiffness : a->joint_stiffness;
+        angles[k] = angles[k - 1] + (ends.stuck ? (a->dof - k + ends.lever) / s : 0);
     }
 }

@@ -31,12 +31,19 @@ static inline size_t modal_shapes_scratch(int n)
     return 7 * (size_t)n;
 }
 
-// Rates [rad/s], in rising order, and angles of all modes with the tip free or held by a wall, the
-// hub free or stuck: row k of shapes[dof * dof] is mode k, of unit length in the mass matrix M0.
-// Returns how many there are, or -1 where the arm's constants leave none that can be told apart.
-int modal_shapes(const arm *a, bool contact, bool stuck, double *rate, double *shapes,
-                 double *scratch);
+// How the ends of the chain are held.
+typedef struct modal_ends {
+    bool contact; // a wall holds the last link,
+    double lever; // so many link lengths beyond its end
+    bool stuck;   // the hub does not turn
+} modal_ends;
 
-// The angles that an impulse across the tip gives the straight chain at rest, its joints loose:
-// M0^-1 of the gradient of the sum of all links' angles, of any length.
-void modal_tip_answer(const arm *a, bool stuck, double *answer, double *scratch);
+// Rates [rad/s], in rising order, and angles of all modes: row k of shapes[dof * dof] is mode k, of
+// unit length in the mass matrix M0. Returns how many there are, or -1 where the arm's constants
+// leave none that can be told apart.
+int modal_shapes(const arm *a, modal_ends ends, double *rate, double *shapes, double *scratch);
+
+// Angles of the straight chain that is moved across where a wall would hold it, and whose joints
+// want nothing but a force there: of a stuck hub the static deflection, else all the same. Of any
+// length.
+void modal_tip_shift(const arm *a, modal_ends ends, double *angles);

@@ -44,6 +44,16 @@ STRAIGHT void straight_stiffness_times(const arm *a, const real *x, real *y)
     }
 }
 
+// g' x (modal_basis.h), the wall holding the last link `lever` of its lengths beyond its end.
+STRAIGHT real straight_across(const arm *a, double lever, const real *x)
+{
+    real sum = lever * x[a->dof - 1];
+    for (int k = a->first; k < a->dof; k++) {
+        sum += x[k];
+    }
+    return sum;
+}
+
 // What moves the chain beyond the springs' torques at angles q that are small: `rate` of
 // chain_from_momentum, those torques but for a sign, structural damping at velocities w, a torque
 // on the hub [N m].

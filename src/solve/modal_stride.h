@@ -60,27 +60,28 @@ typedef struct modal_stride {
     modal_vibrations *now;    // the same
     contact_state mode;
     int dof, count;
-    int row; // doubles of an array by mode: dof, up to a whole number of vectors
-    double length;               // [s]
-    double shown_turn;           // up to which the points show a vibration [rad]
-    bool start_holds;            // drifts[0] and forces[0] are those of the start itself
-    double start_energy;         // kinetic and strain [J]
-    double per_stiffness;        // c, structural damping over stiffness [s]
-    double *damping;             // a, by mode [1/s]
-    double *viscous;             // kv V_0k^2, by mode [1/s]
-    double *softness;            // 1/w^2, by mode; 0 without a spring [s2]
-    double hub_response;         // length of V_0k over the modes: of a unit impulse on the hub
-    double *start;               // y at the start, by mode
-    double *momentum;            // P at the start, by degree of freedom
-    double *drift[MODAL_NODES];  // r(t) = sum drift[j] t^j / j!, by mode
-    double *force[MODAL_NODES];  // s(t), the same
+    int row;                    // doubles of an array by mode: dof, up to a whole number of vectors
+    double length;              // [s]
+    double shown_turn;          // up to which the points show a vibration [rad]
+    bool start_holds;           // drifts[0] and forces[0] are those of the start itself
+    double start_energy;        // kinetic and strain [J]
+    double per_stiffness;       // c, structural damping over stiffness [s]
+    double *damping;            // a, by mode [1/s]
+    double *viscous;            // kv V_0k^2, by mode [1/s]
+    double *softness;           // 1/w^2, by mode; 0 without a spring [s2]
+    double hub_response;        // length of V_0k over the modes: of a unit impulse on the hub
+    double *start;              // y at the start, by mode
+    double *momentum;           // P at the start, by degree of freedom
+    double *drift[MODAL_NODES]; // r(t) = sum drift[j] t^j / j!, by mode
+    double *force[MODAL_NODES]; // s(t), the same
     double *followed[MODAL_NODES]; // what a mode with a spring does under them without vibrating:
                                    // x = sum followed[j] t^j / j!, by mode
     modal_table at[MODAL_NODES]; // responses at the points of collocation; [0] at any other instant
     double *drifts[MODAL_NODES], *forces[MODAL_NODES]; // r and s there, by mode
     double *columns, *more_columns, *modal;            // 2 * MODAL_NODES vectors of a row each
-    double *lanes;                                     // of modal_sweep_points
-    double *angles, *velocities, *rates;               // at one instant
+    double tip[MODAL_NODES];             // lambda (modal_basis.h) at the points [N m s]
+    double *lanes;                       // of modal_sweep_points
+    double *angles, *velocities, *rates; // at one instant
     double *point_angles[MODAL_NODES], *point_velocities[MODAL_NODES]; // at the points; [0] unused
     double *place, *momenta;   // x and y at the instant of the state last asked for
     double time;               // that instant [s]
