@@ -209,6 +209,49 @@ static void a_receding_arm_does_not_touch(void **state)
     motion_destroy(m);
 }
 
+// What is predicted of one link that touches at 0.6 rad/s, under commands.
+static prediction of_one_link(const char *const *settings, const voltage_profile *command)
+{
+    parameters p = fixture_parameters(settings);
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    const double q[1] = {0.1}, w[1] = {0.6};
+    prediction out;
+    assert_int_equal(predict_pulse(&a, m, q, w, command, &out), STATUS_OK);
+    motion_destroy(m);
+    return out;
+}
+
+// A rod on a rigid wall is held by it with what the motor presses, then as later; on one that gives
+// it swings as a mass on a spring about the hub.
+static void one_link_presses_with_its_motor(void **state)
+{
+    (void)state;
+    const double at[] = {0.05}, more[] = {3}, off[] = {0};
+    const voltage_profile none = {0}, stronger = {1, at, more}, weaker = {1, at, off};
+    const char *const *const rigid =
+        SETTINGS("arm.links=1", "motor.voltage=1", "motor.stiction=0", "wall.angle=0.1");
+    const parameters p = fixture_parameters(rigid);
+    const double per_volt = motor_torque_per_volt(&p.motor) / p.arm.length;
+    prediction out = of_one_link(rigid, &none);
+    assert_true(out.holds);
+    check_relative(out.force, per_volt, 1e-6);
+    check_relative(of_one_link(rigid, &stronger).force, 3 * per_volt, 1e-6);
+    check_relative(of_one_link(rigid, &weaker).force, per_volt, 1e-6);
+
+    // v sqrt(k m), m the rod's and the hub's inertia over the square of its length
+    const char *const *const soft =
+        SETTINGS("arm.links=1", "motor.voltage=0", "motor.stiction=0", "motor.viscous_friction=0",
+                 "motor.back_emf=0", "wall.angle=0.1", "wall.contact=kelvin-voigt",
+                 "wall.stiffness=1e5", "wall.damping=0");
+    const parameters s = fixture_parameters(soft);
+    const double mass = s.arm.mass / 3 + s.arm.hub_inertia / (s.arm.length * s.arm.length);
+    out = of_one_link(soft, &none);
+    check_relative(out.force, 0.6 * s.arm.length * sqrt(1e5 * mass), 0.01);
+    assert_true(isnan(out.restitution)); // no joint stores anything
+}
+
 // Where no wall stands there is nothing to be touched.
 static void without_a_wall_there_is_no_touch(void **state)
 {
@@ -443,6 +486,7 @@ int main(void)
         cmocka_unit_test(a_damped_hub_is_predicted_too),
         cmocka_unit_test(in_flight_it_approaches_the_prediction_at_the_wall),
         cmocka_unit_test(a_receding_arm_does_not_touch),
+        cmocka_unit_test(one_link_presses_with_its_motor),
         cmocka_unit_test(without_a_wall_there_is_no_touch),
         cmocka_unit_test(a_prescribed_voltage_is_followed),
         cmocka_unit_test(an_elastic_impact_does_not_hold),

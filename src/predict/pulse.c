@@ -360,11 +360,13 @@ static void follow(follower *f, pulse *out)
     bool fresh = true;         // a linear arm begins
     double before = out->peak; // the peak some time before the horizon [N]
     for (int sample = 0; f->now.time < PULSE_HORIZON; sample++) {
-        before = f->now.time < SETTLED_FROM * PULSE_HORIZON ? out->peak : before;
+        const bool early = f->now.time < SETTLED_FROM * PULSE_HORIZON;
+        before = early ? out->peak : before;
         if (command_changes(f) || fresh) {
             evaluate(f, &f->now);
             if (held_still(f)) {
                 see_peak(f, 0, out);
+                before = early ? out->peak : before; // it presses so until it is told otherwise
                 f->now.time = next_command_time(f);
                 fresh = true;
                 continue;
