@@ -121,6 +121,20 @@ static void a_transition_leads_where_it_is_told(void **state)
     }
 }
 
+// A rate that a script sets at the start is the rig's from its first sample on.
+static void a_rate_set_at_the_start_is_that_of_the_rig(void **state)
+{
+    (void)state;
+    run_result r;
+    const char *const *const settings = SETTINGS("control.law=hybrid", "control.rate=200");
+    assert_int_equal(run_with_change(settings, "control.rate", "100", 0, &r), STATUS_OK);
+    run_result from_the_start = rig_run(SETTINGS("control.law=hybrid", "control.rate=100"), false);
+    check_relative(r.summary.peak_force_N, from_the_start.summary.peak_force_N, 1e-9);
+    check_relative(r.summary.first_contact_s, from_the_start.summary.first_contact_s, 1e-9);
+    run_finish(&r);
+    run_finish(&from_the_start);
+}
+
 // A limit that comes and goes is told to the forecast, too.
 static void a_limit_may_change(void **state)
 {
@@ -144,6 +158,7 @@ int main(void)
         cmocka_unit_test(an_admittance_may_have_no_mass),
         cmocka_unit_test(a_forecast_knows_the_hubs_spring),
         cmocka_unit_test(a_transition_leads_where_it_is_told),
+        cmocka_unit_test(a_rate_set_at_the_start_is_that_of_the_rig),
         cmocka_unit_test(a_limit_may_change),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

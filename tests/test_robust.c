@@ -406,6 +406,8 @@ static void a_limit_says_what_is_too_much(void **state)
                    100 * s.smoothed_over_command_N / s.force_command_N, 1e-12);
     robust_law_finish(&found);
     robust_law_finish(NULL);
+    robust_set_finish(NULL);
+    robust_case_finish(NULL);
 }
 
 int main(void)

@@ -150,6 +150,8 @@ static void adjusting_keeps_what_was_before(void **state)
     assert_int_equal(session_push(&s, 0.01, &f), STATUS_OK);
     assert_int_equal(session_adjust(&s, voltage, "3", &f), STATUS_OK);
     assert_int_equal(s.input_count, 3);
+    assert_int_equal(session_adjust(&s, PARAMETER_INDEX(arm.k2), "5", &f), STATUS_OK);
+    assert_int_equal(s.input_count, 4);
     session_finish(&s);
 }
 
