@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -84,14 +85,17 @@ static void *add_part(layout *l, size_t size)
     return part;
 }
 
-// A block of so many bytes, zeroed; NULL if out of memory.
-static char *zeroed_block(size_t length)
+// A block that has room for so many bytes from its first whole cache line on, zeroed; NULL if out
+// of memory. Pages of a large one are the system's until they are touched: of many links most never
+// are.
+static void *zeroed_block(size_t length)
 {
-    char *block = aligned_alloc(CACHE_LINE, length);
-    if (block != NULL) {
-        memset(block, 0, length);
-    }
-    return block;
+    return calloc(1, length + CACHE_LINE - 1);
+}
+static char *first_line(void *block)
+{
+    const size_t beyond = (uintptr_t)block % CACHE_LINE;
+    return (char *)block + (CACHE_LINE - beyond) % CACHE_LINE;
 }
 
 // Lays out what belongs to the engine.
@@ -121,11 +125,11 @@ static bool open_engine(const arm *a, motion *m)
 {
     layout l = {0};
     lay_out_engine(a, m, &l);
-    m->engine_block = l.block = zeroed_block(l.length);
-    if (l.block == NULL) {
+    m->engine_block = zeroed_block(l.length);
+    if (m->engine_block == NULL) {
         return false;
     }
-    l.length = 0;
+    l = (layout){.block = first_line(m->engine_block)};
     lay_out_engine(a, m, &l);
     if (m->engine->open != NULL) {
         m->engine->open(a, m);
@@ -155,12 +159,12 @@ motion *motion_create_by(const arm *a, const method_parameters *method, const en
     // its storage: all of it or none
     layout l = {0};
     lay_out_motion(a, m, &l);
-    m->block = l.block = zeroed_block(l.length);
-    l.length = 0;
-    if (l.block != NULL) {
+    m->block = zeroed_block(l.length);
+    if (m->block != NULL) {
+        l = (layout){.block = first_line(m->block)};
         lay_out_motion(a, m, &l);
     }
-    if (l.block == NULL || !open_engine(a, m)) {
+    if (m->block == NULL || !open_engine(a, m)) {
         motion_destroy(m);
         return NULL;
     }
