@@ -28,7 +28,7 @@
 #define OPEN         1e-8   // share of the energy that a stride's ledger may lack
 #define FAINT        1e-8   // share of it that vibrations may have to be left out of the points
 #define GROWTH       4      // from stride to stride
-#define FIRST_TURN   3      // of the fastest vibration in the first stride of a contact [rad]
+#define FIRST_TURN   3      // of the fastest vibration in a contact's or bounce's first stride [rad]
 #define TURN         0.05   // of the fastest link in a stride [rad]
 #define LAST_TERMS   1e-9   // of the series between the modes' strides
 
@@ -177,7 +177,8 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
     modal_stride *s = stride_of(m);
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     s->start_energy = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q);
-    s->shown_turn = a->wall.restitution > 0 ? SHOWN_BOUNCING : SHOWN;
+    const bool bounces = a->wall.restitution > 0;
+    s->shown_turn = bounces ? SHOWN_BOUNCING : SHOWN;
     if (modal_stride_start(s, a, m->links, contact_state_of(m->state), q, w) != STATUS_OK) {
         return 0;
     }
@@ -185,13 +186,13 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
     // as proposed, and no longer than turning, events and vibrations allow
     double longest = m->state[SLOT_STRIDE] > 0 ? m->state[SLOT_STRIDE] : LONGEST;
     longest = fmin(longest, TURN / fmax(fabs(w[0]), 1e-9));
-    if (m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0) {
+    if (m->state[SLOT_JUMPED] != 0 && (bounces || m->state[SLOT_CONTACT] != 0)) {
         longest = fmin(longest, FIRST_TURN / modal_stride_fastest(s));
     }
     longest = fmin(longest, s->shown_turn / modal_stride_shown(s, FAINT * s->start_energy));
 
     // beyond what remains the last one is of no interest, and it says little of the next one
-    const double most_defect = a->wall.restitution > 0 ? DEFECT_BOUNCING : DEFECT;
+    const double most_defect = bounces ? DEFECT_BOUNCING : DEFECT;
     const double least_next = 2 * remaining < longest ? longest : 0;
     double h = round_length(fmin(longest, 2 * remaining));
     const double energy = s->start_energy + fabs(a->motor.torque) * TURN / 10;
