@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "src/solve/contact_machine.h"
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
 

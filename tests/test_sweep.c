@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "src/run/run.h"
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 #include "src/study/sweep_rows.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"

@@ -5,7 +5,7 @@
 #include "src/base/random.h"
 #include "src/run/run.h"
 #include "src/solve/contact_machine.h"
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 #include "tests/arm_fixture.h"
 
 // An arm in some state of motion, in free flight or on the wall.

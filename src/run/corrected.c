@@ -57,33 +57,53 @@ static bool stretch_is_over(const corrected_run *c)
     return !(m->state[SLOT_TIME] < smaller(c->stop, m->cut));
 }
 
+// Why the motion could not make a step.
+static status explain_step(const corrected_run *c, status s, fault *f)
+{
+    const motion *m = c->motion;
+    if (s == STATUS_FOLDED) {
+        return explain_fold(c, f);
+    }
+    return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
+                     m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
+}
+
+// What comes of a step that ended where `report` says.
+static status record_step(corrected_run *c, motion_report *report)
+{
+    const motion *m = c->motion;
+    const bool at_event = report->event != MOTION_REACHED;
+    status s = corrected_record_step(c, at_event);
+    if (s == STATUS_OK && at_event) {
+        s = corrected_pass_event(c, report);
+        bool same = m->state[SLOT_TIME] - c->last_event < SAME_EVENT_TIME;
+        c->at_once = same ? c->at_once + 1 : 0;
+        c->last_event = m->state[SLOT_TIME];
+    }
+    return s;
+}
+
 status corrected_stride(corrected_run *c, fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    motion_report report;
+    const double step = r->now.method.step;
     if (!checkpoint_keep(r, m, c->last_event)) {
         return fault_no_memory(f);
     }
 
-    // one step, or less to an event
-    status s = motion_step(&c->arm, m, c->stop, r->now.method.step, &report);
-    if (s == STATUS_FOLDED) {
-        return explain_fold(c, f);
-    }
-    if (s != STATUS_OK) {
-        return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
-                         m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
-    }
-
-    // what came of it
-    bool at_event = report.event != MOTION_REACHED;
-    s = corrected_record_step(c, at_event);
-    if (s == STATUS_OK && at_event) {
-        s = corrected_pass_event(c, &report);
-        bool same = m->state[SLOT_TIME] - c->last_event < SAME_EVENT_TIME;
-        c->at_once = same ? c->at_once + 1 : 0;
-        c->last_event = m->state[SLOT_TIME];
+    // one step, or less to an event, and what comes of it
+    motion_glide made;
+    motion_report report;
+    status s;
+    if (corrected_may_glide(c) && motion_glide_on(&c->arm, m, c->stop, step, &made)) {
+        s = corrected_record_glide(c, &made);
+    } else {
+        s = motion_step(&c->arm, m, c->stop, step, &report);
+        if (s != STATUS_OK) {
+            return explain_step(c, s, f);
+        }
+        s = record_step(c, &report);
     }
 
     // reasons to end here
@@ -97,8 +117,7 @@ status corrected_stride(corrected_run *c, fault *f)
     if (s != STATUS_OK) {
         return explain(c, s, f);
     }
-    const double duration = r->scenario->parameters.run.duration;
-    return pace_keep(&c->pace, &c->arm, m, duration, r->now.method.step, f);
+    return pace_keep(&c->pace, &c->arm, m, r->scenario->parameters.run.duration, step, f);
 }
 
 // The next instant that steps end at: the rig's, or the end.

@@ -187,14 +187,14 @@ static status record_grid(corrected_run *c, bool at_event)
     return failed;
 }
 
-// The gap at an instant [s] within the step just made, a step in free flight; false, and none, if
-// that fails.
-static bool gap_within(corrected_run *c, double time, glance *gap)
+// The gap at an instant [s] within the step just made from `start` on, a step in free flight;
+// false, and none, if that fails.
+static bool gap_within(corrected_run *c, double start, double time, glance *gap)
 {
     motion *m = c->motion;
     *gap = (glance){0, 0};
-    if (m->engine->gap_at != NULL && !state_is_held_still(m, m->trial)) {
-        *gap = m->engine->gap_at(&c->arm, m, time - m->trial[SLOT_TIME]);
+    if (m->engine->gap_at != NULL) {
+        *gap = m->engine->gap_at(&c->arm, m, time - start);
         return true;
     }
     const double *state = motion_between(&c->arm, m, time);
@@ -204,12 +204,12 @@ static bool gap_within(corrected_run *c, double time, glance *gap)
     return state != NULL;
 }
 
-// Whether the gap was a separation at any instant of the step just made. A whole flight may lie
-// within one step, so the end says little: look where the gap stops growing.
-static bool step_separated(corrected_run *c)
+// Whether the gap was a separation at any instant of the step just made from `start` [s] on. A
+// whole flight may lie within one step, so the end says little: look where the gap stops growing.
+static bool step_separated(corrected_run *c, double start)
 {
     motion *m = c->motion;
-    double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
+    double from = start, to = m->state[SLOT_TIME];
 
     // the ends of the step decide nearly always
     if (m->state[SLOT_GAP] > SEPARATION_GAP) {
@@ -223,7 +223,7 @@ static bool step_separated(corrected_run *c)
     for (int i = 0; i < SEPARATION_BISECTIONS; i++) {
         const double middle = 0.5 * (from + to);
         glance gap;
-        if (!gap_within(c, middle, &gap) || gap.value > SEPARATION_GAP) {
+        if (!gap_within(c, start, middle, &gap) || gap.value > SEPARATION_GAP) {
             return gap.value > SEPARATION_GAP;
         }
         if (gap.slope > 0) {
@@ -235,20 +235,19 @@ static bool step_separated(corrected_run *c)
     return false;
 }
 
-// The force over the step just made.
-static force_step force_over_step(const motion *m)
+// The force over the step just made, from its start [s], where it was `first` [N], with this
+// integral [N s].
+static force_step force_over_step(const motion *m, double start, double first, double integral)
 {
-    const double *start = m->trial; // where the step left its beginning
-    double length = m->state[SLOT_TIME] - start[SLOT_TIME];
-    double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
-                      state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    const double *end = m->state;
+    const double length = end[SLOT_TIME] - start;
 
     // between stops that differ by rounding only, the integral's difference is all rounding
-    double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
-    return (force_step){.start = start[SLOT_TIME],
-                        .end = m->state[SLOT_TIME],
-                        .first = start[SLOT_FORCE],
-                        .last = m->state[SLOT_FORCE],
+    const double ends = (first + end[SLOT_FORCE]) / 2;
+    return (force_step){.start = start,
+                        .end = end[SLOT_TIME],
+                        .first = first,
+                        .last = end[SLOT_FORCE],
                         .mean = length > SHORTEST_MEAN ? integral / length : ends};
 }
 
@@ -453,18 +452,27 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole)
     return STATUS_OK;
 }
 
+// Takes note of the gap and of the motor's work [J] over the step just made from `start` on.
+static void follow_gap_and_work(corrected_run *c, double start, double work)
+{
+    recording *r = c->recording;
+    if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
+        r->state.separated = step_separated(c, start);
+    }
+    r->state.energy_put_in += fabs(work);
+}
+
 status corrected_record_step(corrected_run *c, bool at_event)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    const force_step force = force_over_step(m);
+    double *start = m->trial; // where the step left its beginning
+    const double pressed = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
+                           state_quadratures(m, start)[QUADRATURE_FORCE];
+    const force_step force = force_over_step(m, start[SLOT_TIME], start[SLOT_FORCE], pressed);
     const double length = force.end - force.start;
-
-    // how far the arm has gone from the wall
-    if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
-        r->state.separated = step_separated(c);
-    }
-    r->state.energy_put_in += fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial));
+    follow_gap_and_work(c, force.start,
+                        motion_motor_work(m, m->state) - motion_motor_work(m, start));
 
     // an arm held still has the energy it had
     const bool known = m->reached.kinetic >= 0;
@@ -476,13 +484,36 @@ status corrected_record_step(corrected_run *c, bool at_event)
     }
 
     // how fast the tip came towards the wall on its own
-    if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
-        recording_follow_flight(r,
-                                larger(-m->trial[SLOT_GAP_VELOCITY], -m->state[SLOT_GAP_VELOCITY]));
+    if (r->rig != NULL && start[SLOT_CONTACT] == 0) {
+        recording_follow_flight(r, larger(-start[SLOT_GAP_VELOCITY], -m->state[SLOT_GAP_VELOCITY]));
     }
 
     if (s == STATUS_OK && length > 0) {
         s = record_force(c, &force);
     }
     return s == STATUS_OK ? record_grid(c, at_event) : s;
+}
+
+bool corrected_may_glide(const corrected_run *c)
+{
+    const recording *r = c->recording;
+    return r->rig == NULL && !r->options->keep_trace &&
+           !(c->arm.fastest_decay > c->arm.highest_frequency);
+}
+
+status corrected_record_glide(corrected_run *c, const motion_glide *made)
+{
+    recording *r = c->recording;
+    const motion *m = c->motion;
+    const force_step force = force_over_step(m, made->start, made->start_force, made->pressed);
+    follow_gap_and_work(c, made->start, made->work);
+    const status s = audit(c, m->reached);
+    if (s != STATUS_OK || !(force.end > force.start)) {
+        return s;
+    }
+
+    // a force that vibrates, in parabolas
+    const bool contact = m->state[SLOT_CONTACT] != 0;
+    const int pieces = contact ? pieces_of_step(c, made->length, FORCE_REACH) : 1;
+    return pieces > 1 ? record_equal_pieces(c, &force, 0, pieces) : recording_add_step(r, force);
 }

@@ -7,7 +7,7 @@
 #include "src/run/corrected.h"
 #include "src/run/recording_frame.h"
 #include "src/run/run.h"
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 
 // So many runs are in hand at once: enough to fill the vectors with strides of one form, few enough
 // to stay in the nearest cache.

@@ -1,6 +1,6 @@
 #include "src/solve/chain_loops.h"
 
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 
 // Blocks are handed to inline functions of this file only.
 #pragma GCC diagnostic ignored "-Wpsabi"

@@ -95,6 +95,11 @@ typedef struct engine {
     bool (*states_at)(const arm *a, motion *m, double *start, const double *h, int count,
                       double *const *states, state_energy *energies);
 
+    // Dense engines, or NULL: state_at into m->state itself, whose other slots stay, and the energy
+    // that it holds. False, and nothing done, where the state is to be put back on the constraint
+    // or is not finite.
+    bool (*move_to)(const arm *a, motion *m, double h, state_energy *has);
+
     // Dense engines that have ways of their own, else NULL: what dense_first_event and dense_peak
     // of dense_location.h do.
     void (*first_event)(const arm *a, motion *m, double *h, watch *first, bool *any);

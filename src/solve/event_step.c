@@ -16,17 +16,22 @@
 // processors do many times more slowly.
 #define FADED 1e-150
 
+// Counts a step over so much time [s].
+static void count_step(motion *m, double passed, double step)
+{
+    const double steps = passed / step - 1e-6;
+    const long whole = (long)steps; // rounded up, and one at least
+    m->steps += steps > 0 ? whole + ((double)whole < steps) : 1;
+    m->largest_penetration = larger(-state_rest_gap(m->state), m->largest_penetration);
+}
+
 static void accept(motion *m, double step)
 {
     double *previous = m->state;
     m->state = m->trial;
     m->trial = previous;
     m->reached = m->holds;
-    double passed = m->state[SLOT_TIME] - previous[SLOT_TIME];
-    const double steps = passed / step - 1e-6;
-    const long whole = (long)steps; // rounded up, and one at least
-    m->steps += steps > 0 ? whole + ((double)whole < steps) : 1;
-    m->largest_penetration = larger(-state_rest_gap(m->state), m->largest_penetration);
+    count_step(m, m->state[SLOT_TIME] - previous[SLOT_TIME], step);
     if (!motion_wall_is_rigid(m)) {
         m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
     }
@@ -199,6 +204,15 @@ static status dense_stride(const arm *a, motion *m, double until, double step, d
     return m->ahead.begun ? motion_try_step(a, m, *h) : STATUS_NO_PROGRESS;
 }
 
+// An instant that was meant is met to the last bit.
+static void meet_stop(motion *m, double until)
+{
+    const double stop = smaller(until, m->cut);
+    if (!instant_after(stop, m->state[SLOT_TIME])) {
+        m->state[SLOT_TIME] = stop;
+    }
+}
+
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL && step > 0);
@@ -242,12 +256,46 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     } else {
         come_to_rest(m);
     }
-    // an instant that was meant is met to the last bit
-    double stop = smaller(until, m->cut);
-    if (!instant_after(stop, m->state[SLOT_TIME])) {
-        m->state[SLOT_TIME] = stop;
-    }
+    meet_stop(m, until);
     return STATUS_OK;
+}
+
+bool motion_glide_on(const arm *a, motion *m, double until, double step, motion_glide *made)
+{
+    assert(a != NULL && m != NULL && made != NULL && step > 0);
+    if (m->engine->move_to == NULL || motion_held_still(m) || !motion_wall_is_rigid(m)) {
+        return false;
+    }
+    if (!m->ahead.known) {
+        motion_look_ahead(a, m, until, step);
+    }
+    if (!m->ahead.known || !m->ahead.begun || m->ahead.any) {
+        return false;
+    }
+
+    // to its end
+    double *state = m->state;
+    const double h = m->ahead.length, hub = state_angles(m, state)[0];
+    const double pressed = state_quadratures(m, state)[QUADRATURE_FORCE];
+    *made =
+        (motion_glide){.start = state[SLOT_TIME], .length = h, .start_force = state[SLOT_FORCE]};
+    if (!m->engine->move_to(a, m, h, &m->reached)) {
+        return false;
+    }
+    m->ahead.known = false;
+    m->made = h;
+
+    // time and the ledger
+    const double work = motion_motor_work(m, state);
+    state[SLOT_TIME] += h;
+    state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;
+    motion_book(a, m, hub, state);
+    made->work = motion_motor_work(m, state) - work;
+    count_step(m, state[SLOT_TIME] - made->start, step);
+    come_to_rest(m);
+    made->pressed = state_quadratures(m, state)[QUADRATURE_FORCE] - pressed;
+    meet_stop(m, until);
+    return true;
 }
 
 status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report)

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 
 typedef double real;
 #include "src/solve/modal_straight.h"

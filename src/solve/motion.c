@@ -14,12 +14,9 @@
 #define STIFF_PAIR 2e6
 
 // Share of the time since an event in which what is left of decays changes little.
-#define GRADING         0.2
+#define GRADING    0.2
 
-#define CACHE_LINE      64 // [bytes]
-
-#define PROJECTION_GAP  1e-14 // drift that is projected away in contact [m]
-#define PROJECTION_RATE 1e-13 // [m/s]
+#define CACHE_LINE 64 // [bytes]
 
 // Some last bits of an acceleration, as a share of 1e-9, which counts as zero in a slow soft arm.
 #define LAST_BITS 4e-4
@@ -324,8 +321,7 @@ double motion_unaccounted(const motion *m, double *state, double energy)
 bool motion_project(const arm *a, motion *m, double *state)
 {
     bool locked = contact_state_of(state).friction == HUB_STICK;
-    if (m->dof == 1 || (fabs(state[SLOT_GAP]) <= PROJECTION_GAP &&
-                        fabs(state[SLOT_GAP_VELOCITY]) <= PROJECTION_RATE)) {
+    if (m->dof == 1 || !motion_drifted(state[SLOT_GAP], state[SLOT_GAP_VELOCITY])) {
         return false;
     }
     double compliance, *response = m->scratch;
@@ -388,9 +384,7 @@ static void book(const arm *a, const motion *m, double *from, double *state)
         state_quadratures(m, state)[QUADRATURE_WALL] +=
             motion_wall_energy(a, m, from) - motion_wall_energy(a, m, state);
     }
-    double turned = state_angles(m, state)[0] - state_angles(m, from)[0];
-    state[SLOT_MOTOR_WORK] += a->motor.torque * turned;
-    state[SLOT_FRICTION_LOSS] += state[SLOT_FRICTION] * a->motor.stiction * turned;
+    motion_book(a, m, state_angles(m, from)[0], state);
 }
 
 static bool is_finite(const motion *m, double *state)

@@ -5,6 +5,8 @@
 // they change are the contact machine's (contact_machine.h), which stands on this and on locate.h.
 #pragma once
 
+#include <math.h>
+
 #include "src/arm/chain.h"
 #include "src/base/status.h"
 #include "src/solve/engine.h"
@@ -262,12 +264,28 @@ double motion_begin_stride(const arm *a, motion *m, double remaining, double ste
 // for finiteness. Stepping engines need no stride: they step from m->state.
 status motion_try_step(const arm *a, motion *m, double h);
 
+// Books in an evaluated state what motor and friction did since the hub was at an angle [rad].
+static inline void motion_book(const arm *a, const motion *m, double hub, double *state)
+{
+    const double turned = state_angles(m, state)[0] - hub;
+    state[SLOT_MOTOR_WORK] += a->motor.torque * turned;
+    state[SLOT_FRICTION_LOSS] += state[SLOT_FRICTION] * a->motor.stiction * turned;
+}
+
 // The states at `count` instants [s] within the step just made, which left its start in m->trial,
 // and what each of them holds: count up to MOTION_TOGETHER, one after the other in m->between.
 // False if the engine has no such way; then motion_between of contact_machine.h gives them one by
 // one.
 bool motion_between_all(const arm *a, motion *m, const double *times, int count,
                         state_energy *energies);
+
+// Whether rounding has led a state in contact so far from its constraint, by a gap [m] and its rate
+// [m/s], that it has to be put back.
+static inline bool motion_drifted(double gap, double rate)
+{
+    const double most_gap = 1e-14, most_rate = 1e-13;
+    return !(fabs(gap) <= most_gap && fabs(rate) <= most_rate);
+}
 
 // Puts an evaluated state in contact back onto the constraint, position and velocity, along
 // M^-1 J^T: the nearest admissible state in the metric of the kinetic energy. Evaluates it again if

@@ -16,9 +16,7 @@
 #include "src/base/extremes.h"
 #include "src/base/sincos.h"
 #include "src/solve/dense_location.h"
-#include "src/solve/motion.h"
-#include "src/solve/taylor_engine.h"
-#include "src/solve/taylor_polynomial.h"
+#include "src/solve/taylor_stride.h"
 
 // Strides stay below this over the fastest rate and the angular velocities.
 #define LONGEST_REACH 2.0
@@ -27,27 +25,8 @@
 // On a flat wall the first link turns by no more than this share of what is left to a fold.
 #define LONGEST_TURN 0.1
 
-// What is nothing but rounding in the first coefficients of a watched function at its edge: of the
-// value and of its derivatives, over which nothing is known but that they are small.
-#define EDGE_VALUE 1e-9
-#define EDGE_RATE  1e-9
-#define EDGE_MORE  1e-7
-#define EDGE_GAP   1e-12 // [m]
-// As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
-#define EDGE_DEPTH 1e-6 // [m]
 // Less of a stride left than this share of it is rounding.
 #define LEAST_LEFT 1e-9
-
-typedef struct taylor_stride {
-    taylor_lane lane;                       // the series
-    polynomial watched[WATCH_STICTION + 1]; // as far as they were asked for; stiction: nearer limit
-    polynomial far_limit;                   // of stiction
-    unsigned known;                         // which of them are, a bit each
-    bool ready;                             // the series of the next stride were computed apart
-    double kept[KEPT_COUNT];                // the stride that the series are of
-    double used;                            // of it before the step in hand [s]
-    bool own;                               // the lane's block has all of them
-} taylor_stride;
 
 bool taylor_engine_suits(const arm *a)
 {
@@ -104,67 +83,6 @@ static double wanted_stride(const arm *a, const motion *m, const double *w, doub
     double wanted = LONGEST_REACH / rate;
     wanted = most < wanted ? most : wanted;
     return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay : wanted;
-}
-
-static double rounding_of(const arm *a, const motion *m, const taylor_stride *s)
-{
-    return motion_rounding_at(a, m->dof, s->kept + KEPT_ANGLES, s->kept + KEPT_VELOCITIES);
-}
-
-// A function that is to be watched, from the series: only where it comes near zero is it asked for.
-// Just after an event it may begin at zero, as the gap does after a bounce cut short.
-static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, watch w)
-{
-    const int order = s->lane.form.order;
-    const bool jumped = s->kept[KEPT_JUMPED] != 0;
-    const double friction = m->state[SLOT_FRICTION], stiction = a->motor.stiction;
-    polynomial *p = &s->watched[w];
-    const taylor_lane *lane = &s->lane;
-    const int spacing = taylor_spacing(lane);
-    s->known |= 1u << w;
-
-    // the wall
-    if (w == WATCH_FORCE) {
-        const double edge[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
-        set_polynomial(p, taylor_term(lane, AT_FORCE), spacing, order, 1);
-        if (jumped) {
-            leave_edge(p, edge);
-        }
-    } else if (w == WATCH_GAP) {
-        set_polynomial(p, taylor_term(lane, AT_GAP), spacing, order + 2, 1);
-        const bool inside = p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
-        p->terms[0] = inside ? 0 : p->terms[0];
-        if (jumped || inside) {
-            const double rounding = EDGE_RATE * rounding_of(a, m, s);
-            leave_edge(p, (double[]){EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, rounding)});
-        }
-    }
-
-    // the hub; what holds a stuck one may hold a little more just after an event
-    if (w == WATCH_HUB) {
-        const int place = a->hub_spring ? AT_RATE_0 : AT_RATE_1;
-        set_polynomial(p, taylor_term(lane, place), spacing, order + 1, friction);
-        if (jumped) {
-            leave_edge(p, (double[]){0, EDGE_RATE * rounding_of(a, m, s), EDGE_MORE});
-        }
-    } else if (w == WATCH_STICTION) {
-        const double *hold = taylor_term(lane, AT_HOLD);
-        const double sign = hold[0] < 0 ? -1 : 1;
-        set_polynomial(p, hold, spacing, order, -sign);
-        set_polynomial(&s->far_limit, hold, spacing, order, sign);
-        p->terms[0] += stiction;
-        s->far_limit.terms[0] += stiction;
-        p->terms[0] = jumped && fabs(p->terms[0]) <= EDGE_VALUE ? EDGE_VALUE : p->terms[0];
-    }
-}
-
-static const polynomial *watched(const arm *a, const motion *m, watch w)
-{
-    taylor_stride *s = m->memory;
-    if (!(s->known & 1u << w)) {
-        prepare_watched(a, m, s, w);
-    }
-    return &s->watched[w];
 }
 
 // Notes down in the state the stride that begins there, to be as long as `most` [s] if it may.
@@ -314,234 +232,20 @@ taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
     return &s->lane;
 }
 
-// What one of the instants comes to, into `state`; in contact the gap and its derivatives ought to
-// be zero, and the second one is taken so.
-static void take_instant(const arm *a, const motion *m, const taylor_instants *at, int i,
-                         double *state)
-{
-    const taylor_stride *s = m->memory;
-    const double *before = s->kept + KEPT_QUADRATURES;
-    double *quadrature = state_quadratures(m, state);
-
-    // where in the stride it is
-    memcpy(state_kept(m, state), s->kept, sizeof s->kept);
-    state_kept(m, state)[KEPT_USED] = at->time[i];
-
-    // the motion
-    for (int k = 0; k < m->dof; k++) {
-        const int body = k + 1 - a->first;
-        state_angles(m, state)[k] = at->angle[body][i];
-        state_velocities(m, state)[k] = at->velocity[body][i];
-        state_accelerations(m, state)[k] = at->acceleration[body][i];
-        state_algorithmic(m, state)[k] = at->acceleration[body][i];
-    }
-
-    // what it has lost and pressed
-    const double turn = state_velocities(m, state)[0];
-    quadrature[QUADRATURE_VISCOUS] =
-        before[QUADRATURE_VISCOUS] + a->motor.damping * at->hub_square[i];
-    quadrature[QUADRATURE_DAMPING] = before[QUADRATURE_DAMPING];
-    if (s->lane.form.damped) {
-        quadrature[QUADRATURE_DAMPING] += at->dissipated[i];
-        state[SLOT_DAMPING_POWER] = at->dissipation[i];
-    }
-    quadrature[QUADRATURE_FORCE] = before[QUADRATURE_FORCE];
-    state[SLOT_VISCOUS_POWER] = a->motor.damping * turn * turn;
-
-    // friction and wall
-    const bool stuck = state[SLOT_FRICTION] == HUB_STICK;
-    state[SLOT_FRICTION_TORQUE] = stuck ? at->hold[i] : -state[SLOT_FRICTION] * a->motor.stiction;
-    if (s->lane.form.contact) {
-        state[SLOT_FORCE] = at->force[i];
-        quadrature[QUADRATURE_FORCE] += at->pressed[i];
-    }
-    if (wall_stands(&a->wall)) {
-        state[SLOT_GAP] = at->gap[i];
-        state[SLOT_GAP_VELOCITY] = at->gap_velocity[i];
-        state[SLOT_GAP_ACCELERATION] = s->lane.form.contact ? 0 : at->gap_acceleration[i];
-    }
-}
-
-static status state_at(const arm *a, motion *m, double h)
-{
-    taylor_stride *s = m->memory;
-    taylor_instants one;
-    const taylor_instants *at = &one;
-    int place = 0;
-
-    // evaluated with others', or here
-    if (s->lane.end == h) {
-        at = &s->lane.group->ends;
-        place = s->lane.number;
-    } else {
-        one.time[0] = s->used + h;
-        taylor_evaluate(&s->lane, 1, &one);
-    }
-    take_instant(a, m, at, place, m->trial);
-    m->holds = (state_energy){at->kinetic[place], at->strain[place]};
-    if (s->lane.form.contact && motion_project(a, m, m->trial)) {
-        m->holds = unknown_energy;
-    }
-    return STATUS_OK;
-}
-
-static bool states_at(const arm *a, motion *m, double *start, const double *h, int count,
-                      double *const *states, state_energy *energies)
-{
-    taylor_stride *s = m->memory;
-    const int width = taylor_width();
-    (void)start;
-    for (int done = 0; done < count; done += width) {
-        taylor_instants at;
-        const int more = count - done < width ? count - done : width;
-        for (int i = 0; i < more; i++) {
-            at.time[i] = s->used + h[done + i];
-        }
-        taylor_evaluate(&s->lane, more, &at);
-        for (int i = 0; i < more; i++) {
-            double *state = states[done + i];
-            take_instant(a, m, &at, i, state);
-            energies[done + i] = (state_energy){at.kinetic[i], at.strain[i]};
-            if (s->lane.form.contact && motion_project(a, m, state)) {
-                energies[done + i] = motion_energy(a, m, state);
-            }
-        }
-    }
-    return true;
-}
-
-// --- what the contact machine asks --------------------------------------------------------------
-
-static glance look(const arm *a, const motion *m, watch w, double h)
-{
-    const taylor_stride *s = m->memory;
-    const polynomial *p = watched(a, m, w);
-    const double t = s->used + h;
-    glance near = t > 0 ? glance_at(p->terms, p->count, t) : (glance){p->terms[0], p->terms[1]};
-    if (w != WATCH_STICTION) {
-        return near;
-    }
-    glance far = glance_at(s->far_limit.terms, s->far_limit.count, t);
-    return near.value < far.value ? near : far;
-}
-
-static double bend(const arm *a, const motion *m, watch w, double from, double to)
-{
-    taylor_stride *s = m->memory;
-    const polynomial *p = watched(a, m, w);
-    const double t = s->used + to;
-    double near = bend_of(p, t);
-    (void)from;
-    if (w == WATCH_FORCE && p->divided) {
-        // divided by the time: the force itself may bend more
-        polynomial force;
-        set_polynomial(&force, taylor_term(&s->lane, AT_FORCE), taylor_spacing(&s->lane),
-                       s->lane.form.order, 1);
-        return fmax(near, bend_of(&force, t));
-    }
-    return near; // that of both limits of stiction
-}
-
-static glance force_at(const arm *a, const motion *m, double h)
-{
-    taylor_stride *s = m->memory;
-    (void)a;
-    const int order = s->lane.form.order;
-    const double *force = taylor_terms(&s->lane, AT_FORCE, order), t = s->used + h;
-    return t > 0 ? glance_at(force, order, t) : (glance){force[0], force[1]};
-}
-
-static void forces_at(const arm *a, const motion *m, double h, int count, glance *at)
-{
-    const taylor_stride *s = m->memory;
-    const double width = h / count;
-    const taylor_lane *lane = &s->lane;
-
-    // evaluated with others', which began their strides with the steps, or here
-    if (lane->pieces == count && lane->end == h) {
-        const taylor_pieces *pieces = &lane->group->pieces;
-        at[0] = (glance){*taylor_term(lane, AT_FORCE), *taylor_term(lane, AT_FORCE + 1)};
-        for (int i = 0; i < count; i++) {
-            at[i + 1] = (glance){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
-        }
-    } else {
-        for (int i = 0; i <= count; i++) {
-            at[i] = force_at(a, m, i * width);
-        }
-    }
-}
-
-static glance gap_at(const arm *a, const motion *m, double h)
-{
-    taylor_stride *s = m->memory;
-    (void)a;
-    const int count = s->lane.form.order + 2;
-    return glance_at(taylor_terms(&s->lane, AT_GAP, count), count, s->used + h);
-}
-
-// Whether the watched function is off its edge from the start, and above zero all over the stride.
-static bool clear_throughout(const motion *m, watch w)
-{
-    const taylor_stride *s = m->memory;
-    const bool jumped = s->kept[KEPT_JUMPED] != 0, wall = w == WATCH_GAP || w == WATCH_FORCE;
-    const double edge = w == WATCH_GAP ? EDGE_GAP : w == WATCH_HUB ? 0 : EDGE_VALUE;
-    return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > (jumped ? edge : 0);
-}
-
-static void first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
-{
-    // of most strides the bounds rule all events out
-    const contact_state now = contact_state_of(m->state);
-    const bool stuck = now.friction == HUB_STICK;
-    const watch wall = now.contact ? WATCH_FORCE : WATCH_GAP;
-    const watch hub = stuck ? WATCH_STICTION : WATCH_HUB;
-    const bool wall_clear = clear_throughout(m, wall) || (!now.contact && !wall_stands(&a->wall));
-    const bool hub_clear = clear_throughout(m, hub) || (!stuck && a->motor.stiction == 0);
-
-    *first = WATCH_GAP;
-    *any = false;
-    if (!wall_clear || !hub_clear) {
-        dense_search_event(a, m, h, first, any);
-    }
-}
-
-static bool clear(const arm *a, motion *m, watch w, double h)
-{
-    const taylor_stride *s = m->memory;
-    const double t = s->used + h;
-    if (clear_throughout(m, w)) {
-        return true;
-    }
-    if (s->kept[KEPT_JUMPED] == 0 && t >= s->kept[KEPT_LENGTH]) {
-        return false; // the bounds of the whole stride leave it to be looked for
-    }
-
-    // what begins on the edge, or is not asked for as far as the stride goes
-    const polynomial *p = watched(a, m, w);
-    double low = low_of(p, t);
-    return w == WATCH_STICTION ? fmin(low, low_of(&s->far_limit, t)) > 0 : low > 0;
-}
-
-static bool bounded(const arm *a, motion *m, double h, double most)
-{
-    const taylor_stride *s = m->memory;
-    (void)a, (void)h;
-    return s->lane.block[AT_FORCE_MOST] <= most;
-}
-
 const engine taylor_engine = {.name = "Taylor series",
                               .begin = begin,
-                              .state_at = state_at,
-                              .states_at = states_at,
-                              .look = look,
-                              .bend = bend,
+                              .state_at = taylor_state_at,
+                              .states_at = taylor_states_at,
+                              .move_to = taylor_move_to,
+                              .look = taylor_look,
+                              .bend = taylor_bend,
                               .bends_from_start = true,
-                              .clear = clear,
-                              .bounded = bounded,
-                              .force_at = force_at,
-                              .forces_at = forces_at,
-                              .gap_at = gap_at,
-                              .first_event = first_event,
+                              .clear = taylor_clear,
+                              .bounded = taylor_bounded,
+                              .force_at = taylor_force_at,
+                              .forces_at = taylor_forces_at,
+                              .gap_at = taylor_gap_at,
+                              .first_event = taylor_first_event,
                               .peak = dense_search_peak,
                               .open = open,
                               .retorque = taylor_retorque,

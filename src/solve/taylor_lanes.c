@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 
 static atomic_int limit; // 0: none
 

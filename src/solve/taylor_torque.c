@@ -1,6 +1,6 @@
 // What another torque of the motor does at once to a two-link arm whose hub slides.
 #include "src/base/sincos.h"
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 
 // J, the entries of dg/dq, as taylor_kernel.h has them [m].
 static void levers(const arm *a, const double *q, double bend_cosine, double j[2])

@@ -12,7 +12,7 @@
 #include "src/run/export.h"
 #include "src/run/run.h"
 #include "src/solve/contact_machine.h"
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 #include "src/study/batch.h"
 #include "src/study/sweep_run.h"
 #include "src/study/thesis_tables.h"
