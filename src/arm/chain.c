@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "src/arm/chain_kernel.h"
+#include "src/arm/chain_pair.h"
 
 void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
                          contact_state mode, double *alpha, chain_reaction *reaction)
@@ -10,8 +11,8 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
     if (chain_is_loaded(a)) {
         chain_sweep_loaded(a, a->links, a->hub_spring, mode.contact, true, true, work, q, w, mode,
                            alpha, reaction);
-    } else if (a->links == 2 && !a->hub_spring) {
-        chain_sweep(a, 2, false, mode.contact, true, work, q, w, mode, alpha, reaction);
+    } else if (pair_suits(a)) {
+        pair_accelerations(a, q, w, mode, alpha, reaction);
     } else {
         chain_sweep(a, a->links, a->hub_spring, mode.contact, true, work, q, w, mode, alpha,
                     reaction);
@@ -51,6 +52,9 @@ static wall_contact contact_of(const arm *a, const double *q, const double *w, d
 
 double chain_penetration_rate(const arm *a, const double *q, const double *v)
 {
+    if (pair_suits(a)) {
+        return pair_penetration_rate(a, q, v);
+    }
     double vx, vy;
     int last = a->first + a->links - 1;
     wall_contact wall = contact_of(a, q, v, &vx, &vy);
@@ -73,7 +77,7 @@ void chain_penetration(const arm *a, const double *q, const double *w, double *g
 
     double vx, vy;
     if (g != NULL) {
-        *g = contact_of(a, q, w, &vx, &vy).penetration;
+        *g = pair_suits(a) ? pair_penetration(a, q) : contact_of(a, q, w, &vx, &vy).penetration;
     }
     if (rate != NULL) {
         *rate = chain_penetration_rate(a, q, w);
@@ -133,6 +137,10 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
 void chain_contact_response(const arm *a, chain_link *work, const double *q, bool hub_locked,
                             double *response, double *compliance)
 {
+    if (pair_suits(a)) {
+        pair_contact_response(a, q, hub_locked, response, compliance);
+        return;
+    }
     double vx, vy;
     wall_contact wall = contact_of(a, q, q, &vx, &vy); // velocities play no part here
     unit_response(a, work, q, wall.ex, wall.ey, wall.lever, hub_locked, response);
