@@ -1,6 +1,7 @@
 #include "src/run/together.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +13,8 @@
 // So many runs are in hand at once: enough to fill the vectors with strides of one form, few enough
 // to stay in the nearest cache.
 enum { IN_HAND = 16 };
+
+enum { CACHE_LINE = 64, SUMMARY_SHARE = 128 }; // [bytes]; of the summary, what strides add to
 
 // One of the runs that go side by side.
 typedef struct side_run {
@@ -84,6 +87,28 @@ static bool go_on(side_by_side *group, int place)
 
     end_run(one, failed);
     return false;
+}
+
+// Asks for the cache lines of so many bytes.
+static inline void fetch(const void *from, size_t size)
+{
+    for (size_t at = 0; at < size; at += CACHE_LINE) {
+        __builtin_prefetch((const char *)from + at, 1);
+    }
+}
+
+// Asks for what the next stride of a run will touch: the series of others have taken its place in
+// the nearest cache.
+static void fetch_run(const side_run *one)
+{
+    const corrected_run *run = &one->run;
+    const motion *m = run->motion;
+    fetch(m, sizeof *m);
+    fetch(m->state, (size_t)m->size * sizeof *m->state);
+    fetch(one->lane, offsetof(taylor_lane, block[AT_ANGLE_0]));
+    fetch(run, offsetof(corrected_run, arm.modal_damping));
+    fetch(&one->recording.state, sizeof one->recording.state);
+    fetch(&one->recording.result->summary.first_contact_s, SUMMARY_SHARE);
 }
 
 // Makes the stride whose series are computed, and goes on.
@@ -160,6 +185,9 @@ static void serve(side_by_side *group)
     // side by side to the ends of their strides
     taylor_end ends[TAYLOR_WIDEST];
     taylor_compute(&group->series, lanes, count);
+    for (int i = 0; i < count; i++) {
+        fetch_run(&group->in_hand[chosen[i]]);
+    }
     for (int i = 0; i < count; i++) {
         const corrected_run *run = &group->in_hand[chosen[i]].run;
         motion_look_ahead(&run->arm, run->motion, run->stop, run->recording->now.method.step);

@@ -1,5 +1,5 @@
 // A chain of links by power series (chain_series.h): a dense engine, exact to rounding. The
-// two-link arm has its own (taylor_engine.h), which is the same mathematics written out.
+// two-link arm has its own (taylor_kernel.h), which is the same mathematics written out.
 #pragma once
 
 #include "src/solve/chain_series.h"

@@ -68,6 +68,8 @@ static void put_inputs(const arm *a, const motion *m, const double *q, const dou
     block[AT_START_VELOCITY + 1] = w[a->first];
     block[AT_START_VELOCITY + 2] = w[a->first + 1];
     block[AT_WANTED] = wanted;
+    const bool jumped = state_kept(m, m->state)[KEPT_JUMPED] != 0;
+    block[AT_EDGE_RATE] = jumped ? EDGE_RATE * motion_rounding_at(a, m->dof, q, w) : -1;
 }
 
 // The length that is tried from velocities w on, up to `most`.

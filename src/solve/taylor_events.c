@@ -5,12 +5,6 @@
 #include "src/solve/dense_location.h"
 #include "src/solve/taylor_stride.h"
 
-// What is nothing but rounding in the first coefficients of a watched function at its edge: of the
-// value and of its derivatives, over which nothing is known but that they are small.
-#define EDGE_VALUE 1e-9
-#define EDGE_RATE  1e-9
-#define EDGE_MORE  1e-7
-#define EDGE_GAP   1e-12 // [m]
 // As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
 #define EDGE_DEPTH 1e-6 // [m]
 
@@ -142,13 +136,13 @@ glance taylor_gap_at(const arm *a, const motion *m, double h)
     return glance_at(taylor_terms(&s->lane, AT_GAP, count), count, s->used + h);
 }
 
-// Whether the watched function is off its edge from the start, and above zero all over the stride.
+// Whether the watched function is off its edge, or leaves it, from the start, and stays above zero
+// all over the stride.
 static bool clear_throughout(const motion *m, watch w)
 {
     const taylor_stride *s = m->memory;
-    const bool jumped = s->kept[KEPT_JUMPED] != 0, wall = w == WATCH_GAP || w == WATCH_FORCE;
-    const double edge = w == WATCH_GAP ? EDGE_GAP : w == WATCH_HUB ? 0 : EDGE_VALUE;
-    return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > (jumped ? edge : 0);
+    const bool wall = w == WATCH_GAP || w == WATCH_FORCE;
+    return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > 0;
 }
 
 void taylor_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)

@@ -36,7 +36,7 @@
 // The last terms of the velocities stay below this share of 1 rad/s or the largest velocity, and,
 // where the series end before the highest order, those of the losses below this share of 1 J times
 // its square; the first one left out is about ten times smaller.
-#define LAST_TERMS 1e-13
+#define LAST_TERMS 4e-12
 // The series end with the first even order, this or a later one, whose terms are so small at the
 // length that is wanted.
 #define LEAST_ORDER 8
@@ -101,31 +101,95 @@ KERNEL void cut_off(real *block, const mask *open, int order)
     }
 }
 
-typedef struct range {
-    real low, high;
-} range;
+// A function over a stride, which is looked at in four equal pieces.
+typedef struct course {
+    real start;
+    four ends; // its values where pieces end
+    real bend; // its largest second derivative at most
+    real off;  // how far at most it leaves the chord between the ends of a piece
+} course;
 
-// Between what a function stays for times from 0 to t: it leaves the chord between its ends by its
-// largest second derivative times t^2/8 at most. Rounding is allowed for.
-KERNEL range range_of(const real *terms, int count, real t)
+// One more term of four sums.
+KERNEL void add_term(four *sum, const four *u, real term)
 {
-    const real u = t * t;
+#if LANES == 1
+    *sum = *sum * *u + term;
+#else
+    for (int i = 0; i < 4; i++) {
+        PART(*sum, i) = PART(*sum, i) * PART(*u, i) + term;
+    }
+#endif
+}
+
+// That of a polynomial for times from 0 to t. From a chord of length h a function leaves by its
+// second derivative times h^2/8 at most. Rounding is allowed for.
+KERNEL course course_of(const real *terms, int count, real t)
+{
+    const real zero = (real){0}, u = t * t, none = zero;
+    const four time = FOUR(t * 0.25, t * 0.5, t * 0.75, t);
+    const four squared = FOUR(u * 0.0625, u * 0.25, u * 0.5625, u);
     const int last = count - 1 - count % 2; // of the odd terms
-    real even = count % 2 == 0 ? (real){0} : terms[count - 1], odd = (real){0};
-    real even2 = count % 2 == 0 ? (real){0} : magnitude(terms[count - 1]) * falling[count - 1];
-    real odd2 = (real){0};
+    const real single = count % 2 == 0 ? zero : terms[count - 1];
+    four even = FOUR(single, single, single, single), odd = FOUR(none, none, none, none);
+    real even2 = count % 2 == 0 ? zero : magnitude(single) * falling[count - 1], odd2 = zero;
     for (int n = last; n >= 3; n -= 2) {
-        even = even * u + terms[n - 1];
-        odd = odd * u + terms[n];
+        add_term(&even, &squared, terms[n - 1]);
+        add_term(&odd, &squared, terms[n]);
         even2 = even2 * u + magnitude(terms[n - 1]) * falling[n - 1];
         odd2 = odd2 * u + magnitude(terms[n]) * falling[n];
     }
+    add_term(&even, &squared, terms[0]);
+    add_term(&odd, &squared, terms[1]);
 
-    const real end = (even * u + terms[0]) + t * (odd * u + terms[1]);
-    const real sag = (even2 + t * odd2) * u * 0.125;
-    const real off = sag + 1e-12 * (sag + magnitude(terms[0]) + magnitude(end));
-    const mask falls = MASK(end < terms[0]);
-    return (range){choose(falls, end, terms[0]) - off, choose(falls, terms[0], end) + off};
+    course c = {.start = terms[0], .bend = even2 + t * odd2};
+    for (int i = 0; i < 4; i++) {
+        PART(c.ends, i) = PART(even, i) + PART(time, i) * PART(odd, i);
+    }
+    const real sag = c.bend * u * 0.125;
+    c.off = sag * 0.0625 + 1e-12 * (sag + magnitude(c.start) + magnitude(PART(c.ends, 3)));
+    return c;
+}
+
+KERNEL real smaller_of(real x, real y)
+{
+    return choose(MASK(x < y), x, y);
+}
+
+// What it stays above and below.
+KERNEL real lowest(const course *c, real first)
+{
+    const real late = smaller_of(PART(c->ends, 2), PART(c->ends, 3)) - c->off;
+    const real early = smaller_of(PART(c->ends, 0), PART(c->ends, 1)) - c->off;
+    return smaller_of(first, smaller_of(early, late));
+}
+KERNEL real highest(const course *c)
+{
+    const real late = greater(PART(c->ends, 2), PART(c->ends, 3));
+    const real early = greater(PART(c->ends, 0), PART(c->ends, 1));
+    return greater(c->start, greater(early, late)) + c->off;
+}
+
+// What a function that is watched stays above; where it has jumped to its edge and leaves it, what
+// it does divided by the time, or by its square: in the first piece, of length h, p = p0 + p1 t +
+// p2 t^2 + r has |p - p0 - p1 t| <= bend t^2/2, and |r| <= (bend - 2 |p2|) t^2/6 h/t_end. The
+// limits are those of leave_edge (taylor_polynomial.h).
+KERNEL real least_of(const course *c, const real *terms, real sign, real t, mask jumped,
+                     real limit_value, real limit_rate, real limit_more)
+{
+    const real first = sign * c->start - c->off;
+    const real rate = sign * terms[1], more = sign * terms[2];
+    const real once = rate - c->bend * t * (0.125 * (1 + 1e-12)) - limit_rate;
+    const real rest = c->bend - 2 * magnitude(more) + 1e-12 * c->bend;
+    const real twice = more - rest * (1. / 24) - limit_more;
+    const mask off_edge = MASK(magnitude(c->start) > limit_value);
+    const mask leaves = MASK(magnitude(rate) > limit_rate);
+    const real divided = choose(leaves, once, twice);
+    const real edge = choose(off_edge, first - limit_value, divided);
+    course signed_one = *c;
+    for (int i = 0; i < 4; i++) {
+        PART(signed_one.ends, i) = sign * PART(c->ends, i);
+    }
+    return lowest(&signed_one, choose(jumped, edge, first));
 }
 
 // The n-th coefficient of the gap.
@@ -388,6 +452,17 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         tail.before += magnitude(hold[order - 2]) * inverse[order - 1] * per_inertia;
     }
 
+    // so do the losses, as above
+    const real per_scale = 1 / scale;
+    real lost_before = viscous * magnitude(hub_square[order - 2]);
+    real lost_last = viscous * magnitude(hub_square[order - 1]);
+    if (damped) {
+        lost_before += magnitude(dissipation[order - 2]);
+        lost_last += magnitude(dissipation[order - 1]);
+    }
+    tail.before += lost_before * per_scale;
+    tail.last += lost_last * per_scale;
+
     // where no order was enough the stride is shortened
     const mask ended = order < TAYLOR_MOST ? ~(mask){0} : ~open[TAYLOR_MOST / 2 - 1];
     tail.last = choose(ended, zero, tail.last);
@@ -399,15 +474,25 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     block[AT_ALLOWED] = h;
 
     // what the stride leaves of the wall's function and the hub's
-    const range wall = contact ? range_of(f, order, h) : range_of(gap, order + 2, h);
-    block[AT_WALL_LEAST] = wall.low;
-    block[AT_FORCE_MOST] = wall.high;
-    const range rate = range_of(hub_spring ? w0 : w1, order + 1, h);
-    real left = choose(MASK(block[AT_FRICTION] > 0), rate.low, -rate.high);
+    const real one = zero + 1.0, edge_rate = block[AT_EDGE_RATE];
+    const mask jumped = MASK(edge_rate >= 0);
+    const real *wall = contact ? f : gap;
+    const course near = course_of(wall, contact ? (int)order : (int)order + 2, h);
+    const real rate_limit = contact ? zero + EDGE_RATE : edge_rate;
+    block[AT_WALL_LEAST] =
+        least_of(&near, wall, one, h, jumped, zero + (contact ? EDGE_VALUE : EDGE_GAP), rate_limit,
+                 greater(rate_limit, zero + EDGE_MORE));
+    block[AT_FORCE_MOST] = highest(&near);
+    const real *hub_rates = hub_spring ? w0 : w1;
+    const course turning = course_of(hub_rates, (int)order + 1, h);
+    const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
+    real left = least_of(&turning, hub_rates, sense, h, jumped, zero, edge_rate, zero + EDGE_MORE);
     if (sticks) {
-        const range torque = range_of(hold, order, h);
-        const real most = greater(torque.high, -torque.low);
-        left = choose(stuck, block[AT_STICTION] - most, left);
+        const course torque = course_of(hold, (int)order, h);
+        const real low = lowest(&torque, torque.start - torque.off);
+        const real most = greater(highest(&torque), -low);
+        const real spared = choose(jumped, zero + EDGE_VALUE, zero);
+        left = choose(stuck, block[AT_STICTION] - most - spared, left);
     }
     block[AT_HUB_LEAST] = left;
     return (int)order;

@@ -112,8 +112,8 @@ KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int contact, const i
                        sums *result)
 {
     sums even = no_sums, odd = no_sums;
-#if LANES == 1
-    // all together, as one arm leaves registers enough
+#if LANES == 1 || LANES == 8
+    // all together, as one arm and AVX-512 leave registers enough
 #define ADD_ALL(s, x, j, n)                                                                        \
     do {                                                                                           \
         ADD_TURNING(s, x, j, n);                                                                   \

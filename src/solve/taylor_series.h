@@ -42,11 +42,14 @@ enum taylor_place {
     AT_START_ANGLE,                         // hub (with a spring), first, second link [rad]
     AT_START_VELOCITY = AT_START_ANGLE + 3, // [rad/s]
     AT_WANTED = AT_START_VELOCITY + 3,      // length of the stride that is wanted [s]
-    AT_INPUTS,                              // how many of the above
+    // just after an event: below it a watched function's rate at its edge is rounding; else -1
+    AT_EDGE_RATE,
+    AT_INPUTS, // how many of the above
     // what comes of it: powers of the time, from the zeroth
     AT_ALLOWED = AT_INPUTS, // length that the series are good for [s]
     // within it no less than this: the gap [m], or in contact the force [N]; the hub's velocity in
-    // the direction it slides [rad/s], or what friction has left for a stuck hub [N m]
+    // the direction it slides [rad/s], or what friction has left for a stuck hub [N m]; just after
+    // an event less what is rounding at the edge, or, on it, divided by the time or its square
     AT_WALL_LEAST,
     AT_HUB_LEAST,
     AT_FORCE_MOST,                             // and in contact no more than this force [N]
@@ -63,6 +66,14 @@ enum taylor_place {
     AT_DISSIPATION = AT_HUB_SQUARE + TAYLOR_MOST, // power lost in the springs [W]; the same
     TAYLOR_PLACES = AT_DISSIPATION + TAYLOR_MOST
 };
+
+// What is nothing but rounding in the first coefficients of a watched function at its edge just
+// after an event: of the value and of its derivatives, over which nothing is known but that they
+// are small. Rates, and with them what follows, of gap and hub: times motion_rounding_at.
+#define EDGE_VALUE 1e-9
+#define EDGE_RATE  1e-9
+#define EDGE_MORE  1e-7
+#define EDGE_GAP   1e-12 // [m]
 
 // Which equations a block is for, the same in all its lanes.
 typedef struct taylor_form {
