@@ -2,7 +2,7 @@
 
 #include <assert.h>
 
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 
 // Vectors are handed to inline functions of this file only.
 #pragma GCC diagnostic ignored "-Wpsabi"

@@ -47,5 +47,5 @@ typedef struct modal_loops {
     glance (*decay)(modal_decays *d);
 } modal_loops;
 
-// Those for this processor, or for vectors as narrow as taylor_limit_width (taylor_engine.h) takes.
+// Those for this processor, or for vectors as narrow as taylor_limit_width (taylor_lanes.h) takes.
 const modal_loops *modal_loops_here(void);

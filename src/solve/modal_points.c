@@ -1,5 +1,5 @@
 #include "src/solve/modal_parts.h"
-#include "src/solve/taylor_engine.h"
+#include "src/solve/taylor_lanes.h"
 
 // Vectors are handed to inline functions of this file only.
 #pragma GCC diagnostic ignored "-Wpsabi"
