@@ -1,6 +1,7 @@
 #include "src/quantities/parameters.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -340,14 +341,25 @@ const int parameter_count = (int)(sizeof parameter_table / sizeof parameter_tabl
 
 _Static_assert(sizeof parameter_table / sizeof parameter_table[0] <= sizeof(((parameters *)0)->set),
                "parameters.set has room for every parameter");
+_Static_assert(sizeof parameter_table / sizeof parameter_table[0] <= UCHAR_MAX + 1,
+               "a byte has room for every index");
+
+// The index of the parameter that begins at each offset, filled in before the program begins:
+// resolving a set of parameters asks a hundred times.
+static unsigned char index_at[sizeof(parameters)];
+
+static __attribute__((constructor)) void fill_indices(void)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        index_at[parameter_table[i].offset] = (unsigned char)i;
+    }
+}
 
 int parameter_at(size_t offset)
 {
-    int index = 0;
-    while (parameter_table[index].offset != offset) {
-        index++;
-        assert(index < parameter_count);
-    }
+    assert(offset < sizeof index_at);
+    const int index = index_at[offset];
+    assert(parameter_table[index].offset == offset);
     return index;
 }
 

@@ -11,10 +11,13 @@
 static int scenario_parameter(const char *name)
 {
     const size_t group = offsetof(parameters, control), behind = sizeof "control." - 1;
-    for (int i = 0; i < parameter_count; i++) {
+    int i = PARAMETER_INDEX(control.law); // the first of them
+    for (; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
-        const bool control = info->offset - group < sizeof(control_parameters);
-        if (control && info->path[behind] == name[0] && strcmp(info->path + behind, name) == 0) {
+        if (!(info->offset - group < sizeof(control_parameters))) {
+            break;
+        }
+        if (info->path[behind] == name[0] && strcmp(info->path + behind, name) == 0) {
             return i;
         }
     }
