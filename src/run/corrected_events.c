@@ -172,13 +172,17 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
     recording *r = c->recording;
     status failed = recording_set(r, todo, c->motion->state[SLOT_TIME], f);
 
-    // the motion goes on with the arm that is bound anew; a voltage changes nothing but its torque
-    arm before = c->arm;
-    if (todo->parameter != PARAMETER_INDEX(motor.voltage)) {
-        corrected_bind_arm(c);
-    } else if (r->rig == NULL) {
-        arm_set_voltage(&c->arm, r->now.motor.voltage);
+    // a voltage changes nothing but the torque; else the motion goes on with an arm bound anew
+    if (todo->parameter == PARAMETER_INDEX(motor.voltage)) {
+        const double before = c->arm.motor.torque;
+        if (r->rig == NULL) {
+            arm_set_voltage(&c->arm, r->now.motor.voltage);
+        }
+        motion_retorque(&c->arm, c->motion, before);
+        return failed;
     }
+    const arm before = c->arm;
+    corrected_bind_arm(c);
     motion_rebind(&before, &c->arm, c->motion);
     return failed;
 }

@@ -394,6 +394,7 @@ void motion_retorque(const arm *a, motion *m, double before)
     if (motion_unresolved(a, m)) {
         return; // an instant's accelerations say nothing: the next step finds out
     }
+    motion_note_change(m);
 
     // a stuck hub: friction takes up what the motor does, the rest stays
     double *state = m->state;
@@ -426,6 +427,7 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
 {
     assert(before != NULL && after != NULL && m != NULL && after->dof == m->dof);
     const double *q = state_angles(m, m->state);
+    motion_note_change(m);
     motion_follow_arm(after, m);
     m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
     if (m->wall_gives) {

@@ -68,6 +68,8 @@ static const state_energy unknown_energy = {-1, -1};
 enum motion_kept {
     KEPT_LENGTH,                        // of the stride, 0 if there is none to go on with [s]
     KEPT_USED,                          // of it, up to this state [s]
+    KEPT_CHANGED,                       // instant at which torque or arm last changed [s]
+    KEPT_INTERVAL,                      // from the change before to that one [s]
     KEPT_WANTED,                        // length that was asked for [s]
     KEPT_JUMPED,                        // 1 if it began just after an event
     KEPT_QUADRATURES,                   // at its start, up to QUADRATURE_FORCE
@@ -217,6 +219,18 @@ static inline void motion_forget_stride(motion *m)
 static inline void motion_end_stride(motion *m)
 {
     state_kept(m, m->state)[KEPT_LENGTH] = 0;
+}
+
+// To be called where the motor's torque or the arm changes: strides learn how soon the next change
+// may come.
+static inline void motion_note_change(motion *m)
+{
+    double *kept = state_kept(m, m->state);
+    const double now = m->state[SLOT_TIME], interval = now - kept[KEPT_CHANGED];
+    if (interval > 0) {
+        kept[KEPT_CHANGED] = now;
+        kept[KEPT_INTERVAL] = interval;
+    }
 }
 
 // Forgets the recorded peak: the next one counts from the present state.

@@ -7,7 +7,8 @@
 //
 // Steps that cut a stride without an event (a sample whose command stays, an instant that a program
 // stops at) go on in it: the state says where it began, the engine's memory holds its series. While
-// commands stay, a stride is made for twice as long as the one before.
+// commands stay, a stride is made for twice as long as the one before; just after a change for
+// twice the time since the change before.
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
@@ -129,10 +130,14 @@ static bool goes_on(motion *m, double remaining)
 }
 
 // How long a new stride is to be at most: what remains, or twice the stride that has been used up
-// since where nothing has changed but the instant to go to.
+// since where nothing has changed but the instant to go to. Just after a change no more than twice
+// the time since the change before, as the next may come as soon.
 static double most_of_stride(motion *m, double remaining)
 {
     const double *kept = state_kept(m, m->state);
+    if (m->state[SLOT_TIME] == kept[KEPT_CHANGED] && kept[KEPT_INTERVAL] > 0) {
+        return smaller(2 * kept[KEPT_INTERVAL], remaining);
+    }
     const double before = kept[KEPT_LENGTH], ahead = kept[KEPT_WANTED] - kept[KEPT_USED];
     const bool same = m->state[SLOT_JUMPED] == 0 && before > 0;
     return same && fabs(ahead - remaining) > LEAST_LEFT * remaining ? larger(2 * before, remaining)
