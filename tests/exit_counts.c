@@ -1,11 +1,12 @@
 // Linked into the programs that tests/coverage counts: a process that ends by _exit, as the
 // children of a fork do, or becomes another program leaves its counts like any other (ld's
-// --wrap=_exit, execv and execl), and so does one in which tests/fail_kth.c lets something fail:
-// not while they are written.
+// --wrap=_exit, execv and execl), and so does one in which tests/fail_kth.c lets something fail, or
+// which may write short files only: not while they are written.
 #include <dlfcn.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 _Noreturn void __wrap__exit(int status);
@@ -16,6 +17,7 @@ void __gcov_reset(void);
 // gcc writes the counts after this.
 __attribute__((destructor)) static void let_nothing_fail(void)
 {
+    setrlimit(RLIMIT_FSIZE, &(struct rlimit){RLIM_INFINITY, RLIM_INFINITY});
     if (getenv("FAIL_CALL") != NULL) {
         void *found = dlsym(RTLD_DEFAULT, "fail_nothing_more");
         void (*tell)(void) = NULL;
@@ -40,8 +42,11 @@ int __wrap_execl(const char *path, const char *first, ...);
 // Where there is no such program this one goes on, and counts anew.
 int __wrap_execv(const char *path, char *const words[])
 {
+    struct rlimit short_files;
+    getrlimit(RLIMIT_FSIZE, &short_files);
     let_nothing_fail();
     __gcov_dump();
+    setrlimit(RLIMIT_FSIZE, &short_files);
     const int failed = __real_execv(path, words);
     __gcov_reset();
     return failed;
