@@ -346,10 +346,12 @@ static bool falls_at_once(glance first, glance last, double width)
     return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
 }
 
-// Keeps the force over equal pieces of the rest of the step just made, from w on: each has the mean
-// of the cubic through both ends' values and slopes. A stride of the modes may begin with a decay
-// that is over at once, which only the motion's own integral knows.
-static status record_equal_pieces(corrected_run *c, const force_step *rest, way w, int count)
+// Keeps the force over equal pieces of the rest of the step just made, from `since` its start on
+// [s]: each has the mean of the cubic through both ends' values and slopes. A stride of the modes
+// may begin with a decay that is over at once, which only the motion's own integral knows, that of
+// the way there; w: NULL where nothing decays so.
+static status record_equal_pieces(corrected_run *c, const force_step *rest, double since, way *w,
+                                  int count)
 {
     const motion *m = c->motion;
     glance at[MOST_PIECES + 1];
@@ -359,7 +361,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, way 
     }
 
     // the force at the start and at the ends of all pieces
-    const double since = w.time - m->trial[SLOT_TIME], width = (m->made - since) / count;
+    const double width = (m->made - since) / count;
     if (m->engine->forces_at != NULL && since == 0) {
         m->engine->forces_at(&c->arm, m, m->made, count, at);
     } else {
@@ -380,12 +382,12 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, way 
         start = end;
     }
 
-    if (falls_at_once(at[0], at[1], width)) {
-        const double before = w.integral;
-        if (!go_to(c, &w, kept[0].end)) {
+    if (w != NULL && falls_at_once(at[0], at[1], width)) {
+        const double before = w->integral;
+        if (!go_to(c, w, kept[0].end)) {
             return STATUS_NOT_FINITE;
         }
-        kept[0].mean = (w.integral - before) / width;
+        kept[0].mean = (w->integral - before) / width;
     }
     return STATUS_OK;
 }
@@ -425,7 +427,8 @@ static status record_force(corrected_run *c, const force_step *whole)
         rest.mean = (all - w.integral) / length;
     }
     const int pieces = pieces_of_step(c, since > 0 ? length : m->made, FORCE_REACH);
-    return pieces > 1 ? record_equal_pieces(c, &rest, w, pieces) : recording_add_step(r, rest);
+    return pieces > 1 ? record_equal_pieces(c, &rest, since, &w, pieces)
+                      : recording_add_step(r, rest);
 }
 
 // Lets the sensors follow the arm over a piece of the step.
@@ -522,5 +525,6 @@ status corrected_record_glide(corrected_run *c, const motion_glide *made)
     // a force that vibrates, in parabolas
     const bool contact = m->state[SLOT_CONTACT] != 0;
     const int pieces = contact ? pieces_of_step(c, made->length, FORCE_REACH) : 1;
-    return pieces > 1 ? record_equal_pieces(c, &force, 0, pieces) : recording_add_step(r, force);
+    return pieces > 1 ? record_equal_pieces(c, &force, 0, NULL, pieces)
+                      : recording_add_step(r, force);
 }
