@@ -93,18 +93,12 @@ status corrected_stride(corrected_run *c, fault *f)
     }
 
     // one step, or less to an event, and what comes of it
-    motion_glide made;
     motion_report report;
-    status s;
-    if (corrected_may_glide(c) && motion_glide_on(&c->arm, m, c->stop, step, &made)) {
-        s = corrected_record_glide(c, &made);
-    } else {
-        s = motion_step(&c->arm, m, c->stop, step, &report);
-        if (s != STATUS_OK) {
-            return explain_step(c, s, f);
-        }
-        s = record_step(c, &report);
+    status s = motion_step(&c->arm, m, c->stop, step, &report);
+    if (s != STATUS_OK) {
+        return explain_step(c, s, f);
     }
+    s = record_step(c, &report);
 
     // reasons to end here
     if (s == STATUS_OK && c->at_once > MOST_EVENTS_AT_ONCE) {

@@ -187,14 +187,14 @@ static status record_grid(corrected_run *c, bool at_event)
     return failed;
 }
 
-// The gap at an instant [s] within the step just made from `start` on, a step in free flight;
-// false, and none, if that fails.
-static bool gap_within(corrected_run *c, double start, double time, glance *gap)
+// The gap at an instant [s] within the step just made, a step in free flight; false, and none, if
+// that fails.
+static bool gap_within(corrected_run *c, double time, glance *gap)
 {
     motion *m = c->motion;
     *gap = (glance){0, 0};
-    if (m->engine->gap_at != NULL) {
-        *gap = m->engine->gap_at(&c->arm, m, time - start);
+    if (m->engine->gap_at != NULL && !state_is_held_still(m, m->trial)) {
+        *gap = m->engine->gap_at(&c->arm, m, time - m->trial[SLOT_TIME]);
         return true;
     }
     const double *state = motion_between(&c->arm, m, time);
@@ -204,12 +204,12 @@ static bool gap_within(corrected_run *c, double start, double time, glance *gap)
     return state != NULL;
 }
 
-// Whether the gap was a separation at any instant of the step just made from `start` [s] on. A
-// whole flight may lie within one step, so the end says little: look where the gap stops growing.
-static bool step_separated(corrected_run *c, double start)
+// Whether the gap was a separation at any instant of the step just made. A whole flight may lie
+// within one step, so the end says little: look where the gap stops growing.
+static bool step_separated(corrected_run *c)
 {
     motion *m = c->motion;
-    double from = start, to = m->state[SLOT_TIME];
+    double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
 
     // the ends of the step decide nearly always
     if (m->state[SLOT_GAP] > SEPARATION_GAP) {
@@ -223,7 +223,7 @@ static bool step_separated(corrected_run *c, double start)
     for (int i = 0; i < SEPARATION_BISECTIONS; i++) {
         const double middle = 0.5 * (from + to);
         glance gap;
-        if (!gap_within(c, start, middle, &gap) || gap.value > SEPARATION_GAP) {
+        if (!gap_within(c, middle, &gap) || gap.value > SEPARATION_GAP) {
             return gap.value > SEPARATION_GAP;
         }
         if (gap.slope > 0) {
@@ -235,19 +235,20 @@ static bool step_separated(corrected_run *c, double start)
     return false;
 }
 
-// The force over the step just made, from its start [s], where it was `first` [N], with this
-// integral [N s].
-static force_step force_over_step(const motion *m, double start, double first, double integral)
+// The force over the step just made.
+static force_step force_over_step(const motion *m)
 {
-    const double *end = m->state;
-    const double length = end[SLOT_TIME] - start;
+    const double *start = m->trial; // where the step left its beginning
+    double length = m->state[SLOT_TIME] - start[SLOT_TIME];
+    double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
+                      state_quadratures(m, m->trial)[QUADRATURE_FORCE];
 
     // between stops that differ by rounding only, the integral's difference is all rounding
-    const double ends = (first + end[SLOT_FORCE]) / 2;
-    return (force_step){.start = start,
-                        .end = end[SLOT_TIME],
-                        .first = first,
-                        .last = end[SLOT_FORCE],
+    double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
+    return (force_step){.start = start[SLOT_TIME],
+                        .end = m->state[SLOT_TIME],
+                        .first = start[SLOT_FORCE],
+                        .last = m->state[SLOT_FORCE],
                         .mean = length > SHORTEST_MEAN ? integral / length : ends};
 }
 
@@ -315,29 +316,6 @@ static bool go_to(const corrected_run *c, way *w, double time)
     return true;
 }
 
-// Takes a piece of the step just made, over which the force has that mean [N].
-typedef status (*piece_taker)(corrected_run *c, const way *from, const way *to, double mean);
-
-// Goes on to an instant within the step, a stretch of this length [s], and hands it over.
-static status take_piece(corrected_run *c, way *w, double time, double length, piece_taker take)
-{
-    const way from = *w;
-    return go_to(c, w, time) ? take(c, &from, w, (w->integral - from.integral) / length)
-                             : STATUS_NOT_FINITE;
-}
-
-// Goes along what an event set going and decays at once, piece by piece, up to where equal pieces
-// do for the rest of the step, which ends at `end` [s].
-static status follow_decay(corrected_run *c, way *w, double end, double reach, piece_taker take)
-{
-    status s = STATUS_OK;
-    double next;
-    while (s == STATUS_OK && next_decay_piece(c, w->time, end, reach, &next)) {
-        s = take_piece(c, w, next, next - w->time, take);
-    }
-    return s;
-}
-
 // Whether a force falls at once from where it begins: what is left of it shows in its slope there
 // alone, which then says nothing of its mean.
 static bool falls_at_once(glance first, glance last, double width)
@@ -346,12 +324,10 @@ static bool falls_at_once(glance first, glance last, double width)
     return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
 }
 
-// Keeps the force over equal pieces of the rest of the step just made, from `since` its start on
-// [s]: each has the mean of the cubic through both ends' values and slopes. A stride of the modes
-// may begin with a decay that is over at once, which only the motion's own integral knows, that of
-// the way there; w: NULL where nothing decays so.
-static status record_equal_pieces(corrected_run *c, const force_step *rest, double since, way *w,
-                                  int count)
+// Keeps the force over equal pieces of the rest of the step just made, from w on: each has the mean
+// of the cubic through both ends' values and slopes. A stride of the modes may begin with a decay
+// that is over at once, which only the motion's own integral knows.
+static status record_equal_pieces(corrected_run *c, const force_step *rest, way w, int count)
 {
     const motion *m = c->motion;
     glance at[MOST_PIECES + 1];
@@ -361,7 +337,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
     }
 
     // the force at the start and at the ends of all pieces
-    const double width = (m->made - since) / count;
+    const double since = w.time - m->trial[SLOT_TIME], width = (m->made - since) / count;
     if (m->engine->forces_at != NULL && since == 0) {
         m->engine->forces_at(&c->arm, m, m->made, count, at);
     } else {
@@ -382,24 +358,14 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
         start = end;
     }
 
-    if (w != NULL && falls_at_once(at[0], at[1], width)) {
-        const double before = w->integral;
-        if (!go_to(c, w, kept[0].end)) {
+    if (falls_at_once(at[0], at[1], width)) {
+        const double before = w.integral;
+        if (!go_to(c, &w, kept[0].end)) {
             return STATUS_NOT_FINITE;
         }
-        kept[0].mean = (w->integral - before) / width;
+        kept[0].mean = (w.integral - before) / width;
     }
     return STATUS_OK;
-}
-
-// Keeps the force over a piece of the step.
-static status keep_force(corrected_run *c, const way *from, const way *to, double mean)
-{
-    return recording_add_step(c->recording, (force_step){.start = from->time,
-                                                         .end = to->time,
-                                                         .first = from->at.force,
-                                                         .last = to->at.force,
-                                                         .mean = mean});
 }
 
 // Keeps the force over the step just made, in pieces that are parabolas to sight.
@@ -411,10 +377,23 @@ static status record_force(corrected_run *c, const force_step *whole)
         return recording_add_step(r, *whole);
     }
 
+    // what an event set going and decays at once, its integral being that of the motion
     way w = way_at(c, whole->start, m->trial);
-    status s = follow_decay(c, &w, whole->end, FORCE_REACH, keep_force);
-    if (s != STATUS_OK) {
-        return s;
+    double next;
+    while (next_decay_piece(c, w.time, whole->end, FORCE_REACH, &next)) {
+        const way last = w;
+        if (!go_to(c, &w, next)) {
+            return STATUS_NOT_FINITE;
+        }
+        const force_step piece = {.start = last.time,
+                                  .end = w.time,
+                                  .first = last.at.force,
+                                  .last = w.at.force,
+                                  .mean = (w.integral - last.integral) / (w.time - last.time)};
+        const status s = recording_add_step(r, piece);
+        if (s != STATUS_OK) {
+            return s;
+        }
     }
 
     // what vibrates
@@ -427,14 +406,18 @@ static status record_force(corrected_run *c, const force_step *whole)
         rest.mean = (all - w.integral) / length;
     }
     const int pieces = pieces_of_step(c, since > 0 ? length : m->made, FORCE_REACH);
-    return pieces > 1 ? record_equal_pieces(c, &rest, since, &w, pieces)
-                      : recording_add_step(r, rest);
+    return pieces > 1 ? record_equal_pieces(c, &rest, w, pieces) : recording_add_step(r, rest);
 }
 
-// Lets the sensors follow the arm over a piece of the step.
-static status sense(corrected_run *c, const way *from, const way *to, double mean)
+// Lets the sensors follow the arm on to an instant within the step, a stretch of this length [s].
+static status follow_to(corrected_run *c, way *w, double time, double length)
 {
-    sensors_follow(&c->recording->rig->sensors, to->time - from->time, &from->at, &to->at, mean);
+    const way last = *w;
+    if (!go_to(c, w, time)) {
+        return STATUS_NOT_FINITE;
+    }
+    const double mean = (w->integral - last.integral) / length;
+    sensors_follow(&c->recording->rig->sensors, length, &last.at, &w->at, mean);
     return STATUS_OK;
 }
 
@@ -443,46 +426,45 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole)
 {
     motion *m = c->motion;
     way w = way_at(c, whole->start, m->trial);
-    status s = follow_decay(c, &w, whole->end, SENSOR_REACH, sense);
+    status s = STATUS_OK;
+    double next;
+
+    // what an event set going and decays at once
+    while (s == STATUS_OK && next_decay_piece(c, w.time, whole->end, SENSOR_REACH, &next)) {
+        s = follow_to(c, &w, next, next - w.time);
+    }
 
     // the rest from piece to piece
     const double start = w.time, length = whole->end - start;
     const int pieces = pieces_of_step(c, length, SENSOR_REACH);
     for (int i = 1; i < pieces && s == STATUS_OK; i++) {
-        s = take_piece(c, &w, start + length * i / pieces, length / pieces, sense);
+        s = follow_to(c, &w, start + length * i / pieces, length / pieces);
     }
     if (s != STATUS_OK) {
         return s;
     }
 
     // the last piece ends where the step does
-    const way last = way_at(c, whole->end, m->state);
-    const double mean =
-        w.time > whole->start ? (last.integral - w.integral) / (length / pieces) : whole->mean;
-    return sense(c, &w, &last, mean);
-}
-
-// Takes note of the gap and of the motor's work [J] over the step just made from `start` on.
-static void follow_gap_and_work(corrected_run *c, double start, double work)
-{
-    recording *r = c->recording;
-    if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
-        r->state.separated = step_separated(c, start);
-    }
-    r->state.energy_put_in += fabs(work);
+    const sensed_motion last = corrected_sensed_motion(c, m->state);
+    const double pressed = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    const bool part = w.time > whole->start;
+    const double mean = part ? (pressed - w.integral) / (length / pieces) : whole->mean;
+    sensors_follow(&c->recording->rig->sensors, length / pieces, &w.at, &last, mean);
+    return STATUS_OK;
 }
 
 status corrected_record_step(corrected_run *c, bool at_event)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    double *start = m->trial; // where the step left its beginning
-    const double pressed = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
-                           state_quadratures(m, start)[QUADRATURE_FORCE];
-    const force_step force = force_over_step(m, start[SLOT_TIME], start[SLOT_FORCE], pressed);
+    const force_step force = force_over_step(m);
     const double length = force.end - force.start;
-    follow_gap_and_work(c, force.start,
-                        motion_motor_work(m, m->state) - motion_motor_work(m, start));
+
+    // how far the arm has gone from the wall
+    if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
+        r->state.separated = step_separated(c);
+    }
+    r->state.energy_put_in += fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial));
 
     // an arm held still has the energy it had
     const bool known = m->reached.kinetic >= 0;
@@ -494,37 +476,13 @@ status corrected_record_step(corrected_run *c, bool at_event)
     }
 
     // how fast the tip came towards the wall on its own
-    if (r->rig != NULL && start[SLOT_CONTACT] == 0) {
-        recording_follow_flight(r, larger(-start[SLOT_GAP_VELOCITY], -m->state[SLOT_GAP_VELOCITY]));
+    if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
+        recording_follow_flight(r,
+                                larger(-m->trial[SLOT_GAP_VELOCITY], -m->state[SLOT_GAP_VELOCITY]));
     }
 
     if (s == STATUS_OK && length > 0) {
         s = record_force(c, &force);
     }
     return s == STATUS_OK ? record_grid(c, at_event) : s;
-}
-
-bool corrected_may_glide(const corrected_run *c)
-{
-    const recording *r = c->recording;
-    return r->rig == NULL && !r->options->keep_trace &&
-           !(c->arm.fastest_decay > c->arm.highest_frequency);
-}
-
-status corrected_record_glide(corrected_run *c, const motion_glide *made)
-{
-    recording *r = c->recording;
-    const motion *m = c->motion;
-    const force_step force = force_over_step(m, made->start, made->start_force, made->pressed);
-    follow_gap_and_work(c, made->start, made->work);
-    const status s = audit(c, m->reached);
-    if (s != STATUS_OK || !(force.end > force.start)) {
-        return s;
-    }
-
-    // a force that vibrates, in parabolas
-    const bool contact = m->state[SLOT_CONTACT] != 0;
-    const int pieces = contact ? pieces_of_step(c, made->length, FORCE_REACH) : 1;
-    return pieces > 1 ? record_equal_pieces(c, &force, 0, NULL, pieces)
-                      : recording_add_step(r, force);
 }

@@ -33,13 +33,6 @@ status corrected_record_row(corrected_run *c, double *state, double impulse);
 // it; of one at its end only if there is no event, which records rows of its own.
 status corrected_record_step(corrected_run *c, bool at_event);
 
-// Whether a step without an event may be one of motion_glide_on, of which there is less to record:
-// no rows, no sensors, no force that decays within it.
-bool corrected_may_glide(const corrected_run *c);
-
-// Records such a step, just made.
-status corrected_record_glide(corrected_run *c, const motion_glide *made);
-
 // In how many pieces the force over a step of this length [s] is kept that the motion makes in
 // contact.
 int corrected_force_pieces(const corrected_run *c, double length);

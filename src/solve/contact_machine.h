@@ -58,20 +58,6 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 // still; motion_step does it by itself where nobody has. An arm that is held folded has no step.
 void motion_look_ahead(const arm *a, motion *m, double until, double step);
 
-// What a step without an event led over.
-typedef struct motion_glide {
-    double start;       // [s]
-    double length;      // as the engine met its end [s]
-    double start_force; // [N]
-    double pressed;     // integral of the force over it [N s]
-    double work;        // of the motor [J]
-} motion_glide;
-
-// Makes the step that motion_step would make, to the last bit of m->state, where it is one without
-// an event of an engine that can make it in place: m->trial, the step's start, is not kept, but for
-// what `made` has of it. False, and nothing done, where it is not.
-bool motion_glide_on(const arm *a, motion *m, double until, double step, motion_glide *made);
-
 // Steps until `until` or the first event.
 status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report);
 

@@ -1,6 +1,7 @@
 // Between events: a step of the contact machine, which ends at the first of them.
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
@@ -213,6 +214,40 @@ static void meet_stop(motion *m, double until)
     }
 }
 
+// The stride of a dense engine where no event ends it and the engine can move the state in place;
+// m->trial gets its start. False, and nothing done, where that is not so.
+static bool glide(const arm *a, motion *m, double until, double step)
+{
+    if (m->engine->move_to == NULL || !motion_wall_is_rigid(m)) {
+        return false;
+    }
+    if (!m->ahead.known) {
+        look_ahead(a, m, until, step);
+    }
+    if (!m->ahead.begun || m->ahead.any) {
+        return false;
+    }
+
+    // to its end
+    double *state = m->state, *start = m->trial;
+    const double h = m->ahead.length;
+    memcpy(start, state, (size_t)m->size * sizeof *state);
+    if (!m->engine->move_to(a, m, h, &m->reached)) {
+        return false;
+    }
+    m->ahead.known = false;
+    m->made = h;
+
+    // time and the ledger
+    state[SLOT_TIME] += h;
+    state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;
+    motion_book(a, m, state_angles(m, start)[0], state);
+    count_step(m, state[SLOT_TIME] - start[SLOT_TIME], step);
+    come_to_rest(m);
+    meet_stop(m, until);
+    return true;
+}
+
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL && step > 0);
@@ -220,6 +255,10 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     if (m->starved || held_folded(a, m)) {
         m->failure_time = m->state[SLOT_TIME];
         return m->starved ? STATUS_NO_MEMORY : STATUS_FOLDED;
+    }
+
+    if (!motion_held_still(m) && glide(a, m, until, step)) {
+        return STATUS_OK;
     }
 
     // as far as accuracy allows, the cut, or the first event
@@ -258,44 +297,6 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
     meet_stop(m, until);
     return STATUS_OK;
-}
-
-bool motion_glide_on(const arm *a, motion *m, double until, double step, motion_glide *made)
-{
-    assert(a != NULL && m != NULL && made != NULL && step > 0);
-    if (m->engine->move_to == NULL || motion_held_still(m) || !motion_wall_is_rigid(m)) {
-        return false;
-    }
-    if (!m->ahead.known) {
-        motion_look_ahead(a, m, until, step);
-    }
-    if (!m->ahead.known || !m->ahead.begun || m->ahead.any) {
-        return false;
-    }
-
-    // to its end
-    double *state = m->state;
-    const double h = m->ahead.length, hub = state_angles(m, state)[0];
-    const double pressed = state_quadratures(m, state)[QUADRATURE_FORCE];
-    *made =
-        (motion_glide){.start = state[SLOT_TIME], .length = h, .start_force = state[SLOT_FORCE]};
-    if (!m->engine->move_to(a, m, h, &m->reached)) {
-        return false;
-    }
-    m->ahead.known = false;
-    m->made = h;
-
-    // time and the ledger
-    const double work = motion_motor_work(m, state);
-    state[SLOT_TIME] += h;
-    state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;
-    motion_book(a, m, hub, state);
-    made->work = motion_motor_work(m, state) - work;
-    count_step(m, state[SLOT_TIME] - made->start, step);
-    come_to_rest(m);
-    made->pressed = state_quadratures(m, state)[QUADRATURE_FORCE] - pressed;
-    meet_stop(m, until);
-    return true;
 }
 
 status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report)
