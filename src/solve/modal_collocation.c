@@ -3,6 +3,7 @@
 
 #include "src/solve/modal_loops.h"
 #include "src/solve/modal_parts.h"
+#include "src/solve/modal_points.h"
 
 enum { FEW_SWEEPS = 4, MOST_SWEEPS = 30 };
 

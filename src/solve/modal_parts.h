@@ -4,7 +4,7 @@
 //     modal_storage.c      where everything is
 //     modal_parts.c        bases, the start, the modes' own answer, states
 //     modal_collocation.c  r and s by Picard's sweeps
-//     modal_points.c       the chain at all points of a stride side by side
+//     modal_points.c       the chain at all points of a stride side by side (modal_points.h)
 //     modal_loops.c        all modes in the lanes of vectors (modal_loops.h)
 //     modal_losses.c       walks along the stride, energy lost in it
 #pragma once
@@ -41,9 +41,3 @@ static inline double modal_hub_torque(const modal_stride *s, const arm *a)
 {
     return a->motor.torque - s->mode.friction * a->motor.stiction;
 }
-
-// The same from the angles and V y of the points from `first` on, in s->more_columns, and s->tip
-// for all points side by side in the lanes of a vector: what is to be brought to the modes takes
-// their place; angles and velocities go into s->point_angles and s->point_velocities.
-void modal_sweep_points(modal_stride *s, const arm *a, const double *q, int first);
-size_t modal_points_size(int dof); // of s->lanes in doubles, a whole number of cache lines

@@ -1,192 +1,31 @@
-#include "src/solve/modal_parts.h"
+#include "src/solve/modal_points.h"
+
+#include "src/solve/modal_loops.h"
 #include "src/solve/taylor_lanes.h"
 
-// Vectors are handed to inline functions of this file only.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-// A point of collocation a lane; the lanes left over repeat the last one.
-#define LANES 8
-#include "src/solve/taylor_numbers.h"
-
-typedef struct momentum_link {
-    real c, s, inv_d, ux, uy, free, unit;
-} momentum_link;
-#include "src/arm/chain_momentum_kernel.h"
-#include "src/solve/modal_straight.h"
-
-#define SMALL_ANGLE 0.78539816339744831 // up to which sine and cosine need no reduction [rad]
-#define LARGE_ANGLE 1e5                 // beyond which their reduction is not exact [rad]
-
-// Arrays of one chain a lane, by degree of freedom or link.
-typedef struct lanes {
-    real *angles, *momentum, *velocities, *rates, *products;
-    momentum_link *links;
-} lanes;
-
-enum { ARRAYS = 5 };
+enum { VECTORS = 12 }; // of a link
 
 size_t modal_points_size(int dof)
 {
-    return (size_t)dof * (ARRAYS * sizeof(real) + sizeof(momentum_link)) / sizeof(double);
+    return (size_t)dof * VECTORS * MODAL_LANES;
 }
-
-static lanes lanes_of(const modal_stride *s)
-{
-    real *arrays = (real *)(void *)s->lanes;
-    const int n = s->dof;
-    return (lanes){.angles = arrays,
-                   .momentum = arrays + n,
-                   .velocities = arrays + 2 * n,
-                   .rates = arrays + 3 * n,
-                   .products = arrays + 4 * n,
-                   .links = (momentum_link *)(arrays + ARRAYS * n)};
-}
-
-// Element k of all points' vectors, and back.
-KERNEL real gather(const double *const from[LANES], int k)
-{
-    return (real){from[0][k], from[1][k], from[2][k], from[3][k],
-                  from[4][k], from[5][k], from[6][k], from[7][k]};
-}
-
-// Directions of all links, at angles of any size.
-KERNEL void directions(const arm *a, const lanes *l)
-{
-    const real *theta = l->angles + a->first;
-    mask large = {0}, huge = {0};
-    for (int k = 0; k < a->links; k++) {
-        large |= ~MASK(magnitude(theta[k]) <= SMALL_ANGLE);
-        huge |= ~MASK(magnitude(theta[k]) < LARGE_ANGLE);
-    }
-    const bool far = any(large), beyond = any(huge);
-
-    for (int k = 0; k < a->links; k++) {
-        momentum_link *link = &l->links[k];
-        if (!far) {
-            SINCOS_NEAR_ZERO(real, theta[k], link->s, link->c);
-            continue;
-        }
-        sine_cosine(theta[k], &link->s, &link->c);
-        for (int i = 0; i < LANES && beyond; i++) {
-            double s, c;
-            inline_sincos(theta[k][i], &s, &c);
-            link->s[i] = s;
-            link->c[i] = c;
-        }
-    }
-}
-
-// The wall as every lane meets it.
-KERNEL momentum_wall wall_of(const arm *a, const lanes *l)
-{
-    const double length = a->link_length;
-    const int last = a->links - 1;
-    momentum_wall wall;
-    real x = {0}, y = {0};
-    for (int k = 0; k < last; k++) {
-        x += length * l->links[k].c;
-        y += length * l->links[k].s;
-    }
-    for (int i = 0; i < LANES; i++) {
-        const wall_contact at = wall_contact_at(&a->wall, length, x[i], y[i], 0, 0,
-                                                l->links[last].c[i], l->links[last].s[i], 0);
-        wall.ex[i] = at.ex;
-        wall.ey[i] = at.ey;
-        wall.lever[i] = at.lever;
-        wall.penetration[i] = at.penetration;
-    }
-    return wall;
-}
-
-KERNEL void sweep_points(modal_stride *s, const arm *a, const double *q, int first)
-{
-    const lanes l = lanes_of(s);
-    const int n = s->dof;
-    const ptrdiff_t row = s->row;
-    const bool stuck = s->mode.friction == HUB_STICK;
-
-    // angles, and momenta by the straight chain's mass
-    const double *turns[LANES], *moved[LANES], *tips[LANES];
-    for (int i = 0; i < LANES; i++) {
-        const int point = i < first ? first : i < MODAL_NODES ? i : MODAL_NODES - 1;
-        turns[i] = s->more_columns + 2 * point * row;
-        moved[i] = turns[i] + row;
-        tips[i] = &s->tip[point];
-    }
-    for (int k = 0; k < n; k++) {
-        l.angles[k] = q[k] + gather(turns, k);
-        l.products[k] = gather(moved, k);
-    }
-    straight_mass_times(a, l.products, l.momentum);
-    const real tip = gather(tips, 0);
-    for (int k = 0; k < n; k++) {
-        l.momentum[k] += s->momentum[k] + (k >= a->first ? tip : (real){0});
-    }
-    l.momentum[n - 1] += s->modes->lever * tip;
-
-    // velocities and forces
-    directions(a, &l);
-    real impulse;
-    if (s->mode.contact) {
-        const momentum_wall wall = wall_of(a, &l);
-        momentum_sweep(a, true, stuck, l.links, &wall, l.momentum, l.velocities, l.rates, &impulse);
-    } else {
-        const momentum_wall none = {0};
-        momentum_sweep(a, false, stuck, l.links, &none, l.momentum, l.velocities, l.rates,
-                       &impulse);
-    }
-    straight_forces_left(a, modal_hub_torque(s, a), l.angles, l.velocities, l.rates, l.momentum);
-
-    // momenta of the straight chain without what is across the constraint
-    const real speed = straight_across(a, s->modes->lever, l.velocities) / s->modes->reach;
-    const double *shift =
-        s->modes->by_mode + (s->modes->across > 0 ? s->modes->across : 0) * (ptrdiff_t)n;
-    for (int k = 0; k < n; k++) {
-        l.products[k] = l.velocities[k] - (s->mode.contact ? speed * shift[k] : (real){0});
-    }
-    straight_mass_times(a, l.products, l.rates);
-
-    // back to every point
-    for (int i = first; i < MODAL_NODES; i++) {
-        double *columns = s->more_columns + 2 * i * row, *forces = columns + row;
-        for (int k = 0; k < n; k++) {
-            columns[k] = l.rates[k][i];
-            forces[k] = l.momentum[k][i];
-            s->point_angles[i][k] = l.angles[k][i];
-            s->point_velocities[i][k] = l.velocities[k][i];
-        }
-        if (s->mode.contact) {
-            s->drifts[i][s->modes->across] = speed[i];
-        }
-    }
-}
-
-// --- for every width ----------------------------------------------------------------------------
-
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) static void sweep_by_four(modal_stride *s, const arm *a,
-                                                          const double *q, int first)
-{
-    sweep_points(s, a, q, first);
-}
-__attribute__((target("avx512f,avx512dq,avx512vl"))) static void
-sweep_by_eight(modal_stride *s, const arm *a, const double *q, int first)
-{
-    sweep_points(s, a, q, first);
-}
-#endif
 
 void modal_sweep_points(modal_stride *s, const arm *a, const double *q, int first)
 {
+    const int width = taylor_width();
+    for (int point = first; point < MODAL_NODES; point += width) {
 #if defined(__x86_64__)
-    if (taylor_width() >= 8) {
-        sweep_by_eight(s, a, q, first);
-        return;
-    }
-    if (taylor_width() >= 4) {
-        sweep_by_four(s, a, q, first);
-        return;
-    }
+        if (width == 8) {
+            modal_sweep_points_8(s, a, q, point);
+        } else if (width == 4) {
+            modal_sweep_points_4(s, a, q, point);
+        } else if (width == 2) {
+            modal_sweep_points_2(s, a, q, point);
+        } else {
+            modal_sweep_points_1(s, a, q, point);
+        }
+#else
+        modal_sweep_points_1(s, a, q, point);
 #endif
-    sweep_points(s, a, q, first);
+    }
 }

@@ -3,6 +3,7 @@
 
 #include "src/solve/modal_loops.h"
 #include "src/solve/modal_parts.h"
+#include "src/solve/modal_points.h"
 
 enum { COLUMNS = 2 * MODAL_NODES };
 
