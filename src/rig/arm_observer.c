@@ -17,7 +17,6 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define FILM_NOISE   0.01   // of the film [rad]
 #define FILM_LEAK    0.1    // that its charge loses [rad/s]
 #define ACCELERATION 1.0    // of the accelerometer [rad/s2]
-#define TORQUE_NOISE 0.1    // of the torque, from sample to sample [N m]
 #define TORQUE_DRIFT 0.1    // of the unknown torque, in a second [N m]
 #define WALL_DRIFT   1e-3   // of the wall, in a second [rad]
 #define STIFFNESS    0.25   // share by which the stiffness may be wrong
@@ -26,7 +25,6 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define STIFF_MEMORY                                                                               \
     0.5 // over which readings count for the stiffness, and as what the belief does [s]
 #define LEAST_STIFF 0.2  // share of it that the arm has at least
-#define TIP_IMPULSE 0.03 // that the wall may give where contact ends [N s]
 #define OUTLIER     4.0  // readings further off, in standard deviations, are worth less
 #define REST        0.01 // a slower hub counts as at rest [rad/s]
 
@@ -256,7 +254,7 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
     const int n = set->count;
     double noise[N] = {0}, drive = o->torque_per_volt * voltage, share = h / o->period;
     for (int i = 0; i < n; i++) {
-        double kick = set->hub[i] * TORQUE_NOISE * o->period;
+        double kick = set->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
         noise[n + i] = share * kick * kick;
     }
 
@@ -422,97 +420,4 @@ estimator arm_observer_ahead(const arm_observer *o, double voltage)
                 voltage);
     }
     return ahead;
-}
-
-// --- contact begins and ends ------------------------------------------------------------------
-
-// The estimate t z and its covariance t p t'.
-static void transform(estimator *e, int from, int to, double t[N][N])
-{
-    estimator before = *e;
-    double product[N][N];
-    memset(e, 0, sizeof *e);
-
-    for (int i = 0; i < to; i++) {
-        for (int j = 0; j < from; j++) {
-            e->z[i] += t[i][j] * before.z[j];
-            product[i][j] = 0;
-            for (int k = 0; k < from; k++) {
-                product[i][j] += t[i][k] * before.p[k][j];
-            }
-        }
-    }
-    for (int i = 0; i < to; i++) {
-        for (int j = 0; j < to; j++) {
-            for (int k = 0; k < from; k++) {
-                e->p[i][j] += product[i][k] * t[j][k];
-            }
-        }
-    }
-}
-
-void arm_observer_touch(arm_observer *o, double time)
-{
-    assert(!o->touches);
-    const mode_set *contact = &o->arm.contact;
-    const int m = contact->count, n = o->arm.free.count, wall = 2 * m;
-
-    // the wall is where the tip came between the two samples; or where it was known to be
-    double way = o->tip_now - o->tip_before;
-    double met = (o->tip_now + o->tip_before) / 2, variance = way * way / 12 + 1e-6;
-    if (o->wall_variance < HUGE_VAL) {
-        double known = o->wall_variance + 1e-6;
-        met = (met * known + o->wall * variance) / (known + variance);
-        variance = known * variance / (known + variance);
-    }
-
-    // what the touch keeps of the motion, seen from there
-    double t[N][N] = {{0}};
-    for (int i = 0; i < m; i++) {
-        for (int j = 0; j < n; j++) {
-            t[i][j] = t[m + i][n + j] = o->arm.touch[i][j];
-        }
-    }
-    t[wall + 1][2 * n] = 1;
-    transform(&o->e, 2 * n + 1, 2 * m + 2, t);
-    o->e.z[wall] = o->met = met;
-    for (int i = 0; i < m; i++) {
-        o->e.z[i] -= contact->momentum[i] * met;
-        o->e.p[wall][i] = o->e.p[i][wall] = -contact->momentum[i] * variance;
-        for (int j = 0; j < m; j++) {
-            o->e.p[i][j] += contact->momentum[i] * contact->momentum[j] * variance;
-        }
-        double kick = contact->hub[i] * TORQUE_NOISE * o->period;
-        o->e.p[m + i][m + i] += kick * kick;
-    }
-    o->e.p[wall][wall] = variance;
-    o->touches = true;
-    o->since = time;
-}
-
-void arm_observer_leave(arm_observer *o, double time)
-{
-    assert(o->touches);
-    const mode_set *free = &o->arm.free;
-    const int m = o->arm.contact.count, n = free->count, wall = 2 * m;
-    double t[N][N] = {{0}};
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < m; j++) {
-            t[i][j] = t[n + i][m + j] = o->arm.touch[j][i];
-        }
-        t[i][wall] = free->momentum[i];
-    }
-    t[2 * n][wall + 1] = 1;
-    transform(&o->e, 2 * m + 2, 2 * n + 1, t);
-
-    // an impulse at the tip that no sensor saw
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            double l = o->arm.length * TIP_IMPULSE;
-            o->e.p[n + i][n + j] += l * l * free->tip[i] * free->tip[j];
-        }
-    }
-    o->touches = false;
-    o->since = time;
-    o->tip_before = o->tip_now = o->wall;
 }

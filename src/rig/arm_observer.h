@@ -6,6 +6,9 @@
 #include "src/rig/estimator.h"
 #include "src/rig/reduced_arm.h"
 
+// Standard deviation that the torque is taken to have from sample to sample [N m].
+#define ARM_OBSERVER_TORQUE_NOISE 0.1
+
 // States: modal coordinates, their rates, in contact the wall's angle, and last the torque that the
 // model does not know of.
 typedef struct arm_observer {

@@ -114,3 +114,32 @@ void estimator_correct(estimator *e, int n, const double *row, double offset, do
         }
     }
 }
+
+void estimator_transform(estimator *e, int from, int to,
+                         double t[ESTIMATOR_STATES][ESTIMATOR_STATES])
+{
+    assert(e != NULL && t != NULL && from <= ESTIMATOR_STATES && to <= ESTIMATOR_STATES);
+    const estimator before = *e;
+    double product[ESTIMATOR_STATES][ESTIMATOR_STATES];
+    memset(e, 0, sizeof *e);
+
+    // t z and t p
+    for (int i = 0; i < to; i++) {
+        for (int j = 0; j < from; j++) {
+            e->z[i] += t[i][j] * before.z[j];
+            product[i][j] = 0;
+            for (int k = 0; k < from; k++) {
+                product[i][j] += t[i][k] * before.p[k][j];
+            }
+        }
+    }
+
+    // times t'
+    for (int i = 0; i < to; i++) {
+        for (int j = 0; j < to; j++) {
+            for (int k = 0; k < from; k++) {
+                e->p[i][j] += product[i][k] * t[j][k];
+            }
+        }
+    }
+}

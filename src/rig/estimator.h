@@ -28,3 +28,8 @@ void estimator_predict(estimator *e, const sampled_model *m, double u, const dou
 // Takes in one reading of row z + offset with the given variance.
 void estimator_correct(estimator *e, int n, const double *row, double offset, double reading,
                        double variance);
+
+// Another view of the state: an estimate of `from` states becomes one of `to` states, t z with the
+// covariance t p t'; t: [to][from].
+void estimator_transform(estimator *e, int from, int to,
+                         double t[ESTIMATOR_STATES][ESTIMATOR_STATES]);
