@@ -28,9 +28,9 @@
 #define OPEN         1e-8   // share of the energy that a stride's ledger may lack
 #define FAINT        1e-8   // share of it that vibrations may have to be left out of the points
 #define GROWTH       4      // from stride to stride
-#define FIRST_TURN   3      // of the fastest vibration in a contact's or bounce's first stride [rad]
-#define TURN         0.05   // of the fastest link in a stride [rad]
-#define LAST_TERMS   1e-9   // of the series between the modes' strides
+#define FIRST_TURN   3    // of the fastest vibration in the first stride of contact or bounce [rad]
+#define TURN         0.05 // of the fastest link in a stride [rad]
+#define LAST_TERMS   1e-9 // of the series between the modes' strides
 
 // Turn up to which a stride's points show a vibration [rad], and the defect (modal_fit) of a stride
 // that is let pass. An arm that bounces passes on what is lost a thousand times enlarged, and more.
