@@ -270,13 +270,24 @@ void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const ar
     f->value = exact_at(kind, a, m, s->mode, state_angles(m, m->state),
                         state_velocities(m, m->state), s->columns);
 
-    // what the modes leave over at the points of collocation
+    // angles turned until the points, where a gap begins on the wall
+    const size_t pair = 2 * (size_t)s->row;
+    const bool on_wall = kind == WATCH_GAP && fabs(f->value) <= MODAL_ON_WALL;
+    if (on_wall) {
+        modal_to_angles(s->modes, s->dof, MODAL_NODES - 1, s->modal + pair, s->more_columns + pair,
+                        (int)pair);
+    }
+
+    // what the modes leave over there
     double values[MODAL_NODES] = {0};
     for (int i = 1; i < MODAL_NODES; i++) {
-        const double *x = s->modal + (size_t)(2 * i) * (size_t)s->row;
-        double exact =
-            exact_at(kind, a, m, s->mode, s->point_angles[i], s->point_velocities[i], s->columns);
-        values[i] = exact - f->value - functional(f, s, x, x + s->row, s->drifts[i], s->drifts[0]);
+        const double *x = s->modal + (size_t)i * pair, *turn = s->more_columns + (size_t)i * pair;
+        const double change = on_wall
+                                  ? -chain_penetration_change(a, state_angles(m, m->state), turn)
+                                  : exact_at(kind, a, m, s->mode, s->point_angles[i],
+                                             s->point_velocities[i], s->columns) -
+                                        f->value;
+        values[i] = change - functional(f, s, x, x + s->row, s->drifts[i], s->drifts[0]);
     }
 
     // both parts as functions of time

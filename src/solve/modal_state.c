@@ -36,10 +36,9 @@ double modal_state_at(modal_stride *s, const arm *a, motion *m, double h, double
     return energy - s->start_energy + lost.viscous + lost.damping - torque * (q[0] - q0[0]);
 }
 
-double modal_gap_at(modal_stride *s, const arm *a, motion *m, double h)
+double modal_gap_change(modal_stride *s, const arm *a, motion *m, double h)
 {
-    double *q = state_angles(m, m->between), *w = state_velocities(m, m->between), penetration;
+    double *q = state_angles(m, m->between), *w = state_velocities(m, m->between);
     (void)move_to(s, a, m, h, q, w);
-    chain_penetration(a, q, w, &penetration, NULL);
-    return -penetration;
+    return -chain_penetration_change(a, state_angles(m, m->state), s->more_columns);
 }

@@ -10,5 +10,5 @@
 // that says how exact the stride is.
 double modal_state_at(modal_stride *s, const arm *a, motion *m, double h, double *state);
 
-// The gap at h [m].
-double modal_gap_at(modal_stride *s, const arm *a, motion *m, double h);
+// How much larger the gap is at h than at the stride's start [m], to its own digits.
+double modal_gap_change(modal_stride *s, const arm *a, motion *m, double h);

@@ -115,6 +115,7 @@ void modal_stride_modes(modal_stride *s, double t);
 void modal_polynomial(const double values[MODAL_NODES], double length, double out[MODAL_NODES]);
 
 // Angles and velocities at t within the stride, and the impulse of the contact force until then.
+// s->more_columns begins with the angles turned until then, to their own digits.
 void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double t, const double *q,
                         double *qt, double *wt, double *impulse);
 

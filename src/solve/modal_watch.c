@@ -10,6 +10,7 @@
 #define SLACK_SHARE  1e-3  // of what all modes can do to any other function
 #define SLACK_OTHER  1e-9  // and at least so much, in its unit
 #define GAP_ROUNDING 4e-15 // [m]
+#define SHARE_BEYOND 1e-9  // of a flight's height, to which it ends on the wall's far side
 
 enum { SAMPLES_A_BLOCK = 4, MOST_HALVINGS = 40, MOST_ROOT_STEPS = 60, MOST_POLISHING = 12 };
 
@@ -89,7 +90,7 @@ double modal_function_exact(const modal_function *f, modal_stride *s, const arm 
 {
     double *state = m->between;
     if (f->kind == WATCH_GAP) {
-        return modal_gap_at(s, a, m, t) - f->edge;
+        return f->value - f->edge + modal_gap_change(s, a, m, t);
     }
     memcpy(state, m->state, SLOT_COUNT * sizeof *state);
     (void)modal_state_at(s, a, m, t, state);
@@ -100,8 +101,10 @@ double modal_function_exact(const modal_function *f, modal_stride *s, const arm 
 static double root_of(const modal_function *f, modal_stride *s, const arm *a, motion *m, look_at lo,
                       look_at hi)
 {
+    const bool brief = f->kind == WATCH_GAP && fabs(f->value) <= MODAL_ON_WALL;
+    const double rounding = brief ? 0 : 1e-16; // [s]
     double from = lo.time, to = hi.time, t = to, slope = hi.at.slope;
-    for (int i = 0; i < MOST_ROOT_STEPS && to - from > 1e-16 + 1e-16 * to; i++) {
+    for (int i = 0; i < MOST_ROOT_STEPS && to - from > rounding + 1e-16 * to; i++) {
         glance g = modal_function_at(f, a, t);
         slope = g.slope;
         if (g.value > 0) {
@@ -112,7 +115,7 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
         double next = t - g.value / g.slope;
         bool useful = next > from && next < to && i % 4 != 3;
         next = useful ? next : 0.5 * (from + to);
-        if (fabs(next - t) < 1e-15) {
+        if (fabs(next - t) < 10 * rounding + 1e-15 * t) {
             break;
         }
         t = next;
@@ -121,6 +124,7 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
     // what the functional leaves out moves the root by little; a slope that steepens, as from the
     // top of a flight of some 1e-14 m, would take it far beyond
     double target = far_side[f->kind], above = -1, below = HUGE_VAL;
+    target = brief ? fmin(target, SHARE_BEYOND * fabs(slope) * t) : target;
     for (int i = 0; i < MOST_POLISHING && slope < 0; i++) {
         const double value = modal_function_exact(f, s, a, m, t);
         if (value <= 0 && value >= -2 * target) {
@@ -214,7 +218,8 @@ bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, moti
     modal_sum_begin(&f->sum);
     f->edge = 0;
     look_at lo = {0, walked(f, a)};
-    bool armed = fabs(lo.at.value) > far_side[f->kind] * ON_EDGE;
+    const double edge = f->kind == WATCH_GAP ? MODAL_ON_WALL : far_side[f->kind] * ON_EDGE;
+    bool armed = fabs(lo.at.value) > edge;
     if (!armed) {
         f->edge = lo.at.value;
         lo.at.value = 0;
