@@ -190,8 +190,10 @@ status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
         }
 
         // what is due now, then how far the motion may go on its own
-        failed = corrected_run_script(c, f);
-        if (failed == STATUS_OK) {
+        if (r->state.next_action < r->scenario->action_count) {
+            failed = corrected_run_script(c, f);
+        }
+        if (failed == STATUS_OK && r->rig != NULL) {
             failed = corrected_run_rig(c, f);
         }
         m->cut = next_cut(r, window, m->state[SLOT_TIME]);

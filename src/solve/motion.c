@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/extremes.h"
+
 // The event method takes the modes of the straight chain where the arm's fastest rate or decay is
 // beyond this [1/s]: a stride of theirs then replaces dozens of the series.
 #define STIFF 3e4
@@ -274,8 +276,8 @@ double motion_rounding_at(const arm *a, int dof, const double *q, const double *
 {
     double angle = 0, rate = 0;
     for (int i = 0; i < dof; i++) {
-        angle = fmax(angle, fabs(q[i]));
-        rate = fmax(rate, fabs(w[i]));
+        angle = larger(fabs(q[i]), angle);
+        rate = larger(fabs(w[i]), rate);
     }
     return 1 + LAST_BITS * (a->highest_frequency * a->highest_frequency * angle + rate * rate);
 }
