@@ -389,15 +389,18 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
                 now.before += magnitude(w0[n]);
                 now.last += magnitude(w0[n + 1]);
             }
-            // what decays is lost twice as fast as it decays: the losses' series end later
-            last_terms lost = {viscous * magnitude(hub_square[n - 1]),
-                               viscous * magnitude(hub_square[n]), power};
-            if (damped) {
-                lost.before += magnitude(dissipation[n - 1]);
-                lost.last += magnitude(dissipation[n]);
+            mask large = too_large(now, wanted, limit);
+            if (any(~large)) {
+                // what decays is lost twice as fast as it decays: the losses' series end later
+                last_terms lost = {viscous * magnitude(hub_square[n - 1]),
+                                   viscous * magnitude(hub_square[n]), power};
+                if (damped) {
+                    lost.before += magnitude(dissipation[n - 1]);
+                    lost.last += magnitude(dissipation[n]);
+                }
+                large |= too_large(lost, wanted, limit * scale);
             }
-            mask large = too_large(now, wanted, limit) | too_large(lost, wanted, limit * scale);
-            if (!contact) {
+            if (!contact && any(~large)) {
                 // of the gap the coefficients so far, which are of one order less
                 const real gap_before = gap_term(&x, n, l, point);
                 const real gap_last = gap_term(&x, n + 1, l, point);
@@ -405,7 +408,7 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
                                           magnitude(gap_last) * (double)(n + 1), power};
                 large |= too_large(swing, wanted, limit * wanted * l);
             }
-            if (!hub_spring && sticks) {
+            if (!hub_spring && sticks && any(~large)) {
                 const last_terms held = {magnitude(hold[n - 1]) * inverse[n],
                                          magnitude(hold[n]) * inverse[n + 1], power};
                 large |= stuck & too_large(held, wanted, limit * m11);

@@ -58,14 +58,13 @@ typedef struct factors {
     real v[TAYLOR_MOST + 2]; // of the bend
 } factors;
 
-#define DIRECTIONS(x, n) ((x)->of[n].directions)
-#define DIRECTION1(x, n) ((x)->of[n].direction1)
-#define ADD_TURNING(s, x, j, n)                                                                    \
-    ((s).turning += (x)->of[j].rates * (x)->of[(n) + 1 - (j)].directions)
-#define ADD_PRODUCTS(s, x, j, n) ((s).products += (x)->of[j].left * (x)->of[(n) - (j)].right)
-#define ADD_LEVERED(s, x, j, n)  ((s).levered += (x)->of[j].forces * (x)->of[(n) - (j)].levers)
-#define ADD_TURNING1(s, x, j, n)                                                                   \
-    ((s).turning1 += (x)->of[j].rate1 * (x)->of[(n) + 1 - (j)].direction1)
+#define DIRECTIONS(x, n)         ((x)->of[n].directions)
+#define DIRECTION1(x, n)         ((x)->of[n].direction1)
+#define TURNING(s, op, x, j, n)  ((s).turning op(x)->of[j].rates * (x)->of[(n) + 1 - (j)].directions)
+#define PRODUCTS(s, op, x, j, n) ((s).products op(x)->of[j].left * (x)->of[(n) - (j)].right)
+#define LEVERED(s, op, x, j, n)  ((s).levered op(x)->of[j].forces * (x)->of[(n) - (j)].levers)
+#define TURNING1(s, op, x, j, n)                                                                   \
+    ((s).turning1 op(x)->of[j].rate1 * (x)->of[(n) + 1 - (j)].direction1)
 #else
 #define DIRECTIONS(x, n) ((x)->directions[n])
 #define DIRECTION1(x, n) ((x)->direction1[n])
@@ -76,64 +75,81 @@ typedef struct factors {
     const real *w1, *w2, *hub, *f;                     // in the block
 } factors;
 
-#define ADD_TURNING(s, x, j, n)                                                                    \
-    ((s).turning.part[0] += (x)->v[j] * (x)->directions[(n) + 1 - (j)].part[0],                    \
-     (s).turning.part[1] += (x)->v[j] * (x)->directions[(n) + 1 - (j)].part[1],                    \
-     (s).turning.part[2] += (x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[2],                   \
-     (s).turning.part[3] += (x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[3])
-#define ADD_PRODUCTS(s, x, j, n)                                                                   \
-    ((s).products.part[0] += (x)->directions[(j) + 1].part[0] * (x)->w2[(n) - (j)],                \
-     (s).products.part[1] += (x)->w1[j] * (x)->w2[(n) - (j)],                                      \
-     (s).products.part[2] += (x)->directions[(j) + 1].part[1] * (x)->coupled[(n) - (j)],           \
-     (s).products.part[3] += (x)->hub[j] * (x)->hub[(n) - (j)])
-#define ADD_LEVERED(s, x, j, n)                                                                    \
-    ((s).levered.part[0] += (x)->f[j] * (point ? (x)->directions[(n) - (j)].part[0]                \
-                                               : (x)->direction1[(n) - (j)].part[0]),              \
-     (s).levered.part[1] += (x)->f[j] * (x)->directions[(n) - (j)].part[2])
-#define ADD_TURNING1(s, x, j, n)                                                                   \
-    ((s).turning1.part[0] += (x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[0],                  \
-     (s).turning1.part[1] += (x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[1])
+#define TURNING(s, op, x, j, n)                                                                    \
+    ((s).turning.part[0] op(x)->v[j] * (x)->directions[(n) + 1 - (j)].part[0],                     \
+     (s).turning.part[1] op(x)->v[j] * (x)->directions[(n) + 1 - (j)].part[1],                     \
+     (s).turning.part[2] op(x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[2],                    \
+     (s).turning.part[3] op(x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[3])
+#define PRODUCTS(s, op, x, j, n)                                                                   \
+    ((s).products.part[0] op(x)->directions[(j) + 1].part[0] * (x)->w2[(n) - (j)],                 \
+     (s).products.part[1] op(x)->w1[j] * (x)->w2[(n) - (j)],                                       \
+     (s).products.part[2] op(x)->directions[(j) + 1].part[1] * (x)->coupled[(n) - (j)],            \
+     (s).products.part[3] op(x)->hub[j] * (x)->hub[(n) - (j)])
+#define LEVERED(s, op, x, j, n)                                                                    \
+    ((s).levered.part[0] op(x)->f[j] *                                                             \
+         (point ? (x)->directions[(n) - (j)].part[0] : (x)->direction1[(n) - (j)].part[0]),        \
+     (s).levered.part[1] op(x)->f[j] * (x)->directions[(n) - (j)].part[2])
+#define TURNING1(s, op, x, j, n)                                                                   \
+    ((s).turning1.part[0] op(x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[0],                   \
+     (s).turning1.part[1] op(x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[1])
 #endif
 
-// Sums for the n-th coefficient from j = 1 to n - 1: the first and the last are left to be added.
-#define IN_TURNS(ADD)                                                                              \
+#define ADD_TURNING(s, x, j, n)  TURNING(s, +=, x, j, n)
+#define ADD_PRODUCTS(s, x, j, n) PRODUCTS(s, +=, x, j, n)
+#define ADD_LEVERED(s, x, j, n)  LEVERED(s, +=, x, j, n)
+#define ADD_TURNING1(s, x, j, n) TURNING1(s, +=, x, j, n)
+
+// Sums for the n-th coefficient from j = 1 to n - 1, two at least: the first and the last are left
+// to be added.
+#define IN_TURNS(SUM)                                                                              \
     do {                                                                                           \
-        ptrdiff_t j = 1;                                                                           \
+        ptrdiff_t j = 3;                                                                           \
+        SUM(even, =, x, 1, n);                                                                     \
+        SUM(odd, =, x, 2, n);                                                                      \
         for (; j + 1 < n; j += 2) {                                                                \
-            ADD(even, x, j, n);                                                                    \
-            ADD(odd, x, j + 1, n);                                                                 \
+            SUM(even, +=, x, j, n);                                                                \
+            SUM(odd, +=, x, j + 1, n);                                                             \
         }                                                                                          \
         if (j < n) {                                                                               \
-            ADD(even, x, j, n);                                                                    \
+            SUM(even, +=, x, j, n);                                                                \
         }                                                                                          \
     } while (0)
 
 KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int contact, const int point,
                        sums *result)
 {
-    sums even = no_sums, odd = no_sums;
-#if LANES == 1 || LANES == 8
-    // all together, as one arm and AVX-512 leave registers enough
-#define ADD_ALL(s, x, j, n)                                                                        \
+    // none, or one of them
+#define SUM_ALL(s, op, x, j, n)                                                                    \
     do {                                                                                           \
-        ADD_TURNING(s, x, j, n);                                                                   \
-        ADD_PRODUCTS(s, x, j, n);                                                                  \
+        TURNING(s, op, x, j, n);                                                                   \
+        PRODUCTS(s, op, x, j, n);                                                                  \
         if (contact) {                                                                             \
-            ADD_LEVERED(s, x, j, n);                                                               \
+            LEVERED(s, op, x, j, n);                                                               \
         }                                                                                          \
         if (!point) {                                                                              \
-            ADD_TURNING1(s, x, j, n);                                                              \
+            TURNING1(s, op, x, j, n);                                                              \
         }                                                                                          \
     } while (0)
-    IN_TURNS(ADD_ALL);
+    if (n < 3) {
+        *result = no_sums;
+        if (n == 2) {
+            SUM_ALL(*result, =, x, 1, n);
+        }
+        return;
+    }
+
+    sums even, odd;
+#if LANES == 1 || LANES == 8
+    // all together, as one arm and AVX-512 leave registers enough
+    IN_TURNS(SUM_ALL);
 #else
-    IN_TURNS(ADD_TURNING);
-    IN_TURNS(ADD_PRODUCTS);
+    IN_TURNS(TURNING);
+    IN_TURNS(PRODUCTS);
     if (contact) {
-        IN_TURNS(ADD_LEVERED);
+        IN_TURNS(LEVERED);
     }
     if (!point) {
-        IN_TURNS(ADD_TURNING1);
+        IN_TURNS(TURNING1);
     }
 #endif
     for (int i = 0; i < 4; i++) {
@@ -141,8 +157,12 @@ KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int contact, const i
         PART(result->products, i) = PART(even.products, i) + PART(odd.products, i);
     }
     for (int i = 0; i < 2; i++) {
-        PART(result->levered, i) = PART(even.levered, i) + PART(odd.levered, i);
-        PART(result->turning1, i) = PART(even.turning1, i) + PART(odd.turning1, i);
+        if (contact) {
+            PART(result->levered, i) = PART(even.levered, i) + PART(odd.levered, i);
+        }
+        if (!point) {
+            PART(result->turning1, i) = PART(even.turning1, i) + PART(odd.turning1, i);
+        }
     }
 }
 
