@@ -226,6 +226,44 @@ static void script_acts_at_its_time_and_is_booked(void **state)
     run_finish(&r);
 }
 
+// An arm that starts at rest on the wall is in its first contact at once, held still or not,
+// whatever the wall; one that swings off at once is not.
+static void an_arm_that_starts_on_the_wall_is_in_contact(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *links, *wall;
+        double released; // [s], 0: never
+    } cases[] = {{"arm.links=1", "wall.contact=rigid", 0},
+                 {"arm.links=3", "wall.contact=rigid", 7.2441e-3},
+                 {"arm.links=3", "wall.contact=kelvin-voigt", 7.5573e-3}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        run_result r = run(SETTINGS(cases[i].links, cases[i].wall, "wall.angle=0"));
+        double largest = 0;
+        for (size_t k = 0; k < r.trace.row_count; k++) {
+            largest = fmax(largest, r.trace.rows[k].force);
+        }
+        check_close(r.summary.first_contact_s, 0, 0);
+        check_close(r.summary.contact_impulse_Ns, 0, 0);
+        check_close(find_event(&r, EVENT_CONTACT, 0)->time, 0, 0);
+        check_below(largest, r.summary.peak_force_N * (1 + 1e-12));
+        assert_true(r.summary.steady_force_N > 0.35);
+        assert_true(r.summary.first_pulse_peak_N > 0.05);
+        if (cases[i].released == 0) {
+            assert_true(isnan(r.summary.first_pulse_s));
+        } else {
+            check_close(r.summary.first_pulse_s, cases[i].released, 1e-6);
+        }
+        run_finish(&r);
+    }
+    static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
+    for (int i = 0; i < 2; i++) {
+        run_result r = run(SETTINGS("arm.links=2", walls[i], "wall.angle=0"));
+        assert_true(r.summary.first_contact_s > 0.05);
+        run_finish(&r);
+    }
+}
+
 // What rounding leaves of the gap's rate in contact neither strikes nor lifts off.
 static void a_push_of_nothing_changes_nothing(void **state)
 {
@@ -391,6 +429,7 @@ int main(void)
         cmocka_unit_test(the_located_peak_does_not_depend_on_the_step),
         cmocka_unit_test(without_a_trace_the_summary_is_the_same),
         cmocka_unit_test(script_acts_at_its_time_and_is_booked),
+        cmocka_unit_test(an_arm_that_starts_on_the_wall_is_in_contact),
         cmocka_unit_test(a_push_of_nothing_changes_nothing),
         cmocka_unit_test(a_run_that_makes_energy_from_nothing_is_stopped),
         cmocka_unit_test(a_ledger_that_does_not_close_makes_a_run_inaccurate),

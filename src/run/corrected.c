@@ -155,7 +155,8 @@ static status begin(corrected_run *c, fault *f)
     }
 
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
-    return STATUS_OK;
+    failed = corrected_begin_in_contact(c);
+    return failed == STATUS_OK ? failed : fault_no_memory(f);
 }
 
 // The rig's first sample, and the row of the start, which is there even where that sample fails.

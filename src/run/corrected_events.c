@@ -32,6 +32,30 @@ static status record_event(recording *r, const motion *m, event_kind kind,
     return trace_add_event(&r->result->trace, e);
 }
 
+// The first contact, and with it the first pulse, begins now.
+static void open_first_pulse(corrected_run *c, double impulse)
+{
+    recording *r = c->recording;
+    summary *s = &r->result->summary;
+    s->first_contact_s = c->motion->state[SLOT_TIME];
+    s->contact_impulse_Ns = impulse;
+    r->state.pulse_open = true;
+    motion_watch(c->motion);
+}
+
+status corrected_begin_in_contact(corrected_run *c)
+{
+    const motion *m = c->motion;
+    const double *state = m->state;
+    const bool leaves = m->wall_gives && state[SLOT_GAP_ACCELERATION] > 0;
+    if (state[SLOT_CONTACT] == 0 || leaves) {
+        return STATUS_OK;
+    }
+    const motion_report none = {.event = MOTION_TOUCH, .holds = true};
+    open_first_pulse(c, 0);
+    return record_event(c->recording, m, EVENT_CONTACT, &none);
+}
+
 void corrected_close_first_pulse(corrected_run *c)
 {
     recording *r = c->recording;
@@ -78,7 +102,6 @@ static status record_applied_event(corrected_run *c, const motion_report *report
     recording *r = c->recording;
     motion *m = c->motion;
     summary *s = &r->result->summary;
-    const double now = m->state[SLOT_TIME];
     const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
 
     // the event itself
@@ -91,10 +114,7 @@ static status record_applied_event(corrected_run *c, const motion_report *report
         s->separations += r->state.separated;
         r->state.separated = false;
         if (isnan(s->first_contact_s)) {
-            s->first_contact_s = now;
-            s->contact_impulse_Ns = report->impulse;
-            r->state.pulse_open = true;
-            motion_watch(m);
+            open_first_pulse(c, report->impulse);
         }
         if (report->holds && failed == STATUS_OK && report->event == MOTION_IMPACT) {
             failed = record_event(r, m, EVENT_CONTACT, report);

@@ -7,6 +7,10 @@
 // Derives the arm's constants from the parameters as they are now; the command in force stays.
 void corrected_bind_arm(corrected_run *c);
 
+// To be called of a run that begins: one that starts at rest on the wall is in its first contact,
+// which no event begins. STATUS_NO_MEMORY.
+status corrected_begin_in_contact(corrected_run *c);
+
 // The first pulse is over: takes note of its length and of the largest force until now.
 void corrected_close_first_pulse(corrected_run *c);
 
