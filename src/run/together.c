@@ -12,7 +12,7 @@
 
 // So many runs are in hand at once: enough to fill the vectors with strides of one form, few enough
 // to stay in the nearest cache.
-enum { IN_HAND = 16 };
+enum { IN_HAND = 24 };
 
 enum { CACHE_LINE = 64, SUMMARY_SHARE = 128 }; // [bytes]; of the summary, what strides add to
 
