@@ -15,6 +15,10 @@
 // then loses a few parts in 1e12 of the fastest mode's energy in one.
 #define EXPLICIT_RESOLUTION 0.36
 
+// Drift that is projected away in contact.
+#define PROJECTION_GAP  1e-14 // [m]
+#define PROJECTION_RATE 1e-13 // [m/s]
+
 // So many states within a step are evaluated together.
 enum { MOTION_TOGETHER = 8 };
 
@@ -297,8 +301,7 @@ bool motion_between_all(const arm *a, motion *m, const double *times, int count,
 // [m/s], that it has to be put back.
 static inline bool motion_drifted(double gap, double rate)
 {
-    const double most_gap = 1e-14, most_rate = 1e-13;
-    return !(fabs(gap) <= most_gap && fabs(rate) <= most_rate);
+    return !(fabs(gap) <= PROJECTION_GAP && fabs(rate) <= PROJECTION_RATE);
 }
 
 // Puts an evaluated state in contact back onto the constraint, position and velocity, along
