@@ -20,17 +20,15 @@
 #include "src/solve/modal_watch.h"
 #include "src/solve/series_engine.h"
 
-#define CONFIRMED    0.999  // of a peak of the modes, that the state there has to have
-#define STATES_ALONG 32     // of a stride where it has not
-#define LONGEST      1.8e-2 // [s]
-#define ADVANTAGE    8.0    // strides of the series that one of the modes has to replace
-#define SETTLED      1e-7   // change by further sweeps that is let pass
-#define OPEN         1e-8   // share of the energy that a stride's ledger may lack
-#define FAINT        1e-8   // share of it that vibrations may have to be left out of the points
-#define GROWTH       4      // from stride to stride
-#define FIRST_TURN   3    // of the fastest vibration in the first stride of contact or bounce [rad]
-#define TURN         0.05 // of the fastest link in a stride [rad]
-#define LAST_TERMS   1e-9 // of the series between the modes' strides
+#define LONGEST    1.8e-2 // [s]
+#define ADVANTAGE  8.0    // strides of the series that one of the modes has to replace
+#define SETTLED    1e-7   // change by further sweeps that is let pass
+#define OPEN       1e-8   // share of the energy that a stride's ledger may lack
+#define FAINT      1e-8   // share of it that vibrations may have to be left out of the points
+#define GROWTH     4      // from stride to stride
+#define FIRST_TURN 3      // of the fastest vibration in the first stride of contact or bounce [rad]
+#define TURN       0.05   // of the fastest link in a stride [rad]
+#define LAST_TERMS 1e-9   // of the series between the modes' strides
 
 // Turn up to which a stride's points show a vibration [rad], and the defect (modal_fit) of a stride
 // that is let pass. An arm that bounces passes on what is lost a thousand times enlarged, and more.
@@ -296,48 +294,13 @@ static void first_event(const arm *a, motion *m, double *h, watch *first, bool *
     *h = *any ? memory->event : *h;
 }
 
-// Takes a peak within the stride only if the state there has that force: just after an impact,
-// where decays are very fast, the sum of the modes does not show it. Else the largest of states
-// along the stride, closer at its beginning.
-static void confirm_peak(const arm *a, motion *m, double h, double before, double before_time)
-{
-    const double start = m->state[SLOT_TIME], within = m->pulse_peak_time - start;
-    if (!(m->pulse_peak > before) || within < 0) {
-        return;
-    }
-
-    // the force where the peak is said to be
-    const bool begins = within == 0;
-    if (!begins && motion_try_step(a, m, within) != STATUS_OK) {
-        return;
-    }
-    const double force = begins ? m->state[SLOT_FORCE] : m->trial[SLOT_FORCE];
-    if (force > CONFIRMED * m->pulse_peak) {
-        return;
-    }
-
-    // denied: what the states show instead
-    m->pulse_peak = before;
-    m->pulse_peak_time = before_time;
-    motion_note_force(m, start, m->state[SLOT_FORCE]);
-    motion_note_force(m, start + within, force);
-    for (int i = 1; i <= STATES_ALONG; i++) {
-        const double part = (double)i / STATES_ALONG, at = part * part * h;
-        if (motion_try_step(a, m, at) == STATUS_OK) {
-            motion_note_force(m, start + at, m->trial[SLOT_FORCE]);
-        }
-    }
-}
-
 static void peak(const arm *a, motion *m, double h)
 {
     const modal_memory *memory = m->memory;
-    const double before = m->pulse_peak, before_time = m->pulse_peak_time;
     if (memory->by_series) {
         dense_search_peak(a, m, h);
     } else {
         modal_function_peak(contact_function(a, m), a, m, h);
-        confirm_peak(a, m, h, before, before_time);
     }
 }
 
