@@ -50,13 +50,14 @@ chain_outcome chain_outcome_of(const chain_start *start)
         if (r.event != MOTION_REACHED) {
             motion_apply(&a, m, &r);
         }
-        if (r.event != MOTION_IMPACT) {
+        const bool begins = r.event == MOTION_TOUCH && isnan(o.first_contact);
+        if (r.event != MOTION_IMPACT && !begins) {
             continue;
         }
 
         // an impact, the first one perhaps
         impulses += r.impulse;
-        o.impacts++;
+        o.impacts += r.event == MOTION_IMPACT;
         if (isnan(o.first_contact)) {
             o.first_contact = m->state[SLOT_TIME];
             o.first_impulse = r.impulse;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "tests/arm_fixture.h"
+#include "tests/explicit_stepper.h"
 
 #include "src/solve/contact_machine.h"
 

@@ -8,6 +8,7 @@
 #include "src/solve/taylor_lanes.h"
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
+#include "tests/explicit_stepper.h"
 
 #define DURATION    0.05
 #define START_ANGLE 0.095

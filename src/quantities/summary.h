@@ -13,7 +13,7 @@ typedef struct summary {
     bool inaccurate;    // it came to its end, but the energy ledger lacks more than may be
     const char *path;   // of the parameter that stopped the run, a literal; "" if none did
     char message[1024]; // what stopped the run, or a remark; "" if there is none
-    char method[32];    // the method in fact used, "Runge-Kutta 8"
+    char method[32];    // the method in fact used, "power series"
     // numbers only from here on, see summary_value
     double first_contact_s;
     double contact_impulse_Ns; // impulse of the first impact

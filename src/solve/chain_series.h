@@ -49,6 +49,9 @@ typedef enum chain_drive {
     DRIVE_HELD     // nothing: it is at its limit
 } chain_drive;
 
+// Of the fastest mode, decay or wall in a stride.
+#define SERIES_REACH 6.0
+
 typedef struct chain_series {
     int links, order; // order: of the velocities
     contact_state mode;
@@ -64,7 +67,7 @@ typedef struct chain_series {
     // single functions of x
     series_terms hub_angle, hub_rate;     // of a hub on a spring
     series_terms root_rate;               // of that spring's bend
-    series_terms gap;                     // in free flight [m]
+    series_terms gap;                     // in free flight or within a wall that gives [m]
     series_terms force;                   // in contact, times L^2 [N s2]
     series_terms hold;                    // friction torque on a stuck hub, times L^2 [N m s2]
     series_square hub_square;             // of the hub's w
@@ -72,6 +75,14 @@ typedef struct chain_series {
     int square_terms;                     // of these two
     series_terms tip_x, tip_y;            // of the tip [m]
     series_terms reach_x, reach_y, along; // from the last link's base to a point wall, and along it
+
+    // of a wall that gives or a face with a mass
+    bool gives;
+    bool at_touch, graded;   // next to a touch that is not analytic; by the distance from one
+    double turning;          // fastest rate of arm and wall [1/s]
+    series_terms power;      // depth to the law's exponent
+    series_terms damper;     // what the damper gives, times L^2 [N s2]
+    series_square wall_loss; // its power, times L^3 [J s2]
 
     // of a root that stiffens, and of damping by mode
     series_terms root_bend, root_square;          // [rad], [rad2]
@@ -90,21 +101,32 @@ typedef struct chain_series {
 size_t chain_series_size(const arm *a);
 void chain_series_place(chain_series *s, const arm *a);
 
-// How far a stride may go by the arm's rates and its angles and velocities q[dof], w[dof] [s].
-double chain_series_reach(const arm *a, const double *q, const double *w);
+// How fast the arm's state can change by its own rates, its angles and velocities q[dof], w[dof]
+// [1/s].
+double chain_series_rate(const arm *a, const double *q, const double *w);
+
+// How far a stride may go [s] by that rate, the wall's own or its face's [1/s], and by a touch that
+// is not analytic, from the gap and its rate [m], [m/s]. s->mode and s->gives are those of the
+// stride to come.
+double chain_series_wall_reach(chain_series *s, const arm *a, double own, double wall_rate,
+                               double gap, double gap_velocity);
+
+// Adds a face that swings on its own to the gap of the series computed. Returns what its velocity
+// lacks there [m/s]: a decay too fast to be more than rounding of its place.
+double chain_series_add_face(chain_series *s, const arm *a, wall_face face);
 
 // Says what the current of an electric drive follows in the stride to come, from what it is where
 // it is a state of its own [A], and the hub's velocity and acceleration [rad/s], [rad/s2].
 void chain_series_choose_drive(chain_series *s, const arm *a, double current, double w,
                                double acceleration);
 
-// Computes the series of an arm with series_engine_suits from q[dof] and w[dof] [rad/s] in a
-// contact state, for a stride of `length` up to chain_series_reach [s]; of an electric drive after
-// chain_series_choose_drive, with its current in `mode`. s->allowed is then that
+// Computes the series of an arm from q[dof] and w[dof] [rad/s] in the contact state s->mode, for a
+// stride of `length` up to chain_series_wall_reach [s], which comes first; of an electric drive
+// after chain_series_choose_drive, with its current in the mode. s->allowed is then that
 // length, or less where the last terms of the velocities are not below `last_terms` of the largest
 // velocity.
-void chain_series_compute(chain_series *s, const arm *a, contact_state mode, const double *q,
-                          const double *w, double length, double last_terms);
+void chain_series_compute(chain_series *s, const arm *a, const double *q, const double *w,
+                          double length, double last_terms);
 
 // Coefficient n of w of the first link [rad].
 double chain_series_first_rate(const chain_series *s, int n);

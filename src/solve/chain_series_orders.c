@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "src/solve/chain_series_parts.h"
-#include "src/solve/engine.h"
 
 #define REACH       6.0   // of the fastest mode or decay in a stride
 #define TURNING     1.2   // rotation counts so many times
@@ -99,7 +98,7 @@ static double stiffened(const arm *a, const double *q)
     return a->stiffening > 0 ? sqrt(1 + 4.5 * a->stiffening * most) : 1;
 }
 
-double chain_series_reach(const arm *a, const double *q, const double *w)
+double chain_series_rate(const arm *a, const double *q, const double *w)
 {
     double turning = 0, last = 0;
     for (int i = 0; i < a->dof; i++) {
@@ -110,7 +109,7 @@ double chain_series_reach(const arm *a, const double *q, const double *w)
     }
     const double vibrating = a->highest_frequency * stiffened(a, q);
     const double rate = fmax(fmax(vibrating, a->fastest_decay), TURNING * turning);
-    return REACH / fmax(rate, 1e-3);
+    return fmax(rate, 1e-3);
 }
 
 // The lowest even order of which the first term left out is small for what turns by `turn`.
@@ -152,55 +151,6 @@ static double root_torque(chain_series *s, const arm *a, int n, double beyond, d
     return -spring;
 }
 
-// The n-th coefficient of a product of two series, its factors' first `from` terms left out.
-static double product_term(const double *x, const double *y, int n, int from)
-{
-    double sum = 0;
-    for (int i = from; i <= n; i++) {
-        sum += x[i] * y[n - i];
-    }
-    return sum;
-}
-
-// What the force's earlier coefficients do at a point wall, whose direction turns with the link:
-// on the link's base, and to its moment.
-static double earlier_force(const chain_series *s, int n, double push[2])
-{
-    const chain_rows *r = &s->rows;
-    push[0] = push[1] = 0;
-    for (int i = 1; i <= n; i++) {
-        push[0] -= s->force.term[n - i] * last_of(s, r->sine, i);
-        push[1] += s->force.term[n - i] * last_of(s, r->cosine, i);
-    }
-    const double across = r->start_c[s->last_place] * push[1] - r->start_s[s->last_place] * push[0];
-    return r->half[s->last_place] * across + product_term(s->along.term, s->force.term, n, 1);
-}
-
-// The n-th coefficient of the contact force, from the accelerations without it.
-static double force_term(const chain_series *s, const arm *a, int n)
-{
-    const chain_rows *r = &s->rows;
-    const size_t end = s->last_place;
-    const double ax = r->base_x[end], ay = r->base_y[end];
-    const double turn = r->free[end] - (r->ux[end] * ax + r->uy[end] * ay) * r->inv_d[end];
-    if (a->wall.kind != WALL_POINT) {
-        const double l = r->length[end];
-        const double x = ax + r->vx[end] * turn + l * r->rho_x[end];
-        const double y = ay + r->vy[end] * turn + l * r->rho_y[end];
-        return -(a->wall.cosine * y - a->wall.sine * x) / s->response;
-    }
-
-    // d2g/dt2 = t'A + D a and what the products' earlier coefficients give
-    double rest = s->reach_x.term[0] * r->rho_y[end] - s->reach_y.term[0] * r->rho_x[end];
-    for (int i = 1; i <= n + 1; i++) {
-        rest += (n + 1) * (n + 2) *
-                (last_of(s, r->sine, i) * s->reach_x.term[n + 2 - i] -
-                 last_of(s, r->cosine, i) * s->reach_y.term[n + 2 - i]);
-    }
-    const double across = r->start_c[end] * ay - r->start_s[end] * ax;
-    return -(across + s->along.term[0] * turn + rest) / s->response;
-}
-
 // F at the tip: what its mass demands, and the push of a plane.
 static void force_at_tip(chain_series *s, const arm *a, chain_order *o)
 {
@@ -224,8 +174,8 @@ static void force_at_tip(chain_series *s, const arm *a, chain_order *o)
     }
 }
 
-// F at the hub, where the first link's base rests; push: as earlier_force has it, for the only
-// link of an arm.
+// F at the hub, where the first link's base rests; push: as chain_series_earlier_force has it, for
+// the only link of an arm.
 static void force_at_hub(chain_series *s, const arm *a, const chain_order *o, const double push[2])
 {
     chain_rows *r = &s->rows;
@@ -261,9 +211,13 @@ static void next_order(chain_series *s, const arm *a, const chain_loops *loops, 
     if (a->air_drag > 0) {
         chain_series_drag(s, n);
     }
-    if (point) {
+    if (contact && s->gives) {
+        chain_series_gap_term(s, a, n + 1);
+    } else if (point) {
         chain_series_reach_point(s, a, n + 1);
-        r->moment[end] += earlier_force(s, n, push);
+    }
+    if (point) {
+        r->moment[end] += chain_series_earlier_force(s, n, push);
     }
     loops->prepare(r, &o);
     r->add_x[end] += push[0];
@@ -275,7 +229,7 @@ static void next_order(chain_series *s, const arm *a, const chain_loops *loops, 
     // the sweeps, and the force
     loops->sweep(r);
     if (contact) {
-        o.force = s->force.term[n] = force_term(s, a, n);
+        o.force = s->force.term[n] = chain_series_force_term(s, a, n);
     }
     loops->finish(r, &o);
 
@@ -354,26 +308,25 @@ static double small_terms(const chain_series *s, double last_terms)
     return share;
 }
 
-void chain_series_compute(chain_series *s, const arm *a, contact_state mode, const double *q,
-                          const double *w, double length, double last_terms)
+void chain_series_compute(chain_series *s, const arm *a, const double *q, const double *w,
+                          double length, double last_terms)
 {
     assert(s != NULL && a != NULL && q != NULL && w != NULL && length > 0 && last_terms > 0);
-    assert(a->links == s->links && series_engine_suits(a));
+    assert(a->links == s->links);
     const chain_loops *loops = chain_loops_here();
     chain_rows *r = &s->rows;
     const size_t size = (size_t)(r->blocks * SERIES_LANES) * sizeof(double);
-    s->mode = mode;
-    s->pinned = mode.contact && a->dof == 1;
+    s->pinned = s->mode.contact && !s->gives && a->dof == 1;
     s->length = length;
-    s->order = order_for(REACH * length / chain_series_reach(a, q, w));
+    s->order = s->graded ? SERIES_MOST : order_for(s->turning * length);
     s->damped = a->joint_damping > 0 || a->hub_joint_damping > 0;
 
     // what all orders share
     chain_series_take_state(s, a, q, w);
     chain_series_prepare_sweep(s, a);
     loops->join(r);
-    if (mode.contact) {
-        chain_series_reach_point(s, a, 0);
+    if (s->mode.contact) {
+        chain_series_gap_term(s, a, 0);
         chain_series_prepare_contact(s, a);
     } else {
         memset(r->unit, 0, size);
@@ -385,8 +338,12 @@ void chain_series_compute(chain_series *s, const arm *a, contact_state mode, con
     for (int n = 0; n < s->order; n++) {
         next_order(s, a, loops, n);
     }
-    if (!mode.contact && wall_stands(&a->wall)) {
-        chain_series_sum_gap(s, a);
+    if (s->mode.contact && s->gives) {
+        chain_series_gap_term(s, a, s->order + 1);
+    } else if (!s->mode.contact && wall_stands(&a->wall)) {
+        for (int n = 0; n <= s->order + 1; n++) {
+            chain_series_gap_term(s, a, n);
+        }
     }
     chain_series_sum_losses(s, a);
     if (a->motor.electric) {

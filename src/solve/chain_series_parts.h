@@ -5,6 +5,7 @@
 //     chain_series_sums.c    functions of all links: the tip's place, gap, losses
 //     chain_series_loads.c   joints that stiffen, damping by mode, air
 //     chain_series_drive.c   the current of an electric drive
+//     chain_series_wall.c    the gap, the contact force
 //     chain_loops.c          loops over all links
 #pragma once
 
@@ -39,7 +40,16 @@ void chain_series_add_drag(chain_series *s, int n);
 double chain_series_drive_torque(chain_series *s, const arm *a, int n);
 void chain_series_sum_drive(chain_series *s, const arm *a);
 
-// The gap in free flight, to order + 1; what is lost, squares of the hub's velocity and of the
-// joints', to the last terms of the squares.
-void chain_series_sum_gap(chain_series *s, const arm *a);
+// What the force's earlier coefficients do at a point wall, whose direction turns with the link:
+// on the link's base into push, and to its moment.
+double chain_series_earlier_force(const chain_series *s, int n, double push[2]);
+
+// The n-th coefficient of the contact force, from the accelerations without it; where the wall
+// gives, the gap is known to order n + 1.
+double chain_series_force_term(chain_series *s, const arm *a, int n);
+
+// The n-th coefficient of the gap, and of what chain_series_reach_point gives.
+void chain_series_gap_term(chain_series *s, const arm *a, int n);
+
+// What is lost, squares of the hub's velocity and of the joints', to the last terms of the squares.
 void chain_series_sum_losses(chain_series *s, const arm *a);

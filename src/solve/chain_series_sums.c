@@ -33,23 +33,6 @@ void chain_series_reach_point(chain_series *s, const arm *a, int n)
     s->along.term[n] = along;
 }
 
-void chain_series_sum_gap(chain_series *s, const arm *a)
-{
-    const chain_rows *r = &s->rows;
-    for (int n = 0; n <= s->order + 1; n++) {
-        chain_series_reach_point(s, a, n);
-        double gap = a->wall.sine * s->tip_x.term[n] - a->wall.cosine * s->tip_y.term[n];
-        if (a->wall.kind == WALL_POINT) {
-            gap = 0;
-            for (int i = 0; i <= n; i++) {
-                gap += last_of(s, r->cosine, i) * s->reach_y.term[n - i] -
-                       last_of(s, r->sine, i) * s->reach_x.term[n - i];
-            }
-        }
-        s->gap.term[n] = gap;
-    }
-}
-
 // The n-th coefficient of the square of a polynomial of `count` terms.
 static double square_term(const double *x, int count, int n)
 {
@@ -82,6 +65,16 @@ static double weighted_square_term(const chain_series *s, const double *terms,
     return sum_of_lanes(sum);
 }
 
+// The n-th coefficient of the product of a wall's damper and the gap's rate in x.
+static double damper_term(const chain_series *s, int n)
+{
+    double sum = 0;
+    for (int i = n < s->order ? 0 : n - s->order + 1; i <= n && i < s->order; i++) {
+        sum += s->damper.term[i] * (n - i + 1) * s->gap.term[n - i + 1];
+    }
+    return sum;
+}
+
 void chain_series_sum_losses(chain_series *s, const arm *a)
 {
     const chain_rows *r = &s->rows;
@@ -110,6 +103,9 @@ void chain_series_sum_losses(chain_series *s, const arm *a)
                                   weighted_square_term(s, r->air_y, r->air, n);
             const double turning = weighted_square_term(s, r->rate, r->air_turning, n);
             s->dissipation.term[n] += per_length * (moving + turning);
+        }
+        if (s->mode.contact && s->gives) {
+            s->wall_loss.term[n] = -damper_term(s, n);
         }
     }
 }

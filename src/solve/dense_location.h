@@ -14,6 +14,10 @@ void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *a
 // Raises m->pulse_peak to the largest force in [0, h] of a stride in contact.
 void dense_peak(const arm *a, motion *m, double h);
 
+// Raises m->largest_penetration to the deepest point in [0, h] of a stride within a wall that
+// gives.
+void dense_deepest(const arm *a, motion *m, double h);
+
 // What these do where the engine has no way of its own, by its look, bend, clear and bounded.
 void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any);
 void dense_search_peak(const arm *a, motion *m, double h);

@@ -84,8 +84,8 @@ typedef struct engine {
     // stride of length h [s], into at[count + 1].
     void (*forces_at)(const arm *a, const motion *m, double h, int count, glance *at);
 
-    // Dense engines, or NULL: the gap [m] and its rate [m/s] in free flight, never divided by
-    // anything.
+    // Dense engines, or NULL: the gap [m] and its rate [m/s] in free flight and within walls that
+    // give, never divided by anything.
     glance (*gap_at)(const arm *a, const motion *m, double h);
 
     // Dense engines, or NULL: state_at, to the last bit, for several h at once and from the
@@ -115,13 +115,11 @@ typedef struct engine {
     size_t (*memory_for)(const arm *a);
     void (*open)(const arm *a, motion *m);
 
-    int scratch_vectors; // vectors of the state's smooth length that it wants in m->stages
     size_t link_scratch; // bytes a link that it wants in m->sweeps
     size_t memory_size;  // bytes, aligned to a cache line, that it wants in m->memory
 } engine;
 
-extern const engine explicit_engine; // Runge-Kutta of order 8, of order 6 in brief steps; stepping
-extern const engine newmark_engine;  // implicit, stepping
+extern const engine newmark_engine;           // implicit, stepping
 extern const engine generalized_alpha_engine; // the same step with other coefficients
 
 extern const engine series_engine; // power series of chains; dense
@@ -131,9 +129,6 @@ extern const engine taylor_engine; // power series of the two-link arm; dense
 // Whether the arm is one that the power series are for: two links, hub joint and damping of any
 // kind, and a rigid wall that is a point, a plane or none.
 bool taylor_engine_suits(const arm *a);
-
-// Whether the arm is one that the power series of chains are for: any, on a rigid wall or none.
-bool series_engine_suits(const arm *a);
 
 // Whether events and peaks are found in the stride itself.
 static inline bool engine_is_dense(const engine *e)

@@ -174,6 +174,9 @@ static void look_ahead(const arm *a, motion *m, double until, double step)
         }
         if (m->state[SLOT_CONTACT] != 0) {
             dense_peak(a, m, h);
+            if (!motion_wall_is_rigid(m)) {
+                dense_deepest(a, m, h);
+            }
         }
     }
     m->ahead.known = true;

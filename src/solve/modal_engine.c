@@ -222,8 +222,8 @@ static double begin(const arm *a, motion *m, double remaining, double step)
 {
     (void)step;
     modal_memory *memory = m->memory;
-    const double series =
-        chain_series_reach(a, state_angles(m, m->state), state_velocities(m, m->state));
+    const double series = SERIES_REACH / chain_series_rate(a, state_angles(m, m->state),
+                                                           state_velocities(m, m->state));
     memory->fitted = false;
 
     // strides of the series in a row are counted below zero

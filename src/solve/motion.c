@@ -23,17 +23,14 @@
 // Some last bits of an acceleration, as a share of 1e-9, which counts as zero in a slow soft arm.
 #define LAST_BITS 4e-4
 
-// The event method's engine: series of the two-link arm, modes of stiff plain chains, series of the
-// others; Runge-Kutta for what those are not for. The time step has no say.
+// The event method's engine: series of the two-link arm, modes of stiff plain chains, series of all
+// others. The time step has no say.
 static const engine *event_engine(const arm *a)
 {
     if (taylor_engine_suits(a) && a->fastest_decay <= STIFF_PAIR) {
         return &taylor_engine;
     }
-    if (!series_engine_suits(a)) {
-        return &explicit_engine;
-    }
-    if (!arm_is_plain(a) || a->links < 2) {
+    if (!arm_is_plain(a) || (wall_stands(&a->wall) && wall_gives(&a->wall)) || a->links < 2) {
         return &series_engine;
     }
 
@@ -102,10 +99,8 @@ static void lay_out_engine(const arm *a, motion *m, layout *l)
 {
     const engine *e = m->engine;
     const size_t state = (size_t)m->size * sizeof(double), links = (size_t)a->links;
-    const size_t stage = (size_t)smooth_length(m) * sizeof(double);
     m->memory = add_part(l, e->memory_for != NULL ? e->memory_for(a) : e->memory_size);
     m->between = add_part(l, e->states_at != NULL ? MOTION_TOGETHER * state : state);
-    m->stages = add_part(l, (size_t)(e->scratch_vectors + 1) * stage);
     m->sweeps = add_part(l, links * e->link_scratch);
 }
 
@@ -187,7 +182,6 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
                    .cut = HUGE_VAL,
                    .trial = m->trial,
                    .between = m->between,
-                   .stages = m->stages,
                    .scratch = m->scratch,
                    .links = m->links,
                    .sweeps = m->sweeps,

@@ -11,10 +11,6 @@
 #include "src/base/status.h"
 #include "src/solve/engine.h"
 
-// Steps of a fraction of a time step keep (fastest rate) x (step) below this; the 8th-order method
-// then loses a few parts in 1e12 of the fastest mode's energy in one.
-#define EXPLICIT_RESOLUTION 0.36
-
 // Drift that is projected away in contact.
 #define PROJECTION_GAP  1e-14 // [m]
 #define PROJECTION_RATE 1e-13 // [m/s]
@@ -100,14 +96,12 @@ struct motion {
     bool wall_has_face;  // contact ties the arm to a mass on a spring
     bool electric;       // the motor's current is followed
     bool starved;        // no memory for the engine that a changed arm asks for
-    bool brief;          // explicit: the step takes the method of order 6
     double cut; // an instant at which a step ends without being made for it [s]; HUGE_VAL: none
     double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
 
     // scratch, nothing of it outlives a step
     double *trial;   // state at the end of the step tried; after it, at the step's start
     double *between; // states within the last step: MOTION_TOGETHER of a dense engine, else one
-    double *stages;  // explicit stages
     double *scratch; // vectors of length dof
     chain_link *links;
     void *sweeps; // the implicit solver's scratch, one element a link

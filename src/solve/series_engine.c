@@ -20,14 +20,19 @@
 
 // --- polynomials --------------------------------------------------------------------------------
 
-static glance glance_at(const series_function *p, double x)
+static glance terms_at(const double *term, int count, double x)
 {
     double value = 0, slope = 0;
-    for (int n = p->count - 1; n >= 0; n--) {
+    for (int n = count - 1; n >= 0; n--) {
         slope = slope * x + value;
-        value = value * x + p->term[n];
+        value = value * x + term[n];
     }
     return (glance){value, slope};
+}
+
+static glance glance_at(const series_function *p, double x)
+{
+    return terms_at(p->term, p->count, x);
 }
 
 // The largest second derivative for shares from 0 to x, from the magnitudes of the terms.
@@ -48,15 +53,6 @@ static double spread_of(const series_function *p, double x)
         sum = (sum + fabs(p->term[n])) * x;
     }
     return sum * (1 + 1e-12);
-}
-
-static double polynomial_at(const double *term, int count, double x)
-{
-    double sum = 0;
-    for (int n = count - 1; n >= 0; n--) {
-        sum = sum * x + term[n];
-    }
-    return sum;
 }
 
 static double integral_to(const double *term, int count, double x)
@@ -114,8 +110,30 @@ void series_stride_place(series_stride *s, const arm *a)
     chain_series_place(s->series, a);
 }
 
-// The functions that say when this contact state ends.
-static void prepare_watched(series_stride *s, const arm *a, const motion *m)
+// Of an arm within a wall that gives: its depth, and what the law says, positive while the face
+// follows in contact, negative while it does not. Of Hunt and Crossley's law that is the factor
+// k + c v of the power, which is analytic.
+static void prepare_within(series_stride *s, const arm *a, contact_state now)
+{
+    const chain_series *c = s->series;
+    const double sign = now.contact ? 1 : -1;
+    series_function *law = &s->watched[WATCH_FORCE];
+    set_function(&s->watched[WATCH_GAP], c->gap.term, c->order + 2, -1);
+    const bool factor = a->wall.law == WALL_HUNT_CROSSLEY;
+    if (now.contact && !factor) {
+        return; // the force itself
+    }
+    law->count = c->order + 1;
+    law->divided = false;
+    for (int n = 0; n < law->count; n++) {
+        const double rate = -(n + 1) * c->gap.term[n + 1] / c->length;
+        const double spring = !factor ? -c->gap.term[n] : n == 0 ? 1 : 0;
+        law->term[n] = sign * (a->wall.stiffness * spring + a->wall.damping * rate);
+    }
+}
+
+// The functions that say when this contact state ends. face_lacks: as chain_series_add_face has it.
+static void prepare_watched(series_stride *s, const arm *a, const motion *m, double face_lacks)
 {
     const chain_series *c = s->series;
     const int order = c->order;
@@ -125,11 +143,12 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m)
     const double stiction = a->motor.stiction, per = 1 / c->length;
 
     // the wall
-    if (now.contact) {
-        set_function(&s->force, c->force.term, order, per * per);
-        s->watched[WATCH_FORCE] = s->force;
-    } else {
-        series_function *distance = &s->watched[WATCH_GAP];
+    series_function *distance = &s->watched[WATCH_GAP];
+    set_function(&s->force, c->force.term, now.contact ? order : 1, per * per);
+    s->watched[WATCH_FORCE] = s->force;
+    if (m->wall_gives && (now.contact || now.parted)) {
+        prepare_within(s, a, now);
+    } else if (!now.contact) {
         set_function(distance, c->gap.term, order + 2, 1);
         if (distance->term[0] < 0 && distance->term[0] > -EDGE_DEPTH && distance->term[1] > 0) {
             distance->term[0] = 0;
@@ -165,12 +184,17 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m)
 
     // just after an event they may begin at zero, as the gap does after a bounce cut short
     const double acceleration = EDGE_RATE * (wall_at_edge || jumped ? motion_rounding(a, m) : 0);
-    const double reaction[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
-    const double gap[] = {EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, acceleration)};
+    const double stiffness = m->wall_gives ? a->wall.stiffness * EDGE_GAP : 0;
+    const double reaction[] = {EDGE_VALUE + stiffness, EDGE_RATE + stiffness, EDGE_MORE};
+    const double gap[] = {EDGE_GAP, EDGE_RATE + 2 * face_lacks, fmax(EDGE_MORE, acceleration)};
     const double hub_rate[] = {0, acceleration, EDGE_MORE};
-    if (wall_at_edge) {
-        leave_edge(&s->watched[now.contact ? WATCH_FORCE : WATCH_GAP], now.contact ? reaction : gap,
-                   c->length);
+    if (wall_at_edge && (now.contact || now.parted)) {
+        leave_edge(&s->watched[WATCH_FORCE], reaction, c->length);
+    }
+    s->force_apart = s->watched[WATCH_FORCE].divided || !now.contact ||
+                     (m->wall_gives && a->wall.law == WALL_HUNT_CROSSLEY);
+    if (wall_at_edge && (!now.contact || m->wall_gives)) {
+        leave_edge(distance, gap, c->length);
     }
     if (jumped && now.friction != HUB_STICK) {
         leave_edge(&s->watched[WATCH_HUB], hub_rate, c->length);
@@ -179,18 +203,43 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m)
     }
 }
 
+// How fast a wall that gives and the arm on it can move, or a face alone [1/s]; 0 of others.
+static double rate_of_wall(const arm *a, motion *m)
+{
+    const contact_state now = contact_state_of(m->state);
+    if (motion_wall_is_rigid(m) || !now.contact) {
+        return m->wall_has_face ? wall_face_rate(&a->wall, state_face(m->state)) : 0;
+    }
+    double compliance;
+    const bool locked = now.friction == HUB_STICK && m->dof > 1;
+    chain_contact_response(a, m->links, state_angles(m, m->state), locked, m->scratch, &compliance);
+    compliance /= 1 + a->wall.face_mass * compliance; // both masses on the spring
+    return wall_rate(&a->wall, compliance, fmax(-m->state[SLOT_GAP], 0),
+                     -m->state[SLOT_GAP_VELOCITY]);
+}
+
 double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining,
                            double last_terms)
 {
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
-    const double length = fmin(remaining, chain_series_reach(a, q, w));
-    contact_state mode = contact_state_of(m->state);
+    chain_series *c = s->series;
+    c->mode = contact_state_of(m->state);
+    c->gives = m->wall_gives || m->wall_has_face;
     if (a->motor.electric) {
-        mode.current = state_quadratures(m, m->state)[QUADRATURE_CURRENT];
-        chain_series_choose_drive(s->series, a, mode.current, w[0],
-                                  state_accelerations(m, m->state)[0]);
+        c->mode.current = state_quadratures(m, m->state)[QUADRATURE_CURRENT];
+        chain_series_choose_drive(c, a, c->mode.current, w[0], state_accelerations(m, m->state)[0]);
     }
-    chain_series_compute(s->series, a, mode, q, w, length, last_terms);
+
+    // as far as the arm's rates and the wall's allow
+    const double own = chain_series_rate(a, q, w);
+    const double reach = chain_series_wall_reach(c, a, own, rate_of_wall(a, m), m->state[SLOT_GAP],
+                                                 m->state[SLOT_GAP_VELOCITY]);
+    const double length = fmin(remaining, reach);
+    chain_series_compute(c, a, q, w, length, last_terms);
+    double face_lacks = 0;
+    if (m->wall_has_face && !c->mode.contact) {
+        face_lacks = chain_series_add_face(c, a, state_face(m->state));
+    }
     s->force_until = -1;
 
     // nothing is to be found in what is not finite: its end says so
@@ -204,7 +253,7 @@ double series_stride_begin(series_stride *s, const arm *a, motion *m, double rem
         set_function(&s->force, &one, 1, 1);
         return length;
     }
-    prepare_watched(s, a, m);
+    prepare_watched(s, a, m, face_lacks);
     return s->series->allowed;
 }
 
@@ -226,7 +275,7 @@ status series_stride_state(const series_stride *s, const arm *a, motion *m, doub
     }
     if (a->motor.electric) {
         const double most = a->motor.current_limit;
-        const double current = polynomial_at(c->current.term, c->order, x);
+        const double current = terms_at(c->current.term, c->order, x).value;
         after[QUADRATURE_MOTOR] =
             before[QUADRATURE_MOTOR] + integral_to(c->motor_work.term, c->square_terms, x);
         after[QUADRATURE_CURRENT] =
@@ -239,8 +288,16 @@ status series_stride_state(const series_stride *s, const arm *a, motion *m, doub
 
     // what follows from the state
     motion_evaluate(a, m, state);
-    if (c->mode.contact) {
+    if (c->mode.contact && !c->gives) {
         motion_project(a, m, state);
+    }
+    if (c->mode.contact && c->gives) {
+        after[QUADRATURE_WALL] = before[QUADRATURE_WALL] +
+                                 per * per * integral_to(c->wall_loss.term, c->square_terms, x);
+    } else if (c->mode.parted) { // what the spring held goes into the damper
+        after[QUADRATURE_WALL] = before[QUADRATURE_WALL] +
+                                 wall_stored_energy(&a->wall, -m->state[SLOT_GAP]) -
+                                 wall_stored_energy(&a->wall, -state[SLOT_GAP]);
     }
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
@@ -264,7 +321,7 @@ double series_stride_bend(const series_stride *s, watch w, double to)
 {
     const double length = s->series->length, x = to / length;
     double bend = bend_of(&s->watched[w], x);
-    if (w == WATCH_FORCE && s->watched[w].divided) {
+    if (w == WATCH_FORCE && s->force_apart) {
         bend = fmax(bend, bend_of(&s->force, x)); // the force itself may bend more
     } else if (w >= WATCH_STICTION) {
         bend = fmax(bend, bend_of(w == WATCH_CURRENT ? &s->far_current : &s->far_limit, x));
@@ -283,7 +340,7 @@ bool series_stride_clear(series_stride *s, watch w, double h)
     // of two limits the nearer one, as far as the other
     const series_function *p = &s->watched[w];
     const double spread = spread_of(p, h / s->series->length);
-    if (w == WATCH_FORCE && !p->divided) {
+    if (w == WATCH_FORCE && !s->force_apart) {
         s->force_most = p->term[0] + spread;
         s->force_until = h;
     }
@@ -303,12 +360,6 @@ glance series_stride_force(const series_stride *s, double h)
 }
 
 // --- as an engine of its own --------------------------------------------------------------------
-
-bool series_engine_suits(const arm *a)
-{
-    const bool rigid = !wall_stands(&a->wall) || !wall_gives(&a->wall);
-    return rigid;
-}
 
 static double begin(const arm *a, motion *m, double remaining, double step)
 {
@@ -351,6 +402,17 @@ static glance force_at(const arm *a, const motion *m, double h)
     return series_stride_force(m->memory, h);
 }
 
+static glance gap_at(const arm *a, const motion *m, double h)
+{
+    const series_stride *s = m->memory;
+    const chain_series *c = s->series;
+    if (!wall_stands(&a->wall)) {
+        return (glance){HUGE_VAL, 0};
+    }
+    const glance g = terms_at(c->gap.term, c->order + 2, h / c->length);
+    return (glance){g.value, g.slope / c->length};
+}
+
 static void open_memory(const arm *a, motion *m)
 {
     series_stride_place(m->memory, a);
@@ -364,5 +426,6 @@ const engine series_engine = {.name = "power series",
                               .clear = clear,
                               .bounded = bounded,
                               .force_at = force_at,
+                              .gap_at = gap_at,
                               .memory_for = series_stride_size,
                               .open = open_memory};

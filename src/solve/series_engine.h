@@ -16,6 +16,7 @@ typedef struct series_stride {
     series_function watched[WATCHES]; // those of the contact state; stiction, current: nearer limit
     series_function far_limit, far_current; // the other ones
     series_function force;                  // never divided
+    bool force_apart;                       // what is watched of the force is not the force itself
     double force_most, force_until; // the force's bound, for times up to the second [N], [s]
     chain_series *series;
 } series_stride;

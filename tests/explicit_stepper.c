@@ -1,16 +1,11 @@
-// Runge-Kutta methods at a fixed step, which the caller keeps well inside their accuracy from the
+// A Runge-Kutta formula at a fixed step, which the caller keeps well inside their accuracy from the
 // arm's highest frequency: no error estimate is carried.
 //
 // Long strides: order 8 with twelve stages (Hairer, Norsett, Wanner: Solving Ordinary Differential
 // Equations I, section II.5; the method of their DOP853). An oscillation of z = rate times stride
 // loses 8e-12 of its amplitude and 5e-11 rad of its phase in one at z = 0.45.
 //
-// Brief strides, as sampled commands and events cut them: order 6 with eight stages (Prince and
-// Dormand, Journal of Computational and Applied Mathematics 7 (1981), 67-75, their RK6(5)8M). Its
-// stability polynomial is that of the exponential up to z^7: at z = 0.2 it loses 6e-11 of the
-// amplitude and 1e-11 rad, for two thirds of the work.
-//
-// Both take the walls that give, with any number of links. Hunt-Crossley's x^n is not analytic at
+// It takes the walls that give, with any number of links. Hunt-Crossley's x^n is not analytic at
 // the touch unless n is whole: a step from there is of order n + 1 only, whatever the method. Steps
 // are therefore graded: none is longer than half the time that the wall's face needs to or from the
 // touch, x/|v|, down to a shortest step whose error is below rounding. A step over [t, 3t/2] sees a
@@ -20,24 +15,25 @@
 
 #include "src/arm/chain_kernel.h"
 #include "src/solve/motion.h"
+#include "tests/explicit_stepper.h"
 
 // Steps over several time steps, which slow arms take, may go this far in (fastest rate) x (step):
 // they are few, and what they lose in a second is less than the short ones of fast arms do.
 #define LONG_RESOLUTION 0.45
+// Steps of a fraction of a time step keep (fastest rate) x (step) below this; the method then loses
+// a few parts in 1e12 of the fastest mode's energy in one.
+#define EXPLICIT_RESOLUTION 0.36
 // Of the time from or to a touch that is not analytic, one step may take this share ...
 #define GRADING 0.5
 // ... and, next to the touch, this in (fastest rate) x (step): the error of order n + 1 is lost
 // there.
 #define SHORTEST_RESOLUTION 3e-5
-// Steps that are cut short and stay below this take the method's brief form, and with them all that
-// is located within.
-#define BRIEF_RESOLUTION 0.2
 // Rotation counts this many times: no small oscillation, it feeds errors from link to link.
 #define TURNING 3
 // At most this many time steps are taken at once.
 #define MOST_AT_ONCE 12
 
-enum { LONG_STAGES = 12, BRIEF_STAGES = 8 };
+enum { LONG_STAGES = 12 };
 
 // Row i: weights of stages 0..i-1 for the argument of stage i; the last row: of the result.
 typedef double weight_row[LONG_STAGES];
@@ -78,20 +74,6 @@ static const weight_row long_weights[LONG_STAGES + 1] = {
      2.01365400804030348374776537501e-1, 4.47106157277725905176885569043e-2},
 };
 
-static const weight_row brief_weights[BRIEF_STAGES + 1] = {
-    {0},
-    {1.0 / 10},
-    {-2.0 / 81, 20.0 / 81},
-    {615.0 / 1372, -270.0 / 343, 1053.0 / 1372},
-    {3243.0 / 5500, -54.0 / 55, 50949.0 / 71500, 4998.0 / 17875},
-    {-26492.0 / 37125, 72.0 / 55, 2808.0 / 23375, -24206.0 / 37125, 338.0 / 459},
-    {5561.0 / 2376, -35.0 / 11, -24117.0 / 31603, 899983.0 / 200772, -5225.0 / 1836, 3925.0 / 4056},
-    {465467.0 / 266112, -2945.0 / 1232, -5610201.0 / 14158144, 10513573.0 / 3212352,
-     -424325.0 / 205632, 376225.0 / 454272, 0},
-    {61.0 / 864, 0, 98415.0 / 321776, 16807.0 / 146016, 1375.0 / 7344, 1375.0 / 5408, -37.0 / 1120,
-     1.0 / 10},
-};
-
 // One step of the method with the given weights, whose number and `loaded` are constants.
 KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *weights, int stages,
                           bool loaded)
@@ -104,7 +86,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
     contact_state mode = contact_state_of(m->state);
     const double *y0 = state_angles(m, m->state);
     double *y = state_angles(m, m->trial);
-    double *rate = m->stages; // rate[i * length]: derivative of the smooth part in stage i
+    double *rate = m->memory; // rate[i * length]: derivative of the smooth part in stage i
     chain_reaction reaction;
 
     // the first stage was evaluated with the state itself
@@ -161,21 +143,12 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
     }
 }
 
-KERNEL void step_by(const weight_row *weights, int stages, const arm *a, motion *m, double h)
-{
-    if (chain_is_loaded(a)) {
-        explicit_step(a, m, h, weights, stages, true);
-    } else {
-        explicit_step(a, m, h, weights, stages, false);
-    }
-}
-
 static status step(const arm *a, motion *m, double h)
 {
-    if (m->brief) {
-        step_by(brief_weights, BRIEF_STAGES, a, m, h);
+    if (chain_is_loaded(a)) {
+        explicit_step(a, m, h, long_weights, LONG_STAGES, true);
     } else {
-        step_by(long_weights, LONG_STAGES, a, m, h);
+        explicit_step(a, m, h, long_weights, LONG_STAGES, false);
     }
     if (m->electric) { // what a step that ends at the limit goes beyond it
         double *current = &state_quadratures(m, m->trial)[QUADRATURE_CURRENT];
@@ -284,10 +257,14 @@ static double begin(const arm *a, motion *m, double remaining, double step_lengt
     longest = m->wall_has_face && !pressed ? graded_face(a, m, longest) : longest;
     longest = m->electric ? graded_current(a, m, rate, longest) : longest;
 
-    // a step that something cuts to half or less, such as the next sample of a controller
-    m->brief = remaining < 0.5 * longest && remaining * rate <= BRIEF_RESOLUTION;
     return remaining < longest * (1 + 1e-9) ? remaining : longest;
 }
 
+// The stages' derivatives of the state's smooth part.
+static size_t memory_for(const arm *a)
+{
+    return (LONG_STAGES + 1) * (size_t)(2 * a->dof + QUADRATURE_COUNT) * sizeof(double);
+}
+
 const engine explicit_engine = {
-    .name = "Runge-Kutta 8", .begin = begin, .state_at = step, .scratch_vectors = LONG_STAGES};
+    .name = "Runge-Kutta 8", .begin = begin, .state_at = step, .memory_for = memory_for};

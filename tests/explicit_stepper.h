@@ -1,0 +1,7 @@
+// The explicit formula that engines are checked against: it knows no series and no modes, takes all
+// arms and walls, and steps again for all that happens within a step.
+#pragma once
+
+#include "src/solve/engine.h"
+
+extern const engine explicit_engine;
