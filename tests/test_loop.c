@@ -133,6 +133,38 @@ static void a_state_belongs_to_its_loop(void **state)
     }
 }
 
+// Another voltage each millisecond, whose strides are made for no more than the next change or two:
+// the motion is the one that a program finds which stops in between, and the ledger closes.
+static void changes_are_followed_wherever_steps_end(void **state)
+{
+    (void)state;
+    const char *const *const settings =
+        SETTINGS("initial.angle=0.09", "initial.velocity=0.5", "run.duration=0.1");
+    run_loop *l = begun(settings, NULL), *cut = begun(settings, NULL);
+    fault f;
+    for (int i = 0; i < 100; i++) {
+        const double volts = 1 + 0.5 * (i % 7 - 3), next = 1e-3 * (i + 1);
+        assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), volts, &f), STATUS_OK);
+        assert_int_equal(loop_set_number(cut, PARAMETER_INDEX(motor.voltage), volts, &f),
+                         STATUS_OK);
+        assert_int_equal(loop_until(l, next, &f), STATUS_OK);
+        assert_int_equal(loop_until(cut, next - 1e-3 * (i % 10) / 10 - 1e-5, &f), STATUS_OK);
+        assert_int_equal(loop_until(cut, next, &f), STATUS_OK);
+        int freedoms;
+        const double *q = loop_state(l, &freedoms), *cut_q = loop_state(cut, &freedoms);
+        for (int k = 0; k < 2 * freedoms; k++) {
+            check_close(q[k], cut_q[k], 1e-11);
+        }
+    }
+
+    // it has met the wall, and lost no energy on the way
+    const summary s = loop_summary(l);
+    assert_true(s.impacts > 0);
+    assert_true(s.energy_residual_J < 1e-12);
+    loop_destroy(l);
+    loop_destroy(cut);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -140,6 +172,7 @@ int main(void)
         cmocka_unit_test(what_stopped_it_is_said_again),
         cmocka_unit_test(a_refused_input_changes_nothing),
         cmocka_unit_test(a_state_belongs_to_its_loop),
+        cmocka_unit_test(changes_are_followed_wherever_steps_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
