@@ -17,7 +17,10 @@ void __gcov_reset(void);
 // gcc writes the counts after this.
 __attribute__((destructor)) static void let_nothing_fail(void)
 {
-    setrlimit(RLIMIT_FSIZE, &(struct rlimit){RLIM_INFINITY, RLIM_INFINITY});
+    struct rlimit files;
+    getrlimit(RLIMIT_FSIZE, &files);
+    files.rlim_cur = files.rlim_max;
+    setrlimit(RLIMIT_FSIZE, &files);
     if (getenv("FAIL_CALL") != NULL) {
         void *found = dlsym(RTLD_DEFAULT, "fail_nothing_more");
         void (*tell)(void) = NULL;

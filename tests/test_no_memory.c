@@ -117,7 +117,10 @@ static status change_on_the_way(scenario *s, FILE *out)
     code = code == STATUS_OK ? t->run.summary.status : code;
 
     // in small steps, without the first input, and with all of before
-    const session_input before[2] = {t->inputs[0], t->inputs[1]};
+    session_input before[2];
+    if (code == STATUS_OK) {
+        memcpy(before, t->inputs, sizeof before);
+    }
     code = code == STATUS_OK ? session_adjust(t, PARAMETER_INDEX(arm.k2), "7", &f) : code;
     code = code == STATUS_OK ? t->run.summary.status : code;
     code = code == STATUS_OK ? session_adjust(t, PARAMETER_INDEX(arm.k2), "8", &f) : code;

@@ -148,7 +148,7 @@ for picture in p.svg p.pdf p.png; do
     echo old >$picture
     (
         trap '' XFSZ
-        ulimit -f 2 # of 1024 bytes
+        ulimit -S -f 2 # of 1024 bytes
         "$program" run corrected/first-impact --quiet --plot $picture 2>err
     )
     status=$?
