@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <unistd.h>
 
 #include "src/study/pool.h"
 
@@ -189,6 +190,7 @@ static void the_work_is_done_without_threads(void **state)
 
 int main(void)
 {
+    alarm(120); // where somebody waits for what never comes, this fails
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_thread_is_joined_once),
         cmocka_unit_test(every_piece_is_computed_and_collected_once),
