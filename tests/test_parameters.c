@@ -258,6 +258,36 @@ static void numbers_are_checked_too(void **state)
     assert_int_equal(p.arm.links, 2);
 }
 
+// A text is one line: wherever a control character stands in it, it is refused, and nothing
+// changes.
+static void texts_are_lines(void **state)
+{
+    (void)state;
+    const char *const plain = "a text of one line";
+    const int length = (int)strlen(plain), index = parameter_find("control.plugin");
+    for (int at = 1; at + 1 < length; at++) {
+        static const char characters[] = {'\x01', '\n', '\t', '\x1b', '\x1f', '\x7f'};
+        for (size_t i = 0; i < sizeof characters; i++) {
+            parameters p = fresh(ARM_CORRECTED), before = p;
+            fault f = {0};
+            char text[64];
+            snprintf(text, sizeof text, "%s", plain);
+            text[at] = characters[i];
+            assert_int_equal(parameter_set_text(&p, index, text, &f), STATUS_BAD_SCENARIO);
+            assert_memory_equal(&p, &before, sizeof p);
+            assert_non_null(strstr(f.text, "control character"));
+        }
+    }
+
+    // what is longer than the one before leaves nothing of it
+    parameters p = fresh(ARM_CORRECTED), once = p;
+    give(&once, "control.plugin", "short");
+    give(&p, "control.plugin", plain);
+    assert_string_equal(p.control.plugin, plain);
+    give(&p, "control.plugin", "short");
+    assert_memory_equal(&p, &once, sizeof p);
+}
+
 // Every number may be its least and its largest value, nothing beyond, and whole ones no other.
 static void ranges_include_their_ends(void **state)
 {
@@ -625,6 +655,7 @@ int main(void)
         cmocka_unit_test(an_endless_value_is_refused),
         cmocka_unit_test(numbers_are_checked_too),
         cmocka_unit_test(ranges_include_their_ends),
+        cmocka_unit_test(texts_are_lines),
         cmocka_unit_test(a_misspelt_path_suggests_the_nearest),
         cmocka_unit_test(defaults_follow_the_model),
         cmocka_unit_test(a_link_is_a_uniform_rod_unless_told),

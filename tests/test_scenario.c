@@ -331,6 +331,28 @@ static void faults_of_set(void **state)
                 "twice");
 }
 
+// What a script may change is what the table says, from its first parameter to its last.
+static void only_timed_parameters_are_set_by_a_script(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        char text[256];
+        snprintf(text, sizeof text, "script:\n  - at: 0.5\n    set: {%s: no}\n",
+                 parameter_table[i].path);
+        if (!parameter_table[i].timed) {
+            check_fault(text, 3, 11, "cannot change during a run");
+        } else {
+            scenario s;
+            sentences all;
+            if (parse(&s, text, &all) == STATUS_OK) {
+                scenario_finish(&s);
+            } else {
+                assert_null(strstr(all.text, "cannot change during a run"));
+            }
+        }
+    }
+}
+
 static void faults_of_expectations(void **state)
 {
     (void)state;
@@ -632,6 +654,7 @@ int main(void)
         cmocka_unit_test(a_title_has_a_limit),
         cmocka_unit_test(faults_of_actions),
         cmocka_unit_test(faults_of_set),
+        cmocka_unit_test(only_timed_parameters_are_set_by_a_script),
         cmocka_unit_test(faults_of_expectations),
         cmocka_unit_test(several_faults_are_all_reported),
         cmocka_unit_test(what_yaml_has_beyond_a_scenario_is_refused),
