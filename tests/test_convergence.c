@@ -154,6 +154,15 @@ static void a_run_that_fails_is_told_with_its_step(void **state)
     fault f;
     assert_int_equal(convergence_compute(&s, NULL, &panel, &f), STATUS_UNSTABLE);
     assert_non_null(strstr(f.text, "with a step of 0.001 s"));
+
+    // and nothing of it or of those behind it is taken for a result
+    assert_int_equal(panel.done, 0);
+    for (int k = 0; k < panel.row_count; k++) {
+        for (int i = 0; i < PANEL_STEPS; i++) {
+            assert_true(isnan(panel.rows[k].value[i]));
+        }
+        assert_true(isnan(panel.rows[k].order));
+    }
 }
 
 // The cheapest of the points that keep an error, and none beyond the first one that does not.

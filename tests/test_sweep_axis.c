@@ -33,6 +33,11 @@ static void shares_of_a_range_are_even(void **state)
     check_relative(sweep_axis_value_at(&axis, 0.25), 2.0, 1e-14);
     check_relative(sweep_axis_value_at(&axis, 0.75), 8.0, 1e-14);
     sweep_axis_finish(&axis);
+    axis = parsed("arm.k2", "3:48:log", true);
+    check_relative(sweep_axis_value_at(&axis, 0), 3.0, 1e-14);
+    check_relative(sweep_axis_value_at(&axis, 0.25), 6.0, 1e-14);
+    check_relative(sweep_axis_value_at(&axis, 0.75), 24.0, 1e-14);
+    sweep_axis_finish(&axis);
 }
 
 // Whole numbers come alike often, the first and the last of the range, too.

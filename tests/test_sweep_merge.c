@@ -152,6 +152,37 @@ static void parts_in_any_order_give_the_rows_of_one_sweep(void **state)
     unlink("some");
 }
 
+// Every parameter that is varied has its column.
+static void parts_may_vary_several_parameters(void **state)
+{
+    (void)state;
+    sweep s;
+    char *vary[] = {(char[]){"motor.voltage=0.5,2"}, (char[]){"arm.k2=4,6"},
+                    (char[]){"wall.kind=point,plane"}};
+    sweep_request request = {.vary = vary, .vary_count = 3};
+    fault f = {0};
+    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
+    char *whole = compute(&s, "whole", (sweep_share){0, 0});
+    char *parts[] = {"1", "2"};
+    for (int i = 0; i < 2; i++) {
+        free(compute(&s, parts[i], (sweep_share){i + 1, 2}));
+    }
+    sweep_merged merged;
+    if (sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    assert_int_equal(merged.runs, 8);
+    char *rows = compute(&s, "merged", (sweep_share){0, 0});
+    assert_string_equal(rows, whole);
+    free(rows);
+    free(whole);
+    sweep_finish(&s);
+    unlink("1");
+    unlink("2");
+    unlink("whole");
+    unlink("merged");
+}
+
 // Carries out SQL on a file, as somebody else's program might.
 static void tamper(const char *path, const char *sql)
 {
@@ -280,6 +311,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_may_vary_the_model),
         cmocka_unit_test(parts_in_any_order_give_the_rows_of_one_sweep),
+        cmocka_unit_test(parts_may_vary_several_parameters),
         cmocka_unit_test(foreign_parts_are_refused),
         cmocka_unit_test(what_others_changed_is_refused),
         cmocka_unit_test(what_cannot_be_read_is_said),
