@@ -303,7 +303,7 @@ static void see_peak(follower *f, double h, pulse *out)
     }
 
     double second = f->before_last - 2 * f->last + force, slope = (force - f->before_last) / 2;
-    if (f->last > f->before_last && f->last >= force && second < 0) {
+    if (f->last > f->before_last && f->last >= force) { // so that the parabola has a top
         double s = -slope / second, top = f->last + slope * s / 2;
         if (top > out->peak) {
             out->peak = top;
