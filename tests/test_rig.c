@@ -265,9 +265,37 @@ static void sensors_feel_the_spike_of_a_damped_chain(void **state)
     }
 }
 
+// The approach speed is the largest of the whole flight, wherever strides end.
+static void the_approach_speed_is_the_largest_of_the_flight(void **state)
+{
+    (void)state;
+    static const char *const arms[][8] = {
+        {"control.law=observer", "control.approach_voltage=0.6569", "wall.angle=0.0502",
+         "initial.angle=0", "arm.k2=53.36", "arm.damping_ratio=0.01", "control.force=0.855"},
+        {"control.law=bang-bang", "control.approach_voltage=0.5618", "wall.angle=0.2352",
+         "initial.angle=0", "arm.k2=2.873", "arm.damping_ratio=0.01", "control.force=3.196"}};
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+        const char *settings[16] = {"control.rate=50", "wall.kind=plane", "motor.stiction=0",
+                                    "sensor.ideal=true", "method.step=1e-4"};
+        for (int k = 0; k < 7; k++) {
+            settings[5 + k] = arms[i][k];
+        }
+        run_result r = rig_run(settings, true);
+        double fastest = 0;
+        for (size_t k = 0; k < r.trace.row_count; k++) {
+            const sample *row = &r.trace.rows[k];
+            const bool after = row->time > r.summary.first_contact_s; // never, without one
+            fastest = after ? fastest : fmax(fastest, -row->gap_velocity);
+        }
+        check_relative(r.summary.approach_speed_m_s, fastest, 1e-4);
+        run_finish(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_approach_speed_is_the_largest_of_the_flight),
         cmocka_unit_test(command_holds_between_samples),
         cmocka_unit_test(delay_shifts_the_command),
         cmocka_unit_test(a_command_a_period_late_goes_out_with_the_next_sample),

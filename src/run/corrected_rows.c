@@ -4,6 +4,7 @@
 
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
+#include "src/run/flight.h"
 #include "src/run/rig_recording.h"
 
 #define SHORTEST_MEAN  1e-9 // a step shorter than this has the mean of its ends [s]
@@ -20,7 +21,7 @@
 // A slope that promises so many times what a piece shows otherwise is that of a decay.
 #define FALLS_AT_ONCE 4
 
-enum { SEPARATION_BISECTIONS = 30, MOST_PIECES = 64 };
+enum { MOST_PIECES = 64 };
 
 // corrected_audit for a state that holds that energy.
 static status audit(corrected_run *c, state_energy has)
@@ -185,54 +186,6 @@ static status record_grid(corrected_run *c, bool at_event)
         failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
     }
     return failed;
-}
-
-// The gap at an instant [s] within the step just made, a step in free flight; false, and none, if
-// that fails.
-static bool gap_within(corrected_run *c, double time, glance *gap)
-{
-    motion *m = c->motion;
-    *gap = (glance){0, 0};
-    if (m->engine->gap_at != NULL && !state_is_held_still(m, m->trial)) {
-        *gap = m->engine->gap_at(&c->arm, m, time - m->trial[SLOT_TIME]);
-        return true;
-    }
-    const double *state = motion_between(&c->arm, m, time);
-    if (state != NULL) {
-        *gap = (glance){state[SLOT_GAP], state[SLOT_GAP_VELOCITY]};
-    }
-    return state != NULL;
-}
-
-// Whether the gap was a separation at any instant of the step just made. A whole flight may lie
-// within one step, so the end says little: look where the gap stops growing.
-static bool step_separated(corrected_run *c)
-{
-    motion *m = c->motion;
-    double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
-
-    // the ends of the step decide nearly always
-    if (m->state[SLOT_GAP] > SEPARATION_GAP) {
-        return true;
-    }
-    if (m->state[SLOT_CONTACT] != 0 || m->state[SLOT_GAP_VELOCITY] >= 0) {
-        return false;
-    }
-
-    // the gap closes at the step's end: bisect for the instant at which it was the largest
-    for (int i = 0; i < SEPARATION_BISECTIONS; i++) {
-        const double middle = 0.5 * (from + to);
-        glance gap;
-        if (!gap_within(c, middle, &gap) || gap.value > SEPARATION_GAP) {
-            return gap.value > SEPARATION_GAP;
-        }
-        if (gap.slope > 0) {
-            from = middle;
-        } else {
-            to = middle;
-        }
-    }
-    return false;
 }
 
 // The force over the step just made.
@@ -462,7 +415,7 @@ status corrected_record_step(corrected_run *c, bool at_event)
 
     // how far the arm has gone from the wall
     if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
-        r->state.separated = step_separated(c);
+        r->state.separated = flight_separated(&c->arm, m);
     }
     r->state.energy_put_in += fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial));
 
@@ -477,8 +430,7 @@ status corrected_record_step(corrected_run *c, bool at_event)
 
     // how fast the tip came towards the wall on its own
     if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
-        recording_follow_flight(r,
-                                larger(-m->trial[SLOT_GAP_VELOCITY], -m->state[SLOT_GAP_VELOCITY]));
+        recording_follow_flight(r, flight_closing_speed(&c->arm, m));
     }
 
     if (s == STATUS_OK && length > 0) {
