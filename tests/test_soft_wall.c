@@ -303,6 +303,25 @@ static void a_mass_on_hunt_crossley_has_the_closed_form(void **state)
     }
 }
 
+// Sensors take a stride in pieces as short as the wall makes the force change: of a stiff one they
+// would see a parabola over half a pulse else.
+static void the_force_changes_as_fast_as_the_wall(void **state)
+{
+    (void)state;
+    parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", "wall.damping=0");
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    motion_start(&a, m, p.initial.angle, p.initial.velocity);
+    check_close(motion_vibration(&a, m, m->state), a.highest_frequency, 0);
+    motion_report r;
+    assert_int_equal(motion_advance(&a, m, 0.05, 1e-3, &r), STATUS_OK);
+    assert_int_equal(r.event, MOTION_TOUCH);
+    motion_apply(&a, m, &r);
+    check_relative(motion_vibration(&a, m, m->state), sqrt(1e6 / mass), 1e-3);
+    motion_destroy(m);
+}
+
 // Energy that a step of length h from the touch on Hertz's wall leaves over.
 static double step_error(double h)
 {
@@ -476,6 +495,7 @@ int main(void)
         cmocka_unit_test(a_face_lies_between_the_two_walls),
         cmocka_unit_test(a_light_face_on_a_strong_damper_is_no_face),
         cmocka_unit_test(a_face_left_alone_obeys_its_equation),
+        cmocka_unit_test(the_force_changes_as_fast_as_the_wall),
         cmocka_unit_test(a_step_from_the_touch_is_of_order_n_plus_1),
         cmocka_unit_test(a_stiff_wall_bounces_like_a_rigid_one),
         cmocka_unit_test(a_stiff_wall_holds_like_a_rigid_one),

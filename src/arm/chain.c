@@ -1,5 +1,6 @@
 #include "src/arm/chain.h"
 
+#include <math.h>
 #include <stddef.h>
 
 #include "src/arm/chain_kernel.h"
@@ -210,4 +211,14 @@ double chain_strain_energy(const arm *a, const double *q)
                  arm_stiffening_torque(a, k - a->first, bend) * bend / 2;
     }
     return twice / 2;
+}
+
+double chain_stiffened(const arm *a, const double *q)
+{
+    double most = 0;
+    for (int i = 1; i < a->dof && a->stiffening > 0; i++) {
+        const double bend = (i == a->first ? 2 : 1) * (q[i] - q[i - 1]);
+        most = fmax(most, bend * bend);
+    }
+    return a->stiffening > 0 ? sqrt(1 + 4.5 * a->stiffening * most) : 1;
 }

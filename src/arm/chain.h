@@ -60,3 +60,7 @@ double chain_strain_energy(const arm *a, const double *q);
 
 // Position of node k = 0..N (0 the hub axis, N the tip) [m].
 void chain_node(const arm *a, const double *q, int k, double *x, double *y);
+
+// How many times faster the arm vibrates for the bends of its joints at angles q[dof] [rad]: they
+// stiffen by 3 s b^2, of a root by four times that, which may grow a little within a stride.
+double chain_stiffened(const arm *a, const double *q);

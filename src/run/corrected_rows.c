@@ -209,9 +209,12 @@ static force_step force_over_step(const motion *m)
 // have to do for what happens within it. Only a dense engine goes so far.
 static int pieces_of_step(const corrected_run *c, double length, double reach)
 {
-    const motion *m = c->motion;
-    const double pieces = length * c->arm.highest_frequency / reach;
-    if (!(pieces > 1) || !engine_is_dense(m->engine) || motion_held_still(m)) {
+    motion *m = c->motion;
+    if (!engine_is_dense(m->engine) || motion_held_still(m)) {
+        return 1;
+    }
+    const double pieces = length * motion_vibration(&c->arm, m, m->trial) / reach;
+    if (!(pieces > 1)) {
         return 1;
     }
     const int whole = pieces < MOST_PIECES ? (int)pieces : MOST_PIECES;

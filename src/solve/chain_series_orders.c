@@ -86,18 +86,6 @@ void chain_series_place(chain_series *s, const arm *a)
 
 // --- the stride's start -------------------------------------------------------------------------
 
-// How many times faster the arm vibrates for its joints' bends: they stiffen by 3 s b^2, of a root
-// by four times that, which may grow a little within a stride.
-static double stiffened(const arm *a, const double *q)
-{
-    double most = 0;
-    for (int i = 1; i < a->dof && a->stiffening > 0; i++) {
-        const double bend = (i == a->first ? 2 : 1) * (q[i] - q[i - 1]);
-        most = fmax(most, bend * bend);
-    }
-    return a->stiffening > 0 ? sqrt(1 + 4.5 * a->stiffening * most) : 1;
-}
-
 double chain_series_rate(const arm *a, const double *q, const double *w)
 {
     double turning = 0, last = 0;
@@ -107,7 +95,7 @@ double chain_series_rate(const arm *a, const double *q, const double *w)
         turning = bending > turning ? bending : turning;
         last = w[i];
     }
-    const double vibrating = a->highest_frequency * stiffened(a, q);
+    const double vibrating = a->highest_frequency * chain_stiffened(a, q);
     const double rate = fmax(fmax(vibrating, a->fastest_decay), TURNING * turning);
     return fmax(rate, 1e-3);
 }

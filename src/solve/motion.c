@@ -281,6 +281,27 @@ double motion_decay_length(const arm *a, double reach, double since)
     return fmax(GRADING * since, reach / fmax(a->highest_frequency, a->fastest_decay));
 }
 
+double motion_wall_rate(const arm *a, motion *m, double *state)
+{
+    const contact_state now = contact_state_of(state);
+    if (motion_wall_is_rigid(m) || !now.contact) {
+        return m->wall_has_face ? wall_face_rate(&a->wall, state_face(state)) : 0;
+    }
+    double compliance;
+    const bool locked = now.friction == HUB_STICK && m->dof > 1;
+    chain_contact_response(a, m->links, state_angles(m, state), locked, m->scratch, &compliance);
+    compliance /= 1 + a->wall.face_mass * compliance; // both masses on the spring
+    return wall_rate(&a->wall, compliance, fmax(-state[SLOT_GAP], 0), -state[SLOT_GAP_VELOCITY]);
+}
+
+double motion_vibration(const arm *a, motion *m, double *state)
+{
+    const double wall = motion_wall_rate(a, m, state);
+    const double current = a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
+    const double own = a->highest_frequency * chain_stiffened(a, state_angles(m, state));
+    return wall > 0 || current > 0 ? sqrt(own * own + wall * wall + current * current) : own;
+}
+
 double motion_wall_energy(const arm *a, const motion *m, const double *state)
 {
     return m->wall_has_face ? wall_face_energy(&a->wall, state_face(state))

@@ -329,6 +329,14 @@ static inline double motion_motor_work(const motion *m, double *state)
     return state[SLOT_MOTOR_WORK] + state_quadratures(m, state)[QUADRATURE_MOTOR];
 }
 
+// How fast a wall that gives and the arm on it in a state of this motion can move, or a face alone:
+// frequency or decay [1/s]; 0 of others.
+double motion_wall_rate(const arm *a, motion *m, double *state);
+
+// How fast the force can change in a state of this motion, but for decays of the arm's [1/s]: by
+// its fastest vibration, that wall, a motor's inductance.
+double motion_vibration(const arm *a, motion *m, double *state);
+
 // How long [s] a parabola does for what decays of the force on a damped chain, `since` [s] after
 // the last event, which set it going: what is left of it changes in a share of that time, and
 // nothing before `reach` / (fastest decay).

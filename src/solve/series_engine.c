@@ -203,21 +203,6 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m, dou
     }
 }
 
-// How fast a wall that gives and the arm on it can move, or a face alone [1/s]; 0 of others.
-static double rate_of_wall(const arm *a, motion *m)
-{
-    const contact_state now = contact_state_of(m->state);
-    if (motion_wall_is_rigid(m) || !now.contact) {
-        return m->wall_has_face ? wall_face_rate(&a->wall, state_face(m->state)) : 0;
-    }
-    double compliance;
-    const bool locked = now.friction == HUB_STICK && m->dof > 1;
-    chain_contact_response(a, m->links, state_angles(m, m->state), locked, m->scratch, &compliance);
-    compliance /= 1 + a->wall.face_mass * compliance; // both masses on the spring
-    return wall_rate(&a->wall, compliance, fmax(-m->state[SLOT_GAP], 0),
-                     -m->state[SLOT_GAP_VELOCITY]);
-}
-
 double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining,
                            double last_terms)
 {
@@ -232,8 +217,8 @@ double series_stride_begin(series_stride *s, const arm *a, motion *m, double rem
 
     // as far as the arm's rates and the wall's allow
     const double own = chain_series_rate(a, q, w);
-    const double reach = chain_series_wall_reach(c, a, own, rate_of_wall(a, m), m->state[SLOT_GAP],
-                                                 m->state[SLOT_GAP_VELOCITY]);
+    const double reach = chain_series_wall_reach(c, a, own, motion_wall_rate(a, m, m->state),
+                                                 m->state[SLOT_GAP], m->state[SLOT_GAP_VELOCITY]);
     const double length = fmin(remaining, reach);
     chain_series_compute(c, a, q, w, length, last_terms);
     double face_lacks = 0;

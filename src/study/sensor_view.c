@@ -187,7 +187,7 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
         double until = fmin(end, next_end(w, m->state[SLOT_TIME], duration));
         if (!isnan(w->touched) && engine_is_dense(m->engine)) {
             const double now = m->state[SLOT_TIME]; // its strides are no parabolas
-            const double vibrating = PARABOLA_REACH / a->highest_frequency;
+            const double vibrating = PARABOLA_REACH / motion_vibration(a, m, m->state);
             const double decaying = motion_decay_length(a, PARABOLA_REACH, now - last);
             until = fmin(until, now + fmin(vibrating, decaying));
         }
