@@ -66,6 +66,25 @@ static void a_single_rod_follows_its_closed_form(void **state)
     run_finish(&result);
 }
 
+// Without any damping its velocity is a straight line, however long the stride: what the gap makes
+// of it, the sine of a parabola, has its say in how long that is.
+static void a_rod_that_gathers_speed_meets_the_wall_where_it_is(void **state)
+{
+    (void)state;
+    static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
+    for (int i = 0; i < 2; i++) {
+        run_result r = run(SETTINGS("arm.links=1", "motor.back_emf=0", "motor.viscous_friction=0",
+                                    "motor.stiction=0", "motor.voltage=8", "wall.angle=2.5",
+                                    "wall.restitution=0.95", walls[i], "run.duration=3"));
+        const double torque = 8 * 6.02 * 0.249092 * 9.80665 / 33.6;
+        const double t = sqrt(2 * 2.5 * (0.40108 / 3 + 5.2e-3) / torque);
+        check_close(r.summary.first_contact_s, t, 1e-12);
+        check_below(r.summary.max_penetration_m, 1e-13);
+        assert_true(r.summary.impacts >= 2);
+        run_finish(&r);
+    }
+}
+
 static void a_coasting_rod_sticks_when_friction_says(void **state)
 {
     (void)state;
@@ -422,6 +441,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_single_rod_follows_its_closed_form),
+        cmocka_unit_test(a_rod_that_gathers_speed_meets_the_wall_where_it_is),
         cmocka_unit_test(a_coasting_rod_sticks_when_friction_says),
         cmocka_unit_test(a_bouncing_rod_rebounds_by_e_and_comes_to_rest),
         cmocka_unit_test(gap_and_force_stay_complementary_and_energy_is_accounted_for),

@@ -266,8 +266,10 @@ static bool force_converges(const chain_series *s, double share)
     return power(share, s->order - 2) * last <= FORCE_TERMS * fmax(first, least);
 }
 
-// How far the last terms are small, as a share of the stride; 0 if they are not finite.
-static double small_terms(const chain_series *s, double last_terms)
+// How far the last terms are small, as a share of the stride; 0 if they are not finite. In free
+// flight those of the gap's rate over the arm's length count, too: of a link that gathers speed the
+// velocity is a short polynomial, the gap the sine of one.
+static double small_terms(const chain_series *s, const arm *a, double last_terms)
 {
     const chain_rows *r = &s->rows;
     double largest = LEAST_RATE * s->length, last = 0, before = 0, sum = 0;
@@ -281,6 +283,12 @@ static double small_terms(const chain_series *s, double last_terms)
         before = high > before ? high : before;
         last = highest > last ? highest : last;
         sum += highest;
+    }
+    if (!s->mode.contact && wall_stands(&a->wall)) {
+        const double *gap = s->gap.term, reach = a->links * a->link_length;
+        before = fmax(before, order * fabs(gap[order]) / reach);
+        last = fmax(last, (order + 1) * fabs(gap[order + 1]) / reach);
+        sum += last;
     }
     if (!isfinite(sum)) {
         return 0;
@@ -337,7 +345,7 @@ void chain_series_compute(chain_series *s, const arm *a, const double *q, const 
     if (a->motor.electric) {
         chain_series_sum_drive(s, a);
     }
-    s->allowed = length * small_terms(s, last_terms);
+    s->allowed = length * small_terms(s, a, last_terms);
 }
 
 double chain_series_first_rate(const chain_series *s, int n)
