@@ -272,6 +272,29 @@ static bool go_to(const corrected_run *c, way *w, double time)
     return true;
 }
 
+// Takes a piece of the step just made, over which the force has that mean [N].
+typedef status (*piece_taker)(corrected_run *c, const way *from, const way *to, double mean);
+
+// Goes on to an instant within the step, a stretch of this length [s], and hands it over.
+static status take_piece(corrected_run *c, way *w, double time, double length, piece_taker take)
+{
+    const way from = *w;
+    return go_to(c, w, time) ? take(c, &from, w, (w->integral - from.integral) / length)
+                             : STATUS_NOT_FINITE;
+}
+
+// Goes along what an event set going and decays at once, piece by piece, up to where equal pieces
+// do for the rest of the step, which ends at `end` [s].
+static status follow_decay(corrected_run *c, way *w, double end, double reach, piece_taker take)
+{
+    status s = STATUS_OK;
+    double next;
+    while (s == STATUS_OK && next_decay_piece(c, w->time, end, reach, &next)) {
+        s = take_piece(c, w, next, next - w->time, take);
+    }
+    return s;
+}
+
 // Whether a force falls at once from where it begins: what is left of it shows in its slope there
 // alone, which then says nothing of its mean.
 static bool falls_at_once(glance first, glance last, double width)
@@ -324,6 +347,16 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, way 
     return STATUS_OK;
 }
 
+// Keeps the force over a piece of the step.
+static status keep_force(corrected_run *c, const way *from, const way *to, double mean)
+{
+    return recording_add_step(c->recording, (force_step){.start = from->time,
+                                                         .end = to->time,
+                                                         .first = from->at.force,
+                                                         .last = to->at.force,
+                                                         .mean = mean});
+}
+
 // Keeps the force over the step just made, in pieces that are parabolas to sight.
 static status record_force(corrected_run *c, const force_step *whole)
 {
@@ -333,23 +366,10 @@ static status record_force(corrected_run *c, const force_step *whole)
         return recording_add_step(r, *whole);
     }
 
-    // what an event set going and decays at once, its integral being that of the motion
     way w = way_at(c, whole->start, m->trial);
-    double next;
-    while (next_decay_piece(c, w.time, whole->end, FORCE_REACH, &next)) {
-        const way last = w;
-        if (!go_to(c, &w, next)) {
-            return STATUS_NOT_FINITE;
-        }
-        const force_step piece = {.start = last.time,
-                                  .end = w.time,
-                                  .first = last.at.force,
-                                  .last = w.at.force,
-                                  .mean = (w.integral - last.integral) / (w.time - last.time)};
-        const status s = recording_add_step(r, piece);
-        if (s != STATUS_OK) {
-            return s;
-        }
+    status s = follow_decay(c, &w, whole->end, FORCE_REACH, keep_force);
+    if (s != STATUS_OK) {
+        return s;
     }
 
     // what vibrates
@@ -365,15 +385,10 @@ static status record_force(corrected_run *c, const force_step *whole)
     return pieces > 1 ? record_equal_pieces(c, &rest, w, pieces) : recording_add_step(r, rest);
 }
 
-// Lets the sensors follow the arm on to an instant within the step, a stretch of this length [s].
-static status follow_to(corrected_run *c, way *w, double time, double length)
+// Lets the sensors follow the arm over a piece of the step.
+static status sense(corrected_run *c, const way *from, const way *to, double mean)
 {
-    const way last = *w;
-    if (!go_to(c, w, time)) {
-        return STATUS_NOT_FINITE;
-    }
-    const double mean = (w->integral - last.integral) / length;
-    sensors_follow(&c->recording->rig->sensors, length, &last.at, &w->at, mean);
+    sensors_follow(&c->recording->rig->sensors, to->time - from->time, &from->at, &to->at, mean);
     return STATUS_OK;
 }
 
@@ -382,31 +397,23 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole)
 {
     motion *m = c->motion;
     way w = way_at(c, whole->start, m->trial);
-    status s = STATUS_OK;
-    double next;
-
-    // what an event set going and decays at once
-    while (s == STATUS_OK && next_decay_piece(c, w.time, whole->end, SENSOR_REACH, &next)) {
-        s = follow_to(c, &w, next, next - w.time);
-    }
+    status s = follow_decay(c, &w, whole->end, SENSOR_REACH, sense);
 
     // the rest from piece to piece
     const double start = w.time, length = whole->end - start;
     const int pieces = pieces_of_step(c, length, SENSOR_REACH);
     for (int i = 1; i < pieces && s == STATUS_OK; i++) {
-        s = follow_to(c, &w, start + length * i / pieces, length / pieces);
+        s = take_piece(c, &w, start + length * i / pieces, length / pieces, sense);
     }
     if (s != STATUS_OK) {
         return s;
     }
 
     // the last piece ends where the step does
-    const sensed_motion last = corrected_sensed_motion(c, m->state);
-    const double pressed = state_quadratures(m, m->state)[QUADRATURE_FORCE];
-    const bool part = w.time > whole->start;
-    const double mean = part ? (pressed - w.integral) / (length / pieces) : whole->mean;
-    sensors_follow(&c->recording->rig->sensors, length / pieces, &w.at, &last, mean);
-    return STATUS_OK;
+    const way last = way_at(c, whole->end, m->state);
+    const double mean =
+        w.time > whole->start ? (last.integral - w.integral) / (length / pieces) : whole->mean;
+    return sense(c, &w, &last, mean);
 }
 
 status corrected_record_step(corrected_run *c, bool at_event)
