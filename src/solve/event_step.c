@@ -164,12 +164,12 @@ static void look_ahead(const arm *a, motion *m, double until, double step)
     watch first = WATCH_GAP;
     bool any = false;
 
-    // to the first event, the cut or the stride's end
+    // to the first event, the cut or the stride's end; an event at the instant of the cut is before
+    // it
     if (begun) {
         dense_first_event(a, m, &h, &first, &any);
-        const double left = m->cut - m->state[SLOT_TIME];
-        if (h > left) {
-            h = left;
+        if (m->state[SLOT_TIME] + h > m->cut) {
+            h = m->cut - m->state[SLOT_TIME];
             any = false;
         }
         if (m->state[SLOT_CONTACT] != 0) {
