@@ -300,6 +300,37 @@ static void test_ranges_of_long_runs_are_exact(void **state)
     explorer_finish(&ex);
 }
 
+// Columns of the time axis that show contact.
+static int columns_in_contact(const screen *s)
+{
+    int columns = 0;
+    for (int y = 0; y < s->height; y++) {
+        const cell *row = s->cells + (long)y * s->width;
+        bool of_axis = row[0].glyph == 0x2592; // its label's
+        for (int x = 1; of_axis && x < s->width; x++) {
+            columns += row[x].glyph == 0x2592;
+        }
+    }
+    return columns;
+}
+
+// Touches of a few milliseconds are seen where a column of the axis is twenty.
+static void test_brief_touches_are_on_the_axis(void **state)
+{
+    (void)state;
+    explorer ex;
+    screen s = {0};
+    open_explorer(&ex, "corrected/first-impact");
+    carry_out(&ex, "set wall.contact hunt-crossley");
+    carry_out(&ex, "seek 1");
+    assert_true(screen_resize(&s, 80, 24));
+    explorer_draw(&ex, &s);
+    assert_true(ex.state.session.run.summary.separations >= 5);
+    assert_int_equal(columns_in_contact(&s), (int)ex.state.session.run.summary.separations);
+    screen_finish(&s);
+    explorer_finish(&ex);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -308,6 +339,7 @@ int main(void)
         cmocka_unit_test(test_a_fixed_axis_stays),
         cmocka_unit_test(test_keys_change_the_axis_of_the_pane_in_focus),
         cmocka_unit_test(test_wrong_axes_are_told),
+        cmocka_unit_test(test_brief_touches_are_on_the_axis),
         cmocka_unit_test(test_ticks_are_round),
         cmocka_unit_test(test_the_visible_part_follows_the_cursor_until_it_is_panned),
         cmocka_unit_test(test_a_controlled_run_shows_readings_and_commands),

@@ -115,6 +115,14 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
         bool touches = time <= e->seen && t->rows[trace_row_at(t, time)].contact != 0;
         screen_put(s, line.x + i, a.y, touches ? 0x2592 : 0x2500, touches ? INK_FORCE : INK_FRAME);
     }
+
+    // a touch that is shorter than a column
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
+        const double at = (t->events[i].time - from) / (to - from) * line.width;
+        if (t->events[i].kind == EVENT_CONTACT && at >= 0 && at < line.width) {
+            screen_put(s, line.x + (int)at, a.y, 0x2592, INK_FORCE);
+        }
+    }
     draw_instants(s, line, from, to);
 
     // impacts and inputs that have been seen
