@@ -129,7 +129,7 @@ const parameter_info parameter_table[] = {
     {PATH(method.name), CHOICE(2, "event|newmark|generalized-alpha"),
      DEFAULTS(METHOD_EVENT, METHOD_NEWMARK), MEANING("time integration")},
     {PATH(method.step), REAL("s", 1e-7, 1), DEFAULT(1e-3),
-     MEANING("time step h, and the spacing of the recorded rows")},
+     MEANING("time step h; under event only the spacing of the recorded rows")},
     {PATH(method.beta), REAL("", 0.01, 2), DEFAULT(0.4), MEANING("Newmark's beta")},
     {PATH(method.gamma), REAL("", 0, 2), DEFAULT(0.5), MEANING("Newmark's gamma")},
     {PATH(method.spectral_radius), REAL("", 0, 1), DEFAULT(0.8),

@@ -104,10 +104,11 @@ void print_commands(FILE *stream)
         }
     }
 
-    fprintf(stream,
-            "\nimpactlab COMMAND --help tells more about a command.\n"
-            "Exit status: 0 done; 1 the run failed or a file could not be written; 2 bad arguments "
-            "or a bad\nscenario.\n");
+    fprintf(
+        stream,
+        "\nimpactlab COMMAND --help tells more about a command.\n"
+        "Exit status: 0 done; 1 the run failed or is inaccurate, or a file could not be written;\n"
+        "2 bad arguments or a bad scenario; 130 ended by ^C.\n");
 }
 
 // --- the command ----------------------------------------------------------------------------

@@ -117,8 +117,10 @@ static void put_terms(FILE *stream, const char *title, const term *terms, int co
 
 static const term exit_status[] = {
     {"0", "Done."},
-    {"1", "The run failed, an expectation was not met, or a file could not be written."},
+    {"1", "The run failed or is inaccurate, an expectation was not met, or a file could not be "
+          "written."},
     {"2", "Bad arguments or a bad scenario."},
+    {"130", "Ended by ^C; what was computed is kept."},
 };
 
 static const term environment[] = {
