@@ -428,7 +428,7 @@ static void elastic_chattering_is_bounded_and_said(void **state)
     run_finish(&r);
 }
 
-static void structural_damping_does_not_upset_the_explicit_method(void **state)
+static void structural_damping_does_not_upset_the_event_method(void **state)
 {
     (void)state;
     run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.01", "run.duration=0.4"));
@@ -456,7 +456,7 @@ int main(void)
         cmocka_unit_test(a_motion_too_small_to_follow_is_inaccurate),
         cmocka_unit_test(fast_rotation_is_resolved_whatever_the_step),
         cmocka_unit_test(elastic_chattering_is_bounded_and_said),
-        cmocka_unit_test(structural_damping_does_not_upset_the_explicit_method),
+        cmocka_unit_test(structural_damping_does_not_upset_the_event_method),
         cmocka_unit_test(a_step_that_cannot_be_taken_stops_with_time_and_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

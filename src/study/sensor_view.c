@@ -13,7 +13,7 @@
 
 #define BRIEF_SHARE    1e-3 // of a time constant, below which a force is its mean and its tilt
 #define MOST_WORK      2e7  // strides in the window times links; more takes minutes
-#define RESOLVING      20.0 // fastest rate times step, at most: the event method then steps explicitly
+#define RESOLVING      20.0 // fastest rate times step, at most
 
 const double sensor_constants[SENSOR_CONSTANTS] = {0.5e-3, 1e-3, 2e-3};
 
@@ -275,7 +275,7 @@ status sensor_view_compute(const scenario *s, int links, run_monitor *monitor, s
         return code;
     }
 
-    // resolved by explicit steps, which keep every mode
+    // by the event method, in steps that resolve every mode
     p.method.name = METHOD_EVENT;
     p.method.step = fmin(p.method.step, RESOLVING / a.fastest_rate);
     motion *m = motion_create(&a, &p.method);
