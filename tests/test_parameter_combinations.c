@@ -1,0 +1,276 @@
+// Parameters together: what contradicts what, and what follows from what was given.
+#include "tests/given_parameters.h"
+
+// The pair of settings cannot be resolved and the sentence says `expected`.
+static void check_conflict(const char *first, const char *first_text, const char *second,
+                           const char *second_text, const char *expected)
+{
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    give(&p, first, first_text);
+    give(&p, second, second_text);
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    if (strstr(f.text, expected) == NULL) {
+        fail_msg("'%s' does not say '%s'", f.text, expected);
+    }
+    // to blame is the one that the sentence begins with, of those that were given
+    assert_true(strcmp(f.path, first) == 0 || strcmp(f.path, second) == 0);
+    assert_non_null(strstr(f.text, f.path));
+}
+
+static void impossible_combinations_are_refused(void **state)
+{
+    (void)state;
+    check_conflict("arm.link_inertia", "1e-5", "arm.links", "3", "two links only");
+    check_conflict("arm.model", "printed", "arm.links", "3", "two links");
+    check_conflict("arm.model", "printed", "arm.hub_joint", "rigid", "hub spring");
+    check_conflict("arm.model", "printed", "arm.hub_joint", "beam", "hub spring");
+    check_conflict("arm.EI", "2.46", "arm.k2", "4.92", "both given");
+    check_conflict("arm.hub_joint", "beam", "arm.k1", "90", "k2 N = 9.84");
+    check_conflict("arm.model", "printed", "method.name", "event", "newmark");
+    check_conflict("arm.model", "printed", "wall.kind", "plane", "point or none");
+    check_conflict("arm.model", "printed", "arm.tip_mass", "0.02", "carries nothing");
+    check_conflict("wall.contact", "hunt-crossley", "wall.restitution", "0.5", "rigid");
+    check_conflict("wall.contact", "hunt-crossley", "wall.mass", "0.5", "kelvin-voigt");
+    check_conflict("wall.contact", "kelvin-voigt", "wall.mass", "1e-12", "at least");
+    check_conflict("arm.hub_joint", "beam", "arm.hub_inertia", "0", "nothing to move");
+    check_conflict("wall.contact", "kelvin-voigt", "method.name", "newmark", "event only");
+    check_conflict("control.delay", "0.02", "control.rate", "100",
+                   "longer than the period of 0.01 s");
+    check_conflict("control.delay_periods", "0.8", "control.delay", "0.002", "period of 0.005 s");
+}
+
+// Two settings that look like a conflict and are none.
+static void check_goes_together(const char *const *settings)
+{
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    for (int i = 0; settings[i] != NULL; i += 2) {
+        give(&p, settings[i], settings[i + 1]);
+    }
+    if (parameters_resolve(&p, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+static void what_only_looks_like_a_conflict_is_none(void **state)
+{
+    (void)state;
+    // a limit that the amplifier holds by itself, a face that bounces
+    check_goes_together((const char *const[]){"method.name", "generalized-alpha", "motor.drive",
+                                              "current", "motor.current_limit", "5", NULL});
+    check_goes_together((const char *const[]){"wall.contact", "kelvin-voigt", "wall.mass", "0.5",
+                                              "wall.restitution", "0.5", NULL});
+
+    // and what is given as nothing
+    check_goes_together((const char *const[]){"method.name", "generalized-alpha",
+                                              "arm.joint_stiffness", "", "arm.stiffening", "0",
+                                              NULL});
+}
+
+// Of several that contradict one another the first that was given is to blame; defaults are not.
+static void defaults_are_never_to_blame(void **state)
+{
+    (void)state;
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    give(&p, "wall.angle", "-2 rad");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.path, "wall.angle");
+    give(&p, "initial.angle", "-1 rad");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.path, "initial.angle");
+}
+
+// The bound of what the ledger may lack follows the method, unless it was given.
+static void the_ledgers_bound_follows_the_method(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"event", "newmark", "generalized-alpha"};
+    double bound[3];
+    for (int i = 0; i < 3; i++) {
+        parameters p = fresh(ARM_CORRECTED), own = p, back;
+        fault f = {0};
+        give(&p, "method.name", methods[i]);
+        give(&own, "method.name", methods[i]);
+        give(&own, "method.residual_bound", "3e-5");
+        back = p;
+        assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+        assert_int_equal(parameters_resolve(&own, &f), STATUS_OK);
+        bound[i] = p.method.residual_bound;
+        check_close(own.method.residual_bound, 3e-5, 0);
+
+        // resolved for one method and then for another it is the other's
+        parameters_resolve(&back, &f);
+        give(&back, "method.name", "event");
+        assert_int_equal(parameters_resolve(&back, &f), STATUS_OK);
+        check_close(back.method.residual_bound, bound[0], 0);
+    }
+    check_close(bound[0],
+                parameter_table[parameter_find("method.residual_bound")].default_corrected, 0);
+    check_close(bound[1], 1e-2, 0);
+    check_close(bound[2], 1e-2, 0);
+}
+
+static void resolving_twice_changes_nothing(void **state)
+{
+    (void)state;
+    parameters p = fresh(ARM_CORRECTED);
+    fault f;
+    give(&p, "arm.links", "7");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    parameters once = p;
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    assert_memory_equal(&p, &once, sizeof p);
+}
+
+// What a combination of settings is resolved to: accepted, or refused for one of them.
+static void conditions_hold_up_to_their_limits(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *settings[4]; // path=value
+        const char *blamed;      // NULL: accepted
+    } cases[] = {
+        // faces that are none
+        {{"wall.contact=kelvin-voigt", "wall.mass=0"}, NULL},
+        {{"wall.contact=kelvin-voigt", "wall.mass=1e-9"}, NULL},
+        {{"wall.contact=kelvin-voigt", "wall.mass=0.999e-9"}, "wall.mass"},
+        {{"wall.contact=hunt-crossley", "wall.mass=0"}, NULL},
+        {{"wall.contact=rigid", "wall.mass=0.1"}, "wall.mass"},
+        {{"wall.contact=hunt-crossley", "wall.mass=0.1"}, "wall.mass"},
+
+        // restitution is of what has a mass to be thrown back
+        {{"wall.contact=rigid", "wall.restitution=0.5"}, NULL},
+        {{"wall.contact=kelvin-voigt", "wall.restitution=0.5"}, "wall.restitution"},
+        {{"wall.contact=kelvin-voigt", "wall.restitution=0.5", "wall.mass=0.1"}, NULL},
+        {{"wall.contact=rigid", "method.name=newmark"}, NULL},
+        {{"wall.contact=hunt-crossley", "method.name=newmark"}, "wall.contact"},
+
+        // delays and jitter as long as the period allows, and beyond
+        {{"control.rate=100", "control.delay=0.01"}, NULL},
+        {{"control.rate=100", "control.delay=0.0101"}, "control.delay"},
+        {{"control.rate=64", "control.delay=0.0078125", "control.delay_periods=0.5"}, NULL},
+        {{"control.rate=64", "control.delay=0.0078125", "control.delay_periods=0.51"},
+         "control.delay_periods"},
+        {{"control.delay_periods=1"}, NULL},
+        {{"control.rate=64", "control.jitter=0.0078125"}, NULL},
+        {{"control.rate=64", "control.jitter=0.00782"}, "control.jitter"},
+
+        // a sensor that is asked for is there, unless it was left out
+        {{"control.impact_angle=film"}, NULL},
+        {{"control.impact_angle=film", "sensor.film=true"}, NULL},
+        {{"control.impact_angle=film", "sensor.film=false"}, "control.impact_angle"},
+        {{"sensor.film=false"}, NULL},
+        {{"control.impact_angle=accelerometer"}, NULL},
+        {{"control.impact_angle=accelerometer", "sensor.accelerometer=false"},
+         "control.impact_angle"},
+        {{"control.impact_angle=accelerometer", "sensor.film=false"}, NULL},
+        {{"sensor.force=piezo"}, NULL},
+        {{"sensor.force=piezo", "sensor.piezo=false"}, "sensor.force"},
+        {{"sensor.piezo=false"}, NULL},
+
+        // a band-pass has its edges in order
+        {{"sensor.piezo_leak_time=1e-3", "sensor.piezo_rise_time=1e-3"}, NULL},
+        {{"sensor.piezo_leak_time=0.99e-3", "sensor.piezo_rise_time=1e-3"},
+         "sensor.piezo_leak_time"},
+        {{"sensor.piezo_leak_time=0", "sensor.piezo_rise_time=1e-3"}, NULL},
+
+        // motors
+        {{"motor.inductance=1e-3"}, NULL},
+        {{"motor.inductance=1e-3", "method.name=newmark"}, "motor.inductance"},
+        {{"motor.inductance=1e-3", "motor.drive=current"}, "motor.inductance"},
+        {{"motor.current_limit=2", "method.name=newmark"}, "motor.current_limit"},
+        {{"motor.current_limit=2", "motor.drive=current", "method.name=newmark"}, NULL},
+        {{"motor.current_limit=2"}, NULL},
+        {{"motor.transconductance=1", "motor.drive=current"}, NULL},
+        {{"motor.transconductance=1"}, "motor.transconductance"},
+
+        // laws that are found elsewhere
+        {{"control.law=plugin"}, "control.law"},
+        {{"control.law=plugin", "control.plugin=x.so"}, NULL},
+        {{"control.law=process"}, "control.law"},
+        {{"control.law=process", "control.command=x"}, NULL},
+        {{"control.plugin=x.so", "control.command=x"}, NULL},
+
+        // the printed arm
+        {{"arm.model=printed"}, NULL},
+        {{"arm.model=printed", "wall.kind=none"}, NULL},
+        {{"arm.model=printed", "arm.links=1"}, "arm.links"},
+        {{"arm.model=printed", "method.name=generalized-alpha"}, "method.name"},
+        {{"arm.model=printed", "arm.hub_joint=spring"}, NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fresh(ARM_CORRECTED);
+        fault f = {0};
+        for (int k = 0; k < 4 && cases[i].settings[k] != NULL; k++) {
+            char path[64];
+            const char *equals = strchr(cases[i].settings[k], '=');
+            snprintf(path, sizeof path, "%.*s", (int)(equals - cases[i].settings[k]),
+                     cases[i].settings[k]);
+            give(&p, path, equals + 1);
+        }
+        const status code = parameters_resolve(&p, &f);
+        if ((code == STATUS_OK) != (cases[i].blamed == NULL) ||
+            (cases[i].blamed != NULL && strcmp(f.path, cases[i].blamed) != 0)) {
+            fail_msg("case %zu, %s ...: %s %s", i, cases[i].settings[0], f.path, f.text);
+        }
+    }
+}
+
+// What nobody gave follows from the rest.
+static void walls_motors_and_sensors_follow_what_was_given(void **state)
+{
+    (void)state;
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    give(&p, "motor.amplifier_gain", "3");
+    give(&p, "motor.resistance", "4");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_close(p.motor.transconductance, 0.75, 0);
+    assert_false(p.sensor.film || p.sensor.accelerometer || p.sensor.piezo);
+
+    // damping of a Hunt-Crossley wall is 3/2 of its loss times its stiffness
+    give(&p, "wall.contact", "hunt-crossley");
+    give(&p, "wall.stiffness", "2e5");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_relative(p.wall.damping, 0.3 * 2e5, 1e-15);
+    p = fresh(ARM_CORRECTED);
+    give(&p, "wall.contact", "hunt-crossley");
+    give(&p, "wall.damping", "7");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_close(p.wall.stiffness, 1e6, 0);
+    check_close(p.wall.damping, 7, 0);
+    p = fresh(ARM_CORRECTED);
+    give(&p, "wall.contact", "kelvin-voigt");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    check_close(p.wall.stiffness, 75e3, 0);
+    check_close(p.wall.damping, 20, 0);
+
+    // what a law or a signal is taken from is there
+    static const char *const asked[][2] = {{"control.impact_angle", "film"},
+                                           {"control.impact_angle", "accelerometer"},
+                                           {"sensor.force", "piezo"}};
+    for (int i = 0; i < 3; i++) {
+        p = fresh(ARM_CORRECTED);
+        give(&p, asked[i][0], asked[i][1]);
+        assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+        assert_int_equal(p.sensor.film, i == 0);
+        assert_int_equal(p.sensor.accelerometer, i == 1);
+        assert_int_equal(p.sensor.piezo, i == 2);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(impossible_combinations_are_refused),
+        cmocka_unit_test(what_only_looks_like_a_conflict_is_none),
+        cmocka_unit_test(conditions_hold_up_to_their_limits),
+        cmocka_unit_test(walls_motors_and_sensors_follow_what_was_given),
+        cmocka_unit_test(defaults_are_never_to_blame),
+        cmocka_unit_test(the_ledgers_bound_follows_the_method),
+        cmocka_unit_test(resolving_twice_changes_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
