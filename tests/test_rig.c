@@ -39,6 +39,26 @@ static void delay_shifts_the_command(void **state)
     run_finish(&r);
 }
 
+// A command that is still on its way when the run ends has moved nothing: the largest is the
+// largest of the rows.
+static void a_command_still_on_its_way_does_not_count(void **state)
+{
+    (void)state;
+    static const char *const ends[] = {"run.duration=0.32", "run.duration=0.3102",
+                                       "run.duration=0.305"};
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+        run_result r = rig_run(SETTINGS("control.law=force-pd", "control.force_gain=5",
+                                        "control.delay=0.003068", "control.seed=423", ends[i]),
+                               true);
+        double largest = 0;
+        for (size_t k = 0; k < r.trace.row_count; k++) {
+            largest = fmax(largest, fabs(r.trace.rows[k].voltage));
+        }
+        check_close(r.summary.largest_command_V, largest, 0);
+        run_finish(&r);
+    }
+}
+
 // A program that takes a whole period to compute: its command goes out with the next sample, also
 // where jitter brings that one early.
 static void a_command_a_period_late_goes_out_with_the_next_sample(void **state)
@@ -298,6 +318,7 @@ int main(void)
         cmocka_unit_test(the_approach_speed_is_the_largest_of_the_flight),
         cmocka_unit_test(command_holds_between_samples),
         cmocka_unit_test(delay_shifts_the_command),
+        cmocka_unit_test(a_command_still_on_its_way_does_not_count),
         cmocka_unit_test(a_command_a_period_late_goes_out_with_the_next_sample),
         cmocka_unit_test(a_delay_is_at_most_a_period),
         cmocka_unit_test(jitter_stays_within_its_width),

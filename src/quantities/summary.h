@@ -36,7 +36,7 @@ typedef struct summary {
     double force_over_command_N;    // peak_force_N - force_command_N
     double smoothed_over_command_N; // largest mean over 5 ms from 20 ms after contact on, likewise
     double steady_error_N;          // steady_force_N - force_command_N
-    double largest_command_V;       // in magnitude, as the D/A put it out
+    double largest_command_V;       // in magnitude, of those that took effect
     double electrical_energy_J;     // that the amplifier fed into the motor
     double approach_speed_m_s;      // largest of the tip towards the wall before first contact
     double return_speed_m_s;        // the same without contact after it, 0 if it is never lost

@@ -255,6 +255,7 @@ static void apply(rig *r, bool *changed)
 {
     *changed = *changed || r->pending != r->voltage;
     r->voltage = r->pending;
+    r->largest_command = larger(fabs(r->voltage), r->largest_command);
     r->effect_time = HUGE_VAL;
 }
 
@@ -313,7 +314,6 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
 
     // what the D/A makes of it goes out after the delay
     r->pending = converter_value(&r->dac, out->command);
-    r->largest_command = larger(fabs(r->pending), r->largest_command);
     r->effect_time = time + r->delay;
 
     r->samples++;

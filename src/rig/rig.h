@@ -54,7 +54,7 @@ typedef struct rig {
     double predicted_force;       // of the last sample, NaN without a limit or in contact [N]
     double read_time;             // when it was taken, -1 before the first [s]
     controller_output output;     // of the last sample
-    double largest_command;       // in magnitude, as put out [V]
+    double largest_command;       // in magnitude, of those that took effect [V]
     int lock;                     // mode that the controller is to be in, -1 if it chooses
 } rig;
 
