@@ -59,7 +59,6 @@ static void a_curved_force_is_followed_exactly(void **state)
     check_close(s.peak_time, top_time, 2e-6);
 }
 
-// Whether a stretch is given whole or in two pieces makes no difference.
 // A force that decays in a nanosecond from a million newtons, in strides that grow with the time
 // since it began: against the closed form of the lag, which hardly tells it from its impulse.
 static void a_spike_in_brief_strides_is_felt_as_its_impulse(void **state)
@@ -78,6 +77,7 @@ static void a_spike_in_brief_strides_is_felt_as_its_impulse(void **state)
     check_relative(s.peak, fading, 1e-4);
 }
 
+// Whether a stretch is given whole or in two pieces makes no difference.
 static void pieces_make_the_whole(void **state)
 {
     (void)state;
@@ -323,6 +323,43 @@ static void a_view_is_what_a_run_comes_to(void **state)
     }
 }
 
+// An arm that starts against the wall has touched it: its window opens with the run, also where it
+// soon leaves.
+static void an_arm_against_the_wall_is_felt_from_the_start(void **state)
+{
+    (void)state;
+    static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
+    for (int i = 0; i < 2; i++) {
+        scenario s = fast_touch();
+        s.parameters = fixture_parameters(
+            SETTINGS("wall.kind=plane", "wall.angle=0.1", "initial.angle=0.1", "motor.voltage=5",
+                     "arm.links=3", "method.step=1e-5", "run.duration=0.02", walls[i]));
+        const run_options options = {.keep_trace = true};
+        run_result r;
+        sensor_view view;
+        fault f;
+        assert_int_equal(run_scenario_with(&s, &options, &r), STATUS_OK);
+        check_close(r.summary.first_contact_s, 0, 0);
+        assert_int_equal(sensor_view_compute(&s, 3, NULL, &view, &f), STATUS_OK);
+        check_close(view.speed, 0, 0);
+        check_close(view.impulse, 0, 0);
+        check_relative(view.peak, r.summary.peak_force_N, 1e-6);
+
+        // momentum and a lag of 1 ms by the run's rows
+        double momentum = 0, value = 0, largest = 0;
+        for (size_t k = 0; k + 1 < r.trace.row_count; k++) {
+            const sample *a = &r.trace.rows[k], *b = a + 1;
+            const double h = b->time - a->time, mean = (a->force + b->force) / 2;
+            momentum += b->time <= MOMENTUM_WINDOW + 1e-9 ? h * mean : 0;
+            value = mean + (value - mean) * exp(-h / 1e-3);
+            largest = fmax(largest, value);
+        }
+        check_relative(view.momentum, momentum, 1e-3);
+        check_relative(view.sensed[1], largest, 1e-3);
+        run_finish(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -339,6 +376,7 @@ int main(void)
         cmocka_unit_test(a_force_without_time_is_not_felt),
         cmocka_unit_test(the_study_is_its_views),
         cmocka_unit_test(a_view_is_what_a_run_comes_to),
+        cmocka_unit_test(an_arm_against_the_wall_is_felt_from_the_start),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -46,9 +46,7 @@ static void open_first_pulse(corrected_run *c, double impulse)
 status corrected_begin_in_contact(corrected_run *c)
 {
     const motion *m = c->motion;
-    const double *state = m->state;
-    const bool leaves = m->wall_gives && state[SLOT_GAP_ACCELERATION] > 0;
-    if (state[SLOT_CONTACT] == 0 || leaves) {
+    if (!motion_starts_in_contact(m)) {
         return STATUS_OK;
     }
     const motion_report none = {.event = MOTION_TOUCH, .holds = true};

@@ -357,6 +357,13 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
     check_invariants(a, m);
 }
 
+bool motion_starts_in_contact(const motion *m)
+{
+    assert(m != NULL);
+    const bool leaves = m->wall_gives && m->state[SLOT_GAP_ACCELERATION] > 0;
+    return m->state[SLOT_CONTACT] != 0 && !leaves;
+}
+
 void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL && isfinite(impulse));

@@ -39,6 +39,10 @@ typedef struct motion_report {
 // Puts all bodies at `angle` [rad] with `velocity` [rad/s] at time 0 and finds the contact state.
 void motion_start(const arm *a, motion *m, double angle, double velocity);
 
+// Whether a motion that has just been started lies against the wall: held by a rigid one, or on one
+// that gives without leaving it at once.
+bool motion_starts_in_contact(const motion *m);
+
 // Makes one step towards `until`, or to the first event if that comes first. The implicit methods
 // step by `step`, the event method by as many of them as its accuracy allows (a fraction of one, if
 // need be); an arm that contact and friction hold still goes to `until` at once. At an event the

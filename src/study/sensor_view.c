@@ -135,20 +135,25 @@ static void watch_stride(watching *w, motion *m)
     }
 }
 
-// An impact's impulse; the first one starts the sensors.
-static void watch_impact(watching *w, const motion *m, const motion_report *report)
+// The first contact, at `speed` [m/s] and with `impulse` [N s], starts the sensors.
+static void open_window(watching *w, motion *m, double speed, double impulse)
+{
+    w->touched = m->state[SLOT_TIME];
+    w->view->impulse = impulse;
+    w->view->speed = speed;
+    for (int i = 0; i < SENSOR_CONSTANTS; i++) {
+        sensor_lag_start(&w->lags[i], sensor_constants[i], w->touched);
+    }
+    motion_watch(m);
+}
+
+// An impact's impulse.
+static void watch_impact(watching *w, motion *m, const motion_report *report)
 {
     const double impulse = report->impulse;
     double now = m->state[SLOT_TIME];
-
     if (isnan(w->touched)) {
-        w->touched = now;
-        w->view->impulse = impulse;
-        w->view->speed = report->speed;
-
-        for (int i = 0; i < SENSOR_CONSTANTS; i++) {
-            sensor_lag_start(&w->lags[i], sensor_constants[i], now);
-        }
+        open_window(w, m, report->speed, impulse);
     }
     for (int i = 0; i < SENSOR_CONSTANTS; i++) {
         sensor_lag_impulse(&w->lags[i], impulse);
@@ -172,8 +177,14 @@ static double next_end(const watching *w, double now, double duration)
 static status watch_motion(const arm *a, motion *m, double step, double duration, watching *w,
                            fault *f)
 {
-    double end = duration, last = 0; // instant of the last event
+    double last = 0; // instant of the last event
     pace strides = pace_begin();
+
+    // an arm that starts against the wall has touched it
+    if (motion_starts_in_contact(m)) {
+        open_window(w, m, 0, 0);
+    }
+    double end = isnan(w->touched) ? duration : SENSOR_WINDOW;
 
     // steps that resolve the modes are asked for, shorter ones are not
     const double resolved = RESOLVING / fmax(a->highest_frequency, 1);
@@ -210,12 +221,8 @@ static status watch_motion(const arm *a, motion *m, double step, double duration
         motion_apply(a, m, &report);
         last = m->state[SLOT_TIME];
         if (report.event == MOTION_IMPACT || report.event == MOTION_TOUCH) {
-            bool first = isnan(w->touched);
             watch_impact(w, m, &report);
-            if (first) {
-                motion_watch(m);
-                end = w->touched + SENSOR_WINDOW;
-            }
+            end = w->touched + SENSOR_WINDOW;
         }
     }
     return STATUS_OK;
