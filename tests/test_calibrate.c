@@ -226,6 +226,22 @@ static void results_reach_every_form(void **state)
 }
 
 // With an argument the case that takes most of the time, without one the others.
+// The arm is pressed with a voltage: what the scenario tells its own law, and the mode that it
+// holds it in, are none of that.
+static void what_another_law_is_told_changes_nothing(void **state)
+{
+    (void)state;
+    static const char *const told[][2] = {{"control.law=observer", "control.settings=wall_doubt=0"},
+                                          {"control.law=hybrid", "control.lock=force"}};
+    const calibration plain = calibrated(SETTINGS("control.law=hybrid"));
+    for (int i = 0; i < 2; i++) {
+        const calibration c = calibrated(SETTINGS(told[i][0], told[i][1]));
+        for (int k = 0; k < COMMANDS; k++) {
+            check_close(c.points[k].k2, plain.points[k].k2, 0);
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
     (void)argv;
@@ -241,6 +257,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(stiction_does_not_spoil_the_ratio),
         cmocka_unit_test(what_does_not_press_is_said),
         cmocka_unit_test(results_reach_every_form),
+        cmocka_unit_test(what_another_law_is_told_changes_nothing),
     };
     return (argc > 1 ? cmocka_run_group_tests(longest, NULL, NULL)
                      : cmocka_run_group_tests(tests, NULL, NULL)) != 0;

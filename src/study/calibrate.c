@@ -32,9 +32,12 @@ static status pressing(const scenario *s, double command, int number, scenario *
         {"run.duration", fmax(p->run.duration, SHORTEST_PRESS)},
     };
 
-    // no script, and a seed of its own for each press
+    // no script, nothing that another law is told, and a seed of its own for each press
     under->action_count = 0;
-    status code = STATUS_OK;
+    status code = parameter_set_text(p, PARAMETER_INDEX(control.settings), "", f);
+    if (code == STATUS_OK) {
+        code = parameter_set_text(p, PARAMETER_INDEX(control.lock), "none", f);
+    }
     for (size_t i = 0; i < sizeof changes / sizeof changes[0] && code == STATUS_OK; i++) {
         code = parameter_set_number(p, parameter_index(changes[i].path), changes[i].value, f);
     }
