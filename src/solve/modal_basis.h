@@ -2,13 +2,15 @@
 //
 // M0 and K of the straight chain are the same for any rotation of the whole. With V the modes,
 // V' M0 V = 1, V' K V = diag(w^2), structural damping, being proportional to K, is diagonal too:
-// V' C V = diag(c w^2). A stuck hub takes no part; contact leaves the angles with g' q = const, g'
-// q being the sum of the links' angles, the last one's counted as many times more as the wall holds
-// it link lengths beyond its end, and one more vector e completes the basis for what the exact
-// constraint needs beyond. Of all that are not held by the wall it is the one
-// that moves no mode by springs or damping, V' K e = 0: K e is a multiple of g. (Any other, as
-// M0^-1 g, bends joints near the tip, and what the modes do against that has to cancel it.) In M0
-// it is not across the modes, so that angles turn x = V x_k + e x_e and momenta P are
+// V' C V = diag(c w^2). A stuck hub takes no part. Contact leaves the angles with g' q = const: g
+// is 1 for each link and 1 + s/l for the last one, of length l, which the wall holds the distance s
+// beyond its end.
+//
+// What the exact constraint needs besides is one more vector e, which completes the basis. Of all
+// that the wall does not hold it is the one that moves no mode by springs or damping, V' K e = 0:
+// K e is a multiple of g. (Any other, as M0^-1 g, bends joints near the tip, and what the modes do
+// against that has to cancel it.) In M0 it is not across the modes, so that angles turn by
+// x = V x_k + e x_e and momenta P are
 //
 //     x_e = g' x / g' e,                     x_k = V_k' M0 (x - e x_e),
 //     P = M0 sum_k V_k V_k' P + g lambda,    lambda = (e' P - sum_k (V_k' M0 e) V_k' P) / g' e.
