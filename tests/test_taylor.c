@@ -361,6 +361,46 @@ static void random_runs_neither_fail_nor_lose_energy(void **state)
     }
 }
 
+// The next event of an arm, at the latest at an instant `until`; MOTION_REACHED if there is none.
+static motion_event next_event(moving_arm *moving, double until)
+{
+    motion_report report;
+    assert_int_equal(motion_advance(&moving->arm, moving->motion, until, 1e-3, &report), STATUS_OK);
+    motion_apply(&moving->arm, moving->motion, &report);
+    return report.event;
+}
+
+static moving_arm started(const char *const *settings)
+{
+    moving_arm made;
+    const parameters p = fixture_parameters(settings);
+    arm_init(&made.arm, &p);
+    made.motion = motion_create(&made.arm, &p.method);
+    assert_ptr_equal(made.motion->engine, &taylor_engine);
+    motion_start(&made.arm, made.motion, p.initial.angle, p.initial.velocity);
+    return made;
+}
+
+// An arm that starts on the wall and goes into it, however slowly, strikes it at once, though the
+// motor throws it back.
+static void a_slow_start_into_the_wall_is_an_impact(void **state)
+{
+    (void)state;
+    const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
+    for (int i = 0; i < 2; i++) {
+        for (double speed = 1e-8; speed < 1e-3; speed *= 10) {
+            char velocity[64];
+            snprintf(velocity, sizeof velocity, "initial.velocity=%g", speed);
+            moving_arm moving = started(SETTINGS(walls[i], "arm.k2=20000", "motor.voltage=10",
+                                                 "motor.amplifier_gain=1000", "wall.angle=3",
+                                                 "initial.angle=3", velocity));
+            assert_int_equal(next_event(&moving, 1e-3), MOTION_IMPACT);
+            assert_true(moving.motion->state[SLOT_TIME] == 0);
+            motion_destroy(moving.motion);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -372,6 +412,7 @@ int main(void)
         cmocka_unit_test(peaks_are_the_largest_force_there_is),
         cmocka_unit_test(rows_change_nothing),
         cmocka_unit_test(events_that_nearly_coincide_are_told_apart),
+        cmocka_unit_test(a_slow_start_into_the_wall_is_an_impact),
         cmocka_unit_test(random_runs_neither_fail_nor_lose_energy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -391,10 +391,10 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     const mask jumped = MASK(edge_rate >= 0);
     const real *wall = contact ? f : gap;
     const course near = course_of(wall, contact ? (int)order : (int)order + 2, h);
-    const real rate_limit = contact ? zero + EDGE_RATE : edge_rate;
+    const real lacking = contact ? zero : edge_rate;
     block[AT_WALL_LEAST] =
-        least_of(&near, wall, one, h, jumped, zero + (contact ? EDGE_VALUE : EDGE_GAP), rate_limit,
-                 greater(rate_limit, zero + EDGE_MORE));
+        least_of(&near, wall, one, h, jumped, zero + (contact ? EDGE_VALUE : EDGE_GAP),
+                 zero + EDGE_RATE, greater(lacking, zero + EDGE_MORE));
     block[AT_FORCE_MOST] = highest(&near);
     const real *hub_rates = hub_spring ? w0 : w1;
     const course turning = course_of(hub_rates, (int)order + 1, h);
