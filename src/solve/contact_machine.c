@@ -60,6 +60,7 @@
 #include <string.h>
 
 #include "src/arm/impact.h"
+#include "src/base/extremes.h"
 #include "src/solve/locate.h"
 
 #define SHORT_FLIGHT 0.01  // of the arm's shortest period, a flight that says nothing by itself
@@ -134,7 +135,8 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
                           : event == MOTION_SLIP                           ? 2
                           : event == MOTION_STICK                          ? 1
                                                                            : 0;
-    const double rounding = FORCE_TOLERANCE * (accelerates ? motion_rounding(a, m) : 1);
+    const double more = event == MOTION_RELEASE ? larger(m->engine->left_out, 1) : 1;
+    const double rounding = FORCE_TOLERANCE * (accelerates ? more * motion_rounding(a, m) : 1);
     double least = 0;
     contact_state best = {false, sliding}, tried = best;
 

@@ -115,6 +115,10 @@ typedef struct engine {
     size_t (*memory_for)(const arm *a);
     void (*open)(const arm *a, motion *m);
 
+    // How many times more than rounding (motion_rounding) its states lack of the gap's acceleration
+    // at a release; 0: no more.
+    double left_out;
+
     size_t link_scratch; // bytes a link that it wants in m->sweeps
     size_t memory_size;  // bytes, aligned to a cache line, that it wants in m->memory
 } engine;

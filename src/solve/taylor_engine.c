@@ -256,4 +256,5 @@ const engine taylor_engine = {.name = "Taylor series",
                               .peak = dense_search_peak,
                               .open = open,
                               .retorque = taylor_retorque,
+                              .left_out = LEFT_OUT,
                               .memory_size = sizeof(taylor_stride)};

@@ -42,7 +42,7 @@ enum taylor_place {
     AT_START_ANGLE,                         // hub (with a spring), first, second link [rad]
     AT_START_VELOCITY = AT_START_ANGLE + 3, // [rad/s]
     AT_WANTED = AT_START_VELOCITY + 3,      // length of the stride that is wanted [s]
-    // just after an event: below it a watched function's rate at its edge is rounding; else -1
+    // just after an event: below it the acceleration of a hub at rest is rounding; else -1 [rad/s2]
     AT_EDGE_RATE,
     AT_INPUTS, // how many of the above
     // what comes of it: powers of the time, from the zeroth
@@ -69,7 +69,9 @@ enum taylor_place {
 
 // What is nothing but rounding in the first coefficients of a watched function at its edge just
 // after an event: of the value and of its derivatives, over which nothing is known but that they
-// are small. Rates, and with them what follows, of gap and hub: times motion_rounding_at.
+// are small. The hub's acceleration: EDGE_RATE times motion_rounding_at; the gap's: LEFT_OUT times
+// as much, as the series leave more out of it than rounding does.
+#define LEFT_OUT   100.0
 #define EDGE_VALUE 1e-9
 #define EDGE_RATE  1e-9
 #define EDGE_MORE  1e-7
