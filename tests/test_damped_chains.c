@@ -1,5 +1,5 @@
-// Chains of many links whose fast modes decay: long strides however far the arm bends, and bounces
-// that do not depend on what is asked besides.
+// Chains of many links whose fast modes decay: long strides however far the arm bends, bounces that
+// do not depend on what is asked besides, and motions as small as one likes.
 #include <math.h>
 #include <stdlib.h>
 
@@ -51,6 +51,7 @@ static void a_chain_that_bends_keeps_its_strides(void **state)
 // Impacts of an arm in front of its wall, and the largest force of what follows them.
 typedef struct bounces {
     int impacts;
+    double first;   // instant of the first [s]
     double slowest; // of them [m/s]
     double peak;    // [N]
     double peak_time;
@@ -65,11 +66,13 @@ static bounces bounces_of(const parameters *p, const engine *by, double gap, dou
     assert_non_null(m);
     motion_start(&a, m, p->wall.angle - gap, velocity);
     bounces all = {0};
-    while (m->state[SLOT_TIME] < until) {
+    for (int steps = 0; m->state[SLOT_TIME] < until; steps++) {
         motion_report r;
+        assert_in_range(steps, 0, 100000);
         assert_int_equal(motion_step(&a, m, until, 1e-3, &r), STATUS_OK);
         motion_apply(&a, m, &r);
         if (r.event == MOTION_IMPACT) {
+            all.first = all.impacts == 0 ? m->state[SLOT_TIME] : all.first;
             all.impacts++;
             all.slowest = r.speed;
         }
@@ -100,9 +103,77 @@ static void low_bounces_are_those_of_the_series(void **state)
     }
 }
 
+// An arm that closes a gap of less than 1e-9 m meets the wall where the gap is none, wherever its
+// strides end before it.
+static void a_slow_arm_meets_its_wall_in_time(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=11", "arm.hub_joint=beam", "arm.damping_ratio=0.1", "arm.k2=15",
+                 "arm.mass=0.28", "arm.hub_inertia=1.4e-4", "motor.voltage=4e-6",
+                 "motor.stiction=3e-7", "wall.angle=1e-5", "method.rest_speed=1e-8"));
+    for (int i = 1; i <= 10; i++) {
+        const double gap = 5e-11 * i, velocity = 1.25e-7;
+        const bounces series = bounces_of(&p, &series_engine, gap, velocity, 5e-3);
+        const bounces modes = bounces_of(&p, &modal_engine, gap, velocity, 5e-3);
+        assert_true(series.impacts > 0 && modes.impacts > 0);
+        check_close(modes.first, series.first, 1e-6);
+    }
+}
+
+// Instants at which the hub of an arm that presses on a plane comes to rest, breaks away and comes
+// to rest for good [s], all that moves it being `share` of what it is at a wall at 1 rad.
+static void hub_events(double share, double instant[3])
+{
+    parameters p =
+        fixture_parameters(SETTINGS("arm.links=32", "arm.damping_ratio=0.05", "wall.kind=plane",
+                                    "wall.angle=1", "motor.voltage=10", "motor.stiction=0.45"));
+    p.wall.angle *= share;
+    p.motor.voltage *= share;
+    p.motor.stiction *= share;
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create_by(&a, &p.method, &modal_engine);
+    assert_non_null(m);
+    motion_start(&a, m, 0, 0);
+
+    // from the turn at 0.382 s on
+    const motion_event expected[3] = {MOTION_STICK, MOTION_SLIP, MOTION_STICK};
+    int count = 0, steps = 0;
+    while (m->state[SLOT_TIME] < 0.7) {
+        motion_report r;
+        assert_int_equal(motion_step(&a, m, 0.7, 1e-3, &r), STATUS_OK);
+        assert_true(++steps < 5000);
+        const bool of_hub = r.event == MOTION_STICK || r.event == MOTION_SLIP;
+        if (of_hub && m->state[SLOT_TIME] > 0.45) {
+            assert_in_range(count, 0, 2);
+            assert_int_equal(r.event, expected[count]);
+            instant[count++] = m->state[SLOT_TIME];
+        }
+        motion_apply(&a, m, &r);
+    }
+    assert_int_equal(count, 3);
+    motion_destroy(m);
+}
+
+// Within a stride a small arm's friction comes to its limit from next to it, and only there does
+// the hub break away: at the instant at which a larger arm's does.
+static void a_small_motion_slips_as_a_larger_one(void **state)
+{
+    (void)state;
+    double larger[3], small[3];
+    hub_events(1e-4, larger);
+    hub_events(1e-6, small);
+    for (int i = 0; i < 3; i++) {
+        check_close(small[i], larger[i], 5e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_chain_that_bends_keeps_its_strides),
-                                       cmocka_unit_test(low_bounces_are_those_of_the_series)};
+                                       cmocka_unit_test(low_bounces_are_those_of_the_series),
+                                       cmocka_unit_test(a_slow_arm_meets_its_wall_in_time),
+                                       cmocka_unit_test(a_small_motion_slips_as_a_larger_one)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

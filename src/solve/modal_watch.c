@@ -19,7 +19,7 @@ static const double far_side[] = {[WATCH_GAP] = 1e-14,
                                   [WATCH_FORCE] = FORCE_TOLERANCE,
                                   [WATCH_HUB] = 1e-13,
                                   [WATCH_STICTION] = 1e-11};
-#define ON_EDGE 1e3 // times that: a start so near is one on the edge
+#define ON_EDGE 1e3 // times that: a start so little beyond the edge is one on it
 
 // --- events -------------------------------------------------------------------------------------
 
@@ -218,8 +218,13 @@ bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, moti
     modal_sum_begin(&f->sum);
     f->edge = 0;
     look_at lo = {0, walked(f, a)};
-    const double edge = f->kind == WATCH_GAP ? MODAL_ON_WALL : far_side[f->kind] * ON_EDGE;
-    bool armed = fabs(lo.at.value) > edge;
+
+    // it starts on its edge or a little beyond, or is still to come there, however little is left;
+    // a gap so small is one of an arm that leaves the wall, unless it closes
+    const bool gap = f->kind == WATCH_GAP, closes = lo.at.slope < 0;
+    const double edge = gap ? MODAL_ON_WALL : far_side[f->kind] * ON_EDGE;
+    const double within = !gap ? 0 : closes ? GAP_ROUNDING : MODAL_ON_WALL;
+    bool armed = lo.at.value > within || lo.at.value < -edge;
     if (!armed) {
         f->edge = lo.at.value;
         lo.at.value = 0;

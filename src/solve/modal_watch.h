@@ -25,9 +25,9 @@ typedef struct modal_function {
     double edge; // its value at a start on its edge, where it counts as zero
 } modal_function;
 
-// A gap so small where a stride starts is none: the arm is on the wall and leaves it. Then the
-// function is of what the gap grows by, to its own digits, since flights may be lower than the
-// rounding of the gap [m].
+// A gap so small where a stride starts is none: the arm is on the wall and leaves it, unless the
+// gap closes. The function is then of what the gap grows by, to its own digits, since flights may
+// be lower than the rounding of the gap [m].
 #define MODAL_ON_WALL 1e-11
 
 // Doubles that the arrays of a function want for n degrees of freedom, and those laid out.
