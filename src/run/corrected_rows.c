@@ -154,6 +154,43 @@ static status record_within(corrected_run *c, const double *times, int count)
     return failed;
 }
 
+// Records the rows of the grid before an instant [s], which lie within the step just made.
+static status record_rows_before(corrected_run *c, double instant)
+{
+    recording *r = c->recording;
+    const double interval = r->scenario->parameters.method.step;
+    double time = (double)r->state.grid_row * interval;
+    status failed = STATUS_OK;
+
+    // some at a time
+    while (failed == STATUS_OK && time < instant) {
+        double times[MOTION_TOGETHER];
+        int count = 0;
+        for (; count < MOTION_TOGETHER && time < instant; count++) {
+            times[count] = time;
+            time = (double)++r->state.grid_row * interval;
+        }
+        failed = record_within(c, times, count);
+    }
+    return failed;
+}
+
+status corrected_record_rows_to(corrected_run *c, double time)
+{
+    motion *m = c->motion;
+    if (!c->recording->options->keep_trace) {
+        return STATUS_OK;
+    }
+
+    // the step's start is still the present state
+    double *behind = m->trial;
+    m->trial = m->state;
+    const double interval = c->recording->scenario->parameters.method.step;
+    const status failed = record_rows_before(c, time + GRID_TOLERANCE * interval);
+    m->trial = behind;
+    return failed;
+}
+
 // Records the rows of the grid that lie within the step just made, and passes over one at its end
 // if an event is there.
 static status record_grid(corrected_run *c, bool at_event)
@@ -162,25 +199,13 @@ static status record_grid(corrected_run *c, bool at_event)
     motion *m = c->motion;
     const double interval = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
     const double end = GRID_TOLERANCE * interval;
-    status failed = STATUS_OK;
     if (!r->options->keep_trace) {
         return STATUS_OK;
     }
 
-    // those within it, some at a time
-    double time = (double)r->state.grid_row * interval;
-    while (failed == STATUS_OK && time < now - end) {
-        double times[MOTION_TOGETHER];
-        int count = 0;
-        for (; count < MOTION_TOGETHER && time < now - end; count++) {
-            times[count] = time;
-            time = (double)++r->state.grid_row * interval;
-        }
-        failed = record_within(c, times, count);
-    }
-
-    // one at its end; an event records its own rows
-    if (failed == STATUS_OK && time <= now + end) {
+    // those within it, then one at its end; an event records its own rows
+    status failed = record_rows_before(c, now - end);
+    if (failed == STATUS_OK && (double)r->state.grid_row * interval <= now + end) {
         r->state.grid_row++;
         failed = at_event ? STATUS_OK : corrected_record_row(c, m->state, 0);
         failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
@@ -392,10 +417,21 @@ static status sense(corrected_run *c, const way *from, const way *to, double mea
     return STATUS_OK;
 }
 
+void corrected_follow_flight(corrected_run *c, double time)
+{
+    const sensed_motion nothing = {.force = 0};
+    sensors_follow(&c->recording->rig->sensors, time - c->sensed, &nothing, &nothing, 0);
+    c->sensed = time;
+}
+
 // Lets the sensors follow the arm over the step just made.
 static status follow_with_sensors(corrected_run *c, const force_step *whole)
 {
     motion *m = c->motion;
+    if (c->sensed > whole->start) {
+        corrected_follow_flight(c, whole->end);
+        return STATUS_OK;
+    }
     way w = way_at(c, whole->start, m->trial);
     status s = follow_decay(c, &w, whole->end, SENSOR_REACH, sense);
 

@@ -14,6 +14,8 @@ typedef struct corrected_run {
     double last_event; // in it, -1 if none [s]
     int at_once;       // events in a row without time passing
     pace pace;         // of the whole run
+    double horizon;    // an instant that no step is to go beyond, HUGE_VAL without one [s]
+    double sensed;     // up to where the sensors have followed the arm in the step to come [s]
 
     arm arm; // with the command in force
 } corrected_run;
@@ -32,6 +34,14 @@ status corrected_record_row(corrected_run *c, double *state, double impulse);
 // Records the step just made: force, separation, ledger, and the rows of the grid that lie within
 // it; of one at its end only if there is no event, which records rows of its own.
 status corrected_record_step(corrected_run *c, bool at_event);
+
+// Records the rows of the grid up to an instant [s] within the step to come, which motion_look_far
+// has looked at.
+status corrected_record_rows_to(corrected_run *c, double time);
+
+// Lets the sensors follow an arm in flight up to an instant [s] of the step to come, which presses
+// on nothing: those that see more of it than its hub and its force are not there.
+void corrected_follow_flight(corrected_run *c, double time);
 
 // In how many pieces the force over a step of this length [s] is kept that the motion makes in
 // contact.
