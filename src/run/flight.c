@@ -92,6 +92,9 @@ double flight_closing_speed(const arm *a, motion *m)
 {
     double rate[MOST_PIECES + 1];
     const double from = m->trial[SLOT_TIME], length = m->state[SLOT_TIME] - from;
+    if (!wall_stands(&a->wall)) {
+        return 0;
+    }
 
     // the piece of the step at whose end the tip is fastest
     const double pieces =
