@@ -62,3 +62,23 @@ static inline void check_fault(const char *text, int line, int column, const cha
                  all.text);
     }
 }
+
+// The text has exactly `count` faults, and each of the sentences' beginnings is among them.
+static inline void check_faults(const char *text, int count, const char *const *beginnings)
+{
+    scenario s;
+    sentences all;
+    status result = parse(&s, text, &all);
+    assert_int_equal(result, STATUS_BAD_SCENARIO);
+    if (all.count != count) {
+        fail_msg("%d faults, expected %d:\n%s", all.count, count, all.text);
+    }
+    for (int i = 0; i < count; i++) {
+        char line[512];
+        snprintf(line, sizeof line, "\n%s", beginnings[i]);
+        bool first = strncmp(all.text, beginnings[i], strlen(beginnings[i])) == 0;
+        if (!first && strstr(all.text, line) == NULL) {
+            fail_msg("no '%s' in:\n%s", beginnings[i], all.text);
+        }
+    }
+}
