@@ -89,7 +89,7 @@ status corrected_stride(corrected_run *c, fault *f)
     recording *r = c->recording;
     motion *m = c->motion;
     const double step = r->now.method.step;
-    if (!checkpoint_keep(r, m, c->last_event)) {
+    if (r->options->rows_expected > 0 && !checkpoint_keep(r, m, c->last_event)) {
         return fault_no_memory(f);
     }
 
@@ -179,14 +179,15 @@ static status record_start(corrected_run *c, fault *f)
     return failed == STATUS_OK ? recorded : failed;
 }
 
-status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
+// corrected_approach_stride where a stretch is over, or the run is to begin; apart from it, which
+// then has little to do for most strides.
+static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *ended, fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
     const parameters *p = &r->scenario->parameters;
     const double duration = p->run.duration, window = larger(duration - STEADY_WINDOW, 0);
     status failed = r->state.grid_row == 0 ? record_start(c, f) : STATUS_OK;
-    *ended = false;
 
     // script and rig act between stretches of motion, each ending where one of them is due
     while (failed == STATUS_OK && stretch_is_over(c)) {
@@ -219,6 +220,13 @@ status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
         failed = corrected_record_row(c, m->state, 0);
     }
     return failed;
+}
+
+status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
+{
+    *ended = false;
+    const bool within = c->recording->state.grid_row > 0 && !stretch_is_over(c);
+    return within ? STATUS_OK : begin_stretch(c, ended, f);
 }
 
 // Adds a sentence to the remarks.

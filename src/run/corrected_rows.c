@@ -24,7 +24,7 @@
 enum { MOST_PIECES = 64 };
 
 // corrected_audit for a state that holds that energy.
-static status audit(corrected_run *c, state_energy has)
+static inline status audit(corrected_run *c, state_energy has)
 {
     const motion *m = c->motion;
     summary *s = &c->recording->result->summary;
@@ -183,9 +183,6 @@ static status record_grid(corrected_run *c, bool at_event)
     motion *m = c->motion;
     const double interval = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
     const double end = GRID_TOLERANCE * interval;
-    if (!r->options->keep_trace) {
-        return STATUS_OK;
-    }
 
     // those within it, then one at its end; an event records its own rows
     status failed = record_rows_before(c, now - end);
@@ -230,6 +227,12 @@ static int pieces_of_step(const corrected_run *c, double length, double reach)
     return whole < MOST_PIECES ? whole + (whole < pieces) : MOST_PIECES;
 }
 
+// Whether what an event sets going decays faster than the arm vibrates.
+static bool decays_outrun(const arm *a)
+{
+    return a->fastest_decay > a->highest_frequency;
+}
+
 // Where the next piece of a step ends that goes from `time` to `end` and is taken in parabolas [s],
 // as long as what the last event set going decays faster than the arm vibrates. False where equal
 // pieces do for the rest.
@@ -237,8 +240,7 @@ static bool next_decay_piece(const corrected_run *c, double time, double end, do
                              double *next)
 {
     const arm *a = &c->arm;
-    if (!(a->fastest_decay > a->highest_frequency) || !engine_is_dense(c->motion->engine) ||
-        motion_held_still(c->motion)) {
+    if (!decays_outrun(a) || !engine_is_dense(c->motion->engine) || motion_held_still(c->motion)) {
         return false;
     }
     const double since = time - c->recording->state.last_jump;
@@ -305,10 +307,11 @@ static bool falls_at_once(glance first, glance last, double width)
     return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
 }
 
-// Keeps the force over equal pieces of the rest of the step just made, from w on: each has the mean
-// of the cubic through both ends' values and slopes. A stride of the modes may begin with a decay
-// that is over at once, which only the motion's own integral knows.
-static status record_equal_pieces(corrected_run *c, const force_step *rest, way w, int count)
+// Keeps the force over equal pieces of the rest of the step just made, `before` being its integral
+// up to there: each has the mean of the cubic through both ends' values and slopes. A stride of the
+// modes may begin with a decay that is over at once, which only the motion's own integral knows.
+static status record_equal_pieces(corrected_run *c, const force_step *rest, double before,
+                                  int count)
 {
     const motion *m = c->motion;
     glance at[MOST_PIECES + 1];
@@ -318,7 +321,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, way 
     }
 
     // the force at the start and at the ends of all pieces
-    const double since = w.time - m->trial[SLOT_TIME], width = (m->made - since) / count;
+    const double since = rest->start - m->trial[SLOT_TIME], width = (m->made - since) / count;
     if (m->engine->forces_at != NULL && since == 0) {
         m->engine->forces_at(&c->arm, m, m->made, count, at);
     } else {
@@ -329,18 +332,21 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, way 
 
     const double slope_share = width / 12;
     double start = rest->start;
+    glance first = at[0];
     for (int i = 0; i < count; i++) {
-        const glance first = at[i], last = at[i + 1];
-        const double end = i < count - 1 ? rest->start + (i + 1) * width : rest->end;
+        const glance last = at[i + 1];
+        const double end = rest->start + (i + 1) * width;
         const double mean =
             (first.value + last.value) / 2 + slope_share * (first.slope - last.slope);
         kept[i] = (force_step){
             .start = start, .end = end, .first = first.value, .last = last.value, .mean = mean};
         start = end;
+        first = last;
     }
+    kept[count - 1].end = rest->end;
 
     if (falls_at_once(at[0], at[1], width)) {
-        const double before = w.integral;
+        way w;
         if (!go_to(c, &w, kept[0].end)) {
             return STATUS_NOT_FINITE;
         }
@@ -368,23 +374,28 @@ static status record_force(corrected_run *c, const force_step *whole)
         return recording_add_step(r, *whole);
     }
 
-    way w = way_at(c, whole->start, m->trial);
-    status s = follow_decay(c, &w, whole->end, FORCE_REACH, keep_force);
-    if (s != STATUS_OK) {
-        return s;
+    // what an event set going and decays at once, its integral being that of the motion
+    force_step rest = *whole;
+    double before = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    if (decays_outrun(&c->arm)) {
+        way w = way_at(c, whole->start, m->trial);
+        const status s = follow_decay(c, &w, whole->end, FORCE_REACH, keep_force);
+        if (s != STATUS_OK) {
+            return s;
+        }
+        rest.start = w.time;
+        rest.first = w.at.force;
+        before = w.integral;
     }
 
     // what vibrates
-    const double since = w.time - whole->start, length = whole->end - w.time;
-    const double all = state_quadratures(m, m->state)[QUADRATURE_FORCE];
-    force_step rest = *whole;
-    if (since > 0) {
-        rest.start = w.time;
-        rest.first = w.at.force;
-        rest.mean = (all - w.integral) / length;
+    double length = m->made;
+    if (rest.start > whole->start) {
+        length = whole->end - rest.start;
+        rest.mean = (state_quadratures(m, m->state)[QUADRATURE_FORCE] - before) / length;
     }
-    const int pieces = pieces_of_step(c, since > 0 ? length : m->made, FORCE_REACH);
-    return pieces > 1 ? record_equal_pieces(c, &rest, w, pieces) : recording_add_step(r, rest);
+    const int pieces = pieces_of_step(c, length, FORCE_REACH);
+    return pieces > 1 ? record_equal_pieces(c, &rest, before, pieces) : recording_add_step(r, rest);
 }
 
 // Lets the sensors follow the arm over a piece of the step.
@@ -517,5 +528,5 @@ status corrected_record_step(corrected_run *c, bool at_event)
     if (s == STATUS_OK && length > 0) {
         s = record_force(c, &force);
     }
-    return s == STATUS_OK ? record_grid(c, at_event) : s;
+    return s == STATUS_OK && r->options->keep_trace ? record_grid(c, at_event) : s;
 }

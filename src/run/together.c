@@ -23,6 +23,7 @@ typedef struct side_run {
     corrected_run run;
     fault fault;
     taylor_lane *lane;    // its part in the series of the stride it is to make
+    int kind;             // that of its form
     motion *motion;       // of the run before, NULL if there was none: its storage is used again
     force_history forces; // and that run's, if there was one
 } side_run;
@@ -34,6 +35,7 @@ struct side_by_side {
     int count, next;      // of them, and the next one to begin
     int waiting[IN_HAND]; // places of those in hand, all of which wait for their series
     int waiting_count;
+    int alike[TAYLOR_KINDS]; // how many of them are of each kind
     side_run in_hand[IN_HAND];
     taylor_group series; // of those whose strides are being made
 };
@@ -79,6 +81,8 @@ static bool go_on(side_by_side *group, int place)
             double remaining = one->run.stop - one->run.motion->state[SLOT_TIME];
             one->lane = taylor_prepare(&one->run.arm, one->run.motion, remaining);
             if (one->lane != NULL) {
+                one->kind = taylor_kind(one->lane->form);
+                group->alike[one->kind]++;
                 group->waiting[group->waiting_count++] = place;
                 return true;
             }
@@ -156,32 +160,30 @@ static void serve(side_by_side *group)
     enum { LOOKED_AT = 4 };
     const int width = taylor_width();
 
-    // the form that most of the first in the queue share
-    int best = 0, most = 0, chosen[TAYLOR_WIDEST], count = 0;
-    for (int i = 0; i < group->waiting_count && i < LOOKED_AT && most < width; i++) {
-        int alike = 0;
-        for (int j = 0; j < group->waiting_count && alike < width; j++) {
-            alike += taylor_alike(group->in_hand[group->waiting[i]].lane->form,
-                                  group->in_hand[group->waiting[j]].lane->form);
-        }
-        best = alike > most ? i : best;
-        most = alike > most ? alike : most;
+    // the kind that most share, of those of the first in the queue
+    int kind = group->in_hand[group->waiting[0]].kind;
+    for (int i = 1; i < group->waiting_count && i < LOOKED_AT && group->alike[kind] < width; i++) {
+        const int other = group->in_hand[group->waiting[i]].kind;
+        kind = group->alike[other] > group->alike[kind] ? other : kind;
     }
 
     // out of the queue, whose order stays
-    const taylor_form form = group->in_hand[group->waiting[best]].lane->form;
     taylor_lane *lanes[TAYLOR_WIDEST];
-    int left = 0;
-    for (int i = 0; i < group->waiting_count; i++) {
-        const int place = group->waiting[i];
-        if (count < width && taylor_alike(group->in_hand[place].lane->form, form)) {
+    int chosen[TAYLOR_WIDEST], count = 0, left = 0, next = 0;
+    const int wanted = group->alike[kind] < width ? group->alike[kind] : width;
+    for (; count < wanted; next++) {
+        const int place = group->waiting[next];
+        if (group->in_hand[place].kind == kind) {
             lanes[count] = group->in_hand[place].lane;
             chosen[count++] = place;
         } else {
             group->waiting[left++] = place;
         }
     }
-    group->waiting_count = left;
+    group->alike[kind] -= count;
+    group->waiting_count -= count;
+    memmove(group->waiting + left, group->waiting + next,
+            (size_t)(group->waiting_count - left) * sizeof *group->waiting);
 
     // side by side to the ends of their strides
     taylor_end ends[TAYLOR_WIDEST];
@@ -247,6 +249,7 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
     group->results = results;
     group->count = count;
     group->next = group->waiting_count = 0;
+    memset(group->alike, 0, sizeof group->alike);
     for (int place = 0; place < IN_HAND; place++) {
         begin_next(group, place);
     }

@@ -272,12 +272,13 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 {
     assert(a != NULL && m != NULL && report != NULL && step > 0);
     *report = (motion_report){.event = MOTION_REACHED};
-    if (m->starved || held_folded(a, m)) {
+
+    // what motion_look_ahead has looked at can go on
+    if (!m->ahead.known && (m->starved || held_folded(a, m))) {
         m->failure_time = m->state[SLOT_TIME];
         return m->starved ? STATUS_NO_MEMORY : STATUS_FOLDED;
     }
-
-    if (!motion_held_still(m) && glide(a, m, until, step)) {
+    if ((m->ahead.known || !motion_held_still(m)) && glide(a, m, until, step)) {
         return STATUS_OK;
     }
 

@@ -255,13 +255,15 @@ static inline bool motion_wall_is_rigid(const motion *m)
 // Whether contact and friction together leave the arm no way to move, and nothing else can change.
 static inline bool state_is_held_still(const motion *m, const double *state)
 {
-    if (m->electric) {
+    // a sliding hub is the usual case
+    if ((state[SLOT_FRICTION] != HUB_STICK && m->dof > 1) || m->dof > 2 || m->electric) {
         return false;
     }
-    contact_state now = contact_state_of(state);
-    int holds = (now.contact && motion_wall_is_rigid(m)) + (now.friction == HUB_STICK);
-    bool face_moves = !now.contact && (state[SLOT_FACE] != 0 || state[SLOT_FACE_VELOCITY] != 0);
-    return !face_moves && (m->dof == 1 ? holds > 0 : holds >= m->dof);
+    const contact_state now = contact_state_of(state);
+    const bool stuck = now.friction == HUB_STICK, held = now.contact && motion_wall_is_rigid(m);
+    const bool face_moves =
+        !now.contact && (state[SLOT_FACE] != 0 || state[SLOT_FACE_VELOCITY] != 0);
+    return !face_moves && (m->dof == 1 ? stuck || held : stuck && held);
 }
 static inline bool motion_held_still(const motion *m)
 {

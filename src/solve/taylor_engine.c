@@ -74,15 +74,13 @@ static void put_inputs(const arm *a, const motion *m, const double *q, const dou
 }
 
 // The length that is tried from velocities w on, up to `most`.
-static double wanted_stride(const arm *a, const motion *m, const double *w, double most)
+static double wanted_stride(const arm *a, const double *w, double most)
 {
     // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
-    double rate = a->highest_frequency > 1e-3 ? a->highest_frequency : 1e-3;
-    for (int i = 0; i < m->dof; i++) {
-        rate = rate < 1.2 * fabs(w[i]) ? 1.2 * fabs(w[i]) : rate;
-    }
-    const double turning = 1.2 * fabs(w[a->first + 1] - w[a->first]); // the bend turns, too
-    rate = rate < turning ? turning : rate;
+    const double first = w[a->first], second = w[a->first + 1];
+    const double links = larger(fabs(first), fabs(second));
+    const double turning = larger(fabs(second - first), fabs(w[0])); // the bend turns, too
+    const double rate = larger(1.2 * larger(links, turning), larger(a->highest_frequency, 1e-3));
     double wanted = LONGEST_REACH / rate;
     wanted = most < wanted ? most : wanted;
     return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay : wanted;
@@ -100,9 +98,13 @@ static void keep(motion *m, double most)
     for (int i = 0; i < 3; i++) {
         kept[KEPT_QUADRATURES + i] = quadratures[i];
     }
-    for (int i = 0; i < m->dof; i++) {
-        kept[KEPT_ANGLES + i] = q[i];
-        kept[KEPT_VELOCITIES + i] = w[i];
+    kept[KEPT_ANGLES] = q[0];
+    kept[KEPT_VELOCITIES] = w[0];
+    kept[KEPT_ANGLES + 1] = q[1];
+    kept[KEPT_VELOCITIES + 1] = w[1];
+    if (m->dof > 2) { // with a hub on a spring
+        kept[KEPT_ANGLES + 2] = q[2];
+        kept[KEPT_VELOCITIES + 2] = w[2];
     }
 }
 
@@ -112,7 +114,7 @@ static void prepare(const arm *a, motion *m)
     taylor_stride *s = m->memory;
     const double *kept = state_kept(m, m->state);
     const double *q = kept + KEPT_ANGLES, *w = kept + KEPT_VELOCITIES;
-    put_inputs(a, m, q, w, wanted_stride(a, m, w, kept[KEPT_WANTED]), s->lane.block);
+    put_inputs(a, m, q, w, wanted_stride(a, w, kept[KEPT_WANTED]), s->lane.block);
     s->lane.form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
                                  .point = a->wall.kind == WALL_POINT,
                                  .hub_spring = a->hub_spring,

@@ -36,11 +36,11 @@ typedef struct taylor_lane {
 // [s]. NULL if that stride asks for no series: another engine, or an arm that is held still.
 taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining);
 
-// Whether two strides can go side by side.
-static inline bool taylor_alike(taylor_form a, taylor_form b)
+// A number below TAYLOR_KINDS that strides have in common which can go side by side, and no others.
+enum { TAYLOR_KINDS = 16 };
+static inline int taylor_kind(taylor_form form)
 {
-    return a.contact == b.contact && a.point == b.point && a.hub_spring == b.hub_spring &&
-           a.damped == b.damped;
+    return form.contact | form.point << 1 | form.hub_spring << 2 | form.damped << 3;
 }
 
 // Computes up to taylor_width() prepared strides of one form; the motions take the series from

@@ -14,12 +14,11 @@ static void take_motion(const arm *a, const motion *m, const taylor_instants *at
     double *quadrature = state_quadratures(m, state);
 
     // the motion
-    for (int k = 0; k < m->dof; k++) {
-        const int body = k + 1 - a->first;
-        state_angles(m, state)[k] = at->angle[body][i];
-        state_velocities(m, state)[k] = at->velocity[body][i];
-        state_accelerations(m, state)[k] = at->acceleration[body][i];
-        state_algorithmic(m, state)[k] = at->acceleration[body][i];
+    double *q = state_angles(m, state), *acceleration = state_accelerations(m, state);
+    for (int body = 1 - a->first; body < 3; body++, q++, acceleration++) {
+        q[0] = at->angle[body][i];
+        q[m->dof] = at->velocity[body][i];
+        acceleration[0] = acceleration[m->dof] = at->acceleration[body][i];
     }
 
     // what it has lost and pressed
