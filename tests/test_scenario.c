@@ -253,7 +253,7 @@ static void faults_of_one_line_are_told_from_left_to_right(void **state)
 static void prose_is_text(void **state)
 {
     (void)state;
-    check_fault("title: ' '\n", 1, 8, "expected text");
+    check_fault("title: ' '\n", 1, 8, "title is empty, expected text");
     check_fault("title: t\ndescription: \" \\n \"\n", 2, 14, "expected text");
     check_fault("title: \"a \\x9b\"\n", 1, 8, "a control character");
     scenario s = good("title: '5 \u00b5s  '\n");

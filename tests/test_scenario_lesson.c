@@ -61,7 +61,7 @@ static void faults_of_lessons(void **state)
     check_step("a", "a step is a single value");
     check_step("{hint: a}", "no 'say'");
     check_step("{say: [a]}", "say is a list, expected text");
-    check_step("{say: ''}", "expected text");
+    check_step("{say: ''}", "say is empty, expected text");
     check_step("{say: ' '}", "expected text");
     check_step("{say: a, saw: b}", "unknown key 'saw'");
     check_step("{say: a, do: seek}", "do is a single value, expected a list");

@@ -97,7 +97,8 @@ size_t node_text_length(const tree_node *node)
 const char *node_kind_name(const tree_node *node)
 {
     static const char *const names[] = {"a single value", "a list", "a map of keys"};
-    return node_is_empty(node) ? "empty" : names[node->kind];
+    const bool blank = node_is_scalar(node) && node_text_length(node) == 0;
+    return blank ? "empty" : names[node->kind];
 }
 
 const char *reader_key(reader *r, const tree_node *map, const tree_node *child)
