@@ -136,6 +136,43 @@ static void a_face_with_a_mass_has_the_closed_form(void **state)
     }
 }
 
+// An arm that has left a face that is farther in may go on and turn back there: that is how deep it
+// was, wherever rows and strides end. A face that swings out with the arm on it is no separation.
+static void an_arm_is_deepest_or_apart_beside_its_face(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(
+        SETTINGS("arm.links=1", "arm.hub_joint=spring", "arm.k1=7306.2", "arm.mass=0.48164",
+                 "motor.stiction=2", "motor.voltage=-0.18352", "wall.kind=plane",
+                 "wall.contact=kelvin-voigt", "wall.stiffness=16.826", "wall.damping=0",
+                 "wall.mass=0.9856", "initial.angle=0.0988025", "initial.velocity=0.489266",
+                 "run.duration=0.08", "method.step=1e-5"));
+    run_result r = run_of(&p, true);
+    double deepest = 0, farthest = 0;
+    for (size_t i = 0; i < r.trace.row_count; i++) {
+        deepest = fmax(deepest, -r.trace.rows[i].gap);
+    }
+    check_relative(r.summary.max_penetration_m, deepest, 1e-5);
+    assert_true(r.summary.max_penetration_m >= deepest);
+    run_finish(&r);
+
+    // in contact beyond where the wall is at rest, after one flight
+    p = fixture_parameters(
+        SETTINGS("arm.links=3", "arm.hub_joint=spring", "arm.joint_stiffness=8.38,6.2",
+                 "arm.link_lengths=0.256,0.448,0.426", "arm.k1=2561.9", "arm.mass=0.17225",
+                 "arm.damping_ratio=0.0066045", "motor.current_limit=0.93877",
+                 "motor.voltage=3.1376", "wall.contact=kelvin-voigt", "wall.stiffness=97351",
+                 "wall.damping=2.8066", "wall.mass=0.8488", "initial.angle=0.0969451",
+                 "initial.velocity=0.380345", "run.duration=0.08", "method.step=1e-5"));
+    r = run_of(&p, true);
+    for (size_t i = 0; i < r.trace.row_count; i++) {
+        farthest = fmax(farthest, r.trace.rows[i].contact ? r.trace.rows[i].gap : 0);
+    }
+    assert_true(farthest > 2e-6);
+    check_close(r.summary.separations, 1, 0);
+    run_finish(&r);
+}
+
 // An elastic impact: both go on with the velocities of two free masses.
 static void a_face_bounces_the_arm_like_two_masses(void **state)
 {
@@ -491,6 +528,7 @@ int main(void)
         cmocka_unit_test(a_mass_on_kelvin_voigt_has_the_closed_form),
         cmocka_unit_test(a_mass_on_hunt_crossley_has_the_closed_form),
         cmocka_unit_test(a_face_with_a_mass_has_the_closed_form),
+        cmocka_unit_test(an_arm_is_deepest_or_apart_beside_its_face),
         cmocka_unit_test(a_face_bounces_the_arm_like_two_masses),
         cmocka_unit_test(a_face_lies_between_the_two_walls),
         cmocka_unit_test(a_light_face_on_a_strong_damper_is_no_face),

@@ -33,11 +33,15 @@ bool flight_separated(const arm *a, motion *m)
 {
     double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
 
-    // the ends of the step decide nearly always
+    // the ends of the step decide nearly always; in contact the gap is that to the wall at rest,
+    // beyond which a face with a mass may swing
+    if (m->state[SLOT_CONTACT] != 0) {
+        return false;
+    }
     if (m->state[SLOT_GAP] > SEPARATION_GAP) {
         return true;
     }
-    if (m->state[SLOT_CONTACT] != 0 || m->state[SLOT_GAP_VELOCITY] >= 0) {
+    if (m->state[SLOT_GAP_VELOCITY] >= 0) {
         return false;
     }
 

@@ -209,22 +209,34 @@ void dense_peak(const arm *a, motion *m, double h)
     }
 }
 
+// The gap to the wall at rest and its rate at h in the stride.
+static glance rest_gap_at(const arm *a, const motion *m, double h)
+{
+    glance gap = m->engine->gap_at(a, m, h);
+    if (m->wall_has_face && m->state[SLOT_CONTACT] == 0) {
+        const wall_face face = wall_face_after(&a->wall, state_face(m->state), h);
+        gap.value -= face.position;
+        gap.slope -= face.velocity;
+    }
+    return gap;
+}
+
 void dense_deepest(const arm *a, motion *m, double h)
 {
     enum { PIECES = 8 };
     if (m->engine->gap_at == NULL) {
         return;
     }
-    point lo = {0, m->engine->gap_at(a, m, 0)};
+    point lo = {0, rest_gap_at(a, m, 0)};
     for (int i = 1; i <= PIECES; i++) {
         const double time = i * h / PIECES;
-        const point hi = {time, m->engine->gap_at(a, m, time)};
+        const point hi = {time, rest_gap_at(a, m, time)};
 
         // it turns back within: false position on the rate, the end that stays halved
         double from = lo.time, to = hi.time, v0 = lo.at.slope, v1 = hi.at.slope;
         for (int k = 0; k < MOST_CUTS && v0 < 0 && v1 > 0 && to - from > 1e-9 * h; k++) {
             const double t = from + (to - from) * v0 / (v0 - v1);
-            const glance g = m->engine->gap_at(a, m, t);
+            const glance g = rest_gap_at(a, m, t);
             m->largest_penetration = fmax(m->largest_penetration, -g.value);
             if (g.slope < 0) {
                 from = t, v0 = g.slope, v1 /= 2;

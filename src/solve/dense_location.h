@@ -15,7 +15,7 @@ void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *a
 void dense_peak(const arm *a, motion *m, double h);
 
 // Raises m->largest_penetration to the deepest point in [0, h] of a stride within a wall that
-// gives.
+// gives, or above a face that the arm has left and that is pushed in.
 void dense_deepest(const arm *a, motion *m, double h);
 
 // What these do where the engine has no way of its own, by its look, bend, clear and bounded.

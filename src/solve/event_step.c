@@ -156,6 +156,13 @@ static bool went_through_fold(const arm *a, const motion *m)
     return through;
 }
 
+// Whether the wall has a face that swings on its own: an arm that has left it may still be deeper
+// than it stands at rest, and turn back there.
+static bool face_moves(const arm *a, const motion *m)
+{
+    return m->wall_has_face && wall_face_rate(&a->wall, state_face(m->state)) > 0;
+}
+
 // What is left of the stride that the state keeps [s].
 static double left_of_stride(motion *m)
 {
@@ -183,11 +190,12 @@ static void look_ahead(const arm *a, motion *m, double until, double far, double
             h = m->cut - now;
             any = false;
         }
-        if (m->state[SLOT_CONTACT] != 0) {
+        const bool touches = m->state[SLOT_CONTACT] != 0;
+        if (touches) {
             dense_peak(a, m, h);
-            if (!motion_wall_is_rigid(m)) {
-                dense_deepest(a, m, h);
-            }
+        }
+        if (!motion_wall_is_rigid(m) && (touches || face_moves(a, m))) {
+            dense_deepest(a, m, h);
         }
     }
     m->ahead.known = true;
