@@ -173,6 +173,31 @@ static void an_arm_is_deepest_or_apart_beside_its_face(void **state)
     run_finish(&r);
 }
 
+// An arm that leaves a light face does so once: what rounding has the face accelerate by is no
+// contact.
+static void an_arm_leaves_a_light_face_once(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(
+        SETTINGS("arm.links=3", "arm.hub_joint=beam", "arm.k2=21.5522",
+                 "arm.link_lengths=0.37,0.314,0.24", "arm.mass=0.4157", "arm.tip_mass=0.0015214",
+                 "arm.damping_ratio=0.0041139", "motor.voltage=0.40338", "motor.stiction=0.5",
+                 "motor.current_limit=0.0082505", "wall.kind=plane", "wall.contact=kelvin-voigt",
+                 "wall.stiffness=2.8373e6", "wall.damping=0", "wall.mass=3.886e-5",
+                 "initial.angle=0.0483042", "initial.velocity=2.96367", "run.duration=0.1"));
+    run_result r = run_of(&p, true);
+    double released = -1;
+    for (size_t i = 0; i < r.trace.event_count; i++) {
+        if (r.trace.events[i].kind == EVENT_RELEASE) {
+            assert_true(r.trace.events[i].time > released + 1e-6);
+            released = r.trace.events[i].time;
+        }
+    }
+    assert_true(released > 0);
+    check_face_rows(&r);
+    run_finish(&r);
+}
+
 // An elastic impact: both go on with the velocities of two free masses.
 static void a_face_bounces_the_arm_like_two_masses(void **state)
 {
@@ -529,6 +554,7 @@ int main(void)
         cmocka_unit_test(a_mass_on_hunt_crossley_has_the_closed_form),
         cmocka_unit_test(a_face_with_a_mass_has_the_closed_form),
         cmocka_unit_test(an_arm_is_deepest_or_apart_beside_its_face),
+        cmocka_unit_test(an_arm_leaves_a_light_face_once),
         cmocka_unit_test(a_face_bounces_the_arm_like_two_masses),
         cmocka_unit_test(a_face_lies_between_the_two_walls),
         cmocka_unit_test(a_light_face_on_a_strong_damper_is_no_face),

@@ -99,7 +99,9 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     } else if (now.contact) {
         worst = fmax(worst, -state[SLOT_FORCE]);
     } else if (touching) {
-        worst = fmax(worst, -state[SLOT_GAP_ACCELERATION]);
+        // of a light face the force that it takes: it answers the rounding of one by far more
+        const double mass = m->wall_has_face ? fmin(a->wall.face_mass, 1) : 1;
+        worst = fmax(worst, -state[SLOT_GAP_ACCELERATION] * mass);
     }
 
     // the hub: within stiction, or sliding the way it was taken to

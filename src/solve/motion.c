@@ -266,6 +266,11 @@ double motion_rounding(const arm *a, const motion *m)
     return motion_rounding_at(a, m->dof, state_angles(m, m->state), state_velocities(m, m->state));
 }
 
+double motion_gap_rounding(const arm *a, const motion *m)
+{
+    return motion_rounding(a, m) + (m->wall_has_face ? 1 / a->wall.face_mass : 0);
+}
+
 double motion_rounding_at(const arm *a, int dof, const double *q, const double *w)
 {
     double angle = 0, rate = 0;

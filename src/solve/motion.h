@@ -310,7 +310,9 @@ bool motion_project(const arm *a, motion *m, double *state);
 // (k/I) q 2^-52, where k/I is the square of the arm's highest frequency at most, and what turns at
 // w has accelerations of w^2, to their last bit.
 double motion_rounding(const arm *a, const motion *m);
-// The same for dof angles q [rad] and velocities w [rad/s].
+// The same of the gap's acceleration: a face answers the rounding of a force by one over its mass.
+double motion_gap_rounding(const arm *a, const motion *m);
+// motion_rounding for dof angles q [rad] and velocities w [rad/s].
 double motion_rounding_at(const arm *a, int dof, const double *q, const double *w);
 
 // Whether the motion's steps are those of an implicit method.

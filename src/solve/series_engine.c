@@ -183,10 +183,12 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m, dou
     }
 
     // just after an event they may begin at zero, as the gap does after a bounce cut short
-    const double acceleration = EDGE_RATE * (wall_at_edge || jumped ? motion_rounding(a, m) : 0);
+    const bool edge = wall_at_edge || jumped;
+    const double acceleration = EDGE_RATE * (edge ? motion_rounding(a, m) : 0);
+    const double apart = EDGE_RATE * (edge ? motion_gap_rounding(a, m) : 0);
     const double stiffness = m->wall_gives ? a->wall.stiffness * EDGE_GAP : 0;
     const double reaction[] = {EDGE_VALUE + stiffness, EDGE_RATE + stiffness, EDGE_MORE};
-    const double gap[] = {EDGE_GAP, EDGE_RATE + 2 * face_lacks, fmax(EDGE_MORE, acceleration)};
+    const double gap[] = {EDGE_GAP, EDGE_RATE + 2 * face_lacks, fmax(EDGE_MORE, apart)};
     const double hub_rate[] = {0, acceleration, EDGE_MORE};
     if (wall_at_edge && (now.contact || now.parted)) {
         leave_edge(&s->watched[WATCH_FORCE], reaction, c->length);
