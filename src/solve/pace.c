@@ -6,10 +6,24 @@
 #include "src/base/numbers.h"
 
 // A run is given up where its strides are shorter than this, as a share of its duration or of a
-// second, whichever is less: it would take ten million of them, hours with many links. Steps that
-// method.step asks for are none of these.
+// second, whichever is less: it would take ten million of them, hours with many links. In contact
+// with a wall whose damper has its say in each of them a million are enough: they follow a decay
+// that is long over. Steps that method.step asks for are none of these.
 #define SLOWEST_PACE 1e-7
+#define DAMPED_PACE  1e-6
 #define ASKED_FOR    1e-3 // share of method.step
+
+// Whether the arm is in contact with a wall that gives.
+static bool is_within(const motion *m)
+{
+    return !motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0;
+}
+
+// Whether that wall has a damper.
+static bool is_damped(const arm *a, const motion *m)
+{
+    return is_within(m) && a->wall.damping > 0;
+}
 
 // Says what of the arm or the wall makes strides short, and what would make them longer.
 static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
@@ -25,7 +39,7 @@ static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
     if (fabs(w[fastest]) >= a->fastest_rate) {
         decimal_print(text, size, "its angle %d turns at %.3g rad/s, too fast to follow",
                       fastest + 1, w[fastest]);
-    } else if (!motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0) {
+    } else if (is_within(m)) {
         decimal_print(text, size,
                       "it is in contact with a wall that gives, and a smaller wall.damping or "
                       "wall.stiffness has longer strides");
@@ -64,7 +78,8 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
     const double now = m->state[SLOT_TIME], from = p->looked_from;
 
     // the first stride only begins to count
-    const double least = PACE_STRIDES * fmin(SLOWEST_PACE * fmin(duration, 1), ASKED_FOR * asked);
+    const double slowest = is_damped(a, m) ? DAMPED_PACE : SLOWEST_PACE;
+    const double least = PACE_STRIDES * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;
     p->strides = 0;
     p->looked_from = now;
