@@ -8,8 +8,8 @@
 #include "src/arm/chain.h"
 #include "src/arm/modal_damping.h"
 
-// What a decay counts against a vibration: it dies within a step or two and need only be stable,
-// not accurate, which an explicit method is at a step several times longer.
+// What a decay counts against a vibration: it dies within a step or two and need not be followed,
+// so that steps may be several times longer.
 #define DECAY_WEIGHT 0.125
 
 void arm_set_voltage(arm *a, double volts)
