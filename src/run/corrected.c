@@ -9,7 +9,6 @@
 #include "src/base/numbers.h"
 #include "src/run/checkpoint.h"
 #include "src/run/corrected_events.h"
-#include "src/run/corrected_samples.h"
 #include "src/run/rig_recording.h"
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
@@ -93,19 +92,13 @@ status corrected_stride(corrected_run *c, fault *f)
         return fault_no_memory(f);
     }
 
-    // samples on the way, one step, or less to an event, and what comes of it
-    flight_samples met;
-    const status kept = corrected_sample_flight(c, &met, f);
+    // one step, or less to an event, and what comes of it
     motion_report report;
     status s = motion_step(&c->arm, m, c->stop, step, &report);
     if (s != STATUS_OK) {
         return explain_step(c, s, f);
     }
     s = record_step(c, &report);
-    s = s == STATUS_OK ? kept : s;
-    if (s == STATUS_OK && met.changed) {
-        s = corrected_apply_command(c);
-    }
 
     // reasons to end here
     if (s == STATUS_OK && c->at_once > MOST_EVENTS_AT_ONCE) {
@@ -117,9 +110,6 @@ status corrected_stride(corrected_run *c, fault *f)
     recording_publish(r, m->state[SLOT_TIME]);
     if (s != STATUS_OK) {
         return explain(c, s, f);
-    }
-    if (met.failed != STATUS_OK) {
-        return met.failed;
     }
     return pace_keep(&c->pace, &c->arm, m, r->scenario->parameters.run.duration, step, f);
 }
@@ -349,7 +339,6 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
     memset(c, 0, offsetof(corrected_run, arm));
     c->recording = r;
     c->last_event = -1;
-    c->horizon = HUGE_VAL;
     c->pace = pace_begin();
     corrected_bind_arm(c);
     c->motion = motion_renew(spare, &c->arm, &p->method);

@@ -15,8 +15,7 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f);
 // the run is through instead.
 status corrected_approach_stride(corrected_run *c, bool *ended, fault *f);
 
-// One stride with the samples on its way and the event at its end, recorded. c->stop goes on with
-// the samples.
+// One stride and the event at its end, recorded.
 status corrected_stride(corrected_run *c, fault *f);
 
 // Sums up what is known of the run, also of one that failed or has not come to its end (`failed`

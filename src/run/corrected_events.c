@@ -263,7 +263,8 @@ status corrected_run_script(corrected_run *c, fault *f)
 
 // --- the rig ----------------------------------------------------------------------------------
 
-status corrected_apply_command(corrected_run *c)
+// Lets another command take effect: the torque jumps, and with it accelerations and force.
+static status apply_command(corrected_run *c)
 {
     recording *r = c->recording;
     motion *m = c->motion;
@@ -294,5 +295,5 @@ status corrected_run_rig(corrected_run *c, fault *f)
     bool changed;
     sensed_motion sensed = corrected_sensed_motion(c, c->motion->state);
     status s = rig_act(on, now, &sensed, &changed, f);
-    return s == STATUS_OK && changed ? corrected_apply_command(c) : s;
+    return s == STATUS_OK && changed ? apply_command(c) : s;
 }

@@ -24,9 +24,5 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f);
 // Carries out the script's actions that are due. What fails says why in f, or has a code only.
 status corrected_run_script(corrected_run *c, fault *f);
 
-// Lets another command of the rig take effect: the torque jumps, and with it accelerations and
-// force. Records what comes of it.
-status corrected_apply_command(corrected_run *c);
-
 // Samples the sensors and changes the command where the time for it has come.
 status corrected_run_rig(corrected_run *c, fault *f);

@@ -154,27 +154,6 @@ static status record_within(corrected_run *c, const double *times, int count)
     return failed;
 }
 
-// Records the rows of the grid before an instant [s], which lie within the step just made.
-static status record_rows_before(corrected_run *c, double instant)
-{
-    recording *r = c->recording;
-    const double interval = r->scenario->parameters.method.step;
-    double time = (double)r->state.grid_row * interval;
-    status failed = STATUS_OK;
-
-    // some at a time
-    while (failed == STATUS_OK && time < instant) {
-        double times[MOTION_TOGETHER];
-        int count = 0;
-        for (; count < MOTION_TOGETHER && time < instant; count++) {
-            times[count] = time;
-            time = (double)++r->state.grid_row * interval;
-        }
-        failed = record_within(c, times, count);
-    }
-    return failed;
-}
-
 // Records the rows of the grid that lie within the step just made, and passes over one at its end
 // if an event is there.
 static status record_grid(corrected_run *c, bool at_event)
@@ -183,10 +162,22 @@ static status record_grid(corrected_run *c, bool at_event)
     motion *m = c->motion;
     const double interval = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
     const double end = GRID_TOLERANCE * interval;
+    status failed = STATUS_OK;
 
-    // those within it, then one at its end; an event records its own rows
-    status failed = record_rows_before(c, now - end);
-    if (failed == STATUS_OK && (double)r->state.grid_row * interval <= now + end) {
+    // those within it, some at a time
+    double time = (double)r->state.grid_row * interval;
+    while (failed == STATUS_OK && time < now - end) {
+        double times[MOTION_TOGETHER];
+        int count = 0;
+        for (; count < MOTION_TOGETHER && time < now - end; count++) {
+            times[count] = time;
+            time = (double)++r->state.grid_row * interval;
+        }
+        failed = record_within(c, times, count);
+    }
+
+    // one at its end; an event records its own rows
+    if (failed == STATUS_OK && time <= now + end) {
         r->state.grid_row++;
         failed = at_event ? STATUS_OK : corrected_record_row(c, m->state, 0);
         failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
@@ -216,11 +207,11 @@ static force_step force_over_step(const motion *m)
 static int pieces_of_step(const corrected_run *c, double length, double reach)
 {
     motion *m = c->motion;
-    if (!engine_is_dense(m->engine)) {
+    if (!engine_is_dense(m->engine) || motion_held_still(m)) {
         return 1;
     }
     const double pieces = length * motion_vibration(&c->arm, m, m->trial) / reach;
-    if (!(pieces > 1) || motion_held_still(m)) {
+    if (!(pieces > 1)) {
         return 1;
     }
     const int whole = pieces < MOST_PIECES ? (int)pieces : MOST_PIECES;
@@ -258,6 +249,13 @@ int corrected_force_pieces(const corrected_run *c, double length)
                ? 0
                : pieces_of_step(c, length, FORCE_REACH);
 }
+
+// A way along the step just made: where it has come, and what it has met there.
+typedef struct way {
+    double time; // [s]
+    sensed_motion at;
+    double integral; // of the force [N s]
+} way;
 
 static way way_at(const corrected_run *c, double time, double *state)
 {
@@ -405,14 +403,15 @@ static status sense(corrected_run *c, const way *from, const way *to, double mea
     return STATUS_OK;
 }
 
-// Lets the sensors follow the arm from where w is to `last`, the force having that mean [N].
-static status follow_to(corrected_run *c, way w, const way *last, double mean)
+// Lets the sensors follow the arm over the step just made.
+static status follow_with_sensors(corrected_run *c, const force_step *whole)
 {
-    const double begin = w.time;
-    status s = follow_decay(c, &w, last->time, SENSOR_REACH, sense);
+    motion *m = c->motion;
+    way w = way_at(c, whole->start, m->trial);
+    status s = follow_decay(c, &w, whole->end, SENSOR_REACH, sense);
 
     // the rest from piece to piece
-    const double start = w.time, length = last->time - start;
+    const double start = w.time, length = whole->end - start;
     const int pieces = pieces_of_step(c, length, SENSOR_REACH);
     for (int i = 1; i < pieces && s == STATUS_OK; i++) {
         s = take_piece(c, &w, start + length * i / pieces, length / pieces, sense);
@@ -421,82 +420,12 @@ static status follow_to(corrected_run *c, way w, const way *last, double mean)
         return s;
     }
 
-    // the last piece ends where the way does
-    const bool part = w.time > begin;
-    return sense(c, &w, last, part ? (last->integral - w.integral) / (length / pieces) : mean);
-}
-
-// Lets the sensors follow the arm over the step just made, or over what is left of it.
-static status follow_with_sensors(corrected_run *c, const force_step *whole)
-{
-    const motion *m = c->motion;
-    const bool rest = c->sensed.time > whole->start;
-    const bool pressed = whole->first != 0 || whole->last != 0 || whole->mean != 0;
-    if (!pressed && sensors_at_rest(&c->recording->rig->sensors)) {
-        return STATUS_OK;
-    }
-    const way first = rest ? c->sensed : way_at(c, whole->start, m->trial);
+    // the last piece ends where the step does
     const way last = way_at(c, whole->end, m->state);
-    return follow_to(c, first, &last, rest ? 0 : whole->mean);
+    const double mean =
+        w.time > whole->start ? (last.integral - w.integral) / (length / pieces) : whole->mean;
+    return sense(c, &w, &last, mean);
 }
-
-// --- the step to come -------------------------------------------------------------------------
-
-// What is asked of the step just made, which left its start in m->trial, is asked of a dense
-// engine's next one, whose start is still the present state, between these.
-static double *look_forward(motion *m)
-{
-    double *behind = m->trial;
-    m->trial = m->state;
-    return behind;
-}
-
-static void look_back(motion *m, double *behind)
-{
-    m->trial = behind;
-}
-
-bool corrected_sensed_ahead(corrected_run *c, double time, sensed_motion *at)
-{
-    motion *m = c->motion;
-    double *behind = look_forward(m);
-    double *state = motion_between(&c->arm, m, time);
-    if (state != NULL) {
-        *at = corrected_sensed_motion(c, state);
-    }
-    look_back(m, behind);
-    return state != NULL;
-}
-
-status corrected_follow_flight(corrected_run *c, double time, const sensed_motion *at)
-{
-    motion *m = c->motion;
-    const way last = {time, *at, c->sensed.integral};
-    if (sensors_at_rest(&c->recording->rig->sensors)) {
-        c->sensed = last;
-        return STATUS_OK;
-    }
-    double *behind = look_forward(m);
-    const status s = follow_to(c, c->sensed, &last, 0);
-    look_back(m, behind);
-    c->sensed = last;
-    return s;
-}
-
-status corrected_record_rows_to(corrected_run *c, double time)
-{
-    motion *m = c->motion;
-    if (!c->recording->options->keep_trace) {
-        return STATUS_OK;
-    }
-    double *behind = look_forward(m);
-    const double interval = c->recording->scenario->parameters.method.step;
-    const status failed = record_rows_before(c, time + GRID_TOLERANCE * interval);
-    look_back(m, behind);
-    return failed;
-}
-
-// --- the step just made -----------------------------------------------------------------------
 
 status corrected_record_step(corrected_run *c, bool at_event)
 {

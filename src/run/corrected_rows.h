@@ -5,13 +5,6 @@
 #include "src/solve/contact_machine.h"
 #include "src/solve/pace.h"
 
-// A way along a step: where it has come, and what it has met there.
-typedef struct way {
-    double time; // [s]
-    sensed_motion at;
-    double integral; // of the force [N s]
-} way;
-
 typedef struct corrected_run {
     recording *recording;
     motion *motion;
@@ -21,8 +14,6 @@ typedef struct corrected_run {
     double last_event; // in it, -1 if none [s]
     int at_once;       // events in a row without time passing
     pace pace;         // of the whole run
-    double horizon;    // an instant that no step is to go beyond, HUGE_VAL without one [s]
-    way sensed;        // up to where the sensors have followed the arm in the step in hand
 
     arm arm; // with the command in force
 } corrected_run;
@@ -41,18 +32,6 @@ status corrected_record_row(corrected_run *c, double *state, double impulse);
 // Records the step just made: force, separation, ledger, and the rows of the grid that lie within
 // it; of one at its end only if there is no event, which records rows of its own.
 status corrected_record_step(corrected_run *c, bool at_event);
-
-// Records the rows of the grid up to an instant [s] within the step to come, which motion_look_far
-// has looked at.
-status corrected_record_rows_to(corrected_run *c, double time);
-
-// What the sensors are fixed to at an instant [s] of the step to come, in flight. False if the
-// state there cannot be had.
-bool corrected_sensed_ahead(corrected_run *c, double time, sensed_motion *at);
-
-// Lets the sensors follow an arm in flight to an instant [s] of the step to come, where it has come
-// to `at`. STATUS_NOT_FINITE if a state on the way cannot be had.
-status corrected_follow_flight(corrected_run *c, double time, const sensed_motion *at);
 
 // In how many pieces the force over a step of this length [s] is kept that the motion makes in
 // contact.

@@ -42,7 +42,6 @@ static status corrected_stride_until(stepped_run *run, double until, fault *f)
 {
     // where it stops by itself it is the stride of a run that nobody steps, to the last bit
     corrected_run *c = &run->corrected;
-    c->horizon = until;
     if (until < c->stop) {
         c->motion->cut = fmin(c->motion->cut, until);
     }

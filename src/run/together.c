@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "src/run/corrected.h"
-#include "src/run/corrected_samples.h"
 #include "src/run/recording_frame.h"
 #include "src/run/run.h"
 #include "src/solve/taylor_lanes.h"
@@ -192,8 +191,8 @@ static void serve(side_by_side *group)
         fetch_run(&group->in_hand[chosen[i]]);
     }
     for (int i = 0; i < count; i++) {
-        corrected_run *run = &group->in_hand[chosen[i]].run;
-        corrected_look_ahead(run);
+        const corrected_run *run = &group->in_hand[chosen[i]].run;
+        motion_look_ahead(&run->arm, run->motion, run->stop, run->recording->now.method.step);
         const double length = run->motion->ahead.length;
         const int pieces = lanes[i]->form.contact ? corrected_force_pieces(run, length) : 0;
         ends[i] = (taylor_end){length, pieces};
