@@ -1,6 +1,7 @@
+// Built once for each width of the processor's vectors, which is WIDTH (by_width.h).
 #include "src/solve/chain_loops.h"
 
-#include "src/solve/taylor_lanes.h"
+#include "src/solve/by_width.h"
 
 // Blocks are handed to inline functions of this file only.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -31,7 +32,7 @@ LOOP block lane_before(const block *last, double before)
     return (block){before, l[0], l[1], l[2], l[3], l[4], l[5], l[6]};
 }
 
-LOOP void loop_join(chain_rows *r)
+static void loop_join(chain_rows *r)
 {
     // from a stretch's outer end inwards
     double **m = r->matrix, **in = r->inwards, **out = r->outwards;
@@ -156,7 +157,7 @@ LOOP void first_products(chain_rows *r, int n, int b)
     AT(r->moment, b) = moment;
 }
 
-LOOP void loop_products(chain_rows *r, const chain_order *o)
+static void loop_products(chain_rows *r, const chain_order *o)
 {
     const int later = o->n % SERIES_TOGETHER;
     for (int b = 0; b < r->blocks; b++) {
@@ -170,7 +171,7 @@ LOOP void loop_products(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_bends(chain_rows *r, const chain_order *o)
+static void loop_bends(chain_rows *r, const chain_order *o)
 {
     const int last = r->blocks - 1;
     for (int b = 0; b <= last; b++) {
@@ -185,7 +186,7 @@ LOOP void loop_bends(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_prepare(chain_rows *r, const chain_order *o)
+static void loop_prepare(chain_rows *r, const chain_order *o)
 {
     const block turns = all(o->n + 1);
     block inner = lane_before(&AT(r->torque, r->blocks - 1), -o->root);
@@ -203,7 +204,7 @@ LOOP void loop_prepare(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_sweep(chain_rows *r)
+static void loop_sweep(chain_rows *r)
 {
     double **m = r->matrix, **in = r->inwards, **out = r->outwards;
     const int last = r->blocks - 1;
@@ -256,7 +257,7 @@ LOOP void loop_sweep(chain_rows *r)
     }
 }
 
-LOOP void loop_finish(chain_rows *r, const chain_order *o)
+static void loop_finish(chain_rows *r, const chain_order *o)
 {
     const int n = o->n;
     const block per_rate = all(1.0 / (n + 1)), per_angle = all(1.0 / (n + 2)), push = all(o->force);
@@ -277,7 +278,7 @@ LOOP void loop_finish(chain_rows *r, const chain_order *o)
     }
 }
 
-LOOP void loop_hand(chain_rows *r, const chain_order *o)
+static void loop_hand(chain_rows *r, const chain_order *o)
 {
     const int last = r->blocks - 1;
     for (int b = 0; b <= last; b++) {
@@ -289,53 +290,5 @@ LOOP void loop_hand(chain_rows *r, const chain_order *o)
     }
 }
 
-// --- for every width ----------------------------------------------------------------------------
-
-#define LOOPS(name, target_)                                                                       \
-    target_ static void join_##name(chain_rows *r)                                                 \
-    {                                                                                              \
-        loop_join(r);                                                                              \
-    }                                                                                              \
-    target_ static void products_##name(chain_rows *r, const chain_order *o)                       \
-    {                                                                                              \
-        loop_products(r, o);                                                                       \
-    }                                                                                              \
-    target_ static void bends_##name(chain_rows *r, const chain_order *o)                          \
-    {                                                                                              \
-        loop_bends(r, o);                                                                          \
-    }                                                                                              \
-    target_ static void prepare_##name(chain_rows *r, const chain_order *o)                        \
-    {                                                                                              \
-        loop_prepare(r, o);                                                                        \
-    }                                                                                              \
-    target_ static void sweep_##name(chain_rows *r)                                                \
-    {                                                                                              \
-        loop_sweep(r);                                                                             \
-    }                                                                                              \
-    target_ static void finish_##name(chain_rows *r, const chain_order *o)                         \
-    {                                                                                              \
-        loop_finish(r, o);                                                                         \
-    }                                                                                              \
-    target_ static void hand_##name(chain_rows *r, const chain_order *o)                           \
-    {                                                                                              \
-        loop_hand(r, o);                                                                           \
-    }                                                                                              \
-    static const chain_loops loops_##name = {join_##name,    products_##name, bends_##name,        \
-                                             prepare_##name, sweep_##name,    finish_##name,       \
-                                             hand_##name}
-
-LOOPS(plain, );
-#if defined(__x86_64__)
-LOOPS(avx2, __attribute__((target("avx2"))));
-LOOPS(avx512, __attribute__((target("avx512f,avx512dq,avx512vl"))));
-#endif
-
-const chain_loops *chain_loops_here(void)
-{
-#if defined(__x86_64__)
-    const int width = taylor_width();
-    return width >= 8 ? &loops_avx512 : width >= 4 ? &loops_avx2 : &loops_plain;
-#else
-    return &loops_plain;
-#endif
-}
+const chain_loops GLUE(chain_loops_, WIDTH) = {loop_join,  loop_products, loop_bends, loop_prepare,
+                                               loop_sweep, loop_finish,   loop_hand};

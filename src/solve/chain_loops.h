@@ -86,5 +86,5 @@ typedef struct chain_loops {
     void (*hand)(chain_rows *r, const chain_order *o); // G, from the forces at the bases
 } chain_loops;
 
-// Those for this processor, or for vectors as narrow as taylor_limit_width (taylor_lanes.h) takes.
-const chain_loops *chain_loops_here(void);
+// Those built for each width (by_width.h).
+extern const chain_loops chain_loops_1, chain_loops_2, chain_loops_4, chain_loops_8;

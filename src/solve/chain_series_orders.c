@@ -5,7 +5,9 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "src/solve/by_width.h"
 #include "src/solve/chain_series_parts.h"
+#include "src/solve/taylor_lanes.h"
 
 #define REACH       6.0   // of the fastest mode or decay in a stride
 #define TURNING     1.2   // rotation counts so many times
@@ -309,7 +311,7 @@ void chain_series_compute(chain_series *s, const arm *a, const double *q, const 
 {
     assert(s != NULL && a != NULL && q != NULL && w != NULL && length > 0 && last_terms > 0);
     assert(a->links == s->links);
-    const chain_loops *loops = chain_loops_here();
+    const chain_loops *loops = BY_WIDTH(&chain_loops_, taylor_width());
     chain_rows *r = &s->rows;
     const size_t size = (size_t)(r->blocks * SERIES_LANES) * sizeof(double);
     s->pinned = s->mode.contact && !s->gives && a->dof == 1;

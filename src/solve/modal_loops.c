@@ -1,8 +1,7 @@
+// Built once for each width of the processor's vectors, which is WIDTH (by_width.h).
 #include "src/solve/modal_loops.h"
 
 #include <assert.h>
-
-#include "src/solve/taylor_lanes.h"
 
 // Vectors are handed to inline functions of this file only.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -18,17 +17,7 @@ typedef double loose __attribute__((vector_size(8 * LANES), aligned(8), may_alia
 
 static_assert(LANES == MODAL_LANES, "arrays go on to whole vectors");
 
-const double modal_to_powers[MODAL_NODES][MODAL_NODES] = {
-    {1, 0, 0, 0, 0, 0},
-    {-15, 20.2828318726393386, -8.07237454061069601, 4.48936929635233365, -2.6998266283809762, 1},
-    {70, -131.581984462996828, 98.4982356860737689, -60.3544529094590041, 37.4382016863820634, -14},
-    {-140, 299.687857326012612, -289.4574355386068, 220.335880473893995, -146.566302261299807, 56},
-    {126, -288.460915381973069, 320.199031477787411, -285.638253945431009, 211.900137849616667,
-     -84},
-    {-42, 100.072210646317947, -121.167457084643684, 121.167457084643684, -100.072210646317947,
-     42}};
-
-KERNEL void loop_momenta(const modal_stride *s, const modal_table *at, double *x, double *y)
+static void loop_momenta(const modal_stride *s, const modal_table *at, double *x, double *y)
 {
     // every mode for itself: from its start, then what the polynomials do to it
     for (int k = 0; k < s->row; k += LANES) {
@@ -53,7 +42,7 @@ KERNEL double total(real x)
     return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
 }
 
-KERNEL double loop_fit(modal_stride *s)
+static double loop_fit(modal_stride *s)
 {
     const modal_table *end = &s->at[MODAL_NODES - 1];
     double scale[MODAL_NODES] = {1}; // j! / length^j
@@ -109,7 +98,7 @@ KERNEL double loop_fit(modal_stride *s)
     return total(square);
 }
 
-KERNEL void loop_leave_out(const modal_stride *s, double t, double *x, double *y)
+static void loop_leave_out(const modal_stride *s, double t, double *x, double *y)
 {
     const double slowest = s->shown_turn / s->length;
     double power[MODAL_NODES] = {1}; // t^j / j!
@@ -132,7 +121,7 @@ KERNEL void loop_leave_out(const modal_stride *s, double t, double *x, double *y
     }
 }
 
-KERNEL void loop_take(const modal_stride *s, int point, const double *x, const double *y,
+static void loop_take(const modal_stride *s, int point, const double *x, const double *y,
                       const double *modal)
 {
     double *drifts = s->drifts[point], *forces = s->forces[point];
@@ -147,7 +136,7 @@ KERNEL void loop_take(const modal_stride *s, int point, const double *x, const d
     }
 }
 
-KERNEL void loop_walk(const modal_stride *s, modal_walk *w)
+static void loop_walk(const modal_stride *s, modal_walk *w)
 {
     const modal_table *at = &w->at;
     double step[MODAL_NODES] = {1}; // step^n / n!
@@ -239,7 +228,7 @@ KERNEL void moments(const modal_stride *s, int k, const double *term, const real
     }
 }
 
-KERNEL void loop_losses(const modal_stride *s, modal_mode_losses *l)
+static void loop_losses(const modal_stride *s, modal_mode_losses *l)
 {
     double term[MODAL_NODES] = {1}; // t^j / j!
     for (int j = 1; j < MODAL_NODES; j++) {
@@ -275,7 +264,7 @@ KERNEL void loop_losses(const modal_stride *s, modal_mode_losses *l)
     }
 }
 
-KERNEL glance loop_decay(modal_decays *d)
+static glance loop_decay(modal_decays *d)
 {
     real value = {0}, slope = {0};
     for (int k = 0; k < d->count; k += LANES) {
@@ -287,55 +276,5 @@ KERNEL glance loop_decay(modal_decays *d)
     return (glance){total(value), total(slope)};
 }
 
-// --- for every width ----------------------------------------------------------------------------
-
-#define LOOPS(name, target_)                                                                       \
-    target_ static void momenta_##name(const modal_stride *s, const modal_table *at, double *x,    \
-                                       double *y)                                                  \
-    {                                                                                              \
-        loop_momenta(s, at, x, y);                                                                 \
-    }                                                                                              \
-    target_ static double fit_##name(modal_stride *s)                                              \
-    {                                                                                              \
-        return loop_fit(s);                                                                        \
-    }                                                                                              \
-    target_ static void leave_out_##name(const modal_stride *s, double t, double *x, double *y)    \
-    {                                                                                              \
-        loop_leave_out(s, t, x, y);                                                                \
-    }                                                                                              \
-    target_ static void take_##name(const modal_stride *s, int point, const double *x,             \
-                                    const double *y, const double *modal)                          \
-    {                                                                                              \
-        loop_take(s, point, x, y, modal);                                                          \
-    }                                                                                              \
-    target_ static void walk_##name(const modal_stride *s, modal_walk *w)                          \
-    {                                                                                              \
-        loop_walk(s, w);                                                                           \
-    }                                                                                              \
-    target_ static void losses_##name(const modal_stride *s, modal_mode_losses *l)                 \
-    {                                                                                              \
-        loop_losses(s, l);                                                                         \
-    }                                                                                              \
-    target_ static glance decay_##name(modal_decays *d)                                            \
-    {                                                                                              \
-        return loop_decay(d);                                                                      \
-    }                                                                                              \
-    static const modal_loops loops_##name = {momenta_##name, fit_##name,  leave_out_##name,        \
-                                             take_##name,    walk_##name, losses_##name,           \
-                                             decay_##name}
-
-LOOPS(plain, );
-#if defined(__x86_64__)
-LOOPS(avx2, __attribute__((target("avx2"))));
-LOOPS(avx512, __attribute__((target("avx512f,avx512dq,avx512vl"))));
-#endif
-
-const modal_loops *modal_loops_here(void)
-{
-#if defined(__x86_64__)
-    const int width = taylor_width();
-    return width >= 8 ? &loops_avx512 : width >= 4 ? &loops_avx2 : &loops_plain;
-#else
-    return &loops_plain;
-#endif
-}
+const modal_loops GLUE(modal_loops_, WIDTH) = {loop_momenta, loop_fit,    loop_leave_out, loop_take,
+                                               loop_walk,    loop_losses, loop_decay};

@@ -49,3 +49,6 @@ typedef struct modal_loops {
 
 // Those for this processor, or for vectors as narrow as taylor_limit_width (taylor_lanes.h) takes.
 const modal_loops *modal_loops_here(void);
+
+// Those built for each width (by_width.h).
+extern const modal_loops modal_loops_1, modal_loops_2, modal_loops_4, modal_loops_8;

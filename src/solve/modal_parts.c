@@ -1,16 +1,23 @@
-#include "src/solve/modal_loops.h"
 #include "src/solve/modal_parts.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "src/base/sincos.h"
+#include "src/solve/by_width.h"
+#include "src/solve/modal_loops.h"
+#include "src/solve/taylor_lanes.h"
 
 #define REACH_STEP 1.05
 #define MOST_REACH 1e3 // a fold of the arm would have any
 
 typedef double real;
 #include "src/solve/modal_straight.h"
+
+const modal_loops *modal_loops_here(void)
+{
+    return BY_WIDTH(&modal_loops_, taylor_width());
+}
 
 // --- the linear part --------------------------------------------------------------------------
 

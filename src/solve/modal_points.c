@@ -1,5 +1,6 @@
 #include "src/solve/modal_points.h"
 
+#include "src/solve/by_width.h"
 #include "src/solve/modal_loops.h"
 #include "src/solve/taylor_lanes.h"
 
@@ -14,18 +15,6 @@ void modal_sweep_points(modal_stride *s, const arm *a, const double *q, int firs
 {
     const int width = taylor_width();
     for (int point = first; point < MODAL_NODES; point += width) {
-#if defined(__x86_64__)
-        if (width == 8) {
-            modal_sweep_points_8(s, a, q, point);
-        } else if (width == 4) {
-            modal_sweep_points_4(s, a, q, point);
-        } else if (width == 2) {
-            modal_sweep_points_2(s, a, q, point);
-        } else {
-            modal_sweep_points_1(s, a, q, point);
-        }
-#else
-        modal_sweep_points_1(s, a, q, point);
-#endif
+        BY_WIDTH(modal_sweep_points_, width)(s, a, q, point);
     }
 }

@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "src/solve/by_width.h"
 #include "src/solve/taylor_lanes.h"
 
 static atomic_int limit; // 0: none
@@ -49,14 +50,6 @@ void taylor_compute_one(taylor_lane *lane)
 
 // --- by width ---------------------------------------------------------------------------------
 
-// The routine of a name for vectors of a width.
-#if defined __x86_64__
-#define OF_WIDTH(name, width)                                                                      \
-    ((width) == 8 ? name##8 : (width) == 4 ? name##4 : (width) == 2 ? name##2 : name##1)
-#else
-#define OF_WIDTH(name, width) ((void)(width), name##1)
-#endif
-
 // Copies the first AT_INPUTS places of the arms' own blocks into lanes; those left over repeat the
 // first, and nobody reads what comes of them.
 static inline __attribute__((always_inline)) void put_inputs(taylor_lane *const *lanes, int count,
@@ -90,7 +83,7 @@ void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
     } else {
         put_inputs(lanes, count, 2, group->block);
     }
-    group->form.order = OF_WIDTH(taylor_series_, group->width)(group->block, group->form);
+    group->form.order = BY_WIDTH(taylor_series_, group->width)(group->block, group->form);
 
     // each knows where its own are, and what its stride leaves
     for (int i = 0; i < count; i++) {
@@ -118,7 +111,7 @@ void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_
     for (int i = 0; i < group->width; i++) {
         group->ends.time[i] = ends[i < count ? i : 0].time;
     }
-    OF_WIDTH(taylor_ends_, group->width)(group->block, group->form, &group->ends);
+    BY_WIDTH(taylor_ends_, group->width)(group->block, group->form, &group->ends);
 
     // the force on the way there
     int most = 0;
@@ -133,7 +126,7 @@ void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_
         }
     }
     if (group->form.contact && most > 1) {
-        OF_WIDTH(taylor_pieces_, group->width)
+        BY_WIDTH(taylor_pieces_, group->width)
         (group->block, group->form.order, most, &group->pieces);
     }
 }
@@ -200,5 +193,5 @@ void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at)
         return;
     }
 #endif
-    OF_WIDTH(taylor_instants_, width)(lane->block, form, at);
+    BY_WIDTH(taylor_instants_, width)(lane->block, form, at);
 }

@@ -8,11 +8,10 @@
 #include <string.h>
 
 #include "src/base/sincos.h"
+#include "src/solve/by_width.h"
 #include "src/solve/taylor_series.h"
 
-#define GLUE_(a, b) a##b
-#define GLUE(a, b)  GLUE_(a, b)
-#define KERNEL      static inline __attribute__((always_inline))
+#define KERNEL static inline __attribute__((always_inline))
 
 #if LANES == 1
 typedef double real;
