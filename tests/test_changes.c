@@ -142,6 +142,20 @@ static void test_predictors_take_the_voltage_in_force(void **state)
     explorer_finish(&ex);
 }
 
+static void test_predictors_say_that_they_know_two_links(void **state)
+{
+    (void)state;
+    explorer ex;
+    static const char said[] = "the first two know two links";
+    open_explorer(&ex, "corrected/five-links");
+    assert_shows(&ex, said);
+    press(&ex, ":set arm.links 2<Enter>");
+    assert_hides(&ex, said);
+    press(&ex, ":set arm.links 1<Enter>");
+    assert_shows(&ex, said);
+    explorer_finish(&ex);
+}
+
 static void test_changes_to_come_are_seen_edited_and_dropped(void **state)
 {
     (void)state;
@@ -488,6 +502,7 @@ int main(void)
         cmocka_unit_test(test_a_change_comes_before_the_contact_it_was_made_before),
         cmocka_unit_test(test_what_has_no_effect_says_why),
         cmocka_unit_test(test_predictors_take_the_voltage_in_force),
+        cmocka_unit_test(test_predictors_say_that_they_know_two_links),
         cmocka_unit_test(test_changes_to_come_are_seen_edited_and_dropped),
         cmocka_unit_test(test_nudges_are_one_change_and_reversible),
         cmocka_unit_test(test_saving_never_replaces_a_file_unasked),

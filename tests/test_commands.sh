@@ -121,6 +121,15 @@ expect 0 robust hit.yaml --set control.force=1 --laws hybrid,force-pd --runs 3 -
 [ "$(grep -c '^| *\(hybrid\|force-pd\) *|' table.md)" = 2 ] || fail "a law has no row: $(cat table.md)"
 [ "$(grep '^|' table.md | tr -cd '|\n' | sort -u | wc -l)" = 1 ] || fail "the table's lines have not equal columns"
 
+# --- a law gets of control.settings what it has, and a word that no law has is refused
+expect 0 robust compare/least-time --laws hybrid,impedance --runs 2 --set "control.settings=wall_doubt=0 stiffness=20" --csv mixed.csv
+says err "hybrid runs without 'wall_doubt=0 stiffness=20'"
+says err "impedance runs without 'wall_doubt=0'"
+expect 0 robust compare/least-time --laws impedance --runs 2 --set control.settings=stiffness=20 --csv stiff.csv --quiet
+grep -q ^impedance stiff.csv || fail "robust has no row for impedance"
+grep ^impedance mixed.csv | cmp - <(grep ^impedance stiff.csv) || fail "impedance does not get its settings"
+expect 1 robust compare/least-time --laws hybrid --runs 2 --set control.settings=nonsense=1 --quiet
+
 # --- a plot without a name of its own has its recipe's
 expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --vary arm.k2=4:6:2 --db map.sqlite --quiet
 printf 'tables:\n  - {file: map.sqlite, x: motor.voltage, y: arm.k2, z: peak_force_N}\npanels:\n  - {weight: 2}\n' >map.yaml

@@ -67,9 +67,9 @@ typedef struct setting {
     size_t length, name_length; // without '=' the name is the whole word
 } setting;
 
-static setting setting_at(const char *word)
+static setting setting_of(const char *word, size_t length)
 {
-    setting s = {.word = word, .length = strcspn(word, " ")};
+    setting s = {.word = word, .length = length};
     const char *equals = memchr(word, '=', s.length);
     s.name_length = equals != NULL ? (size_t)(equals - word) : s.length;
     return s;
@@ -85,6 +85,12 @@ static int find_named(const controller *law, setting s)
         }
     }
     return -1;
+}
+
+bool controller_takes_setting(const controller *law, const char *word, size_t length)
+{
+    assert(law != NULL && word != NULL);
+    return find_named(law, setting_of(word, length)) >= 0;
 }
 
 static status refuse_name(const controller *law, setting s, fault *f)
@@ -151,7 +157,7 @@ status controller_values(const controller *law, const parameters *p, double *val
     status code = STATUS_OK;
     const char *rest = p->control.law == LAW_PROCESS ? "" : p->control.settings;
     while (code == STATUS_OK && *(rest += strspn(rest, " ")) != '\0') {
-        setting s = setting_at(rest);
+        setting s = setting_of(rest, strcspn(rest, " "));
         code = read_setting(law, s, values, f);
         rest += s.length;
     }

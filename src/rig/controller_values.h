@@ -16,3 +16,6 @@ controller_parameter controller_parameter_at(const controller *law, int index);
 // alone. STATUS_BAD_SCENARIO, with a sentence in f, on a setting that the controller does not have
 // or a value out of its range.
 status controller_values(const controller *law, const parameters *p, double *values, fault *f);
+
+// Whether the controller has the parameter that a word "NAME=VALUE" of control.settings names.
+bool controller_takes_setting(const controller *law, const char *word, size_t length);

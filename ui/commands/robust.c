@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "render/plot/robust_plot.h"
+#include "src/rig/controller_values.h"
+#include "src/rig/rig.h"
 #include "src/study/robust.h"
 #include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"
@@ -190,6 +192,51 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     return result;
 }
 
+// Whether a word of control.settings, "NAME=VALUE", is of the scenario's own law or of another one
+// that is judged. A plug-in's and a program's are known to them alone.
+static bool is_setting_of_others(const robustness *r, const char *word, size_t length)
+{
+    const int own = r->scenario.parameters.control.law, laws = r->count + (r->against == r->count);
+    if (own != LAW_NONE && controller_of(own) == NULL) {
+        return true;
+    }
+    bool known = own != LAW_NONE && controller_takes_setting(controller_of(own), word, length);
+    for (int i = 0; i < laws && !known; i++) {
+        const controller *law = controller_of(r->laws[i]);
+        known = law != NULL && controller_takes_setting(law, word, length);
+    }
+    return known;
+}
+
+// Leaves a law those settings that it has, and says which it does without (`tell`). What no law has
+// stays, and is refused.
+static void fit_settings(const robustness *r, int law, control_parameters *control, bool tell)
+{
+    const controller *known = controller_of(law);
+    char kept[sizeof control->settings] = "", left[sizeof control->settings] = "";
+    if (law == r->scenario.parameters.control.law || known == NULL) {
+        return;
+    }
+
+    // word by word
+    size_t length;
+    for (const char *word = control->settings; *(word += strspn(word, " ")) != '\0';
+         word += length) {
+        length = strcspn(word, " ");
+        bool stays =
+            controller_takes_setting(known, word, length) || !is_setting_of_others(r, word, length);
+        char *list = stays ? kept : left;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof kept - used, "%s%.*s", used > 0 ? " " : "", (int)length, word);
+    }
+
+    memcpy(control->settings, kept, sizeof kept);
+    if (tell && left[0] != '\0') {
+        complain("%s runs without '%s' of control.settings, which it does not have",
+                 control_law_table[law].word, left);
+    }
+}
+
 // A law under case k of the set, -1: under the scenario as it is. The same draws for every law.
 static int run_law(robustness *r, const scenario *base, int which, int k)
 {
@@ -203,6 +250,7 @@ static int run_law(robustness *r, const scenario *base, int which, int k)
                              .seed = r->arguments->seed};
     under.parameters.control.law = r->laws[which];
     under.parameters.set[PARAMETER_INDEX(control.law)] = 1;
+    fit_settings(r, r->laws[which], &under.parameters.control, k <= 0 && !r->arguments->quiet);
     if (parameters_resolve(&under.parameters, &f) != STATUS_OK ||
         sweep_init(&s, &under, &request, &f) != STATUS_OK) {
         return complain_fault(&f);
@@ -358,9 +406,9 @@ const command robust_command = {
         "the\ntip's largest speed towards the wall in the air after first contact, over that "
         "before it.\n\n"
         "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with the "
-        "worst of the\nruns of each. Ctrl-C finishes the runs in hand, within five seconds (exit "
-        "status 130); with "
-        "--db they are kept.\n",
+        "worst of the\nruns of each. Of control.settings each law gets those that it has.\n\n"
+        "Ctrl-C finishes the runs in hand, within five seconds (exit status 130); with --db they "
+        "are kept.\n",
     .least = 1,
     .most = 1,
     .takes_scenarios = true,

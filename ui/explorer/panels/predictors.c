@@ -132,6 +132,12 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
                  touches ? "when it touched: peak" : "if it touched now: peak");
 
+    // the thesis's two know no other number of links
+    if (session_parameters_at(e, e->now).arm.links != 2) {
+        screen_text(s, a.x + 2, a.y + a.height - 1, a.width - 4, INK_DIM,
+                    " the first two know two links ");
+    }
+
     // what the predictors say
     static const predictor asked[] = {PREDICTOR_ENERGY, PREDICTOR_IMPACT_DYNAMICS,
                                       PREDICTOR_LINEARISED};
