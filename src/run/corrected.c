@@ -232,13 +232,18 @@ static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char 
     va_end(values);
 }
 
-// How far an arm turns or bends that has so much energy [J] [rad]: the beam as one spring, or one
-// rigid link in the time [s] it has.
+// The beam as one spring, 0: one link on a rigid hub [N m/rad].
+static double beam_stiffness(const arm *a)
+{
+    return a->links > 1 ? 2 * a->joint_stiffness / a->links : a->hub_stiffness;
+}
+
+// How far so much energy [J] bends the beam, or turns one rigid link in the time [s] it has [rad].
 static double turn_of_energy(const arm *a, double energy, double duration)
 {
     const double length = a->links * a->link_length;
     const double inertia = a->hub_inertia + a->links * a->link_mass * length * length / 3;
-    const double beam = a->links > 1 ? 2 * a->joint_stiffness / a->links : a->hub_stiffness;
+    const double beam = beam_stiffness(a);
     return sqrt(energy / (beam > 0 ? beam : inertia / (duration * duration)));
 }
 
@@ -258,9 +263,10 @@ static void judge_size(const corrected_run *c, double energy)
     if (size > 0 && size < (isnan(s->first_contact_s) ? SMALL_FLIGHT : SMALL_CONTACT)) {
         s->inaccurate = true;
         remark(s,
-               "with the %.3g J put in the arm moves so little (by some %.2g rad, %.2g m at the "
-               "tip, with torques of %.2g N m) that the tolerances of contact and friction show",
-               energy, turn, travel, torque);
+               "the %.3g J put in %s by some %.2g rad only (%.2g m at the tip, with torques of "
+               "%.2g N m), so little that the tolerances of contact and friction show",
+               energy, beam_stiffness(a) > 0 ? "bend the beam" : "turn the arm", turn, travel,
+               torque);
     }
 }
 
