@@ -11,7 +11,6 @@
 #include "render/figures/figures.h"
 #include "render/figures/report.h"
 #include "render/page/text.h"
-#include "src/base/csv.h"
 #include "tests/rect_check.h"
 
 // fontconfig keeps its cache until the process ends

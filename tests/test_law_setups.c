@@ -2,7 +2,6 @@
 // A law works with them, or says why it cannot.
 #include <string.h>
 
-#include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
 // The run under these settings cannot be made, and the sentence says why.

@@ -3,7 +3,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "src/arm/arm.h"
 #include "src/arm/printed_arm.h"
 #include "src/base/dense.h"
 

@@ -1,7 +1,6 @@
 // Reading scenarios: what a file may say, and the place and sentence of everything it may not.
 #include "tests/scenario_fixture.h"
 
-#include "src/base/numbers.h"
 #include "src/run/run.h"
 
 // ---- what a file may say ------------------------------------------------------------------------

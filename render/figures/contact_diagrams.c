@@ -1,5 +1,4 @@
 // Figures 3.1 and 4.6: the arm in contact, at two successive steps and at its largest deformation.
-#include <assert.h>
 #include <math.h>
 
 #include "render/figures/diagram.h"

@@ -1,7 +1,5 @@
 // Figure 2.1: the force sensor's circuit and its curve.
 #include <glib.h>
-#include <math.h>
-#include <string.h>
 
 #include "render/figures/diagram.h"
 #include "render/figures/figures.h"

@@ -2,12 +2,10 @@
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
-#include <string.h>
 
 #include "render/figures/diagram.h"
 #include "render/figures/figures.h"
 #include "render/page/text.h"
-#include "render/plot/opened_run.h"
 #include "src/base/numbers.h"
 
 #define DEGREE     (G_PI / 180)

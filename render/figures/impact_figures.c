@@ -1,7 +1,6 @@
 // Figures of one impact: the force pulse, and what the thesis's predictors assume of the motion.
 #include "render/figures/figures.h"
 
-#include <assert.h>
 #include <glib.h>
 #include <math.h>
 #include <string.h>

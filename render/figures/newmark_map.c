@@ -132,6 +132,19 @@ static void describe_panel(newmark_map *m, int panel)
         .series_count = m->layer_count};
 }
 
+// Frees a map and its context.
+static void newmark_map_destroy(void *what)
+{
+    newmark_map *m = what;
+    if (m->release != NULL) {
+        m->release(m->context);
+    }
+    g_free(m->title);
+    g_free(m->caption);
+    g_free(m->parameters);
+    g_free(m);
+}
+
 artwork newmark_map_open(newmark_map *m, const figure_options *o)
 {
     assert(m != NULL && o != NULL && m->title != NULL);
@@ -153,16 +166,4 @@ artwork newmark_map_open(newmark_map *m, const figure_options *o)
     artwork drawn = artwork_of_figure(&m->figure, m, newmark_map_destroy);
     drawn.cells = true;
     return drawn;
-}
-
-void newmark_map_destroy(void *what)
-{
-    newmark_map *m = what;
-    if (m->release != NULL) {
-        m->release(m->context);
-    }
-    g_free(m->title);
-    g_free(m->caption);
-    g_free(m->parameters);
-    g_free(m);
 }

@@ -42,6 +42,3 @@ void newmark_map_add_rings(newmark_map *m, const char *name, const char *label);
 
 // Describes the figure and takes the map over.
 artwork newmark_map_open(newmark_map *m, const figure_options *o);
-
-// Frees a map and its context.
-void newmark_map_destroy(void *m);

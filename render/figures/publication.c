@@ -1,7 +1,6 @@
 #include "render/figures/publication.h"
 
 #include <assert.h>
-#include <math.h>
 #include <string.h>
 
 #include "render/page/text.h"
@@ -77,7 +76,8 @@ static const replacement replacements[] = {
     {"^", "\\textasciicircum{}"},
 };
 
-char *latex_of_markup(const char *markup)
+// Pango markup as LaTeX: italics, indices, Greek letters and signs. Free the result with g_free.
+static char *latex_of_markup(const char *markup)
 {
     assert(markup != NULL);
     GString *out = g_string_new(NULL);

@@ -24,9 +24,3 @@ status caption_write(const artwork *a, const char *file, fault *f);
 // Prints a figure environment: the picture as seen from the folder of the .tex file, with its
 // width, alternative text, caption and the label fig:NAME of the picture's own name.
 void latex_print(FILE *stream, const artwork *a, const char *tex, const char *file);
-
-// Writes the collected environments. STATUS_CANNOT_WRITE with the path.
-status latex_write(const char *tex, const GString *text, fault *f);
-
-// Pango markup as LaTeX: italics, indices, Greek letters and signs. Free the result with g_free.
-char *latex_of_markup(const char *markup);

@@ -1,14 +1,11 @@
 #include "render/figures/recipe.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "render/figures/publication.h"
 #include "render/figures/recipe_figure.h"
 #include "render/figures/recipe_parts.h"
-#include "render/page/text.h"
 #include "render/plot/opened_run.h"
 #include "render/plot/overlay.h"
 #include "src/base/version.h"

@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <glib.h>
-#include <math.h>
 #include <string.h>
 
 #include "render/figures/figures.h"
@@ -11,7 +10,6 @@
 #include "render/figures/run_figure.h"
 #include "render/page/text.h"
 #include "render/plot/opened_run.h"
-#include "src/base/whole_file.h"
 #include "src/base/version.h"
 
 report_item *report_item_at(const report *r, guint index)

@@ -63,9 +63,6 @@ typedef struct figure_report {
     int text_count;
 } figure_report;
 
-// Size of an index in a line of letters of the given size [pt].
-double index_letters(double size);
-
 // Adds a text with letters of a size on the page [pt] and its place on the page to a report (may be
 // NULL).
 void report_add_text(figure_report *report, const char *markup, double size, figure_rect place);

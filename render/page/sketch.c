@@ -179,7 +179,8 @@ void sketch_end(sketch *s)
 
 // ---- lines
 
-colour sketch_colour(const sketch *s, int slot)
+// The colour of a palette slot, SKETCH_INK or SKETCH_FAINT.
+static colour sketch_colour(const sketch *s, int slot)
 {
     assert(s != NULL);
     if (slot == SKETCH_FAINT) {

@@ -44,9 +44,8 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
                     fault *f);
 void sketch_end(sketch *s);
 
-// The colour of a palette slot, and that of axes and text (slot -1).
+// Instead of a palette slot: the colours of axes and text, and of what stands back.
 enum { SKETCH_INK = -1, SKETCH_FAINT = -2 };
-colour sketch_colour(const sketch *s, int slot);
 
 // A place on the page, or in a model that is drawn [pt, m].
 typedef struct point {

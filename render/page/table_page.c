@@ -58,7 +58,7 @@ static char **row_cells(const table_page *t, guint row)
     return g_ptr_array_index(t->rows, row);
 }
 
-bool table_row_is_group(const table_page *t, guint row)
+static bool table_row_is_group(const table_page *t, guint row)
 {
     assert(t != NULL && row < t->rows->len);
     return t->column_count > 1 && row_cells(t, row)[1] == NULL;

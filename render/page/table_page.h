@@ -31,8 +31,6 @@ void table_add_row(table_page *t, const char *const *cells);
 void table_add_group(table_page *t, const char *heading);
 void table_finish(table_page *t);
 
-bool table_row_is_group(const table_page *t, guint row);
-
 void table_size(const table_page *t, double *width, double *height);
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f);
 

@@ -163,6 +163,12 @@ static size_t apostrophe_length(const char *start, const char *mark)
     return within ? length : 0;
 }
 
+// Size of an index in a line of letters of the given size [pt].
+static double index_letters(double size)
+{
+    return fmax(INDEX_SIZE * size, fmin(size, LETTERS_LEAST));
+}
+
 char *text_translate(const char *markup, double size, double scale)
 {
     assert(markup != NULL && size > 0 && scale > 0);
@@ -409,11 +415,6 @@ char *text_escape(const char *bytes)
     char *valid = printable_copy(bytes), *escaped = g_markup_escape_text(valid, -1);
     g_free(valid);
     return escaped;
-}
-
-double index_letters(double size)
-{
-    return fmax(INDEX_SIZE * size, fmin(size, LETTERS_LEAST));
 }
 
 double page_letters(double letters, double size)

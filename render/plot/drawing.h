@@ -124,9 +124,6 @@ void fill_box(cairo_t *cr, const figure_rect *box, colour c);
 // --- axes: axes.c
 
 double widest_tick(const drawing *d, const axis *a, double size);
-// The axis' title as it fits beside an axis of the given length: with the label, or with its symbol
-// alone where the label would need two lines. Give it to g_free.
-char *fitting_title(const drawing *d, const axis *a, double length);
 // Height of that title, wrapped beside the axis; 0 without a title.
 double axis_title_height(const drawing *d, const axis *a, double length);
 void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y);

@@ -6,8 +6,6 @@
 
 #include "render/plot/drawing.h"
 
-#include "src/base/numbers.h"
-
 // From the name to the unit below it, whose power of ten stands clear of the name's descenders.
 #define STRIP_LEADING 1.25
 

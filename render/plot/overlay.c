@@ -2,7 +2,6 @@
 #include "src/base/numbers.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <glib.h>
 #include <math.h>
 #include <string.h>

@@ -21,7 +21,7 @@ vector vector_sum(vector a, double factor, vector b)
     return vector_add(a, vector_scaled(b, factor));
 }
 
-vector vector_cross(vector a, vector b)
+static vector vector_cross(vector a, vector b)
 {
     return (vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

@@ -16,7 +16,6 @@ typedef struct vector {
 vector vector_add(vector a, vector b);
 vector vector_scaled(vector a, double factor);
 vector vector_sum(vector a, double factor, vector b); // a + factor b
-vector vector_cross(vector a, vector b);
 double vector_dot(vector a, vector b);
 vector vector_unit(vector a);
 

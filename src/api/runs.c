@@ -4,7 +4,6 @@
 
 #include "src/api/handles.h"
 #include "src/base/json.h"
-#include "src/base/words.h"
 #include "src/rig/controller.h"
 #include "src/run/export.h"
 #include "src/run/first_contact.h"

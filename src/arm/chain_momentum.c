@@ -1,7 +1,5 @@
 #include "src/arm/chain_momentum.h"
 
-#include <math.h>
-
 #include "src/base/sincos.h"
 
 typedef double real;

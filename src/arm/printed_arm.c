@@ -1,7 +1,6 @@
 #include "src/arm/printed_arm.h"
 
 #include <assert.h>
-#include <math.h>
 #include <string.h>
 
 #include "src/arm/arm.h"

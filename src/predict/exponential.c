@@ -1,6 +1,5 @@
 #include "src/predict/exponential.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,7 +1,6 @@
 // What follows from other parameters, and which of them contradict one another.
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 #include "src/quantities/k2_table.h"
 #include "src/quantities/parameters_parts.h"

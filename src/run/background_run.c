@@ -1,7 +1,6 @@
 #include "src/run/background_run.h"
 
 #include <assert.h>
-#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 

@@ -1,7 +1,6 @@
 #include "src/run/export.h"
 
 #include <assert.h>
-#include <math.h>
 
 #include "src/base/csv.h"
 #include "src/base/json.h"

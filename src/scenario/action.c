@@ -1,7 +1,6 @@
 // The actions of a script: their order, and what they set.
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 #include "src/scenario/scenario.h"
 #include "src/rig/rig.h"

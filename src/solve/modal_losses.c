@@ -11,7 +11,8 @@ enum { LEAST_HUB_STEPS = 6 };
 
 // --- walks ------------------------------------------------------------------------------------
 
-void modal_walk_begin(modal_stride *s, int count)
+// Puts the walk of the first `count` modes at the stride's start.
+static void walk_begin(modal_stride *s, int count)
 {
     modal_walk *w = &s->walk;
     const size_t whole = ((size_t)count + MODAL_LANES - 1) / MODAL_LANES * MODAL_LANES;
@@ -32,7 +33,8 @@ void modal_walk_begin(modal_stride *s, int count)
     }
 }
 
-void modal_walk_set_step(modal_stride *s, double step)
+// Sets the length of the walk's steps [s].
+static void walk_set_step(modal_stride *s, double step)
 {
     if (s->walk.step != step) {
         s->walk.step = step;
@@ -40,7 +42,8 @@ void modal_walk_set_step(modal_stride *s, double step)
     }
 }
 
-void modal_walk_on(modal_stride *s)
+// Takes the walk on by one step.
+static void walk_on(modal_stride *s)
 {
     modal_walk *w = &s->walk;
     modal_loops_here()->walk(s, w);
@@ -119,10 +122,10 @@ static double hub_loss(modal_stride *s, const arm *a, double t, int low, hub_mot
     modal_walk *w = &s->walk;
 
     // hub's velocity and its slope from step to step
-    modal_walk_begin(s, low);
+    walk_begin(s, low);
     const double turn = low > 0 ? s->modes->rate[low - 1] * t : 0;
     const int steps = (int)fmax(LEAST_HUB_STEPS, ceil(turn / HUB_TURN));
-    modal_walk_set_step(s, t / steps);
+    walk_set_step(s, t / steps);
     modal_decays *decays = &rest->decays;
     for (int k = 0; k < decays->count; k++) {
         decays->factor[k] = modal_decay(-decays->rate[k] * w->step);
@@ -151,7 +154,7 @@ static double hub_loss(modal_stride *s, const arm *a, double t, int low, hub_mot
         first_slope = i == 0 ? 2 * speed * slope : first_slope;
         last_slope = 2 * speed * slope;
         if (i < steps) {
-            modal_walk_on(s);
+            walk_on(s);
         }
     }
 

@@ -82,7 +82,8 @@ double modal_to_momenta(const modal_stride *s, const arm *a, const double *x, do
     return tip / s->modes->reach;
 }
 
-void modal_stride_modes(modal_stride *s, double t)
+// x and y of all modes at t within the stride, into s->place and s->momenta.
+static void modal_stride_modes(modal_stride *s, double t)
 {
     s->time = t;
     s->ending = t == s->length ? &s->at[MODAL_NODES - 1] : &s->at[0];
@@ -268,15 +269,6 @@ double modal_stride_fastest(const modal_stride *s)
         }
     }
     return fastest;
-}
-
-double modal_stride_quickest(const modal_stride *s)
-{
-    double quickest = 1e-300;
-    for (int e = 0; e < s->now->count; e++) {
-        quickest = fmax(quickest, s->now->square[e]);
-    }
-    return sqrt(quickest);
 }
 
 double modal_stride_shown(const modal_stride *s, double energy)

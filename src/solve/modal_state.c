@@ -1,7 +1,5 @@
 #include "src/solve/modal_state.h"
 
-#include <string.h>
-
 // Angles and velocities at h; returns the impulse of the contact force until then.
 static double move_to(modal_stride *s, const arm *a, motion *m, double h, double *q, double *w)
 {

@@ -108,9 +108,6 @@ typedef struct modal_fit {
 } modal_fit;
 modal_fit modal_stride_fit(modal_stride *s, const arm *a, const double *q, double length);
 
-// x and y of all modes at t within the stride, into s->place and s->momenta.
-void modal_stride_modes(modal_stride *s, double t);
-
 // Polynomial sum out[j] t^j / j! through values at the points of collocation of a stride [s].
 void modal_polynomial(const double values[MODAL_NODES], double length, double out[MODAL_NODES]);
 
@@ -121,9 +118,6 @@ void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double
 
 // Rate of the fastest mode that vibrates, of those in hand [rad/s].
 double modal_stride_fastest(const modal_stride *s);
-
-// The same of all modes, decays included [1/s].
-double modal_stride_quickest(const modal_stride *s);
 
 // The fastest vibration that the points of a stride from here on have to show: all faster ones
 // together have less than `energy` [J] at its start, beyond what they follow without vibrating
@@ -136,9 +130,3 @@ typedef struct modal_losses {
     double viscous, damping;
 } modal_losses;
 modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t);
-
-// Puts the walk of the first `count` modes at the stride's start, or changes the length of its
-// steps [s]; goes on by one.
-void modal_walk_begin(modal_stride *s, int count);
-void modal_walk_set_step(modal_stride *s, double step);
-void modal_walk_on(modal_stride *s);

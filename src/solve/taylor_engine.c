@@ -11,7 +11,6 @@
 // twice the time since the change before.
 #include <assert.h>
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "src/base/extremes.h"

@@ -1,7 +1,6 @@
 // What the contact machine asks of the stride of a two-link arm: watched functions, and the force.
 #include <math.h>
 
-#include "src/base/extremes.h"
 #include "src/solve/dense_location.h"
 #include "src/solve/taylor_stride.h"
 

@@ -1,6 +1,5 @@
 #include <assert.h>
 #include <stdatomic.h>
-#include <stdbool.h>
 #include <string.h>
 
 #include "src/solve/by_width.h"

@@ -10,7 +10,6 @@
 #include "src/base/words.h"
 #include "src/predict/best_stop.h"
 #include "src/predict/least_time.h"
-#include "src/rig/rig.h"
 
 enum {
     PEAK,

@@ -6,7 +6,7 @@
 
 #include "src/study/sweep_rows.h"
 
-const double robust_levels[ROBUST_QUANTILES] = {
+static const double robust_levels[ROBUST_QUANTILES] = {
     [ROBUST_MEDIAN] = 0.5, [ROBUST_NINE_TENTHS] = 0.9, [ROBUST_WORST] = 1};
 
 // --- a law ------------------------------------------------------------------------------------

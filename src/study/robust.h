@@ -10,7 +10,6 @@
 
 // The quantiles that tables show: half of all runs, nine tenths, and the worst.
 enum { ROBUST_MEDIAN, ROBUST_NINE_TENTHS, ROBUST_WORST, ROBUST_QUANTILES };
-extern const double robust_levels[ROBUST_QUANTILES];
 
 // A run without a commanded force cannot be judged. A run exceeds its limit with a peak above
 // control.force_limit, or above ROBUST_EXCESS times the command where there is none.

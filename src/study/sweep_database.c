@@ -57,7 +57,9 @@ status database_prepare(sweep_store *store, sqlite3_stmt **statement, const char
                : database_fault(store, f);
 }
 
-status database_query_number(sweep_store *store, const char *sql, long long *number, fault *f)
+// The first number that a query gives, 0 if it gives none.
+static status database_query_number(sweep_store *store, const char *sql, long long *number,
+                                    fault *f)
 {
     sqlite3_stmt *statement;
     *number = 0;

@@ -45,6 +45,3 @@ status database_execute(sweep_store *store, const char *sql, fault *f);
 
 // Prepares a statement; the caller finalizes it, also on failure.
 status database_prepare(sweep_store *store, sqlite3_stmt **statement, const char *sql, fault *f);
-
-// The first number that a query gives, 0 if it gives none.
-status database_query_number(sweep_store *store, const char *sql, long long *number, fault *f);

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/csv.h"
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/base/version.h"

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "src/base/whole_file.h"
-#include "src/quantities/summary.h"
 #include "src/study/sweep_definition.h"
 
 // The merged sweep while it grows, in memory.

@@ -9,7 +9,6 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "src/run/run_result.h"
 #include "src/study/sweep_definition.h"
 
 // Creates the tables and writes the definition, all in one transaction.

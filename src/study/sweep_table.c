@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <sqlite3.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 static status cannot_read(sqlite3 *database, const char *path, fault *f)

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/base/words.h"
 #include "src/scenario/scenario.h"
 
 enum { MOST_SETTINGS = 32 };

@@ -13,7 +13,6 @@
 #include "src/base/numbers.h"
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
-#include "src/study/sweep.h"
 
 // getopt_long's value of the option in row i is ROW_VALUE + i, apart from all letters
 enum { ROW_VALUE = 256 };

@@ -217,8 +217,5 @@ bool next_paragraph(const char **text, paragraph *p);
 // Prints words in lines of at most `width` characters.
 void print_wrapped(FILE *stream, const char *text, int bytes, int width);
 
-// Width of a UTF-8 text in characters.
-int text_width(const char *text);
-
 // True if the terminal's character set is UTF-8.
 bool terminal_has_utf8(void);

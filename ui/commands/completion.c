@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "src/quantities/parameters.h"
-#include "src/study/sweep.h"
 
 #define SCENARIO_NAMES "impactlab list 2>/dev/null | cut -d' ' -f1"
 

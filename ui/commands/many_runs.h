@@ -1,6 +1,7 @@
 // What the commands of many runs share: their options, ^C, and the progress line.
 #pragma once
 
+#include <math.h>
 #include <signal.h>
 
 #include "src/study/sweep_run.h"

@@ -1,7 +1,6 @@
 // impactlab robust: control laws over many beliefs, sensors, walls and starts.
 #include "ui/commands/command.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,7 +1,6 @@
 // What impactlab sweep writes and prints of its runs.
 #include "ui/commands/sweep_report.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 

@@ -6,7 +6,8 @@
 
 #include "src/base/words.h"
 
-int text_width(const char *text)
+// Width of a UTF-8 text in characters.
+static int text_width(const char *text)
 {
     assert(text != NULL);
     int width = 0;

@@ -174,9 +174,3 @@ rgb picture_ink(const screen *s, colour_theme theme, ink i)
     }
     return rgb_contrast(white, ground) > rgb_contrast(black, ground) ? white : black;
 }
-
-void picture_set_ink(cairo_t *cr, const screen *s, colour_theme theme, ink i)
-{
-    const rgb c = picture_ink(s, theme, i);
-    cairo_set_source_rgb(cr, c.red / 255.0, c.green / 255.0, c.blue / 255.0);
-}

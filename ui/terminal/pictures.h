@@ -50,5 +50,3 @@ int pictures_regions(const screen *s, int most_width, int most_height,
 
 // An ink as pictures show it; what has the terminal's own text colour is black or white there.
 rgb picture_ink(const screen *s, colour_theme theme, ink i);
-// The same for cairo.
-void picture_set_ink(cairo_t *cr, const screen *s, colour_theme theme, ink i);

@@ -7,7 +7,6 @@
 // In flight the reading is nothing and the mass comes to the speed f/d_a; in contact it comes to
 // rest where the reading is f, whatever wall and stiffness are. One law for both, without a switch.
 // The last term carries what the beam presses, so that the position control has its error only.
-#include <math.h>
 #include <string.h>
 
 #include "src/rig/laws/laws.h"

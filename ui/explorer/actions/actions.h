@@ -28,10 +28,6 @@ action_result act_open_scenario(explorer_state *st, const char *name);
 // Gives a parameter another value, from the cursor on or from the start.
 action_result act_change(explorer_state *st, int parameter, const char *text);
 
-// The same with a number, in small steps: several at one instant are one change, and none at all
-// once the value is what it was.
-action_result act_adjust(explorer_state *st, int parameter, double value);
-
 // A warning if the present run stopped on the way, or the question whether its program may run;
 // nothing to say if not.
 action_result act_tell_failed_run(const explorer_state *st);

@@ -48,7 +48,9 @@ action_result act_change(explorer_state *st, int parameter, const char *text)
     return code != STATUS_OK ? result_of(code, &f) : tell_change(st);
 }
 
-action_result act_adjust(explorer_state *st, int parameter, double value)
+// act_change with a number, in small steps: several at one instant are one change, and none at all
+// once the value is what it was.
+static action_result act_adjust(explorer_state *st, int parameter, double value)
 {
     assert(st != NULL && parameter >= 0 && parameter < parameter_count);
     session *s = &st->session;

@@ -2,7 +2,6 @@
 #include "ui/explorer/actions/actions.h"
 
 #include <assert.h>
-#include <math.h>
 
 // Brings the spring's force up to date with the tip at the cursor.
 static void follow_tip(explorer_state *st)

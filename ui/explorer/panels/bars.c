@@ -1,6 +1,5 @@
 #include "ui/explorer/panels/bars.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "ui/explorer/panels/layout.h"

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "src/base/fourier.h"
-#include "ui/explorer/panels/plot_axes.h"
 
 enum { SERIES = 1024 }; // values of which a spectrum is computed
 

@@ -32,7 +32,8 @@ bool run_list_is_present(const pinned_run *p, const session *s)
     return same;
 }
 
-void run_list_input_text(const session_input *in, char *text, size_t size)
+// A change as a line of text: what it gives what, and from when on.
+static void run_list_input_text(const session_input *in, char *text, size_t size)
 {
     assert(in != NULL && text != NULL);
     if (in->kind == SESSION_INPUT_PUSH) {

@@ -38,6 +38,3 @@ bool run_list_is_present(const pinned_run *p, const session *s);
 // What differs between a run of the list and the present one, in a line: changes that only it has,
 // then, in brackets, those that only the present one has.
 void run_list_differences(const pinned_run *p, const session *s, char *text, size_t size);
-
-// A change as a line of text: what it gives what, and from when on.
-void run_list_input_text(const session_input *in, char *text, size_t size);
