@@ -142,14 +142,9 @@ double fixed_step(const void *)
     return EXPERIMENT_STEP;
 }
 
-double duration(const void *)
-{
-    return EXPERIMENT_DURATION;
-}
-
 const peer list_of_peers[] = {
     {"DART", DART_VERSION, "sphere and box, Dantzig", 2, 0, create, destroy, run, fixed_step,
-     duration},
+     peer_duration},
 };
 
 } // namespace

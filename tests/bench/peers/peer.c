@@ -1,4 +1,5 @@
-// What fixed-step peers share: finding contact times and peaks in their samples.
+// What peers share: their answers, and for those of a fixed step finding contact times and peaks in
+// their samples.
 #include "tests/bench/peers/peer.h"
 
 #include <math.h>
@@ -7,6 +8,36 @@ void peer_answer_clear(peer_answer *answer)
 {
     const double none = (double)NAN;
     *answer = (peer_answer){none, none, none, none, none, none, none, none, none, none, none};
+}
+
+double peer_own_steps(const void *instance)
+{
+    (void)instance;
+    return 0;
+}
+
+double peer_duration(const void *instance)
+{
+    (void)instance;
+    return EXPERIMENT_DURATION;
+}
+
+void peer_note_peak(double time, double force, peer_answer *answer)
+{
+    if (!(force <= answer->peak)) {
+        answer->peak = force;
+        answer->peak_delay = time - answer->first_contact;
+    }
+}
+
+void peer_note_contact(double time, double impulse, peer_answer *answer)
+{
+    if (isnan(answer->first_contact)) {
+        answer->first_contact = time;
+        answer->impulse = impulse;
+    } else if (isnan(answer->second_contact)) {
+        answer->second_contact = time;
+    }
 }
 
 void contact_watch_begin(contact_watch *watch, peer_answer *answer)

@@ -64,12 +64,24 @@ typedef struct peer {
 
 // Each simulator offers its peers; returns how many.
 int peers_impactlab(const peer **list);
+int peers_taylor(const peer **list);
 int peers_mujoco(const peer **list);
 int peers_sundials(const peer **list);
 int peers_dart(const peer **list);
 
 // Fills everything with NaN.
 void peer_answer_clear(peer_answer *answer);
+
+// For programs that choose their steps, and for those that simulate the experiment as it is.
+double peer_own_steps(const void *instance);
+double peer_duration(const void *instance);
+
+// A force of the first pulse at a time [s], [N]: kept if it is the largest so far.
+void peer_note_peak(double time, double force, peer_answer *answer);
+
+// A contact that begins at a time with an impulse [s], [N s]: the first, the second, or none of
+// those that are told.
+void peer_note_contact(double time, double impulse, peer_answer *answer);
 
 // Watches the samples of a fixed-step simulator and finds contact times and peaks in them.
 typedef struct contact_watch {

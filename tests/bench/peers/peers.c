@@ -12,7 +12,6 @@
 #include <time.h>
 
 #include "src/base/whole_file.h"
-#include "src/base/json.h"
 #include "tests/bench/peers/peer.h"
 
 #define SAMPLE_TIME 0.02 // shortest time of one sample [s]
@@ -270,7 +269,7 @@ static void print_tables(FILE *out, const contestant *all, int count, int rounds
     }
 }
 
-static void json_number(FILE *out, const char *key, double value)
+static void write_number(FILE *out, const char *key, double value)
 {
     if (isfinite(value)) {
         fprintf(out, ", \"%s\": %.12g", key, value);
@@ -279,7 +278,7 @@ static void json_number(FILE *out, const char *key, double value)
     }
 }
 
-static void print_json(FILE *out, const contestant *all, int count, int rounds)
+static void write_answers(FILE *out, const contestant *all, int count, int rounds)
 {
     fprintf(out, "{\"rounds\": %d, \"peers\": [", rounds);
     for (int i = 0; i < count; i++) {
@@ -290,21 +289,21 @@ static void print_json(FILE *out, const contestant *all, int count, int rounds)
                 "%s\n  {\"program\": \"%s\", \"version\": \"%s\", \"setup\": \"%s\", \"links\": %d",
                 i > 0 ? "," : "", c->peer->program, c->peer->version, c->peer->setup,
                 c->peer->links);
-        json_number(out, "step_s", step > 0 ? step : (double)NAN);
-        json_number(out, "us_per_step", 1e6 * time_per_step(c));
-        json_number(out, "us_per_simulated_s", 1e6 * c->median);
-        json_number(out, "us_per_simulated_s_min", 1e6 * c->smallest);
-        json_number(out, "us_per_simulated_s_max", 1e6 * c->largest);
-        json_number(out, "ratio_to_impactlab", c->ratio);
-        json_number(out, "steps", a->steps);
-        json_number(out, "first_contact_s", a->first_contact);
-        json_number(out, "contact_impulse_Ns", a->impulse);
-        json_number(out, "first_pulse_peak_N", a->peak);
-        json_number(out, "first_pulse_time_to_peak_s", a->peak_delay);
-        json_number(out, "largest_force_with_impact_N", a->spike);
-        json_number(out, "release_s", a->release);
-        json_number(out, "second_contact_s", a->second_contact);
-        json_number(out, "final_force_N", a->final_force);
+        write_number(out, "step_s", step > 0 ? step : (double)NAN);
+        write_number(out, "us_per_step", 1e6 * time_per_step(c));
+        write_number(out, "us_per_simulated_s", 1e6 * c->median);
+        write_number(out, "us_per_simulated_s_min", 1e6 * c->smallest);
+        write_number(out, "us_per_simulated_s_max", 1e6 * c->largest);
+        write_number(out, "ratio_to_impactlab", c->ratio);
+        write_number(out, "steps", a->steps);
+        write_number(out, "first_contact_s", a->first_contact);
+        write_number(out, "contact_impulse_Ns", a->impulse);
+        write_number(out, "first_pulse_peak_N", a->peak);
+        write_number(out, "first_pulse_time_to_peak_s", a->peak_delay);
+        write_number(out, "largest_force_with_impact_N", a->spike);
+        write_number(out, "release_s", a->release);
+        write_number(out, "second_contact_s", a->second_contact);
+        write_number(out, "final_force_N", a->final_force);
         fprintf(out, "}");
     }
     fprintf(out, "\n]}\n");
@@ -316,7 +315,7 @@ static bool write_json(const contestant *all, int count, const options *o)
     whole_file file;
     bool good = whole_file_open(&file, o->json, &f) == STATUS_OK;
     if (good) {
-        print_json(file.stream, all, count, o->rounds);
+        write_answers(file.stream, all, count, o->rounds);
         good = whole_file_commit(&file, &f) == STATUS_OK;
     }
     if (!good) {
@@ -363,6 +362,7 @@ int main(int argc, char **argv)
     static contestant all[MOST_PEERS];
     int count = enlist(all, 0, peers_impactlab, o.rounds);
     bool good = count > 0;
+    count = enlist(all, count, peers_taylor, o.rounds);
 #ifdef PEERS_MUJOCO
     count = enlist(all, count, peers_mujoco, o.rounds);
 #endif

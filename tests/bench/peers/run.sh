@@ -84,7 +84,7 @@ take_peer() {
 }
 
 inputs=()
-for source in peer impactlab_peer; do
+for source in peer impactlab_peer taylor_peer; do
     compile_c "$source" || give_up "$source.c could not be compiled"
     inputs+=("$objects/$source.o")
 done

@@ -252,14 +252,6 @@ static double force_rate(const simulation *s, const double *y, double force)
     return (accelerate(ahead, s->mode, a).force - force) / little;
 }
 
-static void note_peak(double time, double force, peer_answer *answer)
-{
-    if (!(force <= answer->peak)) {
-        answer->peak = force;
-        answer->peak_delay = time - answer->first_contact;
-    }
-}
-
 // Keeps the largest force of the first pulse; a maximum inside the step is searched for.
 static void watch_peak(simulation *s, force_end *last, double t, peer_answer *answer)
 {
@@ -268,7 +260,7 @@ static void watch_peak(simulation *s, force_end *last, double t, peer_answer *an
     const double *y = N_VGetArrayPointer(s->state);
     double force = accelerate(y, s->mode, a).force;
     force_end now = {t, force, force_rate(s, y, force)};
-    note_peak(t, force, answer);
+    peer_note_peak(t, force, answer);
     if (last->rate > 0 && now.rate < 0 && t > last->time) {
         double low = last->time, high = t;
         while (high - low > 1e-8) {
@@ -279,7 +271,7 @@ static void watch_peak(simulation *s, force_end *last, double t, peer_answer *an
                 low = left;
             }
         }
-        note_peak((low + high) / 2, force_between(s, (low + high) / 2), answer);
+        peer_note_peak((low + high) / 2, force_between(s, (low + high) / 2), answer);
     }
     *last = now;
 }
@@ -295,12 +287,7 @@ static void pass_event(simulation *s, double t, peer_answer *answer)
     if (found[WALL_ROOT] && !s->mode.contact) {
         double impulse = impact(y);
         s->mode.contact = true;
-        if (isnan(answer->first_contact)) {
-            answer->first_contact = t;
-            answer->impulse = impulse;
-        } else if (isnan(answer->second_contact)) {
-            answer->second_contact = t;
-        }
+        peer_note_contact(t, impulse, answer);
     } else if (found[WALL_ROOT]) {
         s->mode.contact = false;
     }
@@ -395,21 +382,9 @@ static void *create(const peer *self)
     return s;
 }
 
-static double own_steps(const void *instance)
-{
-    (void)instance;
-    return 0;
-}
-
-static double duration(const void *instance)
-{
-    (void)instance;
-    return EXPERIMENT_DURATION;
-}
-
 #define SUNDIALS(text, variant)                                                                    \
     {                                                                                              \
-        "SUNDIALS", SUNDIALS_VERSION, text, 2, variant, create, destroy, run, own_steps, duration  \
+        "SUNDIALS", SUNDIALS_VERSION, text, 2, variant, create, destroy, run, peer_own_steps, peer_duration  \
     }
 
 static const peer list_of_peers[] = {
