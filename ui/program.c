@@ -135,19 +135,19 @@ static void end_without_picture(const char *reason)
     _exit(EXIT_FAILED);
 }
 
-// A crash: no half-written file, and a sentence. In the font libraries it is for want of memory,
-// which is no fault of ours and ends the program as everywhere else.
+// A crash: no half-written file, and a sentence. In the libraries that draw it is for want of
+// memory, which is no fault of ours and ends the program as everywhere else.
 static void end_crashed(int number)
 {
-    static const char fonts[] =
-        "impactlab: the font library crashed, as it does where it finds no memory\n";
+    static const char drawing[] =
+        "impactlab: a library that draws crashed, as it does where it finds no memory\n";
     static const char own[] = "impactlab: crashed, for want of memory in a library or by a "
                               "fault of its own; no half-written file is left\n";
-    const bool in_fonts = rendering_in_fonts();
-    ssize_t ignored = in_fonts ? write(STDERR_FILENO, fonts, sizeof fonts - 1)
-                               : write(STDERR_FILENO, own, sizeof own - 1);
+    const bool in_libraries = rendering_in_libraries();
+    ssize_t ignored = in_libraries ? write(STDERR_FILENO, drawing, sizeof drawing - 1)
+                                   : write(STDERR_FILENO, own, sizeof own - 1);
     (void)ignored;
-    if (in_fonts) {
+    if (in_libraries) {
         whole_file_remove_unfinished();
         _exit(EXIT_FAILED);
     }

@@ -14,6 +14,7 @@ void rendering_begin(char **argv, void (*end)(const char *reason));
 // computed or said; a program without it ends the process with a sentence.
 void rendering_needed(void);
 
-// Whether this thread is at work in the font libraries (render/page/text.h). For a handler of
+// Whether this thread is at work in libraries that crash where they get no memory: those of fonts
+// (render/page/text.h), and cairo where it strokes (render/page/picture_file.h). For a handler of
 // signals.
-bool rendering_in_fonts(void);
+bool rendering_in_libraries(void);

@@ -17,7 +17,7 @@ void rendering_begin(char **argv, void (*end)(const char *reason))
     words = argv;
 }
 
-bool rendering_in_fonts(void)
+bool rendering_in_libraries(void)
 {
     return false;
 }

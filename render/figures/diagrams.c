@@ -5,6 +5,7 @@
 
 #include "render/figures/diagram.h"
 #include "render/figures/figures.h"
+#include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 
@@ -209,7 +210,7 @@ static void draw_springs(sketch *s, const diagram *d)
     cairo_fill_preserve(s->cr);
     set_colour(s->cr, s->colours->axis);
     cairo_set_line_width(s->cr, 0.8);
-    cairo_stroke(s->cr);
+    picture_stroke(s->cr);
 
     sketch_text(s, (point){mass, y}, (anchor){0.5, 0.5}, "<i>m</i><sub>c</sub>", SKETCH_LABEL);
     sketch_arrow(s, (point){mass - 14, y - 30}, (point){mass + 34, y - 30}, 2);

@@ -3,7 +3,9 @@
 #include <assert.h>
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
+#include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -72,10 +74,37 @@ static status drawn(status code, cairo_status_t state, fault *f)
                            cairo_status_to_string(state));
 }
 
+// Where a drawing keeps that a line of it lacks a piece.
+static const cairo_user_data_key_t lacking;
+
+static _Thread_local volatile sig_atomic_t stroking;
+
+bool picture_is_stroking(void)
+{
+    return stroking;
+}
+
+void picture_stroke(cairo_t *cr)
+{
+    assert(cr != NULL);
+
+    // a request for memory that is refused within the call leaves its mark
+    const int before = errno;
+    errno = 0;
+    stroking = true;
+    cairo_stroke(cr);
+    stroking = false;
+    if (errno == ENOMEM) {
+        cairo_set_user_data(cr, &lacking, cr, NULL);
+    }
+    errno = before;
+}
+
 status picture_end_drawing(cairo_t *cr, status code, fault *f)
 {
     assert(cr != NULL);
-    code = drawn(code, cairo_status(cr), f);
+    const bool lacks = cairo_get_user_data(cr, &lacking) != NULL;
+    code = drawn(code, lacks ? CAIRO_STATUS_NO_MEMORY : cairo_status(cr), f);
     cairo_destroy(cr);
     return code;
 }

@@ -23,9 +23,17 @@ typedef struct picture {
     const void *what; // for paint
 } picture;
 
+// Strokes the path and forgets it, as cairo_stroke does. Where cairo gets no memory for the outline
+// of a long line it leaves a piece of it out and keeps that to itself: picture_end_drawing knows.
+void picture_stroke(cairo_t *cr);
+
+// Whether this thread strokes a path, where cairo crashes if it gets no memory. For a handler of
+// signals.
+bool picture_is_stroking(void);
+
 // Ends a drawing: destroys cr and returns `code`, what drawing came to, or STATUS_NO_MEMORY if
-// cairo met an error and from then on drew nothing. An error of writing is left to whoever closes
-// the stream.
+// cairo met an error and from then on drew nothing, or a line lacks a piece. An error of writing is
+// left to whoever closes the stream.
 status picture_end_drawing(cairo_t *cr, status code, fault *f);
 
 // The format that a path's extension (.png, .pdf, .svg) or a bare word (png) names.

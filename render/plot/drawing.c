@@ -3,6 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "render/page/picture_file.h"
+
 // ---- text
 
 text_block figure_text_of(const drawing *d, const char *markup, double size)
@@ -59,7 +61,7 @@ void draw_line(cairo_t *cr, double x0, double y0, double x1, double y1)
 {
     cairo_move_to(cr, x0, y0);
     cairo_line_to(cr, x1, y1);
-    cairo_stroke(cr);
+    picture_stroke(cr);
 }
 
 void set_plain_line(cairo_t *cr, colour c, double width)

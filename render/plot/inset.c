@@ -1,6 +1,7 @@
 // The inset: a short stretch of a panel once more, larger.
 #include <math.h>
 
+#include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
 
 #define INSET_ROOM 0.1 // of the data's range, kept free above and below them
@@ -85,5 +86,5 @@ void draw_inset(drawing *d, const panel_layout *l)
                          l->plane.box.y + l->plane.box.height);
     set_plain_line(d->cr, d->style.colours->mark, MARK_WIDTH);
     cairo_rectangle(d->cr, left, top, right - left, bottom - top);
-    cairo_stroke(d->cr);
+    picture_stroke(d->cr);
 }

@@ -2,6 +2,7 @@
 // mean.
 #include <math.h>
 
+#include "render/page/picture_file.h"
 #include "render/plot/contour.h"
 #include "render/plot/drawing.h"
 
@@ -171,7 +172,7 @@ static void draw_contour(const drawing *d, const panel_layout *l, double level)
         }
     }
 
-    cairo_stroke(d->cr);
+    picture_stroke(d->cr);
 }
 
 void draw_map(drawing *d, const panel_layout *l)
@@ -249,7 +250,7 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
     }
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
     cairo_rectangle(d->cr, bar.x, bar.y, bar.width, bar.height);
-    cairo_stroke(d->cr);
+    picture_stroke(d->cr);
 
     // what it is, upwards at the right
     char *title = axis_title(&l->colours);

@@ -3,6 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
+#include "render/page/picture_file.h"
+
 enum { PIECES = 16 };
 static const unsigned whole_line = 0xffff;
 
@@ -139,7 +141,7 @@ void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
         trace_rows(cr, f, c, until);
     }
     set_pen(cr, f, c);
-    cairo_stroke(cr);
+    picture_stroke(cr);
 }
 
 void pane_level_paint(cairo_t *cr, const pane_frame *f, double value, colour in)
@@ -156,7 +158,7 @@ void pane_level_paint(cairo_t *cr, const pane_frame *f, double value, colour in)
     set_colour(cr, in);
     cairo_move_to(cr, 0, y);
     cairo_line_to(cr, f->width, y);
-    cairo_stroke(cr);
+    picture_stroke(cr);
 }
 
 void pane_instant_paint(cairo_t *cr, const pane_frame *f, double time, colour in)
@@ -172,5 +174,5 @@ void pane_instant_paint(cairo_t *cr, const pane_frame *f, double time, colour in
     set_colour(cr, in);
     cairo_move_to(cr, x, 0);
     cairo_line_to(cr, x, f->height);
-    cairo_stroke(cr);
+    picture_stroke(cr);
 }

@@ -1,6 +1,7 @@
 // Series on the page: lines and markers.
 #include <math.h>
 
+#include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
 
 #define MARKER_RADIUS 1.6
@@ -176,7 +177,7 @@ static void draw_marker(const drawing *d, const panel_layout *l, const figure_se
 
     set_colour(d->cr, s->rim ? palette_of(THEME_COLOUR)->text : d->style.colours->axis);
     cairo_set_line_width(d->cr, s->rim ? CURVE_WIDTH : GRID_WIDTH);
-    cairo_stroke(d->cr);
+    picture_stroke(d->cr);
     cairo_restore(d->cr);
 }
 
@@ -205,7 +206,7 @@ static void stroke(void *context, stroke_kind kind, double x, double y)
 {
     stroke_context *s = context;
     if (kind == STROKE_DOT) {
-        cairo_stroke(s->cr);
+        picture_stroke(s->cr);
         cairo_arc(s->cr, x, y, s->radius, 0, 2 * G_PI);
         cairo_fill(s->cr);
     } else if (kind == STROKE_MOVE) {
@@ -231,14 +232,14 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
         if (s->rim && !s->no_line) {
             set_plain_line(d->cr, palette_of(THEME_COLOUR)->page, width + 2 * RIM);
             curve_trace(p, s, stroke, &context);
-            cairo_stroke(d->cr);
+            picture_stroke(d->cr);
             set_series(d, l, i);
             set_colour(d->cr, palette_of(THEME_COLOUR)->text);
         }
 
         if (!s->no_line) {
             curve_trace(p, s, stroke, &context);
-            cairo_stroke(d->cr);
+            picture_stroke(d->cr);
         }
 
         // markers are not cut at the panel's edge

@@ -250,7 +250,7 @@ static void draw_traces(const film_plan *plan, cairo_t *cr, double time)
         cairo_line_to(cr, x, p.y + p.height);
         cairo_set_line_width(cr, 1.1);
         cairo_set_source_rgb(cr, 0.835, 0.369, 0);
-        cairo_stroke(cr);
+        picture_stroke(cr);
     }
     cairo_restore(cr);
 

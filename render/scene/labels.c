@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 
@@ -50,7 +51,7 @@ void labels_flash(const labels *l, vector place, double radius, double strength)
         cairo_move_to(l->cr, at.x + 0.5 * r * cos(angle), at.y + 0.5 * r * sin(angle));
         cairo_line_to(l->cr, at.x + far * r * cos(angle), at.y + far * r * sin(angle));
     }
-    cairo_stroke(l->cr);
+    picture_stroke(l->cr);
 }
 
 void labels_force(const labels *l, vector from, vector end, double force, colour ink)

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "render/page/picture_file.h"
+
 // Sizes in beam lengths; the least of them in pixels where the arm is small.
 #define BEAM_WIDTH  0.012
 #define HUB_RADIUS  0.05
@@ -81,7 +83,7 @@ static void hatch(const painter *g, double x, double y, double dx, double dy)
         cairo_line_to(g->cr, x + at * ux + depth * (0.5 * ux + uy),
                       y + at * uy + depth * (0.5 * uy - ux));
     }
-    cairo_stroke(g->cr);
+    picture_stroke(g->cr);
 }
 
 // A flat wall lies along the arm, on the far side of it; any wall has the place where the tip meets
@@ -111,7 +113,7 @@ static void paint_wall(const painter *g)
         pen(g, wall, 2);
         cairo_move_to(g->cr, from_x, from_y);
         cairo_line_to(g->cr, from_x + dx, from_y + dy);
-        cairo_stroke(g->cr);
+        picture_stroke(g->cr);
         return;
     }
 
@@ -122,7 +124,7 @@ static void paint_wall(const painter *g)
     set_colour(g->cr, paler(g, wall, 0.5));
     cairo_fill_preserve(g->cr);
     set_colour(g->cr, wall);
-    cairo_stroke(g->cr);
+    picture_stroke(g->cr);
 }
 
 // --- the arm ----------------------------------------------------------------------------------
@@ -151,12 +153,12 @@ static void paint_hub(const painter *g, double angle)
     set_colour(g->cr, paler(g, g->plan->colours.hub, 0.75));
     cairo_fill_preserve(g->cr);
     set_colour(g->cr, g->plan->colours.hub);
-    cairo_stroke(g->cr);
+    picture_stroke(g->cr);
 
     // a spoke tells its angle
     cairo_move_to(g->cr, x, y);
     cairo_line_to(g->cr, x + radius * cos(angle), y - radius * sin(angle));
-    cairo_stroke(g->cr);
+    picture_stroke(g->cr);
 }
 
 // The wall's force on the tip: an arrow that points at it, as long as its share of the peak.
@@ -172,7 +174,7 @@ static void paint_force(const painter *g, double x, double y, const sample *row)
     cairo_set_line_cap(g->cr, CAIRO_LINE_CAP_BUTT);
     cairo_move_to(g->cr, x, y - off - length);
     cairo_line_to(g->cr, x, y - off - 0.8 * head);
-    cairo_stroke(g->cr);
+    picture_stroke(g->cr);
     cairo_move_to(g->cr, x, y - off);
     cairo_line_to(g->cr, x - 0.45 * head, y - off - head);
     cairo_line_to(g->cr, x + 0.45 * head, y - off - head);
@@ -197,7 +199,7 @@ static void paint_pull(const painter *g, double x, double y)
         cairo_line_to(g->cr, x + along * ux - across * uy, y + along * uy + across * ux);
     }
     cairo_line_to(g->cr, to_x, to_y);
-    cairo_stroke(g->cr);
+    picture_stroke(g->cr);
     cairo_arc(g->cr, to_x, to_y, 3, 0, 2 * M_PI);
     cairo_fill(g->cr);
 }
@@ -213,7 +215,7 @@ static void paint_all(const painter *g)
     if (p->other != NULL) {
         beam_path(g, p->other);
         pen(g, paler(g, p->colours.other, 0.35), fmax(1.5, 0.5 * beam));
-        cairo_stroke(g->cr);
+        picture_stroke(g->cr);
     }
     const sample row = beam_path(g, p->rows);
     cairo_path_t *path = cairo_copy_path(g->cr);
@@ -226,7 +228,7 @@ static void paint_all(const painter *g)
     pen(g, p->colours.arm, beam);
     cairo_stroke_preserve(g->cr);
     pen(g, paler(g, p->colours.arm, 0.45), fmax(1, beam - 3));
-    cairo_stroke(g->cr);
+    picture_stroke(g->cr);
 
     const double x = plan_x(g->view, g->joints[links].x), y = plan_y(g->view, g->joints[links].y);
     paint_force(g, x, y, &row);

@@ -249,7 +249,7 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
         set_colour(l.cr, sc->around->faint);
         cairo_set_line_width(l.cr, fmax(1, l.scale));
         cairo_rectangle(l.cr, left, margin, width, height);
-        cairo_stroke(l.cr);
+        picture_stroke(l.cr);
         if (!sc->options.plain) {
             labels_inset(&l, left, margin + height, larger);
         }
