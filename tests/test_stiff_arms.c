@@ -226,6 +226,34 @@ static void a_run_that_could_not_end_says_why(void **state)
     }
 }
 
+// Strides of a quarter of a microsecond: a run that a mode keeps so short goes on, one that follows
+// the motor's current, which has long settled, is given up.
+static void a_current_that_leads_is_given_up_sooner(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *settings[3];
+        status expected;
+    } cases[] = {
+        {{"motor.inductance=1e-6"}, STATUS_NO_PROGRESS},
+        {{"motor.inductance=1"}, STATUS_OK},
+        {{"motor.inductance=1e-4", "arm.links=600"}, STATUS_OK},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fixture_parameters(cases[i].settings);
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_non_null(m);
+        motion_start(&a, m, 0, 0);
+        pace looked = {.looked_from = 0};
+        m->state[SLOT_TIME] = 2.5e-7 * PACE_STRIDES;
+        fault f = {.text = ""};
+        assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), cases[i].expected);
+        motion_destroy(m);
+    }
+}
+
 // A program that goes back to a state a thousand times, or asks for instants a nanosecond apart,
 // has as many strides as it asks for.
 static void a_loop_makes_as_many_strides_as_are_asked_for(void **state)
@@ -597,6 +625,7 @@ int main(void)
         cmocka_unit_test(a_stride_that_begins_does_not_unsettle_the_force),
         cmocka_unit_test(a_run_that_could_not_end_says_so),
         cmocka_unit_test(a_run_that_could_not_end_says_why),
+        cmocka_unit_test(a_current_that_leads_is_given_up_sooner),
         cmocka_unit_test(an_arm_without_damping_loses_nothing_to_it),
         cmocka_unit_test(a_graze_within_a_stride_is_found),
         cmocka_unit_test(a_loop_makes_as_many_strides_as_are_asked_for),

@@ -6,9 +6,10 @@
 #include "src/base/numbers.h"
 
 // A run is given up where its strides are shorter than this, as a share of its duration or of a
-// second, whichever is less: it would take ten million of them, hours with many links. In contact
-// with a wall whose damper has its say in each of them a million are enough: they follow a decay
-// that is long over. Steps that method.step asks for are none of these.
+// second, whichever is less: it would take ten million of them, hours with many links. Where the
+// motor's current is the fastest, and in contact with a wall whose damper has its say in each of
+// them, a million are enough: they follow a decay that is long over. Steps that method.step asks
+// for are none of these.
 #define SLOWEST_PACE 1e-7
 #define DAMPED_PACE  1e-6
 #define ASKED_FOR    1e-3 // share of method.step
@@ -25,6 +26,19 @@ static bool is_damped(const arm *a, const motion *m)
     return is_within(m) && a->wall.damping > 0;
 }
 
+// How fast the motor's current follows its voltage [1/s], 0 where it does so at once.
+static double current_rate(const arm *a, const motion *m)
+{
+    return m->electric && a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
+}
+
+// Whether nothing of the arm changes as fast as the motor's current.
+static bool current_leads(const arm *a, const motion *m)
+{
+    const double rate = current_rate(a, m);
+    return rate > 0 && rate >= a->fastest_rate;
+}
+
 // Says what of the arm or the wall makes strides short, and what would make them longer.
 static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
 {
@@ -34,8 +48,6 @@ static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
         fastest = fabs(w[i]) > fabs(w[fastest]) ? i : fastest;
     }
 
-    const bool electric = m->electric && a->motor.inductance > 0;
-    const double current = electric ? a->motor.resistance / a->motor.inductance : 0;
     if (fabs(w[fastest]) >= a->fastest_rate) {
         decimal_print(text, size, "its angle %d turns at %.3g rad/s, too fast to follow",
                       fastest + 1, w[fastest]);
@@ -43,11 +55,11 @@ static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
         decimal_print(text, size,
                       "it is in contact with a wall that gives, and a smaller wall.damping or "
                       "wall.stiffness has longer strides");
-    } else if (current >= a->fastest_rate) {
+    } else if (current_leads(a, m)) {
         decimal_print(text, size,
                       "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "
                       "none, has longer strides",
-                      current);
+                      current_rate(a, m));
     } else if (m->engine == &series_engine && a->wall.restitution > 0 && arm_is_plain(a)) {
         decimal_print(text, size,
                       "an arm that bounces undamped is followed as fast as its fastest mode "
@@ -78,7 +90,8 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
     const double now = m->state[SLOT_TIME], from = p->looked_from;
 
     // the first stride only begins to count
-    const double slowest = is_damped(a, m) ? DAMPED_PACE : SLOWEST_PACE;
+    const bool decays = is_damped(a, m) || current_leads(a, m);
+    const double slowest = decays ? DAMPED_PACE : SLOWEST_PACE;
     const double least = PACE_STRIDES * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;
     p->strides = 0;
