@@ -401,6 +401,21 @@ static void a_slow_start_into_the_wall_is_an_impact(void **state)
     }
 }
 
+// Counts the releases of an arm until an instant [s], each of which ends a contact.
+static int count_releases(moving_arm moving, double until)
+{
+    int releases = 0;
+    bool holds = false;
+    for (motion_event e; (e = next_event(&moving, until)) != MOTION_REACHED;) {
+        assert_true(e != MOTION_RELEASE || holds);
+        holds = moving.motion->state[SLOT_CONTACT] != 0;
+        assert_true(e != MOTION_RELEASE || !holds);
+        releases += e == MOTION_RELEASE;
+    }
+    motion_destroy(moving.motion);
+    return releases;
+}
+
 // Light arms that turn at a hundred rad/s leave the wall once for each time that they have touched
 // it: what the series leave out is no force that holds them.
 static void an_arm_in_fast_rotation_is_released_once(void **state)
@@ -414,16 +429,31 @@ static void an_arm_in_fast_rotation_is_released_once(void **state)
             started(SETTINGS(voltage, "arm.length=2.4", "arm.mass=0.022", "arm.hub_inertia=0.0096",
                              "motor.torque_constant=9", "motor.back_emf=0", "motor.resistance=8",
                              "motor.stiction=0", "wall.angle=0.8", "initial.angle=-0.3"));
-        bool holds = false;
-        for (motion_event e; (e = next_event(&moving, 0.2)) != MOTION_REACHED;) {
-            assert_true(e != MOTION_RELEASE || holds);
-            holds = moving.motion->state[SLOT_CONTACT] != 0;
-            assert_true(e != MOTION_RELEASE || !holds);
-            releases += e == MOTION_RELEASE;
-        }
-        motion_destroy(moving.motion);
+        releases += count_releases(moving, 0.2);
     }
     assert_true(releases >= 60);
+}
+
+// So do random arms with an amplifier a hundred times too strong, whose last bits count for more.
+static void a_strong_motor_releases_once(void **state)
+{
+    (void)state;
+    const char *const *const strong[] = {
+        SETTINGS("motor.amplifier_gain=1000", "motor.voltage=-9.8976274932817212",
+                 "motor.viscous_friction=0", "wall.angle=0.0087266395815328579",
+                 "arm.length=3.0082092444542567", "arm.k2=2.3498517744129486"),
+        SETTINGS("motor.amplifier_gain=1000", "motor.voltage=8.4197388390802779",
+                 "motor.torque_constant=16.42653521822491", "motor.back_emf=0",
+                 "motor.resistance=9.0298977243827725", "motor.viscous_friction=0",
+                 "motor.stiction=0.000139851492901509", "wall.angle=-0.90540409675491051",
+                 "wall.restitution=0.32090749280125364", "arm.length=2.5058063083989945",
+                 "arm.mass=0.1091521425349667", "arm.k2=0.71729569257682524",
+                 "arm.damping_ratio=0.00098877030493864739", "initial.angle=-2.3385806938907905",
+                 "initial.velocity=-1.6613505629975811"),
+    };
+    for (int i = 0; i < 2; i++) {
+        assert_true(count_releases(started(strong[i]), 0.6) > 0);
+    }
 }
 
 int main(void)
@@ -439,6 +469,7 @@ int main(void)
         cmocka_unit_test(events_that_nearly_coincide_are_told_apart),
         cmocka_unit_test(a_slow_start_into_the_wall_is_an_impact),
         cmocka_unit_test(an_arm_in_fast_rotation_is_released_once),
+        cmocka_unit_test(a_strong_motor_releases_once),
         cmocka_unit_test(random_runs_neither_fail_nor_lose_energy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -115,8 +115,8 @@ typedef struct engine {
     size_t (*memory_for)(const arm *a);
     void (*open)(const arm *a, motion *m);
 
-    // How many times more than rounding (motion_rounding) its states lack of the gap's acceleration
-    // at a release; 0: no more.
+    // How many times more than rounding in stiff or fast arms (motion_rounding beyond 1) its states
+    // lack of the gap's acceleration at a release; 0: no more.
     double left_out;
 
     size_t link_scratch; // bytes a link that it wants in m->sweeps

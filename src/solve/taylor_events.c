@@ -36,7 +36,7 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, wat
         const bool inside = p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
         p->terms[0] = inside ? 0 : p->terms[0];
         if (jumped || inside) {
-            const double lacking = EDGE_RATE * LEFT_OUT * rounding_of(a, m, s);
+            const double lacking = EDGE_RATE * (1 + LEFT_OUT * (rounding_of(a, m, s) - 1));
             leave_edge(p, (double[]){EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, lacking)});
         }
     }

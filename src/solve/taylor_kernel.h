@@ -391,7 +391,7 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     const mask jumped = MASK(edge_rate >= 0);
     const real *wall = contact ? f : gap;
     const course near = course_of(wall, contact ? (int)order : (int)order + 2, h);
-    const real lacking = contact ? zero : edge_rate * LEFT_OUT;
+    const real lacking = contact ? zero : EDGE_RATE + LEFT_OUT * (edge_rate - EDGE_RATE);
     block[AT_WALL_LEAST] =
         least_of(&near, wall, one, h, jumped, zero + (contact ? EDGE_VALUE : EDGE_GAP),
                  zero + EDGE_RATE, greater(lacking, zero + EDGE_MORE));

@@ -70,8 +70,8 @@ enum taylor_place {
 // What is nothing but rounding in the first coefficients of a watched function at its edge just
 // after an event: of the value and of its derivatives, over which nothing is known but that they
 // are small. The hub's acceleration: EDGE_RATE times motion_rounding_at; the gap's: LEFT_OUT times
-// as much, as the series leave more out of it than rounding does.
-#define LEFT_OUT   100.0
+// as much of what that is beyond 1, as the series leave more out of it than rounding does.
+#define LEFT_OUT   1000.0
 #define EDGE_VALUE 1e-9
 #define EDGE_RATE  1e-9
 #define EDGE_MORE  1e-7
