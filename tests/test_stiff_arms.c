@@ -514,6 +514,22 @@ static void events_within_a_stride_are_the_formulas(void **state)
     }
 }
 
+// An arm of 1e-7 rad whose bounces are to go on down to 1e-9 m/s: the modes see them as far as the
+// series do, and what comes afterwards is the same.
+static void bounces_end_where_no_engine_tells_them(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=11", "arm.hub_joint=spring", "arm.damping_ratio=0.0211439",
+                 "wall.restitution=0.2997", "wall.angle=1.2349084692906555e-7",
+                 "motor.voltage=5.7081e-6", "arm.k2=4.64501", "arm.k1=211.051", "arm.mass=0.12368",
+                 "arm.hub_inertia=0.050495", "motor.stiction=0", "method.rest_speed=8.56e-10"));
+    const meetings modes = meetings_by(&p, &modal_engine, 1.20397e-7, 1.24542e-6, 0.00753);
+    const meetings series = meetings_by(&p, &series_engine, 1.20397e-7, 1.24542e-6, 0.00753);
+    assert_int_equal(modes.count, series.count);
+    check_close(modes.peak, series.peak, 1e-4 * series.peak);
+}
+
 // Between bounces of some 1e-9 s the tip flies 1e-13 m high, and the motor presses: no impact is
 // faster than the one before, but for what it falls beyond the wall within 2e-14 m.
 static void bounces_lower_than_rounding_do_not_gain(void **state)
@@ -635,6 +651,7 @@ int main(void)
         cmocka_unit_test(what_a_fast_hub_loses_is_all_booked),
         cmocka_unit_test(slow_modes_of_many_links_keep_their_digits),
         cmocka_unit_test(an_arm_that_starts_on_the_wall_strikes_it),
-        cmocka_unit_test(bounces_lower_than_rounding_do_not_gain)};
+        cmocka_unit_test(bounces_lower_than_rounding_do_not_gain),
+        cmocka_unit_test(bounces_end_where_no_engine_tells_them)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,6 +97,11 @@ static void slow_impacts_are_plastic(void **state)
     wall_model w = wall_of(SETTINGS("wall.restitution=0.6", "method.rest_speed=0.01"));
     check_close(wall_restitution(&w, 0.5), 0.6, 0);
     check_close(wall_restitution(&w, 0.0099), 0, 0);
+
+    // nor of what no engine can tell from rest
+    w.rest_speed = 0;
+    check_close(wall_restitution(&w, 4e-9), 0.6, 0);
+    check_close(wall_restitution(&w, 3e-9), 0, 0);
 }
 
 // Force, its rate and what the spring stores, against differences and the integral.

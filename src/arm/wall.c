@@ -7,6 +7,9 @@
 
 // A face that swings less than this is at rest [m].
 #define FACE_AT_REST 1e-15
+// A bounce slower than this is none [m/s]: half of it is what the series take for rounding of a
+// rate just after an impact (EDGE_RATE in series_engine.c and taylor_series.h).
+#define LEAST_REBOUND 2e-9
 // Below this square of a phase or decay sine and its kin are their series, to the last bit.
 #define SMALL_SQUARE 1e-4
 
@@ -30,7 +33,8 @@ void wall_init(wall_model *w, const parameters *p)
 double wall_restitution(const wall_model *w, double approach_speed)
 {
     assert(w != NULL);
-    return approach_speed < w->rest_speed ? 0 : w->restitution;
+    const bool rests = approach_speed < w->rest_speed;
+    return rests || w->restitution * approach_speed < LEAST_REBOUND ? 0 : w->restitution;
 }
 
 double wall_force_slope(const wall_model *w, double depth, double rate, double acceleration)

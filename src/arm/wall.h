@@ -73,7 +73,8 @@ typedef struct wall_contact {
 void wall_init(wall_model *w, const parameters *p);
 
 // Share of the approach speed [m/s] with which the arm bounces: none below the rest speed, so that
-// a sequence of ever smaller bounces ends in contact.
+// a sequence of ever smaller bounces ends in contact, nor where it would bounce at less than 2e-9
+// m/s, which the engines could not tell from rest.
 double wall_restitution(const wall_model *w, double approach_speed);
 
 // Whether there is a wall at all.
