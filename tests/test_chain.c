@@ -1,5 +1,6 @@
 // The O(N) chain against dense matrices written from the Lagrangian.
 #include <math.h>
+#include <stdlib.h>
 
 #include "src/arm/chain.h"
 #include "tests/arm_fixture.h"
@@ -297,6 +298,41 @@ static void rates_follow_from_the_penetration(void **state)
     }
 }
 
+// A turn that can be seen changes the penetration by the difference, one far below the last digit
+// of the angles by what its rate says, to all digits.
+static void a_turn_changes_the_penetration(void **state)
+{
+    (void)state;
+    for (int links = 1; links <= 5; links++) {
+        for (int kind = 0; kind < 4; kind++) {
+            const arm a =
+                make_arm(links, kind & 1 ? "spring" : "rigid", kind & 2 ? "plane" : "point");
+            const size_t size = (size_t)a.dof * sizeof(double);
+            double *q = malloc(size), *turn = malloc(size), *turned = malloc(size), before, after;
+            assert_true(q != NULL && turn != NULL && turned != NULL);
+            for (int power = 0; power <= 24; power += 6) {
+                some_state(&a, 7 * links + kind, q, turn);
+                for (int i = 0; i < a.dof; i++) {
+                    turn[i] *= pow(10, -power);
+                    turned[i] = q[i] + turn[i];
+                }
+                const double change = chain_penetration_change(&a, q, turn);
+                if (power == 0) {
+                    chain_penetration(&a, q, turn, &before, NULL);
+                    chain_penetration(&a, turned, turn, &after, NULL);
+                    check_close(change, after - before, 1e-13);
+                } else {
+                    const double rate = chain_penetration_rate(&a, q, turn);
+                    check_close(change, rate, 1e-12 * fabs(rate) + 20 * pow(10, -2 * power));
+                }
+            }
+            free(q);
+            free(turn);
+            free(turned);
+        }
+    }
+}
+
 static void penetration_of_two_links_is_equation_3_9(void **state)
 {
     (void)state;
@@ -480,6 +516,7 @@ int main(void)
         cmocka_unit_test(satisfies_the_lagrangian),
         cmocka_unit_test(satisfies_it_with_any_links_and_joints),
         cmocka_unit_test(rates_follow_from_the_penetration),
+        cmocka_unit_test(a_turn_changes_the_penetration),
         cmocka_unit_test(penetration_of_two_links_is_equation_3_9),
         cmocka_unit_test(one_link_on_a_rigid_hub_is_held_by_the_wall),
         cmocka_unit_test(energies_match_the_dense_form),

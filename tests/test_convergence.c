@@ -235,7 +235,10 @@ static void a_study_runs_each_method_at_each_step_once(void **state)
         method_study untouched;
     } both;
     static const method_study none;
-    scenario s = {.name = name, .parameters = fixture_parameters(SETTINGS("run.duration=0.01"))};
+    scenario s = {.name = name,
+                  .parameters =
+                      fixture_parameters(SETTINGS("run.duration=0.1", "wall.angle=0",
+                                                  "initial.angle=-1e-4", "motor.voltage=1"))};
     run_monitor monitor = {0};
     fault f = {0};
     assert_int_equal(method_study_compute(&s, &monitor, &both.study, &f), STATUS_OK);
@@ -246,6 +249,28 @@ static void a_study_runs_each_method_at_each_step_once(void **state)
             assert_true(both.study.points[m][i].cost > 0);
         }
     }
+
+    // an error is how far a run with that method and step is off
+    int compared = 0;
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        for (int i = 0; i < STUDY_STEPS; i += 4) {
+            const study_point *point = &both.study.points[m][i];
+            assert_int_equal(parameter_set_text(&s.parameters, PARAMETER_INDEX(method.name),
+                                                study_methods[m], &f),
+                             STATUS_OK);
+            s.parameters.method.step = point->step;
+            run_result result;
+            assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+            for (int k = 0; k < STUDY_QUANTITIES; k++) {
+                const double value = summary_value(&result.summary, summary_index(study_keys[k]));
+                const double error = fabs(value - both.study.reference[k]);
+                compared += isfinite(error);
+                assert_true(point->error[k] == error || (isnan(error) && isnan(point->error[k])));
+            }
+            run_finish(&result);
+        }
+    }
+    assert_true(compared > 2 * STUDY_METHODS);
 }
 
 int main(void)

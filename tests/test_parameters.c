@@ -27,7 +27,10 @@ static void every_path_is_unique_and_found(void **state)
     (void)state;
     for (int i = 0; i < parameter_count; i++) {
         const char *path = parameter_table[i].path;
+        fault f = {0};
         assert_int_equal(parameter_find(path), i);
+        assert_int_equal(parameter_look_up(path, &f), i);
+        assert_string_equal(f.text, "");
         const char *dot = strchr(path, '.');
         assert_non_null(dot);
         assert_null(strchr(dot + 1, '.'));

@@ -111,9 +111,15 @@ static void cases_are_what_differs(void **state)
         assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
         unlink(path);
     }
-    write_set(path, "control.seed=1,2\ncase a: arm.links=-3\n");
+
+    // of several settings that cannot be the first is named
+    write_set(path, "control.seed=1,2\ncase a: arm.k2=4; arm.links=-3; wall.restitution=7\n");
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    f = (fault){0};
     assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "case 'a'"));
+    assert_non_null(strstr(f.text, "arm.links"));
+    assert_null(strstr(f.text, "wall.restitution"));
     robust_set_finish(&set);
     unlink(path);
 }

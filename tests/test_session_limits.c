@@ -80,8 +80,8 @@ static void a_gesture_is_one_step(void **state)
     // room for more than there was at first
     while (s.input_count < 40) {
         assert_int_equal(session_push(&s, 1e-6, &f), STATUS_OK);
+        assert_int_equal(session_new_gesture(&s), 5);
     }
-    assert_int_equal(session_new_gesture(&s), 5);
     assert_int_equal(session_push(&s, (double)INFINITY, &f), STATUS_BAD_ARGUMENT);
     assert_int_equal(s.input_total, 40);
     session_finish(&s);
@@ -311,6 +311,45 @@ static void a_change_at_an_event_belongs_to_its_row(void **state)
     session_finish(&s);
 }
 
+// So it is at every event of a run, the first and the last, and before nothing else is anything
+// moved.
+static void what_is_done_at_any_event_belongs_to_its_row(void **state)
+{
+    (void)state;
+    session s = opened("title: t\nwall: {angle: 0.3, restitution: 0.6}\nmotor: {stiction: 0.02}\n"
+                       "run: {duration: 0.6 s}\n");
+    fault f = {0};
+    int events = 0;
+    for (size_t r = 1; r + 1 < s.run.trace.row_count; r++) {
+        const sample *rows = s.run.trace.rows;
+        const double last = rows[r - 1].time, now = rows[r].time;
+        const bool twice = now == rows[r + 1].time;
+        if (!twice && r % 50 != 0) {
+            continue;
+        }
+
+        // stands on the row: the first of its instant
+        session_seek(&s, now);
+        while (s.row > r) {
+            assert_true(session_step(&s, -1));
+        }
+        assert_int_equal(s.row, r);
+        assert_int_equal(session_push(&s, 1e-9, &f), STATUS_OK);
+        const double given = s.inputs[0].time;
+        if (twice) {
+            check_close(given, fmax(now - 1e-7, (last + now) / 2), 0);
+            assert_true(given < now && given > last);
+        } else {
+            check_close(given, now, 0);
+        }
+        assert_int_equal(session_undo(&s, &f), STATUS_OK);
+        assert_int_equal(s.row, r);
+        events += twice;
+    }
+    assert_true(events >= 3);
+    session_finish(&s);
+}
+
 // A run that takes long is there as far as it is; stopped, it goes on to the same rows.
 static void a_stopped_run_goes_on(void **state)
 {
@@ -382,6 +421,7 @@ int main(void)
         cmocka_unit_test(a_push_before_a_contact_at_once_is_at_the_start),
         cmocka_unit_test(taken_inputs_make_the_same_run),
         cmocka_unit_test(a_change_at_an_event_belongs_to_its_row),
+        cmocka_unit_test(what_is_done_at_any_event_belongs_to_its_row),
         cmocka_unit_test(a_stopped_run_goes_on),
         cmocka_unit_test(code_that_cannot_be_loaded_stays_withheld),
     };

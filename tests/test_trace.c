@@ -101,12 +101,32 @@ static void a_shared_beginning_goes_on_by_itself(void **state)
     trace_finish(&other);
 }
 
+// An arm without angles of its own has rows all the same, as many as come.
+static void rows_need_no_angles(void **state)
+{
+    (void)state;
+    trace t, copy;
+    trace_init(&t, 0);
+    for (int i = 0; i < ROWS; i++) {
+        sample row = {.time = time_of(i)};
+        assert_int_equal(trace_add_row(&t, &row, NULL, NULL), STATUS_OK);
+    }
+    assert_int_equal(trace_copy(&copy, &t), STATUS_OK);
+    trace_finish(&t);
+    assert_int_equal(copy.row_count, ROWS);
+    for (int i = 0; i < ROWS; i++) {
+        check_close(copy.rows[i].time, time_of(i), 0);
+    }
+    trace_finish(&copy);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_instant_has_its_place_among_the_rows),
         cmocka_unit_test(a_copy_outlives_the_original),
         cmocka_unit_test(a_shared_beginning_goes_on_by_itself),
+        cmocka_unit_test(rows_need_no_angles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -147,6 +147,55 @@ static void test_rates_that_change_again_and_again(void **state)
     rig_destroy(r);
 }
 
+static int times_told;
+
+static const char *count_telling(void *memory, const controller_setup *setup)
+{
+    (void)memory;
+    assert_non_null(setup);
+    times_told++;
+    return NULL;
+}
+
+// A controller hears of what concerns it, once, and of nothing else: not of the arm, its sensors or
+// parameters that are what they were.
+static void test_a_controller_is_told_what_changed_for_it(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *text;
+        bool told;
+    } changes[] = {
+        {"arm.k2", "5", false},
+        {"sensor.fsr_noise", "0.02", false},
+        {"motor.voltage", "0.7", false},
+        {"wall.angle", "0.4", false},
+        {"control.kp", "11", true},
+        {"control.force", "1.7", true},
+        {"belief.k2_factor", "1.1", true},
+        {"motor.voltage_limit", "4", true},
+        {"control.rate", "150", true},
+    };
+    parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
+    rig *r;
+    fault f = {0};
+    assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+    controller counting = *r->law;
+    counting.tune = count_telling;
+    r->law = &counting;
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+        times_told = 0;
+        assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+        assert_int_equal(times_told, 0);
+        assert_int_equal(
+            parameter_set_text(&p, parameter_find(changes[i].path), changes[i].text, &f),
+            STATUS_OK);
+        assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+        assert_int_equal(times_told, changes[i].told);
+    }
+    rig_destroy(r);
+}
+
 // A ramp leads where a step does, later; a wave makes the force swing at its frequency.
 static void test_setpoints_are_steps_ramps_and_waves(void **state)
 {
@@ -318,6 +367,7 @@ int main(void)
         cmocka_unit_test(test_a_gain_holds_from_the_next_sample_on),
         cmocka_unit_test(test_another_rate_samples_at_its_own_period),
         cmocka_unit_test(test_rates_that_change_again_and_again),
+        cmocka_unit_test(test_a_controller_is_told_what_changed_for_it),
         cmocka_unit_test(test_setpoints_are_steps_ramps_and_waves),
         cmocka_unit_test(test_a_law_that_plans_at_its_start_takes_no_dated_change),
         cmocka_unit_test(test_a_saved_tuned_run_is_the_same),

@@ -151,7 +151,7 @@ bool print_printable_list(FILE *stream, const char *format, va_list list)
         return false;
     }
     make_lines_printable(text);
-    const bool printed = fputs(text, stream) >= 0;
+    const bool printed = fputs(text, stream) != EOF;
     free(text);
     return printed;
 }

@@ -33,7 +33,7 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
         const double v1 = signal_value(&t->rows[r + 1], signal);
         const double begin = fmax(t0, from), stop = fmin(t1, to);
         const double slope = width > 0 ? (v1 - v0) / width : 0;
-        const double a = begin > t0 ? v0 + slope * (begin - t0) : v0;
+        const double a = v0 + slope * (begin - t0);
         const double b = stop < t1 ? v0 + slope * (stop - t0) : v1;
         if (width > 0) {
             add_piece(&s, &squares, stop - begin, a, b);
