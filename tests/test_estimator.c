@@ -163,11 +163,51 @@ static void any_model_follows_its_matrices(void **state)
     }
 }
 
+// Another view of any number of states is that of the matrices; what lies behind either view is NaN
+// before and nothing after.
+static void another_view_is_that_of_its_matrix(void **state)
+{
+    (void)state;
+    enum { ALL = ESTIMATOR_STATES };
+    random_generator g;
+    random_seed(&g, 6);
+    for (int from = 1; from <= ALL; from++) {
+        for (int to = 1; to <= ALL; to++) {
+            double t[ALL][ALL];
+            estimator e, seen;
+            for (int i = 0; i < ALL; i++) {
+                e.z[i] = i < from ? random_uniform(&g) : (double)NAN;
+                for (int j = 0; j < ALL; j++) {
+                    e.p[i][j] = i < from && j < from ? random_uniform(&g) : (double)NAN;
+                    t[i][j] = i < to && j < from ? random_uniform(&g) - 0.5 : (double)NAN;
+                }
+            }
+            seen = e;
+            estimator_transform(&seen, from, to, t);
+            for (int i = 0; i < ALL; i++) {
+                double z = 0;
+                for (int k = 0; i < to && k < from; k++) {
+                    z += t[i][k] * e.z[k];
+                }
+                check_close(seen.z[i], z, 1e-14);
+                for (int j = 0; j < ALL; j++) {
+                    double spread = 0;
+                    for (int k = 0; i < to && j < to && k < from * from; k++) {
+                        spread += t[i][k / from] * e.p[k / from][k % from] * t[j][k % from];
+                    }
+                    check_close(seen.p[i][j], spread, 1e-13);
+                }
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sampled_oscillator_has_its_closed_form),
         cmocka_unit_test(any_model_follows_its_matrices),
+        cmocka_unit_test(another_view_is_that_of_its_matrix),
         cmocka_unit_test(estimator_finds_a_constant),
         cmocka_unit_test(states_beyond_the_model_are_left_alone),
     };

@@ -1,0 +1,112 @@
+// Where an engine steps, the instants of events are found by stepping again from the step's start:
+// they are those that an engine finds which needs no steps, and few looks lead there.
+#include "src/solve/contact_machine.h"
+#include "tests/arm_fixture.h"
+#include "tests/explicit_stepper.h"
+
+static const engine *counted;
+static int looks;
+
+static status count_look(const arm *a, motion *m, double h)
+{
+    looks++;
+    return counted->state_at(a, m, h);
+}
+
+typedef struct found {
+    motion_event event;
+    double time; // [s]
+    int looks;   // steps tried in that step
+    double peak; // of the force so far [N]
+    double deep; // largest penetration so far [m]
+} found;
+
+enum { MOST = 400 };
+
+// Events of a run in their order: by an engine, or by the method's own; returns how many.
+static int events_of(const char *const *settings, const engine *by, double step, double until,
+                     found *events)
+{
+    parameters p = fixture_parameters(settings);
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create_by(&a, &p.method, by);
+    assert_non_null(m);
+
+    // its engine, counted
+    counted = m->engine;
+    engine counting = *counted;
+    counting.state_at = count_look;
+    m->engine = &counting;
+    motion_start(&a, m, p.initial.angle, p.initial.velocity);
+    int count = 0;
+    while (m->state[SLOT_TIME] < until && count < MOST) {
+        motion_report report;
+        looks = 0;
+        assert_int_equal(motion_step(&a, m, until, step, &report), STATUS_OK);
+        if (report.event != MOTION_REACHED) {
+            events[count++] = (found){report.event, m->state[SLOT_TIME], looks, m->pulse_peak,
+                                      m->largest_penetration};
+        }
+        motion_apply(&a, m, &report);
+    }
+    motion_destroy(m);
+    return count;
+}
+
+static const struct {
+    const char *settings[8];
+    double until;
+} runs[] = {
+    {{"arm.links=1", "wall.restitution=0.7", NULL}, 1},
+    {{"arm.links=2", NULL}, 0.5},
+    {{"arm.links=3", "wall.restitution=0.5", "wall.kind=plane", NULL}, 0.4},
+    {{"arm.links=2", "wall.contact=kelvin-voigt", "wall.stiffness=2000", NULL}, 0.5},
+    {{"arm.links=1", "motor.voltage=0", "initial.velocity=0.5", "wall.angle=2", NULL}, 1},
+    {{"arm.links=2", "motor.voltage=0", "motor.stiction=0.2", "initial.velocity=3", "wall.angle=2",
+      NULL},
+     1.5},
+};
+
+static void steps_find_what_series_find(void **state)
+{
+    (void)state;
+    int of[MOTION_SLIP + 1] = {0}, far = 0, total = 0;
+    for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
+        static found exact[MOST], stepped[MOST];
+        const int count = events_of(runs[i].settings, NULL, 1e-3, runs[i].until, exact);
+        assert_true(count > 0 && count < MOST);
+        for (int k = 0; k < 3; k++) {
+            const double step = (double[]){2e-4, 5e-4, 7e-4}[k];
+            assert_int_equal(
+                events_of(runs[i].settings, &explicit_engine, step, runs[i].until, stepped), count);
+            for (int e = 0; e < count; e++) {
+                assert_int_equal(stepped[e].event, exact[e].event);
+                check_close(stepped[e].time, exact[e].time, 1e-11);
+                check_close(stepped[e].peak, exact[e].peak, 1e-9);
+                check_close(stepped[e].deep, exact[e].deep, 1e-9 * exact[e].deep + 1e-14);
+                of[stepped[e].event]++;
+
+                // superlinear, where the function does not begin just beside its edge
+                const double since = e > 0 ? exact[e].time - exact[e - 1].time : exact[e].time;
+                check_below(stepped[e].looks, since > 3 * step ? 30 : 80);
+                far += since > 3 * step;
+                total += since > 3 * step ? stepped[e].looks : 0;
+            }
+        }
+    }
+
+    // of every kind there were some
+    for (int event = MOTION_IMPACT; event <= MOTION_SLIP; event++) {
+        assert_true(of[event] > 0);
+    }
+    check_below(total, 8 * far);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_find_what_series_find),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
