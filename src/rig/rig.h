@@ -1,8 +1,9 @@
 // The rig: sensors, a controller that samples them, and the command it sends to the amplifier.
 //
-// The run's motion is the plant. It stops at rig_next_time; where the time of a sample has come,
-// sensors are read and the controller is called, and `delay` later its command takes effect and
-// holds (zero-order hold) until the next one does.
+// The run's motion is the plant. It stops at rig_next_time, or, in flight, is looked at there while
+// it goes on (src/run/corrected_samples.h); where the time of a sample has come, sensors are read
+// and the controller is called, and `delay` later its command takes effect and holds (zero-order
+// hold) until the next one does.
 #pragma once
 
 #include "src/rig/controller.h"

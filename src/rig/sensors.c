@@ -146,7 +146,8 @@ static double left_after(first_order_lag *y, double h)
 static void lag_follow(first_order_lag *y, double h, double first, double last, double mean)
 {
     double lag = y->time_constant;
-    if (lag == 0 || h <= 0) {
+    const bool nothing = y->value == 0 && first == 0 && last == 0 && mean == 0;
+    if (lag == 0 || h <= 0 || nothing) {
         return;
     }
 
@@ -217,6 +218,12 @@ void sensors_follow(sensors *s, double h, const sensed_motion *first, const sens
             s->seen_velocity = last->velocity;
         }
     }
+}
+
+bool sensors_at_rest(const sensors *s)
+{
+    const bool none = !s->p.film && !s->p.accelerometer;
+    return none && s->fsr.value == 0 && s->piezo_rise.value == 0 && s->piezo_leak.value == 0;
 }
 
 void sensors_strike(sensors *s, double impulse)

@@ -97,6 +97,10 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed);
 // Gives the sensors other properties; what they lag behind and their noise go on.
 void sensors_retune(sensors *s, const sensor_parameters *p);
 
+// Whether sensors_follow over a flight, in which nothing presses, leaves the sensors as they are:
+// none of the force's remembers any, and those that feel the arm itself are not there.
+bool sensors_at_rest(const sensors *s);
+
 // Lets the sensors with a lag or a leak follow the arm over a time h [s]. Force, bending and hub
 // acceleration are each taken as the parabola that has the values of `first` and `last` at its ends
 // and their mean: of the force as given [N], of the acceleration what the velocity gained, of the

@@ -9,109 +9,19 @@
 #include "src/base/numbers.h"
 #include "src/run/checkpoint.h"
 #include "src/run/corrected_events.h"
+#include "src/run/corrected_rows.h"
 #include "src/run/rig_recording.h"
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
 
-#define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
-#define SMALL_FLIGHT    1e-10 // motions of this size are followed to 1e-5 of it [rad, m, N m]
-#define SMALL_CONTACT   1e-7  // the same of those that meet the wall
-#define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
-
-enum { MOST_EVENTS_AT_ONCE = 100 }; // events without time passing before the run is given up
-
-// What would help where the ledger does not close: dense engines choose their strides themselves.
-static const char *advice(const motion *m)
-{
-    return engine_is_dense(m->engine) ? "" : ", a shorter method.step may help";
-}
-
-// Says when and how the run failed, with the method's name.
-static status explain(const corrected_run *c, status s, fault *f)
-{
-    const motion *m = c->motion;
-    if (s == STATUS_UNSTABLE) {
-        return fault_set(f, s, "at t = %.9g s: %s (residual %.3g J); the method was %s%s",
-                         m->state[SLOT_TIME], status_text(s),
-                         motion_energy_residual(&c->arm, m, m->state), m->engine->name, advice(m));
-    }
-    return fault_set(f, s, "at t = %.9g s: %s", m->state[SLOT_TIME], status_text(s));
-}
-
-// Says where a flat wall could no longer hold the arm.
-static status explain_fold(const corrected_run *c, fault *f)
-{
-    const motion *m = c->motion;
-    const double *q = state_angles(m, m->state);
-    return fault_set(f, STATUS_FOLDED,
-                     "at t = %.9g s: the arm is folded across the hub's axis, its tip on the flat "
-                     "wall there, first and last link at %.4g and %.4g rad, across the wall within "
-                     "%g rad: no force of a rigid wall holds it so, and the model ends there",
-                     m->state[SLOT_TIME], q[c->arm.first], q[c->arm.dof - 1], CHAIN_FOLDED);
-}
+#define SMALL_FLIGHT   1e-10 // motions of this size are followed to 1e-5 of it [rad, m, N m]
+#define SMALL_CONTACT  1e-7  // the same of those that meet the wall
+#define GRID_TOLERANCE 1e-9  // of a step: the end so near a row of the grid has that row
 
 // Whether the stretch between two stops is through.
 static bool stretch_is_over(const corrected_run *c)
 {
-    const motion *m = c->motion;
-    return !(m->state[SLOT_TIME] < smaller(c->stop, m->cut));
-}
-
-// Why the motion could not make a step.
-static status explain_step(const corrected_run *c, status s, fault *f)
-{
-    const motion *m = c->motion;
-    if (s == STATUS_FOLDED) {
-        return explain_fold(c, f);
-    }
-    return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
-                     m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
-}
-
-// What comes of a step that ended where `report` says.
-static status record_step(corrected_run *c, motion_report *report)
-{
-    const motion *m = c->motion;
-    const bool at_event = report->event != MOTION_REACHED;
-    status s = corrected_record_step(c, at_event);
-    if (s == STATUS_OK && at_event) {
-        s = corrected_pass_event(c, report);
-        bool same = m->state[SLOT_TIME] - c->last_event < SAME_EVENT_TIME;
-        c->at_once = same ? c->at_once + 1 : 0;
-        c->last_event = m->state[SLOT_TIME];
-    }
-    return s;
-}
-
-status corrected_stride(corrected_run *c, fault *f)
-{
-    recording *r = c->recording;
-    motion *m = c->motion;
-    const double step = r->now.method.step;
-    if (r->options->rows_expected > 0 && !checkpoint_keep(r, m, c->last_event)) {
-        return fault_no_memory(f);
-    }
-
-    // one step, or less to an event, and what comes of it
-    motion_report report;
-    status s = motion_step(&c->arm, m, c->stop, step, &report);
-    if (s != STATUS_OK) {
-        return explain_step(c, s, f);
-    }
-    s = record_step(c, &report);
-
-    // reasons to end here
-    if (s == STATUS_OK && c->at_once > MOST_EVENTS_AT_ONCE) {
-        s = STATUS_NO_PROGRESS;
-    }
-    if (s == STATUS_OK && recording_asked_to_stop(r)) {
-        s = STATUS_STOPPED;
-    }
-    recording_publish(r, m->state[SLOT_TIME]);
-    if (s != STATUS_OK) {
-        return explain(c, s, f);
-    }
-    return pace_keep(&c->pace, &c->arm, m, r->scenario->parameters.run.duration, step, f);
+    return !(corrected_now(c) < smaller(c->stop, c->motion->cut));
 }
 
 // The next instant that steps end at: the rig's, or the end.
@@ -159,11 +69,30 @@ static status begin(corrected_run *c, fault *f)
     return failed == STATUS_OK ? failed : fault_no_memory(f);
 }
 
+// Samples the sensors and changes the command where the time for it has come. A step under way goes
+// on unless something changes.
+static status run_rig(corrected_run *c, fault *f)
+{
+    rig *on = c->recording->rig;
+    const double now = corrected_now(c);
+    if (on == NULL || instant_after(rig_next_time(on), now)) {
+        return STATUS_OK;
+    }
+    bool changed;
+    const sensed_motion sensed = corrected_sensed_now(c);
+    status s = rig_act(on, now, &sensed, &changed, f);
+    if (s == STATUS_OK && changed) {
+        s = corrected_end_step(c, f);
+        s = s == STATUS_OK ? corrected_apply_command(c) : s;
+    }
+    return s;
+}
+
 // The rig's first sample, and the row of the start, which is there even where that sample fails.
 static status record_start(corrected_run *c, fault *f)
 {
     recording *r = c->recording;
-    status failed = corrected_run_rig(c, f);
+    status failed = run_rig(c, f);
     r->state.grid_row = 1;
     status recorded = corrected_record_row(c, c->motion->state, 0);
     return failed == STATUS_OK ? recorded : failed;
@@ -181,13 +110,13 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
 
     // script and rig act between stretches of motion, each ending where one of them is due
     while (failed == STATUS_OK && stretch_is_over(c)) {
-        *ended = !(m->state[SLOT_TIME] < duration);
+        *ended = !(corrected_now(c) < duration);
         if (*ended) {
             break;
         }
 
         // the mean force of the end begins to count here
-        if (same_instant(m->state[SLOT_TIME], window)) {
+        if (!c->under_way.goes_on && same_instant(m->state[SLOT_TIME], window)) {
             r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         }
 
@@ -196,7 +125,7 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
             failed = corrected_run_script(c, f);
         }
         if (failed == STATUS_OK && r->rig != NULL) {
-            failed = corrected_run_rig(c, f);
+            failed = run_rig(c, f);
         }
         m->cut = next_cut(r, window, m->state[SLOT_TIME]);
         c->stop = next_stop(r);
@@ -298,7 +227,7 @@ static void judge(const corrected_run *c)
         remark(s,
                "the energy ledger lacks up to %.3g J of the %.3g J put in, more than "
                "method.residual_bound = %g allows: the method was %s%s",
-               s->energy_residual_J, energy, bound, m->engine->name, advice(m));
+               s->energy_residual_J, energy, bound, m->engine->name, corrected_advice(m));
     }
     judge_size(c, energy);
 }
@@ -309,6 +238,10 @@ void corrected_sum_up(corrected_run *c, status failed)
     recording *r = c->recording;
     motion *m = c->motion;
     summary *s = &r->result->summary;
+
+    // as if the run ended where it is; what a step fails with there is not its end
+    fault none;
+    corrected_end_step(c, &none);
     s->steps = (double)m->steps;
     s->max_penetration_m = fmax(0, m->largest_penetration);
     s->motor_work_J = motion_motor_work(m, m->state);
@@ -336,6 +269,36 @@ void corrected_sum_up(corrected_run *c, status failed)
         recording_finish_rig_summary(r, state_angles(m, m->state)[0]);
         judge(c);
     }
+}
+
+void corrected_sum_up_so_far(corrected_run *c, status failed)
+{
+    assert(c != NULL && c->motion != NULL);
+    rig *on = c->recording->rig;
+    if (!c->under_way.goes_on) {
+        corrected_sum_up(c, failed);
+        return;
+    }
+
+    // all that the end of the step under way changes, but for what is summed up
+    const motion moving = *c->motion;
+    const step_under_way under_way = c->under_way;
+    const pace paced = c->pace;
+    const sensors felt = on->sensors;
+    size_t *forces = &c->recording->result->history.forces.count;
+    const size_t kept = *forces;
+    corrected_sum_up(c, failed);
+
+    // and back to where the step started, which is where it left that
+    const double *start = c->motion->trial;
+    *c->motion = moving;
+    memmove(moving.state, start, (size_t)moving.size * sizeof *start);
+    memmove(moving.trial, start, (size_t)moving.size * sizeof *start);
+    c->under_way = under_way;
+    c->pace = paced;
+    on->sensors = felt;
+    *forces = kept;
+    corrected_present(c);
 }
 
 status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)

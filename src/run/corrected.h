@@ -1,11 +1,11 @@
 // A run of the corrected arm, stride by stride:
 //
-//     open -> (approach_stride -> stride) until it has ended or fails -> close
+//     open -> (approach_stride -> corrected_stride) until it has ended or fails -> close
 //
 // so that several can go side by side (src/run/run.c), and programs step them (src/run/loop.h).
 #pragma once
 
-#include "src/run/corrected_rows.h"
+#include "src/run/corrected_step.h"
 
 // Begins a run, or takes one up, in the storage of a motion that is over (`spare`, which may be
 // NULL and is used up). Whatever it returns, corrected_close or corrected_finish is due.
@@ -15,12 +15,13 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f);
 // the run is through instead.
 status corrected_approach_stride(corrected_run *c, bool *ended, fault *f);
 
-// One stride and the event at its end, recorded.
-status corrected_stride(corrected_run *c, fault *f);
-
 // Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
 // then says so). What it has recorded is then that of a run that ended here.
 void corrected_sum_up(corrected_run *c, status failed);
+
+// The same of a run that goes on as if nothing had been asked; rows, events and recording.state are
+// to be kept by whoever asks.
+void corrected_sum_up_so_far(corrected_run *c, status failed);
 
 // Sums the run up and frees it; `failed` is what ended it.
 void corrected_close(corrected_run *c, status failed);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/run/corrected_rows.h"
 #include "src/run/rig_recording.h"
 #include "src/base/instant.h"
 #include "src/base/sincos.h"
@@ -263,8 +264,7 @@ status corrected_run_script(corrected_run *c, fault *f)
 
 // --- the rig ----------------------------------------------------------------------------------
 
-// Lets another command take effect: the torque jumps, and with it accelerations and force.
-static status apply_command(corrected_run *c)
+status corrected_apply_command(corrected_run *c)
 {
     recording *r = c->recording;
     motion *m = c->motion;
@@ -283,17 +283,4 @@ static status apply_command(corrected_run *c)
         failed = record_applied_event(c, &lost);
     }
     return failed == STATUS_OK && now > 0 ? corrected_record_row(c, m->state, 0) : failed;
-}
-
-status corrected_run_rig(corrected_run *c, fault *f)
-{
-    rig *on = c->recording->rig;
-    double now = c->motion->state[SLOT_TIME];
-    if (on == NULL || instant_after(rig_next_time(on), now)) {
-        return STATUS_OK;
-    }
-    bool changed;
-    sensed_motion sensed = corrected_sensed_motion(c, c->motion->state);
-    status s = rig_act(on, now, &sensed, &changed, f);
-    return s == STATUS_OK && changed ? apply_command(c) : s;
 }

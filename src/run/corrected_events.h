@@ -2,7 +2,7 @@
 // actions, and the commands of the rig.
 #pragma once
 
-#include "src/run/corrected_rows.h"
+#include "src/run/corrected_run.h"
 
 // Derives the arm's constants from the parameters as they are now; the command in force stays.
 void corrected_bind_arm(corrected_run *c);
@@ -24,5 +24,6 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f);
 // Carries out the script's actions that are due. What fails says why in f, or has a code only.
 status corrected_run_script(corrected_run *c, fault *f);
 
-// Samples the sensors and changes the command where the time for it has come.
-status corrected_run_rig(corrected_run *c, fault *f);
+// Lets another command of the rig take effect: the torque jumps, and with it accelerations and
+// force. Records what comes of it.
+status corrected_apply_command(corrected_run *c);

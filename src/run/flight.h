@@ -8,5 +8,5 @@
 bool flight_separated(const arm *a, motion *m);
 
 // How fast the tip came towards the wall at most in the step [m/s]: at its ends or, where it was
-// faster and then slower, in between. Negative if it only went away.
+// faster and then slower, in between. Negative if it only went away; 0 without a wall.
 double flight_closing_speed(const arm *a, motion *m);

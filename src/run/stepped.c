@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "src/run/corrected_events.h"
+#include "src/run/corrected_pieces.h"
+#include "src/run/corrected_rows.h"
 
 // --- the corrected arm ------------------------------------------------------------------------
 
@@ -20,12 +22,12 @@ static void corrected_end(stepped_run *run, status failed)
 
 static void corrected_summary(stepped_run *run, status failed)
 {
-    corrected_sum_up(&run->corrected, failed);
+    corrected_sum_up_so_far(&run->corrected, failed);
 }
 
 static double corrected_time(const stepped_run *run)
 {
-    return run->corrected.motion->state[SLOT_TIME];
+    return corrected_now(&run->corrected);
 }
 
 static bool corrected_at_end(const stepped_run *run)
@@ -40,15 +42,11 @@ static status corrected_approach(stepped_run *run, bool *ended, fault *f)
 
 static status corrected_stride_until(stepped_run *run, double until, fault *f)
 {
-    // where it stops by itself it is the stride of a run that nobody steps, to the last bit
     corrected_run *c = &run->corrected;
-    if (until < c->stop) {
-        c->motion->cut = fmin(c->motion->cut, until);
-    }
-    const status s = corrected_stride(c, f);
+    const status s = corrected_stride(c, until, f);
 
     // the pace is that of strides which the motion chose, not of instants a program asks for
-    if (!(c->motion->state[SLOT_TIME] < until)) {
+    if (!(corrected_now(c) < until)) {
         c->pace = pace_begin();
     }
     return s;
@@ -56,30 +54,32 @@ static status corrected_stride_until(stepped_run *run, double until, fault *f)
 
 static status corrected_act_now(stepped_run *run, const action *todo, fault *f)
 {
-    return corrected_act(&run->corrected, todo, -1, f);
+    const status s = corrected_end_step(&run->corrected, f);
+    return s == STATUS_OK ? corrected_act(&run->corrected, todo, -1, f) : s;
 }
 
 static sensed_motion corrected_sensed(stepped_run *run)
 {
-    return corrected_sensed_motion(&run->corrected, run->corrected.motion->state);
+    return corrected_sensed_now(&run->corrected);
 }
 
 static sample corrected_row_now(stepped_run *run)
 {
-    return corrected_row(&run->corrected, run->corrected.motion->state, 0);
+    return corrected_row(&run->corrected, corrected_present(&run->corrected), 0);
 }
 
 static const double *corrected_state(const stepped_run *run, int *angle_count)
 {
     const motion *m = run->corrected.motion;
     *angle_count = m->dof;
-    return state_angles(m, m->state);
+    return state_angles(m, corrected_present(&run->corrected));
 }
 
 // What the stretch and the motion remember; the motion's state follows.
 typedef struct saved_motion {
     double stop, last_event;
     int at_once;
+    step_under_way under_way;
     long steps;
     double start_energy, cut, pulse_peak, pulse_peak_time, largest_penetration;
 } saved_motion;
@@ -98,6 +98,7 @@ static void corrected_save(const stepped_run *run, void *bytes)
     saved.stop = c->stop;
     saved.last_event = c->last_event;
     saved.at_once = c->at_once;
+    saved.under_way = c->under_way;
     saved.steps = m->steps;
     saved.start_energy = m->start_energy;
     saved.cut = m->cut;
@@ -118,7 +119,6 @@ static void corrected_restore(stepped_run *run, const void *bytes)
     memcpy(&saved, bytes, sizeof saved);
     memcpy(m->state, (const char *)bytes + sizeof saved, (size_t)m->size * sizeof(double));
     motion_forget_stride(m);
-    c->stop = saved.stop;
     c->last_event = saved.last_event;
     c->at_once = saved.at_once;
     c->pace = pace_begin();
@@ -128,6 +128,15 @@ static void corrected_restore(stepped_run *run, const void *bytes)
     m->pulse_peak = saved.pulse_peak;
     m->pulse_peak_time = saved.pulse_peak_time;
     m->largest_penetration = saved.largest_penetration;
+
+    // the step under way, looked at again as it was when it was begun
+    c->under_way.goes_on = false;
+    if (saved.under_way.goes_on) {
+        c->stop = saved.under_way.begun_for;
+        corrected_begin_step(c);
+    }
+    c->under_way = saved.under_way;
+    c->stop = saved.stop;
 }
 
 const stepped_model stepped_corrected = {.stops_anywhere = true,

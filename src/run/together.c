@@ -1,11 +1,13 @@
 #include "src/run/together.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/run/corrected.h"
+#include "src/run/corrected_pieces.h"
 #include "src/run/recording_frame.h"
 #include "src/run/run.h"
 #include "src/solve/taylor_lanes.h"
@@ -65,6 +67,13 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
     return failed;
 }
 
+// Where the series of the run's next step are to be computed; NULL if it needs none.
+static taylor_lane *lane_for(corrected_run *run)
+{
+    const double remaining = run->stop - run->motion->state[SLOT_TIME];
+    return run->under_way.goes_on ? NULL : taylor_prepare(&run->arm, run->motion, remaining);
+}
+
 // Goes on with a run until it waits for series that can be computed together with others'. False
 // if it is over: it is closed then.
 static bool go_on(side_by_side *group, int place)
@@ -77,15 +86,14 @@ static bool go_on(side_by_side *group, int place)
     while (failed == STATUS_OK && !ended) {
         failed = corrected_approach_stride(&one->run, &ended, &one->fault);
         if (failed == STATUS_OK && !ended) {
-            double remaining = one->run.stop - one->run.motion->state[SLOT_TIME];
-            one->lane = taylor_prepare(&one->run.arm, one->run.motion, remaining);
+            one->lane = lane_for(&one->run);
             if (one->lane != NULL) {
                 one->kind = taylor_kind(one->lane->form);
                 group->alike[one->kind]++;
                 group->waiting[group->waiting_count++] = place;
                 return true;
             }
-            failed = corrected_stride(&one->run, &one->fault);
+            failed = corrected_stride(&one->run, HUGE_VAL, &one->fault);
         }
     }
 
@@ -119,7 +127,7 @@ static void fetch_run(const side_run *one)
 static bool stride_and_go_on(side_by_side *group, int place)
 {
     side_run *one = &group->in_hand[place];
-    status failed = corrected_stride(&one->run, &one->fault);
+    status failed = corrected_stride(&one->run, HUGE_VAL, &one->fault);
     if (failed == STATUS_OK) {
         return go_on(group, place);
     }
@@ -191,8 +199,8 @@ static void serve(side_by_side *group)
         fetch_run(&group->in_hand[chosen[i]]);
     }
     for (int i = 0; i < count; i++) {
-        const corrected_run *run = &group->in_hand[chosen[i]].run;
-        motion_look_ahead(&run->arm, run->motion, run->stop, run->recording->now.method.step);
+        corrected_run *run = &group->in_hand[chosen[i]].run;
+        corrected_begin_step(run);
         const double length = run->motion->ahead.length;
         const int pieces = lanes[i]->form.contact ? corrected_force_pieces(run, length) : 0;
         ends[i] = (taylor_end){length, pieces};

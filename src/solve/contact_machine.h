@@ -61,6 +61,10 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 // m->ahead, and raises the recorded peak for it. For a dense engine and an arm that is not held
 // still; motion_step does it by itself where nobody has. An arm that is held folded has no step.
 void motion_look_ahead(const arm *a, motion *m, double until, double step);
+// The same where the step may go on to `far` [s] as long as its stride lasts, whose engine knows
+// the hub within it (engine.hub_at): what is made for the way to `until` is not to be made for
+// more.
+void motion_look_far(const arm *a, motion *m, double until, double far, double step);
 
 // Steps until `until` or the first event.
 status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report);

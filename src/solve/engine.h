@@ -88,6 +88,10 @@ typedef struct engine {
     // give, never divided by anything.
     glance (*gap_at)(const arm *a, const motion *m, double h);
 
+    // Dense engines whose strides outlive steps, or NULL: the hub's angle [rad] and velocity
+    // [rad/s].
+    glance (*hub_at)(const arm *a, const motion *m, double h);
+
     // Dense engines, or NULL: state_at, to the last bit, for several h at once and from the
     // stride's start in `start`, into states[count], whose other slots are set already, with the
     // energy that each holds. Up to MOTION_TOGETHER; false if the arm's state has to be taken one

@@ -163,11 +163,22 @@ static bool face_moves(const arm *a, const motion *m)
     return m->wall_has_face && wall_face_rate(&a->wall, state_face(m->state)) > 0;
 }
 
-// What motion_look_ahead finds out, of an arm that can go on.
-static void look_ahead(const arm *a, motion *m, double until, double step)
+// What is left of the stride that the state keeps [s].
+static double left_of_stride(motion *m)
 {
-    double h = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step);
+    const double *kept = state_kept(m, m->state);
+    return kept[KEPT_LENGTH] - kept[KEPT_USED];
+}
+
+// What motion_look_far finds out, of an arm that can go on.
+static void look_ahead(const arm *a, motion *m, double until, double far, double step)
+{
+    const double now = m->state[SLOT_TIME];
+    double h = motion_begin_stride(a, m, until - now, step);
     const bool begun = h > 0;
+    if (begun && far > until) {
+        h = larger(smaller(left_of_stride(m), far - now), h);
+    }
     watch first = WATCH_GAP;
     bool any = false;
 
@@ -175,8 +186,8 @@ static void look_ahead(const arm *a, motion *m, double until, double step)
     // it
     if (begun) {
         dense_first_event(a, m, &h, &first, &any);
-        if (m->state[SLOT_TIME] + h > m->cut) {
-            h = m->cut - m->state[SLOT_TIME];
+        if (now + h > m->cut) {
+            h = m->cut - now;
             any = false;
         }
         const bool touches = m->state[SLOT_CONTACT] != 0;
@@ -196,9 +207,15 @@ static void look_ahead(const arm *a, motion *m, double until, double step)
 
 void motion_look_ahead(const arm *a, motion *m, double until, double step)
 {
+    motion_look_far(a, m, until, until, step);
+}
+
+void motion_look_far(const arm *a, motion *m, double until, double far, double step)
+{
     assert(a != NULL && m != NULL && step > 0 && engine_is_dense(m->engine));
+    assert(!(far > until) || m->engine->hub_at != NULL);
     if (!m->starved && !held_folded(a, m)) {
-        look_ahead(a, m, until, step);
+        look_ahead(a, m, until, far, step);
     }
 }
 
@@ -207,7 +224,7 @@ static status dense_stride(const arm *a, motion *m, double until, double step, d
                            watch *first, bool *any)
 {
     if (!m->ahead.known) {
-        look_ahead(a, m, until, step);
+        look_ahead(a, m, until, until, step);
     }
     m->ahead.known = false;
     *h = m->ahead.length;
@@ -233,7 +250,7 @@ static bool glide(const arm *a, motion *m, double until, double step)
         return false;
     }
     if (!m->ahead.known) {
-        look_ahead(a, m, until, step);
+        look_ahead(a, m, until, until, step);
     }
     if (!m->ahead.begun || m->ahead.any) {
         return false;

@@ -301,6 +301,10 @@ double motion_wall_rate(const arm *a, motion *m, double *state)
 
 double motion_vibration(const arm *a, motion *m, double *state)
 {
+    // most have nothing but their own
+    if (motion_wall_is_rigid(m) && a->stiffening == 0 && a->motor.inductance == 0) {
+        return a->highest_frequency;
+    }
     const double wall = motion_wall_rate(a, m, state);
     const double current = a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
     const double own = a->highest_frequency * chain_stiffened(a, state_angles(m, state));

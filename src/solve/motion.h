@@ -210,6 +210,7 @@ void motion_follow_arm(const arm *a, motion *m);
 static inline void motion_forget_stride(motion *m)
 {
     m->forgets = true;
+    m->ahead.known = false;
 }
 
 // To be called after anything changed that a stride follows from and that is no jump: what comes

@@ -5,10 +5,10 @@
 // that something else ends sooner, the series end with them. Everything within it (events, rows,
 // peaks, quadratures) is a polynomial.
 //
-// Steps that cut a stride without an event (a sample whose command stays, an instant that a program
-// stops at) go on in it: the state says where it began, the engine's memory holds its series. While
-// commands stay, a stride is made for twice as long as the one before; just after a change for
-// twice the time since the change before.
+// Steps that cut a stride without an event (a sample in contact whose command stays, an instant
+// that a program stops at) go on in it: the state says where it began, the engine's memory holds
+// its series. While commands stay, a stride is made for twice as long as the one before; just after
+// a change for twice the time since the change before.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -253,6 +253,7 @@ const engine taylor_engine = {.name = "Taylor series",
                               .force_at = taylor_force_at,
                               .forces_at = taylor_forces_at,
                               .gap_at = taylor_gap_at,
+                              .hub_at = taylor_hub_at,
                               .first_event = taylor_first_event,
                               .peak = dense_search_peak,
                               .open = open,

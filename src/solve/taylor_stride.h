@@ -19,11 +19,12 @@ typedef struct taylor_stride {
 
 // --- states --------------------------------------------------------------------------------------
 
-// engine.state_at, .states_at and .move_to of the series' engine.
+// engine.state_at, .states_at, .move_to and .hub_at of the series' engine.
 status taylor_state_at(const arm *a, motion *m, double h);
 bool taylor_states_at(const arm *a, motion *m, double *start, const double *h, int count,
                       double *const *states, state_energy *energies);
 bool taylor_move_to(const arm *a, motion *m, double h, state_energy *has);
+glance taylor_hub_at(const arm *a, const motion *m, double h);
 
 // --- events --------------------------------------------------------------------------------------
 

@@ -1,0 +1,294 @@
+#include "src/run/corrected_pieces.h"
+
+#include <math.h>
+
+#include "src/base/extremes.h"
+#include "src/base/instant.h"
+
+#define SHORTEST_MEAN 1e-9 // a step shorter than this has the mean of its ends [s]
+
+// A parabola is right to 1e-4 of the fastest mode's force, and of what sensors with a lag see of it
+// to 1e-5, over so much of (fastest rate) x (time).
+#define FORCE_REACH  0.25
+#define SENSOR_REACH 0.5
+
+// A slope that promises so many times what a piece shows otherwise is that of a decay.
+#define FALLS_AT_ONCE 4
+
+enum { MOST_PIECES = 64 };
+
+sensed_motion corrected_sensed_motion(const corrected_run *c, double *state)
+{
+    const motion *m = c->motion;
+    const double *q = state_angles(m, state), *w = state_velocities(m, state);
+    int first = c->arm.first, last = c->arm.dof - 1;
+    return (sensed_motion){.angle = q[0],
+                           .velocity = w[0],
+                           .acceleration = state_accelerations(m, state)[0],
+                           .bending = q[last] - q[first],
+                           .bending_rate = w[last] - w[first],
+                           .force = state[SLOT_FORCE]};
+}
+
+// The force over the step just made.
+static force_step force_over_step(const motion *m)
+{
+    const double *start = m->trial; // where the step left its beginning
+    double length = m->state[SLOT_TIME] - start[SLOT_TIME];
+    double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
+                      state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+
+    // between stops that differ by rounding only, the integral's difference is all rounding
+    double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
+    return (force_step){.start = start[SLOT_TIME],
+                        .end = m->state[SLOT_TIME],
+                        .first = start[SLOT_FORCE],
+                        .last = m->state[SLOT_FORCE],
+                        .mean = length > SHORTEST_MEAN ? integral / length : ends};
+}
+
+// In how many pieces a step that goes far in (fastest rate) x (length) is taken where parabolas
+// have to do for what happens within it. Only a dense engine goes so far.
+static int pieces_of_step(const corrected_run *c, double length, double reach)
+{
+    motion *m = c->motion;
+    if (!engine_is_dense(m->engine)) {
+        return 1;
+    }
+    const double pieces = length * motion_vibration(&c->arm, m, m->trial) / reach;
+    if (!(pieces > 1) || motion_held_still(m)) {
+        return 1;
+    }
+    const int whole = pieces < MOST_PIECES ? (int)pieces : MOST_PIECES;
+    return whole < MOST_PIECES ? whole + (whole < pieces) : MOST_PIECES;
+}
+
+// Whether what an event sets going decays faster than the arm vibrates.
+static bool decays_outrun(const arm *a)
+{
+    return a->fastest_decay > a->highest_frequency;
+}
+
+// Where the next piece of a step ends that goes from `time` to `end` and is taken in parabolas [s],
+// as long as what the last event set going decays faster than the arm vibrates. False where equal
+// pieces do for the rest.
+static bool next_decay_piece(const corrected_run *c, double time, double end, double reach,
+                             double *next)
+{
+    const arm *a = &c->arm;
+    if (!decays_outrun(a) || !engine_is_dense(c->motion->engine) || motion_held_still(c->motion)) {
+        return false;
+    }
+    const double since = time - c->recording->state.last_jump;
+    const double length = larger(motion_decay_length(a, reach, since), instant_tolerance(time));
+    const double equal = larger(reach / a->highest_frequency, (end - time) / MOST_PIECES);
+    *next = time + length;
+    return length < equal && *next < end;
+}
+
+int corrected_force_pieces(const corrected_run *c, double length)
+{
+    const double now = c->motion->state[SLOT_TIME];
+    double next;
+    return next_decay_piece(c, now, now + length, FORCE_REACH, &next)
+               ? 0
+               : pieces_of_step(c, length, FORCE_REACH);
+}
+
+way corrected_way_at(const corrected_run *c, double time, double *state)
+{
+    return (way){time, corrected_sensed_motion(c, state),
+                 state_quadratures(c->motion, state)[QUADRATURE_FORCE]};
+}
+
+// Goes on to an instant within the step. False if the state there cannot be had.
+static bool go_to(const corrected_run *c, way *w, double time)
+{
+    double *state = motion_between(&c->arm, c->motion, time);
+    if (state == NULL) {
+        return false;
+    }
+    *w = corrected_way_at(c, time, state);
+    return true;
+}
+
+// Takes a piece of the step just made, over which the force has that mean [N].
+typedef status (*piece_taker)(corrected_run *c, const way *from, const way *to, double mean);
+
+// Goes on to an instant within the step, a stretch of this length [s], and hands it over.
+static status take_piece(corrected_run *c, way *w, double time, double length, piece_taker take)
+{
+    const way from = *w;
+    return go_to(c, w, time) ? take(c, &from, w, (w->integral - from.integral) / length)
+                             : STATUS_NOT_FINITE;
+}
+
+// Goes along what an event set going and decays at once, piece by piece, up to where equal pieces
+// do for the rest of the step, which ends at `end` [s].
+static status follow_decay(corrected_run *c, way *w, double end, double reach, piece_taker take)
+{
+    status s = STATUS_OK;
+    double next;
+    while (s == STATUS_OK && next_decay_piece(c, w->time, end, reach, &next)) {
+        s = take_piece(c, w, next, next - w->time, take);
+    }
+    return s;
+}
+
+// Whether a force falls at once from where it begins: what is left of it shows in its slope there
+// alone, which then says nothing of its mean.
+static bool falls_at_once(glance first, glance last, double width)
+{
+    const double shown = fabs(last.value - first.value) + fabs(last.slope) * width;
+    return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
+}
+
+// Keeps the force over equal pieces of the rest of the step just made, `before` being its integral
+// up to there: each has the mean of the cubic through both ends' values and slopes. A stride of the
+// modes may begin with a decay that is over at once, which only the motion's own integral knows.
+static status record_equal_pieces(corrected_run *c, const force_step *rest, double before,
+                                  int count)
+{
+    const motion *m = c->motion;
+    glance at[MOST_PIECES + 1];
+    force_step *kept = recording_add_steps(c->recording, count);
+    if (kept == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+
+    // the force at the start and at the ends of all pieces
+    const double since = rest->start - m->trial[SLOT_TIME], width = (m->made - since) / count;
+    if (m->engine->forces_at != NULL && since == 0) {
+        m->engine->forces_at(&c->arm, m, m->made, count, at);
+    } else {
+        for (int i = 0; i <= count; i++) {
+            at[i] = m->engine->force_at(&c->arm, m, since + i * width);
+        }
+    }
+
+    const double slope_share = width / 12;
+    double start = rest->start;
+    glance first = at[0];
+    for (int i = 0; i < count; i++) {
+        const glance last = at[i + 1];
+        const double end = rest->start + (i + 1) * width;
+        const double mean =
+            (first.value + last.value) / 2 + slope_share * (first.slope - last.slope);
+        kept[i] = (force_step){
+            .start = start, .end = end, .first = first.value, .last = last.value, .mean = mean};
+        start = end;
+        first = last;
+    }
+    kept[count - 1].end = rest->end;
+
+    if (falls_at_once(at[0], at[1], width)) {
+        way w;
+        if (!go_to(c, &w, kept[0].end)) {
+            return STATUS_NOT_FINITE;
+        }
+        kept[0].mean = (w.integral - before) / width;
+    }
+    return STATUS_OK;
+}
+
+// Keeps the force over a piece of the step.
+static status keep_force(corrected_run *c, const way *from, const way *to, double mean)
+{
+    return recording_add_step(c->recording, (force_step){.start = from->time,
+                                                         .end = to->time,
+                                                         .first = from->at.force,
+                                                         .last = to->at.force,
+                                                         .mean = mean});
+}
+
+// Keeps the force over the step just made, in pieces that are parabolas to sight.
+static status record_force(corrected_run *c, const force_step *whole)
+{
+    recording *r = c->recording;
+    const motion *m = c->motion;
+    if (m->trial[SLOT_CONTACT] == 0) {
+        return recording_add_step(r, *whole);
+    }
+
+    // what an event set going and decays at once, its integral being that of the motion
+    force_step rest = *whole;
+    double before = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    if (decays_outrun(&c->arm)) {
+        way w = corrected_way_at(c, whole->start, m->trial);
+        const status s = follow_decay(c, &w, whole->end, FORCE_REACH, keep_force);
+        if (s != STATUS_OK) {
+            return s;
+        }
+        rest.start = w.time;
+        rest.first = w.at.force;
+        before = w.integral;
+    }
+
+    // what vibrates
+    double length = m->made;
+    if (rest.start > whole->start) {
+        length = whole->end - rest.start;
+        rest.mean = (state_quadratures(m, m->state)[QUADRATURE_FORCE] - before) / length;
+    }
+    const int pieces = pieces_of_step(c, length, FORCE_REACH);
+    return pieces > 1 ? record_equal_pieces(c, &rest, before, pieces) : recording_add_step(r, rest);
+}
+
+// Lets the sensors follow the arm over a piece of the step.
+static status sense(corrected_run *c, const way *from, const way *to, double mean)
+{
+    sensors_follow(&c->recording->rig->sensors, to->time - from->time, &from->at, &to->at, mean);
+    return STATUS_OK;
+}
+
+// Lets the sensors follow the arm from where w is to `last`, the force having that mean [N].
+static status follow_to(corrected_run *c, way w, const way *last, double mean)
+{
+    const double begin = w.time;
+    status s = follow_decay(c, &w, last->time, SENSOR_REACH, sense);
+
+    // the rest from piece to piece
+    const double start = w.time, length = last->time - start;
+    const int pieces = pieces_of_step(c, length, SENSOR_REACH);
+    for (int i = 1; i < pieces && s == STATUS_OK; i++) {
+        s = take_piece(c, &w, start + length * i / pieces, length / pieces, sense);
+    }
+    if (s != STATUS_OK) {
+        return s;
+    }
+
+    // the last piece ends where the way does
+    const bool part = w.time > begin;
+    return sense(c, &w, last, part ? (last->integral - w.integral) / (length / pieces) : mean);
+}
+
+status corrected_follow_flight(corrected_run *c, const way *to)
+{
+    way *sensed = &c->under_way.sensed;
+    const bool rest = sensors_at_rest(&c->recording->rig->sensors);
+    const status s = rest ? STATUS_OK : follow_to(c, *sensed, to, 0);
+    *sensed = *to;
+    return s;
+}
+
+// Lets the sensors follow the arm over the step just made, or over what is left of it.
+static status follow_with_sensors(corrected_run *c, const force_step *whole)
+{
+    const motion *m = c->motion;
+    const step_under_way *on = &c->under_way;
+    const bool rest = on->goes_on && on->sensed.time > whole->start;
+    const bool pressed = whole->first != 0 || whole->last != 0 || whole->mean != 0;
+    if (!pressed && sensors_at_rest(&c->recording->rig->sensors)) {
+        return STATUS_OK;
+    }
+    const way first = rest ? on->sensed : corrected_way_at(c, whole->start, m->trial);
+    const way last = corrected_way_at(c, whole->end, m->state);
+    return follow_to(c, first, &last, rest ? 0 : whole->mean);
+}
+
+status corrected_record_forces(corrected_run *c)
+{
+    const force_step force = force_over_step(c->motion);
+    const status s = c->recording->rig != NULL ? follow_with_sensors(c, &force) : STATUS_OK;
+    return s == STATUS_OK && force.end > force.start ? record_force(c, &force) : s;
+}

@@ -1,0 +1,273 @@
+// Samples of the rig that are taken in flight while a step goes on: a loop from one to the next is
+// the run to the last bit, and what they read is what is read where every one of them ends a step,
+// with a piezo film, which these laws do not read, and in a loop that a program stops anywhere.
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/random.h"
+#include "src/run/loop.h"
+#include "tests/check.h"
+#include "tests/rig_fixture.h"
+
+enum { RUNS = 60, MOST_SETTINGS = 16, SETTING_SIZE = 64 };
+
+#define SAME      1e-7 // of a quantity's largest value
+#define SAME_TIME 1e-9 // [s]
+
+// One of so many texts.
+static const char *one_of(random_generator *g, const char *const *texts, uint64_t count)
+{
+    return texts[random_below(g, count)];
+}
+
+// A random arm under a random law.
+typedef struct drawn_settings {
+    char text[MOST_SETTINGS][SETTING_SIZE];
+    int count;
+} drawn_settings;
+
+static __attribute__((format(printf, 2, 3))) void add(drawn_settings *s, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    vsnprintf(s->text[s->count++], SETTING_SIZE, format, values);
+    va_end(values);
+}
+
+static drawn_settings draw(random_generator *g)
+{
+    static const char *const laws[] = {"hybrid",    "force-pd",  "inverse-dynamics",
+                                       "open-loop", "bang-bang", "impedance"};
+    static const char *const walls[] = {"point", "plane", "none"};
+    static const char *const hubs[] = {"rigid", "spring"};
+    drawn_settings s = {.count = 0};
+    add(&s, "control.law=%s", one_of(g, laws, 6));
+    add(&s, "control.rate=%.3g", 50 + 350 * random_uniform(g));
+    add(&s, "control.delay=%.3g", random_below(g, 2) == 0 ? 0 : 0.002 * random_uniform(g));
+    add(&s, "control.jitter=%.3g", random_below(g, 3) == 0 ? 1e-4 * random_uniform(g) : 0);
+    add(&s, "wall.kind=%s", one_of(g, walls, 3));
+    add(&s, "arm.hub_joint=%s", one_of(g, hubs, 2));
+    add(&s, "arm.k2=%.4g", 2 + 20 * random_uniform(g));
+    add(&s, "sensor.film=%s", random_below(g, 2) == 0 ? "true" : "false");
+    add(&s, "sensor.accelerometer=%s", random_below(g, 2) == 0 ? "true" : "false");
+    add(&s, "run.duration=0.6");
+    add(&s, "sensor.ideal=true"); // no code at whose edge a last bit would show
+    return s;
+}
+
+static parameters drawn_parameters(const drawn_settings *s)
+{
+    const char *settings[MOST_SETTINGS + 1] = {NULL};
+    for (int i = 0; i < s->count; i++) {
+        settings[i] = s->text[i];
+    }
+    return rig_parameters(settings);
+}
+
+static double signal_of(const sample *row, size_t offset)
+{
+    return *(const double *)((const char *)row + offset);
+}
+
+// How large a signal of the rows becomes at most.
+static double largest_of(const trace *t, size_t offset)
+{
+    double most = 1e-3;
+    for (size_t i = 0; i < t->row_count; i++) {
+        most = fmax(most, fabs(signal_of(&t->rows[i], offset)));
+    }
+    return most;
+}
+
+static void check_same_signal(const sample *x, const sample *y, size_t signal, double tolerance)
+{
+    const double one = signal_of(x, signal), other = signal_of(y, signal);
+    assert_int_equal(isfinite(one), isfinite(other));
+    if (isfinite(one)) {
+        check_close(one, other, tolerance);
+    }
+}
+
+// The row after the last one at the instant of a row.
+static size_t end_of_instant(const trace *t, size_t row)
+{
+    size_t end = row;
+    while (end < t->row_count && t->rows[end].time - t->rows[row].time < SAME_TIME) {
+        end++;
+    }
+    return end;
+}
+
+// The last rows of an instant have the same signals; there may be others where an input is
+// recorded, or a command differs from the one before by its last bit. All instants are the same but
+// for those of inputs, which are those of b.
+static void check_rows(const trace *a, const trace *b, bool inputs)
+{
+    static const size_t signals[] = {
+        offsetof(sample, hub_angle),     offsetof(sample, hub_velocity),
+        offsetof(sample, last_velocity), offsetof(sample, gap),
+        offsetof(sample, force),         offsetof(sample, motor_torque),
+        offsetof(sample, motor_work),    offsetof(sample, encoder),
+        offsetof(sample, tachometer),    offsetof(sample, command),
+        offsetof(sample, force_reading), offsetof(sample, sticking),
+        offsetof(sample, film),          offsetof(sample, accelerometer)};
+    enum { SIGNALS = sizeof signals / sizeof *signals };
+    double most[SIGNALS];
+    for (int k = 0; k < SIGNALS; k++) {
+        most[k] = largest_of(a, signals[k]);
+    }
+
+    size_t together = 0, missing = 0;
+    for (size_t i = 0, j = 0; i < a->row_count && j < b->row_count;) {
+        const size_t x = end_of_instant(a, i), y = end_of_instant(b, j);
+        const double later = a->rows[i].time - b->rows[j].time;
+        for (int k = 0; k < SIGNALS && fabs(later) < SAME_TIME; k++) {
+            check_same_signal(&a->rows[x - 1], &b->rows[y - 1], signals[k], SAME * most[k]);
+        }
+        together += fabs(later) < SAME_TIME;
+        missing += later <= -SAME_TIME || (later >= SAME_TIME && !inputs);
+        i = later < SAME_TIME ? x : i;
+        j = later > -SAME_TIME ? y : j;
+    }
+    assert_true(together >= 600 && missing <= 2);
+}
+
+// How a loop is gone on with.
+typedef enum looping {
+    LOOPING_AT_SAMPLES, // from sample to sample, with questions, there and back
+    LOOPING_ANYWHERE,   // by random times
+    LOOPING_ENDED       // from sample to sample, each of which ends the step
+} looping;
+
+// Asks all that a loop can be asked, goes on and comes back. It is where it was then.
+static void ask_and_return(run_loop *l, random_generator *g, void *bytes)
+{
+    fault f;
+    int freedoms;
+    const sample row = loop_row(l);
+    const double first = *loop_state(l, &freedoms);
+    check_close(first, row.hub_angle, 0);
+    check_close(loop_summary(l).motor_work_J, row.motor_work, 0);
+    loop_save(l, bytes);
+    if (random_below(g, 2) == 0) {
+        assert_int_equal(loop_until(l, loop_time(l) + 0.03 * random_uniform(g), &f), STATUS_OK);
+    }
+    assert_int_equal(loop_restore(l, bytes, loop_saved_size(l), &f), STATUS_OK);
+    const sample again = loop_row(l);
+    assert_memory_equal(&row, &again, sizeof row);
+}
+
+static void go_on(run_loop *l, random_generator *g, looping how, void *bytes)
+{
+    fault f;
+    if (how == LOOPING_ANYWHERE) {
+        const double until = loop_time(l) + 0.03 * random_uniform(g);
+        assert_int_equal(loop_until(l, until, &f), STATUS_OK);
+        assert_true(loop_ended(l) || fabs(loop_time(l) - until) < SAME_TIME);
+        return;
+    }
+    assert_int_equal(loop_step(l, &f), STATUS_OK);
+    if (how == LOOPING_AT_SAMPLES && random_below(g, 4) == 0) {
+        ask_and_return(l, g, bytes);
+    }
+    if (how == LOOPING_ENDED && !loop_ended(l)) { // an input, which changes nothing
+        assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), 1, &f), STATUS_OK);
+    }
+}
+
+// A whole run and a loop agree, where it is not cut by inputs or anywhere in contact to the last
+// bit.
+static void check_same_run(const run_result *whole, const run_result *loop, const summary *end,
+                           looping how)
+{
+    const trace *a = &whole->trace, *b = &loop->trace;
+    const summary *s = &whole->summary;
+    check_close(s->approach_speed_m_s, end->approach_speed_m_s, SAME);
+    check_close(s->return_speed_m_s, end->return_speed_m_s, SAME);
+    if (how != LOOPING_ENDED) {
+        assert_int_equal(a->event_count, b->event_count);
+    }
+    if (how != LOOPING_AT_SAMPLES) {
+        check_rows(a, b, how == LOOPING_ENDED);
+        return;
+    }
+
+    // rows, events, what was summed up
+    assert_int_equal(a->row_count, b->row_count);
+    assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
+    for (size_t i = 0; i < a->event_count; i++) {
+        assert_true(a->events[i].time == b->events[i].time);
+    }
+    for (int i = 0; i < summary_count; i++) {
+        const double one = summary_value(s, i), other = summary_value(end, i);
+        const bool timed = strstr(summary_table[i].key, "_time_s") != NULL &&
+                           (strncmp(summary_table[i].key, "cpu", 3) == 0 ||
+                            strncmp(summary_table[i].key, "wall", 4) == 0);
+        if (!timed) {
+            assert_memory_equal(&one, &other, sizeof one);
+        }
+    }
+}
+
+static void check_loops(uint64_t seed, looping how)
+{
+    static char name[] = "loop", none[] = "";
+    random_generator g;
+    random_seed(&g, seed);
+    for (int i = 0; i < RUNS; i++) {
+        const drawn_settings drawn = draw(&g);
+        const scenario s = {.name = name,
+                            .file = none,
+                            .title = none,
+                            .description = none,
+                            .parameters = drawn_parameters(&drawn)};
+        run_result whole;
+        assert_int_equal(run_scenario(&s, true, &whole), STATUS_OK);
+
+        const loop_options options = {.keep_trace = true};
+        run_loop *l;
+        fault f;
+        assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+        void *bytes = malloc(loop_saved_size(l));
+        assert_non_null(bytes);
+        while (!loop_ended(l)) {
+            go_on(l, &g, how, bytes);
+        }
+        const summary end = loop_summary(l);
+        check_same_run(&whole, loop_result(l), &end, how);
+        free(bytes);
+        loop_destroy(l);
+        run_finish(&whole);
+    }
+}
+
+static void a_loop_from_sample_to_sample_is_the_run(void **state)
+{
+    (void)state;
+    check_loops(11, LOOPING_AT_SAMPLES);
+}
+
+static void a_loop_stops_between_samples_on_the_way(void **state)
+{
+    (void)state;
+    check_loops(12, LOOPING_ANYWHERE);
+}
+
+static void samples_on_the_way_are_those_at_ends_of_steps(void **state)
+{
+    (void)state;
+    check_loops(13, LOOPING_ENDED);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_loop_from_sample_to_sample_is_the_run),
+        cmocka_unit_test(a_loop_stops_between_samples_on_the_way),
+        cmocka_unit_test(samples_on_the_way_are_those_at_ends_of_steps),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
