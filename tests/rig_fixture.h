@@ -1,6 +1,8 @@
 // Runs on the rig for tests: the impact of the thesis's 5.4 with settings as "path=value" strings.
 #pragma once
 
+#include <string.h>
+
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
@@ -35,4 +37,16 @@ static inline summary rig_summary(const char *const *settings)
     summary s = result.summary;
     run_finish(&result);
     return s;
+}
+
+// The run under these settings cannot be made, and the sentence says why.
+static inline void check_refused(const char *const *settings, const char *sentence)
+{
+    run_result r;
+    scenario s = {.parameters = rig_parameters(settings)};
+    assert_int_not_equal(run_scenario(&s, false, &r), STATUS_OK);
+    if (strstr(r.summary.message, sentence) == NULL) {
+        fail_msg("'%s' does not say '%s'", r.summary.message, sentence);
+    }
+    run_finish(&r);
 }

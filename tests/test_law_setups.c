@@ -4,18 +4,6 @@
 
 #include "tests/rig_fixture.h"
 
-// The run under these settings cannot be made, and the sentence says why.
-static void check_refused(const char *const *settings, const char *sentence)
-{
-    run_result r;
-    scenario s = {.parameters = rig_parameters(settings)};
-    assert_int_not_equal(run_scenario(&s, false, &r), STATUS_OK);
-    if (strstr(r.summary.message, sentence) == NULL) {
-        fail_msg("'%s' does not say '%s'", r.summary.message, sentence);
-    }
-    run_finish(&r);
-}
-
 // A model-based law waits for its command not at all, for part of a period, or for all of it.
 static void laws_know_any_delay(void **state)
 {

@@ -25,17 +25,6 @@ static void plugin_controls_the_arm(void **state)
     check_below(s.settling_time_s, slow.settling_time_s);
 }
 
-static void check_refused(const char *const *settings, const char *sentence)
-{
-    run_result r;
-    scenario s = {.parameters = rig_parameters(settings)};
-    assert_int_not_equal(run_scenario(&s, false, &r), STATUS_OK);
-    if (strstr(r.summary.message, sentence) == NULL) {
-        fail_msg("'%s' does not say '%s'", r.summary.message, sentence);
-    }
-    run_finish(&r);
-}
-
 static void wrong_plugins_are_refused(void **state)
 {
     (void)state;
