@@ -74,6 +74,18 @@ static const weight_row long_weights[LONG_STAGES + 1] = {
      2.01365400804030348374776537501e-1, 4.47106157277725905176885569043e-2},
 };
 
+// Rate of the motor's current where it is a state of its own [A/s], w [rad/s] being the hub's
+// velocity; none at the limit, as long as the voltage would drive it beyond.
+static double current_rate(const motor_model *m, double state, double w)
+{
+    if (m->inductance == 0) {
+        return 0;
+    }
+    const double rate =
+        (m->gain * m->voltage - m->resistance * state - m->back_emf * w) / m->inductance;
+    return fabs(state) >= m->current_limit && rate * state > 0 ? 0 : rate;
+}
+
 // One step of the method with the given weights, whose number and `loaded` are constants.
 KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *weights, int stages,
                           bool loaded)
@@ -97,7 +109,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
         rate[n + i] = a0[i];
     }
     if (loaded) {
-        quadrature[QUADRATURE_CURRENT] = motor_current_rate(&a->motor, y0[current], y0[n]);
+        quadrature[QUADRATURE_CURRENT] = current_rate(&a->motor, y0[current], y0[n]);
         quadrature[QUADRATURE_MOTOR] = m->state[SLOT_MOTOR_TORQUE] * y0[n];
     }
     quadrature[QUADRATURE_VISCOUS] = m->state[SLOT_VISCOUS_POWER];
@@ -133,7 +145,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
             k[i] = y[n + i];
         }
         if (loaded) {
-            k[current] = motor_current_rate(&a->motor, y[current], y[n]);
+            k[current] = current_rate(&a->motor, y[current], y[n]);
             k[2 * n + QUADRATURE_MOTOR] = reaction.motor_torque * y[n];
         }
         k[2 * n + QUADRATURE_VISCOUS] = reaction.viscous_power;
@@ -238,7 +250,7 @@ static double graded_current(const arm *a, const motion *m, double rate, double 
     // the current without a limit, and how fast it goes there; at the limit the voltage left over
     const bool held = motor->inductance > 0 && fabs(state) >= limit;
     const double now = motor->inductance > 0 && !held ? state : free / motor->resistance;
-    const double slope = motor->inductance > 0 && !held ? motor_current_rate(motor, state, w)
+    const double slope = motor->inductance > 0 && !held ? current_rate(motor, state, w)
                                                         : -motor->back_emf * al / motor->resistance;
     const double to_limit = slope != 0 ? fabs((fabs(now) - limit) / slope) : HUGE_VAL;
     return fmin(longest, fmax(GRADING * to_limit, SHORTEST_RESOLUTION / rate));

@@ -18,7 +18,7 @@ static inline void open_session(session *s, const char *name)
     scenario base;
     fault f = {0};
     assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(session_init(s, &base, &f), STATUS_OK);
+    assert_int_equal(session_open(s, &base, HUGE_VAL, &f), STATUS_OK);
 }
 
 static inline void assert_same_trace(const trace *a, const trace *b)
@@ -48,4 +48,17 @@ static inline char *save_and_compare(const session *s)
     run_finish(&again);
     scenario_finish(&saved);
     return text;
+}
+
+// Moves the cursor to the next event after it. False, and nothing done, if there is none.
+static inline bool seek_next_event(session *s)
+{
+    const trace *t = &s->run.trace;
+    for (size_t i = 0; i < t->event_count; i++) {
+        if (t->events[i].time > s->now) {
+            session_seek(s, t->events[i].time);
+            return true;
+        }
+    }
+    return false;
 }

@@ -132,7 +132,8 @@ static void file_and_data_are_written(void **state)
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/a.svg", folder);
     snprintf(csv, sizeof csv, "%s/a.csv", folder);
-    assert_int_equal(figure_write_with_csv(&fig, path, &f), STATUS_OK);
+    assert_int_equal(figure_write(&fig, path, &f), STATUS_OK);
+    assert_int_equal(figure_write_csv(&fig, csv, &f), STATUS_OK);
     FILE *file = fopen(csv, "r");
     assert_non_null(file);
     assert_true(fread(text, 1, sizeof text - 1, file) > 0);
@@ -143,7 +144,7 @@ static void file_and_data_are_written(void **state)
     unlink(path);
     rmdir(folder);
     snprintf(path, sizeof path, "%s/a.txt", folder);
-    assert_int_equal(figure_write_with_csv(&fig, path, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_write(&fig, path, &f), STATUS_BAD_ARGUMENT);
 }
 
 // However narrow, an axis of two decades or more has two labels: one alone gives no scale.

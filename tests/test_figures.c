@@ -207,13 +207,19 @@ static double number_in_csv(const char *csv, const char *start, int column)
     return *line == ',' || *line == '\n' ? (double)NAN : atof(line);
 }
 
+// The figure as it comes, without options.
+static status draw_plain(const char *id, const char *into, const char *formats, fault *f)
+{
+    return figure_draw(id, &(figure_options){0}, into, formats, NULL, f);
+}
+
 static char *csv_of(const char *id)
 {
     fault f = {0};
     size_t length;
     const thesis_figure *which = thesis_figure_find(id);
     char name[64];
-    if (figure_draw(id, path_of("csv"), "svg", &f) != STATUS_OK) {
+    if (draw_plain(id, path_of("csv"), "svg", &f) != STATUS_OK) {
         fail_msg("%s: %s", id, f.text);
     }
     snprintf(name, sizeof name, "csv/%s.csv", which->file);
@@ -243,7 +249,7 @@ static status overlaid(const char *csv, const char *id, fault *f)
     fclose(stream);
     char *path = strdup(path_of("measured.csv"));
     const figure_options o = {.overlay = path};
-    status code = figure_draw_as(id, &o, path_of("overlaid"), "svg", f);
+    status code = figure_draw(id, &o, path_of("overlaid"), "svg", NULL, f);
     free(path);
     return code;
 }
@@ -271,7 +277,7 @@ static void reference_data_lie_over_signals(void **state)
     assert_int_equal(overlaid("", "3.4", &f), STATUS_BAD_ARGUMENT);
     assert_int_equal(overlaid(good, "4.1", &f), STATUS_BAD_ARGUMENT);
     const figure_options missing = {.overlay = "/nowhere/data.csv"};
-    assert_int_equal(figure_draw_as("3.4", &missing, folder, "svg", &f), STATUS_CANNOT_READ);
+    assert_int_equal(figure_draw("3.4", &missing, folder, "svg", NULL, &f), STATUS_CANNOT_READ);
     assert_non_null(strstr(f.text, "/nowhere/data.csv"));
 }
 
@@ -354,7 +360,7 @@ static void a_second_run_writes_the_same_bytes(void **state)
         // in another order, so that nothing drawn before shows
         for (int i = 0; i < 5; i++) {
             const char *id = ids[pass == 0 ? i : 4 - i];
-            assert_int_equal(figure_draw(id, path_of(folders[pass]), "png,pdf,svg", &f), STATUS_OK);
+            assert_int_equal(draw_plain(id, path_of(folders[pass]), "png,pdf,svg", &f), STATUS_OK);
         }
     }
     for (int i = 0; i < 5; i++) {
@@ -375,7 +381,7 @@ static void fonts_are_embedded_as_outlines(void **state)
     for (size_t i = 0; i < 3; i++) {
         size_t length;
         char name[64];
-        assert_int_equal(figure_draw(ids[i], path_of("fonts"), "pdf", &f), STATUS_OK);
+        assert_int_equal(draw_plain(ids[i], path_of("fonts"), "pdf", &f), STATUS_OK);
         snprintf(name, sizeof name, "fonts/%s.pdf", thesis_figure_find(ids[i])->file);
         char *pdf = read_file(path_of(name), &length);
         assert_null(memmem(pdf, length, "/Type3", 6));
@@ -413,11 +419,11 @@ static void figures_are_asked_for_by_id(void **state)
     assert_null(thesis_figure_find("3.99"));
     assert_ptr_equal(thesis_figure_find("t4.1"), thesis_figure_find("T4.1"));
     assert_ptr_equal(thesis_figure_find("fig-3-4"), thesis_figure_find("3.4"));
-    assert_int_equal(figure_draw("3.99", folder, "png", &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(draw_plain("3.99", folder, "png", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "3.99"));
-    assert_int_equal(figure_draw("3.4", folder, "png,gif", &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(draw_plain("3.4", folder, "png,gif", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "gif"));
-    assert_int_equal(figure_draw("3.4", path_of("a/b/c"), "png", &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(draw_plain("3.4", path_of("a/b/c"), "png", &f), STATUS_CANNOT_WRITE);
 }
 
 // ---- the report

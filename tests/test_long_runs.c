@@ -7,15 +7,9 @@
 #include <time.h>
 
 #include "src/base/random.h"
-#include "src/session/session.h"
+#include "tests/session_fixture.h"
 
-static void fail_on_fault(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
-
-static void open_session(session *s, const char *name, const char *duration, double patience)
+static void open_lasting(session *s, const char *name, const char *duration, double patience)
 {
     scenario base;
     fault f = {0};
@@ -41,7 +35,7 @@ static int open_while_computing(session *s, size_t rows)
     for (int duration = 4;; duration *= 2) {
         char text[32];
         snprintf(text, sizeof text, "%d", duration);
-        open_session(s, "corrected/twenty-links", text, 0);
+        open_lasting(s, "corrected/twenty-links", text, 0);
         while (s->computing != NULL && s->run.trace.row_count < rows) {
             session_follow(s);
         }
@@ -116,10 +110,10 @@ static void a_resumed_run_is_the_run_from_the_start(void **state)
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         session s;
         fault f = {0};
-        open_session(&s, names[i], "3", HUGE_VAL);
+        open_lasting(&s, names[i], "3", HUGE_VAL);
         for (int k = 0; k < 8; k++) {
             session_seek(&s, session_end(&s) * random_uniform(&random));
-            if (k % 3 == 0 && session_step_event(&s, 1)) {
+            if (k % 3 == 0 && seek_next_event(&s)) {
                 session_seek(&s, s.now + 3e-4 * random_uniform(&random));
             }
             if (k % 4 == 1 && s.run.summary.status == STATUS_OK &&
@@ -142,10 +136,7 @@ static void test_a_long_run_is_looked_at_while_it_is_computed(void **state)
 {
     (void)state;
     session s;
-    fault f = {0};
     open_while_computing(&s, 0);
-    assert_int_equal(session_branch(&s, &f), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, "still being computed"));
     assert_true(wait_for_run(&s) > 0);
     assert_as_from_the_start(&s);
     session_finish(&s);
@@ -156,7 +147,7 @@ static void test_a_change_supersedes_a_run_being_computed(void **state)
     (void)state;
     session s;
     fault f = {0};
-    open_session(&s, "corrected/twenty-links", "4", 0);
+    open_lasting(&s, "corrected/twenty-links", "4", 0);
     session_seek(&s, 1e-3);
     for (int i = 0; i < 20; i++) {
         change(&s, "motor.voltage", i % 2 ? "0.8" : "1.2");
@@ -200,7 +191,7 @@ static void test_the_cursor_waits_for_rows_to_come(void **state)
 {
     (void)state;
     session s;
-    open_session(&s, "corrected/twenty-links", "4", 0);
+    open_lasting(&s, "corrected/twenty-links", "4", 0);
     wait_for_run(&s);
     session_seek(&s, 3.5);
     change(&s, "arm.k2", "9");
@@ -224,7 +215,7 @@ static void test_runs_end_with_their_session(void **state)
     (void)state;
     for (int i = 0; i < 10; i++) {
         session s;
-        open_session(&s, "corrected/twenty-links", "30", 1e-3 * i);
+        open_lasting(&s, "corrected/twenty-links", "30", 1e-3 * i);
         session_finish(&s);
     }
     assert_int_equal(shared_array_memory(), 0);
@@ -234,12 +225,12 @@ static void check_shared_rows(const char *name)
 {
     session s;
     fault f = {0};
-    open_session(&s, name, "60", HUGE_VAL);
+    open_lasting(&s, name, "60", HUGE_VAL);
     size_t alone = shared_array_memory(), chunk = ARRAY_CHUNK, arrays = 5;
     assert_true(s.run.trace.row_count >= 60000);
     for (int i = 0; i < 8; i++) {
         session_seek(&s, 59 + 0.1 * i);
-        assert_int_equal(session_branch(&s, &f), STATUS_OK);
+        assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
         change(&s, "arm.k2", i % 2 ? "7.5" : "6.5");
         // two runs with the same rows but for the last second and chunks that are not full
         assert_true(shared_array_memory() < alone + alone / 60 + 2 * arrays * chunk);

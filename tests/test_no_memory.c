@@ -95,7 +95,7 @@ static status change_on_the_way(scenario *s, FILE *out)
     session made_session;
     fault f = {0};
     status code = scenario_copy(&own, s);
-    code = code == STATUS_OK ? session_init(&made_session, &own, &f) : code;
+    code = code == STATUS_OK ? session_open(&made_session, &own, HUGE_VAL, &f) : code;
     if (code != STATUS_OK) {
         return code;
     }
@@ -107,7 +107,7 @@ static status change_on_the_way(scenario *s, FILE *out)
     session_seek(t, 0.03);
     code = code == STATUS_OK ? session_change(t, PARAMETER_INDEX(motor.voltage), "1.5", &f) : code;
     code = code == STATUS_OK ? t->run.summary.status : code;
-    code = code == STATUS_OK ? session_branch(t, &f) : code;
+    code = code == STATUS_OK ? session_keep_beside(t, &t->run, &f) : code;
     session_seek(t, 0.07);
     code = code == STATUS_OK ? session_push(t, 0.01, &f) : code;
     code = code == STATUS_OK ? t->run.summary.status : code;

@@ -486,7 +486,7 @@ static void a_scenario_is_plotted(void **state)
     run_result result;
     assert_int_equal(scenario_open(&s, "corrected/first-impact", ignore, NULL), STATUS_OK);
     assert_int_equal(run_scenario(&s, true, &result), STATUS_OK);
-    assert_int_equal(plot_run(&s, &result, path_of("run.png"), &f), STATUS_OK);
+    assert_int_equal(plot_run(&s, &result, NULL, path_of("run.png"), &f), STATUS_OK);
     assert_int_equal(access(path_of("run.png"), F_OK), 0);
     run_finish(&result);
     // a run without rows still says what it is
@@ -494,7 +494,7 @@ static void a_scenario_is_plotted(void **state)
     result.summary.first_contact_s = (double)NAN;
     result.summary.status = STATUS_NOT_FINITE;
     strcpy(result.summary.message, "at t = 0 s: <nothing>");
-    assert_int_equal(plot_run(&s, &result, path_of("none.pdf"), &f), STATUS_OK);
+    assert_int_equal(plot_run(&s, &result, NULL, path_of("none.pdf"), &f), STATUS_OK);
     scenario_finish(&s);
 }
 

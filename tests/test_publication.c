@@ -303,7 +303,8 @@ static void a_recipe_shows_what_its_runs_give(void **state)
     assert_int_equal(drawn.write_csv(drawn.what, path_of("recipe.csv"), &f), STATUS_OK);
     artwork_finish(&drawn);
     g_free(path);
-    assert_int_equal(figure_draw("3.4", path_of("thesis"), "svg", &f), STATUS_OK);
+    assert_int_equal(figure_draw("3.4", &(figure_options){0}, path_of("thesis"), "svg", NULL, &f),
+                     STATUS_OK);
     char *recipe = read_file(path_of("recipe.csv"), &length);
     char *thesis = read_file(path_of("thesis/fig-3-4.csv"), &length);
     const char *const rows[][2] = {{"printed force,0.4,", ",force,0.4,"},

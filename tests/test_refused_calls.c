@@ -138,7 +138,7 @@ static status ask_a_program(scenario *s, FILE *out)
         return refused_at > 0 ? STATUS_NO_MEMORY : code;
     }
     own.parameters.code_allowed = true;
-    code = session_init(&t, &own, &f);
+    code = session_open(&t, &own, HUGE_VAL, &f);
     if (code != STATUS_OK) {
         return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
     }

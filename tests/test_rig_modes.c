@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/session/session.h"
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
+#include "tests/session_fixture.h"
 
 #define LOCK_TIME    0.5 // [s]
 #define RELEASE_TIME 0.9
@@ -202,12 +202,6 @@ static void files_are_checked_where_the_lock_stands(void **state)
 
 // --- in a session -----------------------------------------------------------------------------
 
-static void fail_on_fault(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
-
 static void assert_same_rows(const trace *a, const trace *b)
 {
     assert_int_equal(a->row_count, b->row_count);
@@ -224,7 +218,7 @@ static void lock_is_an_input_that_a_saved_scenario_repeats(void **state)
     run_result free_run, again;
     assert_int_equal(scenario_open(&s, "compare/hybrid", fail_on_fault, NULL), STATUS_OK);
     run_scenario(&s, true, &free_run);
-    assert_int_equal(session_init(&e, &s, &f), STATUS_OK);
+    assert_int_equal(session_open(&e, &s, HUGE_VAL, &f), STATUS_OK);
     session_seek(&e, 0.4);
     assert_int_equal(session_change(&e, lock, "approach", &f), STATUS_OK);
     session_seek(&e, 0.7);

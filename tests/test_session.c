@@ -66,26 +66,19 @@ static void test_the_cursor_stays_within_the_run(void **state)
     session_finish(&s);
 }
 
-static void test_events_are_found_in_both_directions(void **state)
+static void test_the_cursor_stands_behind_an_event(void **state)
 {
     (void)state;
     session s;
     open_session(&s, "corrected/first-impact");
-    assert_true(session_step_event(&s, 1));
-    while (session_event(&s)->kind != EVENT_IMPACT) {
-        assert_true(session_step_event(&s, 1));
-    }
+    assert_null(session_event(&s));
+    do {
+        assert_true(seek_next_event(&s));
+    } while (session_event(&s)->kind != EVENT_IMPACT);
+
+    // on the far side of the impact
     check_close(s.now, 0.293412296, 1e-6);
-    // the cursor is on the far side of the impact
     check_close(session_sample(&s)->contact, 1, 0);
-    double impact = s.now;
-    while (session_step_event(&s, 1)) {
-        assert_true(s.now > impact);
-    }
-    while (session_step_event(&s, -1)) {
-        assert_true(s.now < 1);
-    }
-    assert_false(session_step_event(&s, -1));
     session_finish(&s);
 }
 
@@ -98,7 +91,7 @@ static void test_a_lower_voltage_before_contact_hits_less_hard(void **state)
     double hard = s.run.summary.first_pulse_peak_N;
     session_seek(&s, 0.25);
     sample before = *session_sample(&s);
-    assert_int_equal(session_branch(&s, &f), STATUS_OK);
+    assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
     change(&s, "motor.voltage", "0.5");
     assert_int_equal(s.inputs[0].kind, SESSION_INPUT_TIMED);
     check_below(s.run.summary.first_pulse_peak_N, hard);
@@ -150,12 +143,12 @@ static void test_what_is_before_a_change_stays_to_the_last_bit(void **state)
         for (int k = 0; k < 24; k++) {
             session_seek(&s, random_uniform(&random) * session_end(&s));
             // most changes are right behind an event, where a stride is likely to span both
-            if (k % 4 != 0 && session_step_event(&s, 1)) {
+            if (k % 4 != 0 && seek_next_event(&s)) {
                 session_seek(&s, s.now + (k % 4 == 1 ? 3e-6 : 3e-4) * random_uniform(&random));
             } else if (k % 8 == 0) {
                 session_step(&s, 1);
             }
-            assert_int_equal(session_branch(&s, &f), STATUS_OK);
+            assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
             // the cursor may go on to a touch that rounding puts right behind the change
             double instant = s.now;
             change(&s, "arm.k2", k % 2 ? "7.5" : "6.5");
@@ -288,7 +281,7 @@ int main(void)
         cmocka_unit_test(test_stepping_back_and_forth_gives_the_same_states),
         cmocka_unit_test(test_a_run_that_cannot_start_names_its_parameter),
         cmocka_unit_test(test_the_cursor_stays_within_the_run),
-        cmocka_unit_test(test_events_are_found_in_both_directions),
+        cmocka_unit_test(test_the_cursor_stands_behind_an_event),
         cmocka_unit_test(test_a_lower_voltage_before_contact_hits_less_hard),
         cmocka_unit_test(test_what_is_before_a_change_stays_to_the_last_bit),
         cmocka_unit_test(test_undo_and_redo),

@@ -6,13 +6,7 @@
 #include <string.h>
 
 #include "src/rig/process_tape.h"
-#include "src/session/session.h"
-
-static void fail_on_fault(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
+#include "tests/session_fixture.h"
 
 static scenario read_text(const char *text)
 {
@@ -27,7 +21,7 @@ static session opened(const char *text)
     session s;
     fault f = {0};
     scenario base = read_text(text);
-    assert_int_equal(session_init(&s, &base, &f), STATUS_OK);
+    assert_int_equal(session_open(&s, &base, HUGE_VAL, &f), STATUS_OK);
     return s;
 }
 
@@ -362,8 +356,7 @@ static void a_stopped_run_goes_on(void **state)
     assert_non_null(s.computing);
     assert_true(s.run.trace.row_count > 0);
 
-    // meanwhile it cannot be kept or gone on with, and one too large leaves it running
-    assert_int_equal(session_branch(&s, &f), STATUS_BAD_ARGUMENT);
+    // meanwhile it cannot be gone on with, and one too large leaves it running
     assert_int_equal(session_go_on(&s, &f), STATUS_BAD_ARGUMENT);
     assert_false(session_take_replay(&s).restarted);
     assert_int_equal(session_change(&s, PARAMETER_INDEX(method.step), "1e-7", &f),

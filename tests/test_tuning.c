@@ -54,7 +54,7 @@ static void test_a_gain_holds_from_the_next_sample_on(void **state)
         fault f = {0};
         open_session(&s, "compare/hybrid");
         session_seek(&s, changes[i].at + 0.0021);
-        assert_int_equal(session_branch(&s, &f), STATUS_OK);
+        assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
         change(&s, changes[i].path, changes[i].value);
         assert_int_equal(s.inputs[0].kind, SESSION_INPUT_TIMED);
 

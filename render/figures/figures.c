@@ -254,14 +254,8 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
     return code;
 }
 
-status figure_draw_as(const char *id, const figure_options *o, const char *folder,
-                      const char *formats, fault *f)
-{
-    return figure_draw_into(id, o, folder, formats, NULL, f);
-}
-
-status figure_draw_into(const char *id, const figure_options *o, const char *folder,
-                        const char *formats, FILE *tex, fault *f)
+status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
+                   FILE *tex, fault *f)
 {
     assert(id != NULL && o != NULL && folder != NULL && formats != NULL);
     const thesis_figure *which = thesis_figure_find(id);
@@ -293,10 +287,4 @@ status figure_draw_into(const char *id, const figure_options *o, const char *fol
 
     g_strfreev(list);
     return code;
-}
-
-status figure_draw(const char *id, const char *folder, const char *formats, fault *f)
-{
-    const figure_options as_it_comes = {0};
-    return figure_draw_as(id, &as_it_comes, folder, formats, f);
 }

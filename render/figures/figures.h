@@ -49,14 +49,9 @@ const thesis_figure *thesis_figure_find(const char *id);
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f);
 
 // Draws a figure to FOLDER/fig-3-4.png and so on for every format in the list ("png,pdf,svg") and
-// writes FOLDER/fig-3-4.csv. The folder is created if it is not there.
+// writes FOLDER/fig-3-4.csv; with `tex` (may be NULL) it prints the figure environment of the first
+// format's file there. The folder is created if it is not there. Options of zeroes: in colour, at
+// its own width, 200 dpi.
 // STATUS_BAD_ARGUMENT for an unknown id or format, otherwise what the run or the writing returns.
-status figure_draw_as(const char *id, const figure_options *o, const char *folder,
-                      const char *formats, fault *f);
-
-// The same, and the figure environment of the first format's file printed to `tex` (NULL: none).
-status figure_draw_into(const char *id, const figure_options *o, const char *folder,
-                        const char *formats, FILE *tex, fault *f);
-
-// The same as it comes: in colour, at its own width, 200 dpi.
-status figure_draw(const char *id, const char *folder, const char *formats, fault *f);
+status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
+                   FILE *tex, fault *f);

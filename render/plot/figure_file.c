@@ -202,17 +202,3 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
     write_marks(&t, fig);
     return whole_file_commit(&file, f);
 }
-
-status figure_write_with_csv(const figure *fig, const char *path, fault *f)
-{
-    assert(fig != NULL && path != NULL);
-    const char *ending = strrchr(path, '.');
-    status code = figure_write(fig, path, f);
-    if (code != STATUS_OK || ending == NULL) {
-        return code;
-    }
-    char *csv = g_strdup_printf("%.*s.csv", (int)(ending - path), path);
-    code = figure_write_csv(fig, csv, f);
-    g_free(csv);
-    return code;
-}

@@ -16,6 +16,3 @@ status figure_write(const figure *fig, const char *path, fault *f);
 // impulse[unit], then marks and shaded intervals with an empty y. Where there is a colour scale its
 // value stands in a last column.
 status figure_write_csv(const figure *fig, const char *path, fault *f);
-
-// Both: the picture, and a CSV of the same name beside it.
-status figure_write_with_csv(const figure *fig, const char *path, fault *f);

@@ -296,13 +296,8 @@ const trace_panel usual_panels[USUAL_PANELS] = {
     {.label = "Voltage <i>v</i>", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
 };
 
-status plot_run(const scenario *s, const run_result *result, const char *path, fault *f)
-{
-    return plot_run_beside(s, result, NULL, path, f);
-}
-
-status plot_run_beside(const scenario *s, const run_result *result, const run_result *old,
-                       const char *path, fault *f)
+status plot_run(const scenario *s, const run_result *result, const run_result *old,
+                const char *path, fault *f)
 {
     assert(s != NULL && result != NULL && path != NULL);
     const trace_run runs[] = {{s, result, "this run"}, {s, old, "old run"}};

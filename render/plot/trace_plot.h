@@ -15,8 +15,7 @@ enum { USUAL_PANELS = 4 };
 extern const trace_panel usual_panels[USUAL_PANELS];
 
 // The picture of `run --plot`: contact force with the impulses, angles, angular velocities and
-// the voltage over time, written to path as figure_write does.
-status plot_run(const scenario *s, const run_result *result, const char *path, fault *f);
-// The same with an older run of the scenario beside it (may be NULL).
-status plot_run_beside(const scenario *s, const run_result *result, const run_result *old,
-                       const char *path, fault *f);
+// the voltage over time, with an older run of the scenario beside it (`old`, may be NULL), written
+// to path as figure_write does.
+status plot_run(const scenario *s, const run_result *result, const run_result *old,
+                const char *path, fault *f);

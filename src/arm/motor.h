@@ -54,17 +54,6 @@ static inline double motor_current(const motor_model *m, double state, double w)
     return fmax(-m->current_limit, fmin(current, m->current_limit));
 }
 
-// Rate of that state [A/s]; none at the limit, as long as the voltage would drive it beyond.
-static inline double motor_current_rate(const motor_model *m, double state, double w)
-{
-    if (m->inductance == 0) {
-        return 0;
-    }
-    const double rate =
-        (m->gain * m->voltage - m->resistance * state - m->back_emf * w) / m->inductance;
-    return fabs(state) >= m->current_limit && rate * state > 0 ? 0 : rate;
-}
-
 // Derives the constants from resolved parameters; the command is `motor.voltage`.
 void motor_init(motor_model *m, const motor_parameters *p);
 

@@ -51,28 +51,6 @@ bool session_step(session *s, long rows)
     return moved;
 }
 
-bool session_step_event(session *s, int direction)
-{
-    assert(s != NULL && direction != 0);
-    const trace *t = &s->run.trace;
-    double found = -1;
-    for (size_t i = 0; i < t->event_count; i++) {
-        double time = t->events[i].time;
-        if (direction > 0 && time > s->now) {
-            found = time;
-            break;
-        }
-        if (direction < 0 && time < s->now) {
-            found = time;
-        }
-    }
-
-    if (found >= 0) {
-        session_seek(s, found);
-    }
-    return found >= 0;
-}
-
 const event *session_event(const session *s)
 {
     assert(s != NULL);

@@ -12,7 +12,5 @@ double session_end(const session *s);
 void session_seek(session *s, double time);
 // Moves the cursor by rows, back if negative. False at an end.
 bool session_step(session *s, long rows);
-// Moves to the next event after the cursor (direction 1) or the one before it (-1): to the row just
-// after the event. False if there is none. session_event tells the event at the cursor, or NULL.
-bool session_step_event(session *s, int direction);
+// The event at the cursor, or NULL.
 const event *session_event(const session *s);

@@ -20,11 +20,6 @@ status session_open(session *s, scenario *base, double patience, fault *f)
     return code;
 }
 
-status session_init(session *s, scenario *base, fault *f)
-{
-    return session_open(s, base, HUGE_VAL, f);
-}
-
 void session_finish(session *s)
 {
     assert(s != NULL);

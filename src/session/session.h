@@ -18,10 +18,9 @@
 #include "src/session/inputs.h"
 #include "src/session/session_run.h"
 
-// Takes over the scenario (also on failure) and computes its run. A run that fails numerically is
-// kept as far as it went, session.run.summary says why. STATUS_BAD_ARGUMENT if the rows would not
-// fit into the memory budget (512 MiB), STATUS_NO_MEMORY; then there is no session.
-// session_init always waits for a run's end; session_open not longer than `patience` [s].
-status session_init(session *s, scenario *base, fault *f);
+// Takes over the scenario (also on failure) and computes its run; waits no longer than `patience`
+// [s] for a run's end, then it is computed in the background. A run that fails numerically is kept
+// as far as it went, session.run.summary says why. STATUS_BAD_ARGUMENT if the rows would not fit
+// into the memory budget (512 MiB), STATUS_NO_MEMORY; then there is no session.
 status session_open(session *s, scenario *base, double patience, fault *f);
 void session_finish(session *s);

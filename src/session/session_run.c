@@ -252,29 +252,6 @@ parameters session_parameters_at(const session *s, double time)
     return scenario_parameters_at(&s->effective, time);
 }
 
-status session_branch(session *s, fault *f)
-{
-    assert(s != NULL);
-    run_result kept;
-    if (s->computing != NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "the run is still being computed: wait for its end, or stop it with Esc");
-    }
-
-    // the rows are shared, not copied
-    size_t rows = (size_t)expected_rows(&s->effective.parameters) + 1;
-    status code = run_share(&s->run, rows, &kept);
-    if (code != STATUS_OK) {
-        return fault_set(f, code, "%s", status_text(code));
-    }
-
-    session_forget_other(s);
-    s->other = kept;
-    s->has_other = true;
-    s->version++;
-    return STATUS_OK;
-}
-
 status session_keep_beside(session *s, const run_result *run, fault *f)
 {
     assert(s != NULL && run != NULL);

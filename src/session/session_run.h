@@ -18,10 +18,8 @@ status session_go_on(session *s, fault *f);
 // The parameters as script and inputs have set them at an instant.
 parameters session_parameters_at(const session *s, double time);
 
-// Keeps the present run for comparison; changes then make another one beside it.
-// STATUS_BAD_ARGUMENT while it is being computed.
-status session_branch(session *s, fault *f);
-// Keeps another run for comparison, in the place of the one there is: its rows are shared.
+// Keeps a run for comparison, in the place of the one that is kept: its rows are shared, not
+// copied. STATUS_NO_MEMORY.
 status session_keep_beside(session *s, const run_result *run, fault *f);
 // Forgets the run kept for comparison.
 void session_forget_other(session *s);

@@ -69,8 +69,8 @@ static void draw_one(void *context, size_t i, void *scratch, void *result)
     text_stream tex;
     *out = (figure_result){.tex = NULL};
     if (text_stream_open(&tex)) {
-        out->code = figure_draw_into(which->id, &list->options, list->folder, list->formats,
-                                     tex.stream, &out->fault);
+        out->code = figure_draw(which->id, &list->options, list->folder, list->formats, tex.stream,
+                                &out->fault);
         out->tex = text_stream_close(&tex, NULL);
     }
     if (out->code == STATUS_OK && out->tex == NULL) {

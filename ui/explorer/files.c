@@ -20,7 +20,7 @@ static bool ends_with(const char *text, const char *end)
 static status write_figure(const explorer_state *st, const char *path, fault *f)
 {
     const session *s = &st->session;
-    return plot_run_beside(&s->effective, &s->run, s->has_other ? &s->other : NULL, path, f);
+    return plot_run(&s->effective, &s->run, s->has_other ? &s->other : NULL, path, f);
 }
 
 // The rows of the run.
