@@ -17,6 +17,13 @@ static void test_a_spectrum_names_the_highest_line(void **state)
     char *text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
     assert_non_null(strstr(text, "highest at 5 Hz"));
     free(text);
+
+    // a rise has no line at 0 Hz, where its mean was
+    press(&ex, ":set control.force_amplitude 0<Enter>:zoom all<Enter>");
+    text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "highest at "));
+    assert_null(strstr(text, "highest at 0 Hz"));
+    free(text);
     press(&ex, ":spectrum<Enter>");
     assert_true(ex.state.message.warning);
     press(&ex, ":spectrum force gap<Enter>");

@@ -174,6 +174,13 @@ static void test_a_sweep_gives_what_single_runs_give(void **state)
     assert_true(ex.state.message.warning);
     press(&ex, ":sweep stiction=0.01:0.05:3<Enter>");
     assert_int_equal(sweep->axis.parameter, PARAMETER_INDEX(motor.stiction));
+    char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "sweep motor.stiction, 3 of 3"));
+    free(text);
+    press(&ex, ":sweep viscous_friction=0.01:0.05:3<Enter>");
+    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "─ viscous_friction, 3 of 3 ─"));
+    free(text);
     press(&ex, ":sweep motor.volts=1:2:4<Enter>");
     assert_shows(&ex, "did you mean");
     explorer_finish(&ex);

@@ -133,12 +133,13 @@ static void sample_evenly(const trace *t, int signal, double from, double to, do
     }
 }
 
-// The number of lines that hold nearly all of what there is.
+// The number of lines that hold nearly all of what there is. Line 0 is what the window makes of a
+// mean that was taken off, and not of the signal.
 static int lines_that_matter(const double *amplitude)
 {
     double all = 0, sum = 0;
-    int lines = 0;
-    for (int k = 0; k < SERIES / 2; k++) {
+    int lines = 1;
+    for (int k = 1; k < SERIES / 2; k++) {
         all += amplitude[k] * amplitude[k];
     }
     while (lines < SERIES / 2 && sum < 0.99 * all) {
@@ -166,7 +167,7 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
     sample_evenly(t, of->signals[0], from, to, series);
     fourier_amplitudes(series, SERIES, scratch, amplitude);
     const int lines = lines_that_matter(amplitude);
-    for (int k = 0; k < lines; k++) {
+    for (int k = 1; k < lines; k++) {
         peak = amplitude[k] > highest ? k : peak;
         highest = fmax(highest, amplitude[k]);
     }
@@ -176,8 +177,8 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
                      {0, lines / (to - from)},
                      opened((value_range){0, highest})};
     *axis = p.y;
-    snprintf(name, sizeof name, "highest at %.4g Hz, up to [Hz]", peak / (to - from));
-    for (int k = 1; k < lines; k++) {
+    snprintf(name, sizeof name, "highest at %.3g Hz, to [Hz]", peak / (to - from));
+    for (int k = 2; k < lines; k++) {
         canvas_line(&p.canvas, dot_x(&p, (k - 1) / (to - from)), dot_y(&p, amplitude[k - 1]),
                     dot_x(&p, k / (to - from)), dot_y(&p, amplitude[k]), INK_SERIES_0);
     }

@@ -2,8 +2,10 @@
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { VALUE = 14, LEAST_CHART = 4 };
+enum { FRAME_OF_TITLE = 6 }; // corners, lines and blanks beside it [cells]
 
 // The least and the largest number among the runs; false without any.
 static bool range_of_metric(const lab_sweep *sweep, value_range *range)
@@ -114,8 +116,14 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "no sweep (:sweep begins one)");
         return;
     }
-    snprintf(title, sizeof title, "sweep %.60s, %d of %zu",
-             parameter_table[sweep->axis.parameter].path, sweep->count, sweep->axis.count);
+    // the last part of the path where the whole has no room
+    const char *path = parameter_table[sweep->axis.parameter].path;
+    const int length = snprintf(title, sizeof title, "sweep %.60s, %d of %zu", path, sweep->count,
+                                sweep->axis.count);
+    if (length > a.width - FRAME_OF_TITLE) {
+        snprintf(title, sizeof title, "%.60s, %d of %zu", strrchr(path, '.') + 1, sweep->count,
+                 sweep->axis.count);
+    }
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s (M: next)",
                  summary_table[sweep->metric].label);
