@@ -154,6 +154,11 @@ static void test_predictors_say_that_they_know_two_links(void **state)
     press(&ex, ":set arm.links 1<Enter>");
     assert_shows(&ex, said);
     explorer_finish(&ex);
+
+    // and one that has nothing to say of an arm says that
+    open_explorer(&ex, "thesis/fig-3-4");
+    assert_shows(&ex, "linearised      does not apply");
+    explorer_finish(&ex);
 }
 
 static void test_changes_to_come_are_seen_edited_and_dropped(void **state)

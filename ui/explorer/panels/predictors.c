@@ -82,13 +82,20 @@ static prediction what_came(const session *s, size_t r)
     return came;
 }
 
-// Why a predictor says nothing, if there is room for it. Links whose state is not known are those
-// of a run that plays: it will say something when that pauses.
+// Why a predictor says nothing, in so many words as there is room for. Links whose state is not
+// known are those of a run that plays: it will say something when that pauses.
 static const char *reason_of(const prediction_answer *answer, area a)
 {
     const char *reason = prediction_reason(answer);
-    const bool fits = a.width - 20 >= (int)strlen(reason);
-    return fits && answer->outcome != PREDICTION_LINKS_UNKNOWN ? reason : "-";
+    if (answer->outcome == PREDICTION_LINKS_UNKNOWN) {
+        return "-";
+    }
+    if (a.width - 20 >= (int)strlen(reason)) {
+        return reason;
+    }
+    return answer->outcome == PREDICTION_DOUBTFUL ? "cannot be told"
+           : answer->outcome == PREDICTION_FAILED ? "failed"
+                                                  : "does not apply";
 }
 
 // A line of the panel; `unknown` stands in the place of a force that is not known, else NULL.
