@@ -161,6 +161,27 @@ static void test_predictors_say_that_they_know_two_links(void **state)
     explorer_finish(&ex);
 }
 
+static void test_values_that_have_no_room_are_cut_visibly(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/known-springs");
+    press(&ex, "/link_lengths<Enter>");
+    assert_shows(&ex, "0.3, 0.25, 0.25, 0.2");
+    char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "link_lengths  0.3, 0.25, 0.."));
+    free(text);
+    explorer_finish(&ex);
+
+    // a word in whole where there is room
+    open_explorer(&ex, "compare/inverse-dynamics");
+    press(&ex, "/law<Enter>");
+    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "law          inverse-dynamics"));
+    free(text);
+    explorer_finish(&ex);
+}
+
 static void test_changes_to_come_are_seen_edited_and_dropped(void **state)
 {
     (void)state;
@@ -508,6 +529,7 @@ int main(void)
         cmocka_unit_test(test_what_has_no_effect_says_why),
         cmocka_unit_test(test_predictors_take_the_voltage_in_force),
         cmocka_unit_test(test_predictors_say_that_they_know_two_links),
+        cmocka_unit_test(test_values_that_have_no_room_are_cut_visibly),
         cmocka_unit_test(test_changes_to_come_are_seen_edited_and_dropped),
         cmocka_unit_test(test_nudges_are_one_change_and_reversible),
         cmocka_unit_test(test_saving_never_replaces_a_file_unasked),

@@ -6,6 +6,7 @@
 #include <string.h>
 
 enum {
+    LEAST_VALUE = 12, // cells for a value before its name is cut
     PATH_ROOM = 37,   // cells for path and value of a line that has a slider
     LEAST_SLIDER = 5, // cells of it
     MOST_SLIDER = 24
@@ -53,12 +54,25 @@ static void draw_wide_slider(layout *lay, screen *s, area a, const track *k)
     draw_track(lay, s, (area){a.x + before + 1, a.y, a.width - before - after - 2, 1}, k);
 }
 
+// Value and unit as far as `most` cells have room for them: where they have not, the unit goes,
+// then the value's end, which two points stand for. Returns the length.
+static int fit_value(char *shown, size_t size, int most, const char *value,
+                     const parameter_info *info)
+{
+    int length = snprintf(shown, size, "%s%s%s", value, info->unit[0] ? " " : "", info->unit);
+    most = most > LEAST_VALUE ? most : LEAST_VALUE;
+    if (length > most) {
+        length = snprintf(shown, size, "%s", value);
+    }
+    return length <= most ? length : snprintf(shown, size, "%.*s..", most - 2, value);
+}
+
 // Name, value and unit in a line, with a slider behind them where there is room.
 static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, const parameters *p,
                       int parameter)
 {
     const parameter_info *info = &parameter_table[parameter];
-    char value[160], shown[200];
+    char value[PARAMETER_TEXT_SIZE], shown[PARAMETER_TEXT_SIZE + 32];
     slider_scale scale;
     bool has_slider, held = st->slider.held && st->slider.parameter == parameter;
     const bool inert = state_inert_reason(st, parameter) != NULL;
@@ -68,22 +82,19 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, 
     } else {
         parameter_format(p, parameter, value, sizeof value);
     }
-    snprintf(shown, sizeof shown, "%.12s%s%s", value, info->unit[0] ? " " : "", info->unit);
     ink colour = inert ? INK_FRAME : held ? INK_EVENT : info->timed ? INK_ARM : INK_DIM;
     int slider = a.width - PATH_ROOM, room = a.width;
     if (slider >= LEAST_SLIDER) {
         slider = slider > MOST_SLIDER ? MOST_SLIDER : slider;
         room -= slider + 1;
     }
-    int start = room - (int)strlen(shown);
     bool given = st->session.effective.parameters.set[parameter] != 0;
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_LINES, parameter, a});
 
-    // the heading has the group; where not all fits the unit goes
+    // the heading has the group
     const char *name = strchr(info->path, '.') + 1;
-    if ((int)strlen(name) + 2 >= start) {
-        start = room - snprintf(shown, sizeof shown, "%.12s", value);
-    }
+    const int length = fit_value(shown, sizeof shown, room - (int)strlen(name) - 3, value, info);
+    const int start = room - length;
     screen_text(s, a.x + 1, a.y, start - 2, inert ? INK_FRAME : given ? INK_TITLE : INK_TEXT, name);
     screen_text(s, a.x + start, a.y, room - start, colour, shown);
     if (has_slider && slider >= LEAST_SLIDER && !inert) {
