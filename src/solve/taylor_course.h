@@ -71,25 +71,36 @@ KERNEL real highest(const course *c)
     return greater(c->start, greater(early, late)) + c->off;
 }
 
-// What a function that is watched stays above; where it has jumped to its edge and leaves it, what
-// it does divided by the time, or by its square: in the first piece, of length h, p = p0 + p1 t +
-// p2 t^2 + r has |p - p0 - p1 t| <= bend t^2/2, and |r| <= (bend - 2 |p2|) t^2/6 h/t_end. The
-// limits are those of leave_edge (taylor_polynomial.h).
-KERNEL real least_of(const course *c, const real *terms, real sign, real t, mask jumped,
-                     real limit_value, real limit_rate, real limit_more)
+// What is rounding in a function's first coefficients: the limits of leave_edge
+// (taylor_polynomial.h).
+typedef struct edge_limits {
+    real value, rate, more;
+} edge_limits;
+
+// What sign times a function stays above in the first piece; where it has jumped to its edge and
+// leaves it, what it does divided by the time, or by its square: in that piece, of length h, p = p0
+// + p1 t + p2 t^2 + r has |p - p0 - p1 t| <= bend t^2/2, and |r| <= (bend - 2 |p2|) t^2/6 h/t_end.
+KERNEL real least_at_first(const course *c, const real *terms, real sign, real t, mask jumped,
+                           const edge_limits *limits)
 {
     const real first = sign * c->start - c->off;
     const real rate = sign * terms[1], more = sign * terms[2];
-    const real once = rate - c->bend * t * (0.125 * (1 + 1e-12)) - limit_rate;
+    const real once = rate - c->bend * t * (0.125 * (1 + 1e-12)) - limits->rate;
     const real rest = c->bend - 2 * magnitude(more) + 1e-12 * c->bend;
-    const real twice = more - rest * (1. / 24) - limit_more;
-    const mask off_edge = MASK(magnitude(c->start) > limit_value);
-    const mask leaves = MASK(magnitude(rate) > limit_rate);
+    const real twice = more - rest * (1. / 24) - limits->more;
+    const mask off_edge = MASK(magnitude(c->start) > limits->value);
+    const mask leaves = MASK(magnitude(rate) > limits->rate);
     const real divided = choose(leaves, once, twice);
-    const real edge = choose(off_edge, first - limit_value, divided);
+    const real edge = choose(off_edge, first - limits->value, divided);
+    return choose(jumped, edge, first);
+}
+
+// What it stays above all the time, `first` being that of the first piece.
+KERNEL real least_of(const course *c, real sign, real first)
+{
     course signed_one = *c;
     for (int i = 0; i < 4; i++) {
         PART(signed_one.ends, i) = sign * PART(c->ends, i);
     }
-    return lowest(&signed_one, choose(jumped, edge, first));
+    return lowest(&signed_one, first);
 }

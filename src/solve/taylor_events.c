@@ -1,6 +1,7 @@
 // What the contact machine asks of the stride of a two-link arm: watched functions, and the force.
 #include <math.h>
 
+#include "src/base/extremes.h"
 #include "src/solve/dense_location.h"
 #include "src/solve/taylor_stride.h"
 
@@ -144,9 +145,18 @@ static bool clear_throughout(const motion *m, watch w)
     return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > 0;
 }
 
+// The root of a watched function that the series' kernel has found, since the step's start; beyond
+// every step where the function stays clear, negative where the kernel has not found it.
+static double known_root(const taylor_stride *s, int place, bool clear)
+{
+    const double root = s->lane.block[place] - s->used;
+    return clear ? HUGE_VAL : s->lane.block[place] > 0 ? root : -1;
+}
+
 void taylor_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
 {
     // of most strides the bounds rule all events out
+    const taylor_stride *s = m->memory;
     const contact_state now = contact_state_of(m->state);
     const bool stuck = now.friction == HUB_STICK;
     const watch wall = now.contact ? WATCH_FORCE : WATCH_GAP;
@@ -156,8 +166,22 @@ void taylor_first_event(const arm *a, motion *m, double *h, watch *first, bool *
 
     *first = WATCH_GAP;
     *any = false;
-    if (!wall_clear || !hub_clear) {
+    if (wall_clear && hub_clear) {
+        return;
+    }
+
+    // most others end where the kernel has found a root
+    const double at_wall = known_root(s, AT_WALL_ROOT, wall_clear);
+    const double at_hub = known_root(s, AT_HUB_ROOT, hub_clear);
+    if (!(at_wall >= 0 && at_hub >= 0)) {
         dense_search_event(a, m, h, first, any);
+        return;
+    }
+    const double root = smaller(at_wall, at_hub);
+    if (root <= *h) {
+        *h = root;
+        *first = at_hub < at_wall ? hub : wall;
+        *any = true;
     }
 }
 

@@ -28,6 +28,7 @@
 #include "src/solve/taylor_course.h"
 #include "src/solve/taylor_numbers.h"
 #include "src/solve/taylor_products.h"
+#include "src/solve/taylor_roots.h"
 #include "src/solve/taylor_series.h"
 
 #ifndef SERIES
@@ -392,14 +393,17 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     const real *wall = contact ? f : gap;
     const course near = course_of(wall, contact ? (int)order : (int)order + 2, h);
     const real lacking = contact ? zero : EDGE_RATE + LEFT_OUT * (edge_rate - EDGE_RATE);
-    block[AT_WALL_LEAST] =
-        least_of(&near, wall, one, h, jumped, zero + (contact ? EDGE_VALUE : EDGE_GAP),
-                 zero + EDGE_RATE, greater(lacking, zero + EDGE_MORE));
+    const edge_limits wall_edge = {zero + (contact ? EDGE_VALUE : EDGE_GAP), zero + EDGE_RATE,
+                                   greater(lacking, zero + EDGE_MORE)};
+    const real wall_first = least_at_first(&near, wall, one, h, jumped, &wall_edge);
+    block[AT_WALL_LEAST] = least_of(&near, one, wall_first);
     block[AT_FORCE_MOST] = highest(&near);
     const real *hub_rates = hub_spring ? w0 : w1;
     const course turning = course_of(hub_rates, (int)order + 1, h);
     const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
-    real left = least_of(&turning, hub_rates, sense, h, jumped, zero, edge_rate, zero + EDGE_MORE);
+    const edge_limits hub_edge = {zero, edge_rate, zero + EDGE_MORE};
+    const real hub_first = least_at_first(&turning, hub_rates, sense, h, jumped, &hub_edge);
+    real left = least_of(&turning, sense, hub_first);
     if (sticks) {
         const course torque = course_of(hold, (int)order, h);
         const real low = lowest(&torque, torque.start - torque.off);
@@ -408,6 +412,19 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         left = choose(stuck, block[AT_STICTION] - most - spared, left);
     }
     block[AT_HUB_LEAST] = left;
+
+    // and where it ends in between
+    block[AT_WALL_ROOT] = block[AT_HUB_ROOT] = zero - 1.0;
+    if (any(~MASK(block[AT_WALL_LEAST] > 0))) {
+        const watched_course gone = {
+            wall, contact ? (int)order : (int)order + 2, &near, one, wall_first, h, jumped};
+        block[AT_WALL_ROOT] = first_root(&gone);
+    }
+    if (any(~stuck & ~MASK(left > 0))) {
+        const watched_course gone = {hub_rates, (int)order + 1, &turning, sense, hub_first,
+                                     h,         jumped};
+        block[AT_HUB_ROOT] = choose(stuck, zero - 1.0, first_root(&gone));
+    }
     return (int)order;
 }
 

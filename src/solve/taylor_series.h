@@ -52,6 +52,10 @@ enum taylor_place {
     // an event less what is rounding at the edge, or, on it, divided by the time or its square
     AT_WALL_LEAST,
     AT_HUB_LEAST,
+    // where the wall's function, or the sliding hub's, first falls below zero; -1 where the pieces
+    // of the stride do not tell [s]
+    AT_WALL_ROOT,
+    AT_HUB_ROOT,
     AT_FORCE_MOST,                             // and in contact no more than this force [N]
     AT_ANGLE_0,                                // of the hub, with a spring [rad]
     AT_ANGLE_1 = AT_ANGLE_0 + TAYLOR_MOST + 2, // of the links; orders to TAYLOR_MOST + 1
