@@ -34,6 +34,7 @@
 #ifndef SERIES
 #define SERIES GLUE(taylor_series_, LANES)
 #endif
+#define INPUTS GLUE(taylor_inputs_, LANES)
 
 // The last terms of the velocities stay below this share of 1 rad/s or the largest velocity, and,
 // where the series end before the highest order, those of the losses below this share of 1 J times
@@ -452,3 +453,21 @@ int SERIES(double *block, taylor_form form)
         {{spring_free_plane, spring_free_point}, {spring_held_plane, spring_held_point}}};
     return forms[form.hub_spring][form.contact][form.point]((real *)block, form.damped);
 }
+
+#ifndef ONE_ARM
+void INPUTS(double *block, const double *const *own)
+{
+    // whole vectors: loads that follow on stores of parts of theirs wait for them
+    for (int place = 0; place < AT_INPUTS; place++) {
+#if LANES == 1
+        block[place] = own[0][place];
+#else
+        real x = (real){0};
+        for (int i = 0; i < LANES; i++) {
+            x[i] = own[i][place];
+        }
+        ((real *)block)[place] = x;
+#endif
+    }
+}
+#endif

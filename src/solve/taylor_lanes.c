@@ -49,22 +49,6 @@ void taylor_compute_one(taylor_lane *lane)
 
 // --- by width ---------------------------------------------------------------------------------
 
-// Copies the first AT_INPUTS places of the arms' own blocks into lanes; those left over repeat the
-// first, and nobody reads what comes of them.
-static inline __attribute__((always_inline)) void put_inputs(taylor_lane *const *lanes, int count,
-                                                             int width, double *block)
-{
-    const double *from[TAYLOR_WIDEST];
-    for (int i = 0; i < width; i++) {
-        from[i] = lanes[i < count ? i : 0]->block;
-    }
-    for (int place = 0; place < AT_INPUTS; place++) {
-        for (int i = 0; i < width; i++) {
-            block[place * width + i] = from[i][place];
-        }
-    }
-}
-
 void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
 {
     assert(group != NULL && lanes != NULL && count >= 1 && count <= taylor_width());
@@ -75,13 +59,13 @@ void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
 
     group->width = taylor_width();
     group->form = lanes[0]->form;
-    if (group->width == 8) {
-        put_inputs(lanes, count, 8, group->block);
-    } else if (group->width == 4) {
-        put_inputs(lanes, count, 4, group->block);
-    } else {
-        put_inputs(lanes, count, 2, group->block);
+
+    // lanes left over repeat the first arm, and nobody reads what comes of them
+    const double *own[TAYLOR_WIDEST];
+    for (int i = 0; i < group->width; i++) {
+        own[i] = lanes[i < count ? i : 0]->block;
     }
+    BY_WIDTH(taylor_inputs_, group->width)(group->block, own);
     group->form.order = BY_WIDTH(taylor_series_, group->width)(group->block, group->form);
 
     // each knows where its own are, and what its stride leaves

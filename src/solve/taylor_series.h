@@ -101,6 +101,12 @@ int taylor_series_2(double *block, taylor_form form);
 int taylor_series_4(double *block, taylor_form form);
 int taylor_series_8(double *block, taylor_form form);
 
+// Copies the first AT_INPUTS places of as many arms' own blocks into the lanes of one.
+void taylor_inputs_1(double *block, const double *const *own);
+void taylor_inputs_2(double *block, const double *const *own);
+void taylor_inputs_4(double *block, const double *const *own);
+void taylor_inputs_8(double *block, const double *const *own);
+
 // What series come to at instants of their strides, side by side. Bodies are the hub (with a
 // spring), the first and the second link.
 typedef struct taylor_instants {
