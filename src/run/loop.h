@@ -1,9 +1,10 @@
 // A run that a program steps: to an instant, with inputs in between, and back to a state it kept.
 //
-// It is a run like any other, cut at the instants asked for. No step is chosen for such an instant,
-// one that goes beyond it is cut; the printed model, which knows nothing between its steps, stops
-// at the end of the first one that reaches it. What is due at an instant (a sample of the rig, an
-// action of the script) happens when the loop goes on from it.
+// It is a run like any other, looked at at the instants asked for; from sample to sample of the rig
+// it is that run to the last bit. No step is chosen for such an instant: one that goes beyond it is
+// cut or, in flight on the rig, goes on (corrected_step.h); the printed model, which knows nothing
+// between its steps, stops at the end of the first one that reaches it. What is due at an instant
+// (a sample of the rig, an action of the script) happens when the loop goes on from it.
 #pragma once
 
 #include "src/rig/rig.h"
