@@ -1,0 +1,217 @@
+// Events within strides of the modes, which hold many vibrations: what a motion meets there is what
+// the explicit formula and the series meet, down to bounces lower than rounding.
+#include <math.h>
+
+#include "src/solve/contact_machine.h"
+#include "tests/arm_fixture.h"
+#include "tests/explicit_stepper.h"
+
+// What a motion met, in order, and the largest force of its last pulse.
+enum { MOST_MEETINGS = 40 };
+typedef struct meetings {
+    int count;
+    motion_event event[MOST_MEETINGS];
+    double time[MOST_MEETINGS]; // [s]
+    double peak, peak_time;     // [N], [s]
+} meetings;
+
+static meetings meetings_by(const parameters *p, const engine *by, double angle, double velocity,
+                            double until)
+{
+    arm a;
+    arm_init(&a, p);
+    motion *m = motion_create_by(&a, &p->method, by);
+    assert_non_null(m);
+    motion_start(&a, m, angle, velocity);
+
+    meetings all = {0};
+    while (m->state[SLOT_TIME] < until) {
+        motion_report r;
+        assert_int_equal(motion_step(&a, m, until, p->method.step, &r), STATUS_OK);
+        if (r.event != MOTION_REACHED) {
+            assert_in_range(all.count, 0, MOST_MEETINGS - 1);
+            all.event[all.count] = r.event;
+            all.time[all.count++] = m->state[SLOT_TIME];
+        }
+        motion_apply(&a, m, &r);
+    }
+
+    all.peak = m->pulse_peak;
+    all.peak_time = m->pulse_peak_time;
+    motion_destroy(m);
+    return all;
+}
+
+// Strides of the modes hold many vibrations: what happens within one is what the explicit formula
+// finds at steps a thousand times shorter.
+static void events_within_a_stride_are_the_formulas(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *what;
+        int links;
+        const char *settings[7];
+        double angle, velocity, until;
+        int events;
+        double tolerance; // of an event's time [s]
+    } cases[] = {
+        // a stuck hub whose friction passes stiction between two instants within it
+        {"a dip of what is left of friction",
+         4,
+         {"arm.hub_inertia=3.89323e-4", "arm.damping_ratio=0.00176877", "motor.voltage=0.265999",
+          "arm.k1=169468", "wall.restitution=0.639306"},
+         0.0987279,
+         0.157084,
+         0.146,
+         8,
+         1e-7},
+        // bounces that each begin on the wall, and a hub that turns back for 1 ms of a stride
+        {"bounces and a dip of the hub's velocity",
+         4,
+         {"arm.hub_inertia=2.29663e-4", "arm.damping_ratio=7.92665e-4", "motor.voltage=1",
+          "arm.k1=169468", "wall.restitution=0.518344"},
+         0.0882041,
+         0.478145,
+         0.17,
+         22,
+         1e-7},
+        // the arm pressed to the wall, whose force has summits within strides
+        {"summits of the force",
+         4,
+         {"arm.hub_inertia=1.21604e-6", "arm.damping_ratio=1.31537e-4", "motor.voltage=1.55163",
+          "arm.k1=169468", "motor.stiction=0"},
+         0.098874,
+         0.160059,
+         0.03,
+         1,
+         1e-8},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parameters p = fixture_parameters(cases[i].settings);
+        p.arm.links = cases[i].links; // with the springs of the default arm
+        p.arm.hub_joint = HUB_SPRING;
+        p.wall.kind = WALL_POINT;
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_ptr_equal(m->engine, &modal_engine);
+        motion_destroy(m);
+
+        // by the modes, and by the formula
+        const double angle = cases[i].angle, velocity = cases[i].velocity, until = cases[i].until;
+        meetings modes = meetings_by(&p, NULL, angle, velocity, until);
+        p.method.step = 1e-5;
+        meetings formula = meetings_by(&p, &explicit_engine, angle, velocity, until);
+
+        // the same events at the same times
+        if (modes.count != cases[i].events || formula.count != cases[i].events) {
+            fail_msg("%s: %d events by modes, %d by the formula", cases[i].what, modes.count,
+                     formula.count);
+        }
+        for (int k = 0; k < modes.count; k++) {
+            assert_int_equal(modes.event[k], formula.event[k]);
+            check_close(modes.time[k], formula.time[k], cases[i].tolerance);
+        }
+        check_close(modes.peak, formula.peak, 1e-6 * fabs(formula.peak));
+        check_close(modes.peak_time, formula.peak_time, 1e-6);
+    }
+}
+
+// An arm of 1e-7 rad whose bounces are to go on down to 1e-9 m/s: the modes see them as far as the
+// series do, and what comes afterwards is the same.
+static void bounces_end_where_no_engine_tells_them(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=11", "arm.hub_joint=spring", "arm.damping_ratio=0.0211439",
+                 "wall.restitution=0.2997", "wall.angle=1.2349084692906555e-7",
+                 "motor.voltage=5.7081e-6", "arm.k2=4.64501", "arm.k1=211.051", "arm.mass=0.12368",
+                 "arm.hub_inertia=0.050495", "motor.stiction=0", "method.rest_speed=8.56e-10"));
+    const meetings modes = meetings_by(&p, &modal_engine, 1.20397e-7, 1.24542e-6, 0.00753);
+    const meetings series = meetings_by(&p, &series_engine, 1.20397e-7, 1.24542e-6, 0.00753);
+    assert_int_equal(modes.count, series.count);
+    check_close(modes.peak, series.peak, 1e-4 * series.peak);
+}
+
+// Between bounces of some 1e-9 s the tip flies 1e-13 m high, and the motor presses: no impact is
+// faster than the one before, but for what it falls beyond the wall within 2e-14 m.
+static void bounces_lower_than_rounding_do_not_gain(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=14", "arm.damping_ratio=0.477", "arm.k2=23.7", "arm.mass=0.865",
+                 "arm.hub_inertia=0.0217", "motor.voltage=4.95", "wall.kind=plane",
+                 "wall.angle=1.043", "wall.restitution=0.0189"));
+    for (int i = 0; i < 12; i++) {
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_non_null(m);
+        motion_start(&a, m, p.wall.angle - 2e-3, 0.4 + 2e-3 * i);
+
+        // from first contact to rest on the wall
+        int impacts = 0;
+        for (double last = HUGE_VAL; m->state[SLOT_TIME] < 6e-3;) {
+            motion_report r;
+            assert_int_equal(motion_step(&a, m, 6e-3, 1e-3, &r), STATUS_OK);
+            if (r.event == MOTION_REACHED) {
+                continue;
+            }
+            const double speed = -m->state[SLOT_GAP_VELOCITY];
+            motion_apply(&a, m, &r);
+            if (r.event == MOTION_IMPACT) {
+                check_below(speed, last + 1e-4);
+                last = speed;
+                impacts++;
+            }
+        }
+        assert_true(impacts >= 2 && m->state[SLOT_CONTACT] != 0);
+        motion_destroy(m);
+    }
+}
+
+// Whether an arm that swings towards the wall and is pulled back touches it.
+static bool grazes(const parameters *p, const engine *by, double wall)
+{
+    parameters moved = *p;
+    moved.wall.angle = wall;
+    return meetings_by(&moved, by, 0, 0.5, 0.3).count > 0;
+}
+
+// The farthest wall that an arm which turns back just touches, the instant far within a stride, is
+// the same by the modes and by the formula: a graze is an impact however short it is.
+static void a_graze_within_a_stride_is_found(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        parameters p = fixture_parameters(
+            SETTINGS("arm.links=4", "arm.hub_joint=spring", "arm.hub_inertia=2.29663e-4",
+                     "arm.damping_ratio=7.92665e-4", "arm.k1=169468", "motor.voltage=-1",
+                     "motor.stiction=0", i == 0 ? "wall.kind=point" : "wall.kind=plane"));
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_ptr_equal(m->engine, &modal_engine);
+        motion_destroy(m);
+
+        double touched = 0.005, missed = 0.5;
+        assert_true(grazes(&p, NULL, touched) && !grazes(&p, NULL, missed));
+        while (missed - touched > 1e-12) {
+            const double middle = (touched + missed) / 2;
+            *(grazes(&p, NULL, middle) ? &touched : &missed) = middle;
+        }
+
+        // and by the formula
+        const engine *by = &explicit_engine;
+        assert_true(grazes(&p, by, touched - 1e-10) && !grazes(&p, by, touched + 1e-10));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(events_within_a_stride_are_the_formulas),
+                                       cmocka_unit_test(bounces_end_where_no_engine_tells_them),
+                                       cmocka_unit_test(bounces_lower_than_rounding_do_not_gain),
+                                       cmocka_unit_test(a_graze_within_a_stride_is_found)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
