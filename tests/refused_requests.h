@@ -137,12 +137,10 @@ static int use_refusing_allocators(void **state)
 typedef status work(const char *about, FILE *out);
 typedef status scenario_work(scenario *s, FILE *out);
 
-// Whether a status is one that a refused request may lead to. A law that cannot start has a
-// sentence and no code of its own: the scenario that asks for it is refused.
+// Whether a status is one that a refused request may lead to.
 static bool tells_of_refusal(status code)
 {
-    return code == STATUS_OK || code == STATUS_NO_MEMORY || code == STATUS_CANNOT_WRITE ||
-           code == STATUS_BAD_SCENARIO;
+    return code == STATUS_OK || code == STATUS_NO_MEMORY || code == STATUS_CANNOT_WRITE;
 }
 
 // Requests that are refused of a piece of work: of so few each is, of more so many, evenly, and if

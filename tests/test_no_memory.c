@@ -1,6 +1,7 @@
 // The library's own work with every request for memory, descriptors and threads refused in turn:
 // reading, runs of every engine and of the rig, predictions, sessions, loops, batches and sweeps.
 #include "src/predict/predictors.h"
+#include "src/rig/rig.h"
 #include "src/run/export.h"
 #include "src/run/loop.h"
 #include "src/session/session.h"
@@ -64,6 +65,16 @@ static status run(scenario *s, FILE *out)
     status code = run_scenario_with(s, &options, &result);
     code = code == STATUS_OK ? show(s, &result, out) : code;
     run_finish(&result);
+    return code;
+}
+
+static status start_rig(scenario *s, FILE *out)
+{
+    rig *made = NULL;
+    fault f = {0};
+    const status code = rig_create(&made, &s->parameters, &f);
+    rig_destroy(made);
+    fprintf(out, "%d", code);
     return code;
 }
 
@@ -247,6 +258,7 @@ static void runs_of_the_rig(void **state)
                                            "control.law=observer", "control.law=inverse-dynamics"};
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
         try_with_scenario(run, settings[i]);
+        try_with_scenario(start_rig, settings[i]);
     }
 }
 

@@ -74,6 +74,15 @@ typedef struct chain_modes {
     double *mass, *stiffness, *frequencies, *free, *contact;
 } chain_modes;
 
+const char reduced_arm_no_memory[] = "there is no memory for its model";
+
+// Why there are no modes.
+static const char *refusal_of(status code)
+{
+    return code == STATUS_NO_MEMORY ? reduced_arm_no_memory
+                                    : "the modes of the arm it believes in cannot be computed";
+}
+
 static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *setup,
                           const chain_modes *work)
 {
@@ -83,14 +92,14 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
     modes_matrices(a, work->mass, work->stiffness);
 
     // both sets of modes
-    if (modes_compute(a, HUB_FREE, TIP_FREE, &free_count, work->frequencies, work->free) !=
-        STATUS_OK) {
-        return "the modes of the arm it believes in cannot be computed";
+    status code = modes_compute(a, HUB_FREE, TIP_FREE, &free_count, work->frequencies, work->free);
+    if (code != STATUS_OK) {
+        return refusal_of(code);
     }
     take_modes(&r->free, a, work->mass, highest, free_count, work->frequencies, work->free);
-    if (modes_compute(a, HUB_FREE, TIP_PINNED, &contact_count, work->frequencies, work->contact) !=
-        STATUS_OK) {
-        return "the modes of the arm it believes in cannot be computed";
+    code = modes_compute(a, HUB_FREE, TIP_PINNED, &contact_count, work->frequencies, work->contact);
+    if (code != STATUS_OK) {
+        return refusal_of(code);
     }
     take_modes(&r->contact, a, work->mass, highest, contact_count, work->frequencies,
                work->contact);
@@ -129,7 +138,7 @@ const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup)
     size_t square = (size_t)a.dof * (size_t)a.dof;
     double *block = calloc(4 * square + (size_t)a.dof, sizeof *block);
     if (block == NULL) {
-        return "there is no memory for its model";
+        return reduced_arm_no_memory;
     }
     chain_modes work = {block, block + square, block + 4 * square, block + 2 * square,
                         block + 3 * square};

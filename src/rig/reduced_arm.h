@@ -40,8 +40,10 @@ typedef struct reduced_arm {
 } reduced_arm;
 
 // Reduces the arm of a setup to the modes below half the Nyquist frequency of its samples, at least
-// one that bends and at most REDUCED_MODES. NULL, or a sentence that says why that cannot be.
+// one that bends and at most REDUCED_MODES. NULL, or a sentence that says why that cannot be:
+// reduced_arm_no_memory itself where there was no memory, which says nothing of the arm.
 const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup);
+extern const char reduced_arm_no_memory[];
 
 // By how much the hub turns at rest under a torque with the tip at the wall [rad/(N m)].
 double reduced_arm_compliance(const reduced_arm *r);

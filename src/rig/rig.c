@@ -9,6 +9,7 @@
 #include "src/quantities/k2_table.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/laws/laws.h"
+#include "src/rig/reduced_arm.h"
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
 
@@ -88,8 +89,10 @@ static status start_controller(rig *r, const parameters *p, const given_law *giv
     }
     const char *refusal = r->law->start != NULL ? r->law->start(r->memory, &setup) : NULL;
     if (refusal != NULL) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "the controller '%s' cannot run: %.600s",
-                         r->law->name, refusal);
+        // a run that had no memory may go another time, one that is refused does not
+        const status code =
+            refusal == reduced_arm_no_memory ? STATUS_NO_MEMORY : STATUS_BAD_SCENARIO;
+        return fault_set(f, code, "the controller '%s' cannot run: %.600s", r->law->name, refusal);
     }
     return STATUS_OK;
 }
