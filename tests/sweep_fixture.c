@@ -50,3 +50,47 @@ void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a, c
         fail_msg("%s", f.text);
     }
 }
+
+sweep_store *must_open(const char *path, const sweep *s)
+{
+    sweep_store *store;
+    fault f = {0};
+    if (sweep_store_open(&store, path, s, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return store;
+}
+
+char *csv_of(sweep_store *store)
+{
+    char *text;
+    size_t size;
+    fault f = {0};
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    assert_int_equal(sweep_store_csv(store, stream, &f), STATUS_OK);
+    fclose(stream);
+    return text;
+}
+
+sweep_progress must_run(const sweep *s, sweep_store *store, int jobs)
+{
+    sweep_progress progress;
+    fault f = {0};
+    sweep_options options = {.jobs = jobs};
+    if (sweep_run(s, store, &options, &progress, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return progress;
+}
+
+char *uninterrupted(const sweep *s, int jobs)
+{
+    sweep_store *store = must_open(NULL, s);
+    sweep_progress progress = must_run(s, store, jobs);
+    assert_int_equal(progress.done, s->run_count);
+    assert_int_equal(progress.done_now, s->run_count);
+    char *csv = csv_of(store);
+    sweep_store_close(store);
+    return csv;
+}

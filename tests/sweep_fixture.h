@@ -1,7 +1,8 @@
 // What tests of sweeps share: a folder of their own, and sweeps of one scenario.
 #pragma once
 
-#include "src/study/sweep.h"
+#include "src/study/sweep_rows.h"
+#include "src/study/sweep_run.h"
 
 // The scenario that is swept: two links at 1 V for 0.6 s.
 extern scenario base;
@@ -20,3 +21,15 @@ status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, f
 
 // The same, which has to be one.
 void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a, const char *b);
+
+// The store of a sweep in a file, or in memory without a path, that has to open.
+sweep_store *must_open(const char *path, const sweep *s);
+
+// Computes what is missing, which has to succeed.
+sweep_progress must_run(const sweep *s, sweep_store *store, int jobs);
+
+// All rows as CSV; free it.
+char *csv_of(sweep_store *store);
+
+// The CSV of the whole sweep, never interrupted; free it.
+char *uninterrupted(const sweep *s, int jobs);

@@ -1,10 +1,8 @@
 // The runs of a sweep and their store.
-#include <signal.h>
 #include <sqlite3.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "src/run/run.h"
@@ -13,52 +11,6 @@
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
-
-static sweep_store *must_open(const char *path, const sweep *s)
-{
-    sweep_store *store;
-    fault f = {0};
-    if (sweep_store_open(&store, path, s, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
-    return store;
-}
-
-// All rows as CSV; free it.
-static char *csv_of(sweep_store *store)
-{
-    char *text;
-    size_t size;
-    fault f = {0};
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    assert_int_equal(sweep_store_csv(store, stream, &f), STATUS_OK);
-    fclose(stream);
-    return text;
-}
-
-static sweep_progress must_run(const sweep *s, sweep_store *store, int jobs)
-{
-    sweep_progress progress;
-    fault f = {0};
-    sweep_options options = {.jobs = jobs};
-    if (sweep_run(s, store, &options, &progress, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
-    return progress;
-}
-
-// The CSV of the whole sweep, never interrupted.
-static char *uninterrupted(const sweep *s, int jobs)
-{
-    sweep_store *store = must_open(NULL, s);
-    sweep_progress progress = must_run(s, store, jobs);
-    assert_int_equal(progress.done, s->run_count);
-    assert_int_equal(progress.done_now, s->run_count);
-    char *csv = csv_of(store);
-    sweep_store_close(store);
-    return csv;
-}
 
 static void every_run_is_what_the_scenario_gives_alone(void **state)
 {
@@ -136,132 +88,6 @@ static void the_number_of_lanes_does_not_change_a_byte(void **state)
     free(csv);
     free(alone);
     sweep_finish(&s);
-}
-
-// What the child of the next test does at each report of progress: at the first one it commits, at
-// the second, with rows that are not committed, it asks to be killed.
-typedef struct doomed {
-    sweep_store *store;
-    int pipe, reports;
-} doomed;
-
-static void commit_then_wait_for_death(void *context, const sweep_progress *p)
-{
-    doomed *d = context;
-    if (p->done_now == 0) {
-        return;
-    }
-    if (d->reports++ == 0) {
-        if (sweep_store_commit(d->store, NULL) != STATUS_OK) {
-            _exit(1);
-        }
-        return;
-    }
-    if (write(d->pipe, "x", 1) != 1) {
-        _exit(1);
-    }
-    for (;;) {
-        pause();
-    }
-}
-
-// So many that progress is told, every tenth of a second, long before the last of them.
-enum { MANY = 24000 };
-#define MANY_RUNS "motor.voltage=0.5:5:24000"
-
-static void sweep_in_a_child_that_is_killed(const sweep *s, const char *path)
-{
-    int ends[2], how;
-    char byte;
-    assert_int_equal(pipe(ends), 0);
-    pid_t child = fork();
-    if (child == 0) {
-        fault f = {0};
-        sweep_progress progress;
-        doomed d = {.pipe = ends[1]};
-        sweep_options options = {.jobs = 1, .report = commit_then_wait_for_death, .context = &d};
-        close(ends[0]);
-        if (sweep_store_open(&d.store, path, s, &f) == STATUS_OK) {
-            sweep_run(s, d.store, &options, &progress, &f);
-        }
-        _exit(1);
-    }
-    close(ends[1]);
-    ssize_t got = read(ends[0], &byte, 1);
-    kill(child, SIGKILL);
-    assert_int_equal(waitpid(child, &how, 0), child);
-    close(ends[0]);
-    assert_int_equal(got, 1);
-    assert_true(WIFSIGNALED(how));
-}
-
-static long long number_from(const char *path, const char *sql)
-{
-    sqlite3 *database;
-    sqlite3_stmt *statement;
-    assert_int_equal(sqlite3_open(path, &database), SQLITE_OK);
-    assert_int_equal(sqlite3_prepare_v2(database, sql, -1, &statement, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
-    long long number = sqlite3_column_int64(statement, 0);
-    sqlite3_finalize(statement);
-    sqlite3_close(database);
-    return number;
-}
-
-static void a_killed_sweep_goes_on_and_loses_and_doubles_nothing(void **state)
-{
-    (void)state;
-    sweep s;
-    must_sweep(&s, SWEEP_GRID, 0, MANY_RUNS, NULL);
-    sweep_in_a_child_that_is_killed(&s, "killed.sqlite");
-    long long kept = number_from("killed.sqlite", "SELECT count(*) FROM run");
-    assert_in_range(kept, 1, MANY - 1);
-    sweep_store *store = must_open("killed.sqlite", &s);
-    sweep_progress progress = must_run(&s, store, 2);
-    assert_int_equal(progress.done, MANY);
-    assert_int_equal(progress.done_now, MANY - kept);
-    char *resumed = csv_of(store), *whole = uninterrupted(&s, 2);
-    sweep_store_close(store);
-    assert_string_equal(resumed, whole);
-    assert_int_equal(number_from("killed.sqlite", "SELECT count(*) FROM run"), MANY);
-    assert_int_equal(number_from("killed.sqlite", "SELECT sum(run) FROM run"),
-                     (long long)MANY * (MANY + 1) / 2);
-    free(resumed);
-    free(whole);
-    sweep_finish(&s);
-    unlink("killed.sqlite");
-}
-
-static volatile sig_atomic_t stop;
-
-static void stop_soon(void *context, const sweep_progress *p)
-{
-    (void)context;
-    stop = p->done_now > 0;
-}
-
-static void a_stopped_sweep_keeps_what_it_has_and_goes_on(void **state)
-{
-    (void)state;
-    sweep s;
-    sweep_progress progress;
-    fault f = {0};
-    sweep_options options = {.jobs = 2, .stop = &stop, .report = stop_soon};
-    must_sweep(&s, SWEEP_GRID, 0, MANY_RUNS, NULL);
-    sweep_store *store = must_open("stopped.sqlite", &s);
-    stop = 0;
-    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_OK);
-    sweep_store_close(store);
-    assert_in_range(progress.done, 1, MANY - 1);
-    assert_int_equal(number_from("stopped.sqlite", "SELECT count(*) FROM run"), progress.done);
-    store = must_open("stopped.sqlite", &s);
-    sweep_progress rest = must_run(&s, store, 2);
-    assert_int_equal(rest.done_now, MANY - progress.done);
-    // nothing is left to do
-    assert_int_equal(must_run(&s, store, 2).done_now, 0);
-    sweep_store_close(store);
-    sweep_finish(&s);
-    unlink("stopped.sqlite");
 }
 
 static void assert_refused(const char *path, const sweep *s, status code, const char *says)
@@ -477,8 +303,6 @@ int main(void)
         cmocka_unit_test(every_run_is_what_the_scenario_gives_alone),
         cmocka_unit_test(the_number_of_jobs_does_not_change_a_byte),
         cmocka_unit_test(the_number_of_lanes_does_not_change_a_byte),
-        cmocka_unit_test(a_killed_sweep_goes_on_and_loses_and_doubles_nothing),
-        cmocka_unit_test(a_stopped_sweep_keeps_what_it_has_and_goes_on),
         cmocka_unit_test(another_sweep_is_refused_with_the_difference),
         cmocka_unit_test(a_changed_script_is_another_sweep),
         cmocka_unit_test(a_colon_begins_a_name),
