@@ -1,6 +1,6 @@
 #!/bin/bash
-# Counts the instructions of a time step with callgrind (package valgrind): a number that a busy
-# machine does not change.
+# Counts the instructions of a time step and of whole runs with callgrind (package valgrind): numbers
+# that a busy machine does not change.
 #
 #   tests/bench/instructions.sh [BUILD-FOLDER]
 #
@@ -20,24 +20,37 @@ command -v valgrind >/dev/null || {
     exit 1
 }
 
-libraries=$(pkg-config --libs yaml-0.1 jansson sqlite3)
-# shellcheck disable=SC2086
-${CC:-cc} -std=c17 -O2 -D_GNU_SOURCE "-I$root" -o "$work/hot_step" "$root/tests/bench/hot_step.c" \
-    "$build/src/libimpactlab.a" $libraries -ldl -lm -lpthread
+read -r -a libraries <<<"$(pkg-config --libs yaml-0.1 jansson sqlite3) -ldl -lm -lpthread"
+for program in hot_step whole_runs; do
+    ${CC:-cc} -std=c17 -O2 -D_GNU_SOURCE "-I$root" -o "$work/$program" "$root/tests/bench/$program.c" \
+        "$build/src/libimpactlab.a" "${libraries[@]}"
+done
 
-# all instructions of a number of passes
+# all instructions of a command
 collected() {
-    valgrind --tool=callgrind --callgrind-out-file=/dev/null "$work/hot_step" "$@" 2>&1 >/dev/null |
+    valgrind --tool=callgrind --callgrind-out-file=/dev/null "$@" 2>&1 >/dev/null |
         sed -n 's/.*Collected : \([0-9]*\).*/\1/p'
 }
 
+# what eleven passes take more than one does not count the start
 printf '%-18s %6s  %-8s %18s %14s\n' method links motion 'instructions/step' 'per link'
 for case in "event 2 free" "event 2 contact" "generalized-alpha 2 free" \
     "generalized-alpha 2 contact" "generalized-alpha 128 free" "generalized-alpha 128 contact"; do
     read -r method links motion <<<"$case"
-    # what eleven passes take more than one does not count the start
     steps=$(($("$work/hot_step" "$method" "$links" "$motion" 11) - $("$work/hot_step" "$method" "$links" "$motion" 1)))
-    more=$(($(collected "$method" "$links" "$motion" 11) - $(collected "$method" "$links" "$motion" 1)))
+    more=$(($(collected "$work/hot_step" "$method" "$links" "$motion" 11) - $(collected "$work/hot_step" "$method" "$links" "$motion" 1)))
     awk -v m="$method" -v n="$links" -v k="$motion" -v i="$more" -v s="$steps" \
         'BEGIN { printf "%-18s %6d  %-8s %18.0f %14.0f\n", m, n, k, i / s, i / s / n }'
+done
+
+# whole runs of 1 s, and of the rig a sample of them: there are 200
+printf '\n%-36s %18s\n' 'two links' 'instructions/run'
+for case in "single:one run:1" "rows:with a row each millisecond:1" "rig:on the rig, a sample:200" \
+    "batch 1:one of a batch:1" "batch 2:two side by side:1" "batch 4:four side by side:1"; do
+    IFS=: read -r what label share <<<"$case"
+    read -r kind width <<<"$what"
+    read -r more _ < <("$work/whole_runs" "$kind" 10 ${width:+"$width"})
+    count=$(($(collected "$work/whole_runs" "$kind" 11 ${width:+"$width"}) - $(collected "$work/whole_runs" "$kind" 1 ${width:+"$width"})))
+    awk -v l="$label" -v i="$count" -v n="$more" -v s="$share" \
+        'BEGIN { printf "%-36s %18.0f\n", l, i / n / s }'
 done
