@@ -3,6 +3,7 @@
 
 #include "src/run/run.h"
 #include "src/predict/linearised.h"
+#include "src/predict/pulse.h"
 #include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
 
@@ -341,6 +342,55 @@ static void a_prescribed_voltage_is_followed(void **state)
     predict_and_follow("arm.hub_joint=spring", "arm.links=5", &(voltage_profile){2, times, volts});
 }
 
+// The first pulse of several arms: its peak, and how long it takes until the force vanishes.
+static void a_pulse_ends_where_the_arm_leaves(void **state)
+{
+    (void)state;
+    static const char *const stiffness_of[] = {"arm.k2=4.92", "arm.k2=49.2", "arm.k2=492"};
+    static const char *const volts_of[] = {"motor.voltage=1", "motor.voltage=2", "motor.voltage=5"};
+    int ended = 0;
+    for (int i = 0; i < 9; i++) {
+        const parameters p = fixture_parameters(SETTINGS(stiffness_of[i / 3], volts_of[i % 3]));
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        motion_report report;
+        motion_start(&a, m, 0, 0);
+        do {
+            assert_int_equal(motion_advance(&a, m, 1, 1e-3, &report), STATUS_OK);
+            motion_apply(&a, m, &report);
+        } while (report.event != MOTION_IMPACT);
+        const double touched = m->state[SLOT_TIME];
+        if (m->state[SLOT_CONTACT] == 0) {
+            motion_destroy(m);
+            continue; // thrown back at once
+        }
+
+        // predicted from just after the impact
+        chain_link work[8];
+        pulse predicted;
+        const pulse_start start = {.q = state_angles(m, m->state),
+                                   .w = state_velocities(m, m->state),
+                                   .mode = contact_state_of(m->state)};
+        assert_int_equal(pulse_follow(&a, work, &start, &predicted), STATUS_OK);
+
+        // and seen
+        while (m->state[SLOT_CONTACT] != 0 && m->state[SLOT_TIME] < touched + PULSE_HORIZON) {
+            assert_int_equal(motion_advance(&a, m, touched + PULSE_HORIZON, 1e-3, &report),
+                             STATUS_OK);
+            motion_apply(&a, m, &report);
+        }
+        check_relative(predicted.peak, m->pulse_peak, 2e-3);
+        assert_int_equal(isnan(predicted.length), m->state[SLOT_CONTACT] != 0);
+        if (!isnan(predicted.length)) {
+            check_relative(predicted.length, m->state[SLOT_TIME] - touched, 1e-3);
+            ended++;
+        }
+        motion_destroy(m);
+    }
+    assert_true(ended > 3);
+}
+
 static void an_elastic_impact_does_not_hold(void **state)
 {
     (void)state;
@@ -490,6 +540,7 @@ int main(void)
         cmocka_unit_test(without_a_wall_there_is_no_touch),
         cmocka_unit_test(a_prescribed_voltage_is_followed),
         cmocka_unit_test(an_elastic_impact_does_not_hold),
+        cmocka_unit_test(a_pulse_ends_where_the_arm_leaves),
         cmocka_unit_test(a_gentle_touch_is_one_oscillation),
         cmocka_unit_test(a_force_that_nearly_vanishes_is_not_answered),
     };
