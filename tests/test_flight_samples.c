@@ -5,14 +5,14 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "src/base/random.h"
 #include "src/run/loop.h"
+#include "src/study/batch.h"
 #include "tests/check.h"
 #include "tests/rig_fixture.h"
 
-enum { RUNS = 60, MOST_SETTINGS = 16, SETTING_SIZE = 64 };
+enum { RUNS = 40, MOST_SETTINGS = 16, SETTING_SIZE = 64 };
 
 #define SAME      1e-7 // of a quantity's largest value
 #define SAME_TIME 1e-9 // [s]
@@ -178,6 +178,17 @@ static void go_on(run_loop *l, random_generator *g, looping how, void *bytes)
     }
 }
 
+// All numbers of two summaries but for times taken are the same bits.
+static void check_same_summary(const summary *a, const summary *b)
+{
+    for (int i = 0; i < summary_count; i++) {
+        const double one = summary_value(a, i), other = summary_value(b, i);
+        if (!summary_table[i].timing) {
+            assert_memory_equal(&one, &other, sizeof one);
+        }
+    }
+}
+
 // A whole run and a loop agree, where it is not cut by inputs or anywhere in contact to the last
 // bit.
 static void check_same_run(const run_result *whole, const run_result *loop, const summary *end,
@@ -201,15 +212,7 @@ static void check_same_run(const run_result *whole, const run_result *loop, cons
     for (size_t i = 0; i < a->event_count; i++) {
         assert_true(a->events[i].time == b->events[i].time);
     }
-    for (int i = 0; i < summary_count; i++) {
-        const double one = summary_value(s, i), other = summary_value(end, i);
-        const bool timed = strstr(summary_table[i].key, "_time_s") != NULL &&
-                           (strncmp(summary_table[i].key, "cpu", 3) == 0 ||
-                            strncmp(summary_table[i].key, "wall", 4) == 0);
-        if (!timed) {
-            assert_memory_equal(&one, &other, sizeof one);
-        }
-    }
+    check_same_summary(s, end);
 }
 
 static void check_loops(uint64_t seed, looping how)
@@ -262,12 +265,39 @@ static void samples_on_the_way_are_those_at_ends_of_steps(void **state)
     check_loops(13, LOOPING_ENDED);
 }
 
+// Number i of the random arms under random laws, whoever asks.
+static void make(void *context, size_t i, scenario *made)
+{
+    random_generator g;
+    (void)context;
+    random_seed(&g, 100 + i);
+    const drawn_settings drawn = draw(&g);
+    made->parameters = drawn_parameters(&drawn);
+}
+
+// Runs side by side, whose series are computed in lanes, are those that go alone.
+static void runs_side_by_side_are_single_runs(void **state)
+{
+    (void)state;
+    summary together[RUNS];
+    assert_int_equal(batch_run(make, NULL, RUNS, 1, together), STATUS_OK);
+    for (size_t i = 0; i < RUNS; i++) {
+        scenario s = {0};
+        run_result single;
+        make(NULL, i, &s);
+        assert_int_equal(run_scenario(&s, false, &single), STATUS_OK);
+        check_same_summary(&together[i], &single.summary);
+        run_finish(&single);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_loop_from_sample_to_sample_is_the_run),
         cmocka_unit_test(a_loop_stops_between_samples_on_the_way),
         cmocka_unit_test(samples_on_the_way_are_those_at_ends_of_steps),
+        cmocka_unit_test(runs_side_by_side_are_single_runs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
