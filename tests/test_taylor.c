@@ -5,7 +5,7 @@
 #include "src/base/random.h"
 #include "src/run/run.h"
 #include "src/solve/contact_machine.h"
-#include "src/solve/taylor_lanes.h"
+#include "src/solve/taylor_stride.h"
 #include "tests/arm_fixture.h"
 
 // An arm in some state of motion, in free flight or on the wall.
@@ -279,6 +279,43 @@ static void the_bounds_hold(void **state)
     assert_true(looked_at > ARM_COUNT * STATES / 2);
 }
 
+// Where the kernel has found a root, the watched function falls there, and not before.
+static void known_roots_are_the_first(void **state)
+{
+    (void)state;
+    enum { LOOKS = 100 };
+    random_generator g;
+    int known = 0;
+    random_seed(&g, 8);
+    for (int i = 0; i < ARM_COUNT * STATES; i++) {
+        moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
+        motion *m = moving.motion;
+        if (motion_held_still(m)) {
+            motion_destroy(m);
+            continue;
+        }
+        const double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3);
+        const taylor_stride *s = m->memory;
+        const bool contact = m->state[SLOT_CONTACT] != 0;
+        const watch watched[] = {contact ? WATCH_FORCE : WATCH_GAP, WATCH_HUB};
+        const double roots[] = {s->lane.block[AT_WALL_ROOT], s->lane.block[AT_HUB_ROOT]};
+        for (int n = 0; n < 2; n++) {
+            const double root = roots[n], near = 1e-9 * h;
+            for (int k = 1; k < LOOKS && root > 0; k++) {
+                const double t = root * k / LOOKS;
+                assert_true(m->engine->look(&moving.arm, m, watched[n], t).value > 0);
+            }
+            if (root > near) {
+                known++;
+                assert_true(m->engine->look(&moving.arm, m, watched[n], root - near).value > 0);
+                assert_true(m->engine->look(&moving.arm, m, watched[n], root + near).value < 0);
+            }
+        }
+        motion_destroy(m);
+    }
+    assert_true(known > STATES / 4);
+}
+
 static run_result run(const char *const *settings)
 {
     scenario s = {.parameters = fixture_parameters(settings)};
@@ -464,6 +501,7 @@ int main(void)
         cmocka_unit_test(orders_agree_and_the_ledger_closes),
         cmocka_unit_test(cut_strides_go_on),
         cmocka_unit_test(the_bounds_hold),
+        cmocka_unit_test(known_roots_are_the_first),
         cmocka_unit_test(peaks_are_the_largest_force_there_is),
         cmocka_unit_test(rows_change_nothing),
         cmocka_unit_test(events_that_nearly_coincide_are_told_apart),
