@@ -133,6 +133,23 @@ static void bounces_end_where_no_engine_tells_them(void **state)
     check_close(modes.peak, series.peak, 1e-4 * series.peak);
 }
 
+// An arm that comes to the wall at 7e-9 m/s: first contact is no later for the tolerance of the
+// gap, which is a length.
+static void a_slow_arm_touches_in_time(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=10", "arm.hub_joint=beam", "arm.damping_ratio=0.423252",
+                 "wall.angle=7.8856745847127184e-7", "motor.voltage=1.605e-7", "arm.k2=2.07622",
+                 "arm.mass=0.14437", "arm.hub_inertia=0.042581", "motor.stiction=5.1311e-8",
+                 "method.rest_speed=1.66e-10"));
+    const meetings modes = meetings_by(&p, &modal_engine, 7.88542e-7, 6.75857e-9, 0.01);
+    const meetings series = meetings_by(&p, &series_engine, 7.88542e-7, 6.75857e-9, 0.01);
+    assert_true(modes.count > 0 && series.count > 0);
+    assert_int_equal(modes.event[0], series.event[0]);
+    check_close(modes.time[0], series.time[0], 1e-7);
+}
+
 // Between bounces of some 1e-9 s the tip flies 1e-13 m high, and the motor presses: no impact is
 // faster than the one before, but for what it falls beyond the wall within 2e-14 m.
 static void bounces_lower_than_rounding_do_not_gain(void **state)
@@ -211,6 +228,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(events_within_a_stride_are_the_formulas),
                                        cmocka_unit_test(bounces_end_where_no_engine_tells_them),
+                                       cmocka_unit_test(a_slow_arm_touches_in_time),
                                        cmocka_unit_test(bounces_lower_than_rounding_do_not_gain),
                                        cmocka_unit_test(a_graze_within_a_stride_is_found)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,6 +11,7 @@
 #define SLACK_OTHER  1e-9  // and at least so much, in its unit
 #define GAP_ROUNDING 4e-15 // [m]
 #define SHARE_BEYOND 1e-9  // of a flight's height, to which it ends on the wall's far side
+#define TIME_BEYOND  1e-9  // after which it does at the latest, however slow it is [s]
 
 enum { SAMPLES_A_BLOCK = 4, MOST_HALVINGS = 40, MOST_ROOT_STEPS = 60, MOST_POLISHING = 12 };
 
@@ -125,6 +126,7 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
     // top of a flight of some 1e-14 m, would take it far beyond
     double target = far_side[f->kind], above = -1, below = HUGE_VAL;
     target = brief ? fmin(target, SHARE_BEYOND * fabs(slope) * t) : target;
+    target = f->kind == WATCH_GAP ? fmin(target, TIME_BEYOND * fabs(slope)) : target;
     for (int i = 0; i < MOST_POLISHING && slope < 0; i++) {
         const double value = modal_function_exact(f, s, a, m, t);
         if (value <= 0 && value >= -2 * target) {
