@@ -6,8 +6,9 @@
 
 enum { LEAST_HUB_STEPS = 6 };
 
-#define HUB_TURN 0.75 // of the fastest of them from step to step [rad]
-#define LOW_TURN 24   // rate times time up to which modes are taken together
+#define HUB_TURN   0.75 // of the fastest of them from step to step [rad]
+#define LOW_TURN   24   // rate times time up to which modes are taken together
+#define SLOW_DECAY 1    // of an overdamped mode until then, which a series takes
 
 // --- walks ------------------------------------------------------------------------------------
 
@@ -80,36 +81,82 @@ static double product_integral(const double *p, const double *q, modal_weights w
     return sum;
 }
 
-// The hub's velocity without what vibrates fast, beyond the low modes: a polynomial, and decays.
+// The hub's velocity without what vibrates fast, beyond the low modes: a series, and decays.
 typedef struct hub_motion {
-    double power[MODAL_NODES]; // sum power[j] t^j / j! [rad/s]
-    modal_decays decays;       // [rad/s]
+    double power[MODAL_SERIES]; // sum power[j] t^j / j! [rad/s]
+    int terms;                  // of them
+    modal_decays decays;        // [rad/s]
 } hub_motion;
+
+// The polynomial that solves u' + rate u = sum n[j] t^j / j!.
+static void settle(double rate, const double *n, double *settled)
+{
+    const double per_rate = 1 / rate;
+    double g = 0;
+    for (int j = MODAL_NODES - 1; j >= 0; j--) {
+        settled[j] = g = (n[j] - g) * per_rate;
+    }
+}
+
+// Adds `weight` times u, u' + rate u = n(t) from u = start. Where it hardly decays the series has
+// all of it: what it settles at and the decay would be large and of opposite sign.
+static void add_decay(hub_motion *h, double rate, double length, double start, const double *n,
+                      double weight)
+{
+    double settled[MODAL_NODES];
+    if (rate * length <= SLOW_DECAY) {
+        double g = start;
+        for (int j = 0; j < MODAL_SERIES; j++) {
+            h->power[j] += weight * g;
+            g = (j < MODAL_NODES ? n[j] : 0) - rate * g;
+        }
+        h->terms = MODAL_SERIES;
+        return;
+    }
+    settle(rate, n, settled);
+    for (int j = 0; j < MODAL_NODES; j++) {
+        h->power[j] += weight * settled[j];
+    }
+    h->decays.now[h->decays.count] = weight * (start - settled[0]);
+    h->decays.rate[h->decays.count++] = rate;
+}
+
+// Adds an overdamped mode: u = x' + fast x and v = x' + slow x decay at slow and fast, and
+// x' = (fast v - slow u) / (fast - slow). What v begins with is over in no time; returns the loss
+// in that.
+static double add_overdamped(const modal_stride *s, int k, double length, hub_motion *h)
+{
+    const double hub = s->modes->by_dof[k], damping = s->damping[k], rate = s->modes->rate[k];
+    const double root = fmax(sqrt((damping - rate) * (damping + rate)), 1e-4 * rate);
+    const double slow = rate * rate / (damping + root), fast = damping + root;
+    const double per = 1 / (fast - slow), speed = s->start[k] + s->drift[0][k];
+    double n[MODAL_NODES], settled[MODAL_NODES];
+    for (int j = 0; j < MODAL_NODES; j++) {
+        const double turn = j + 1 < MODAL_NODES ? s->drift[j + 1][k] : 0;
+        n[j] = s->force[j][k] + 2 * damping * s->drift[j][k] + turn;
+    }
+
+    add_decay(h, slow, length, speed, n, -hub * slow * per);
+    settle(fast, n, settled);
+    for (int j = 0; j < MODAL_NODES; j++) {
+        h->power[j] += hub * fast * per * settled[j];
+    }
+    const double lost = fast * per * (speed - settled[0]);
+    return s->viscous[k] * lost * lost * (1 - modal_decay(-2 * fast * length)) / (2 * fast);
+}
 
 // Adds a mode that is not a low one; returns the loss of its own that is in its vibration alone.
 static double add_to_hub(const modal_stride *s, int k, const modal_mode_losses *losses,
                          hub_motion *h)
 {
-    const double hub = s->modes->by_dof[k], damping = s->damping[k], rate = s->modes->rate[k];
+    const double hub = s->modes->by_dof[k], damping = s->damping[k];
+    if (damping >= s->modes->rate[k]) {
+        return add_overdamped(s, k, losses->time, h);
+    }
     for (int j = 0; j + 1 < MODAL_NODES; j++) {
         h->power[j] += hub * s->followed[j + 1][k];
     }
-
-    // a vibration
-    if (damping < rate) {
-        return damping > 0 ? losses->vibrating[k] * s->viscous[k] / (2 * damping) : 0;
-    }
-
-    // two decays, of which the fast one is over in no time
-    const double root = fmax(sqrt((damping - rate) * (damping + rate)), 1e-4 * rate);
-    const double slow = rate * rate / (damping + root), fast = damping + root;
-    const double place = -s->followed[0][k];
-    const double speed = s->start[k] + s->drift[0][k] - s->followed[1][k];
-    const double kept = (fast * place + speed) / (fast - slow);
-    const double lost = fast * (slow * place + speed) / (fast - slow);
-    h->decays.now[h->decays.count] = -hub * slow * kept;
-    h->decays.rate[h->decays.count++] = slow;
-    return s->viscous[k] * lost * lost * (1 - modal_decay(-2 * fast * losses->time)) / (2 * fast);
+    return damping > 0 ? losses->vibrating[k] * s->viscous[k] / (2 * damping) : 0;
 }
 
 // What the hub's viscous damping takes from the low modes and the rest's slow motion together: the
@@ -136,9 +183,9 @@ static double hub_loss(modal_stride *s, const arm *a, double t, int low, hub_mot
     for (int i = 0; i <= steps; i++) {
         const double x = w->time;
         double speed = 0, slope = 0, power = 1;
-        for (int j = 0; j < MODAL_NODES; j++) {
+        for (int j = 0; j < rest->terms; j++) {
             speed += power * rest->power[j];
-            slope += j + 1 < MODAL_NODES ? power * rest->power[j + 1] : 0;
+            slope += j + 1 < rest->terms ? power * rest->power[j + 1] : 0;
             power *= x / (j + 1);
         }
         const glance decaying = loops->decay(decays);
@@ -176,6 +223,7 @@ modal_losses modal_stride_losses(modal_stride *s, const arm *a, double t)
     // the hub's motion beyond them
     const ptrdiff_t row = s->row;
     hub_motion rest = {
+        .terms = MODAL_NODES,
         .decays = {.now = s->columns, .rate = s->columns + row, .factor = s->columns + 2 * row}};
     for (int j = 0; e >= 0 && j < MODAL_NODES; j++) {
         rest.power[j] = s->modes->by_dof[e] * s->drift[j][e];
