@@ -79,6 +79,7 @@ typedef struct chain_series {
     // of a wall that gives or a face with a mass
     bool gives;
     bool at_touch, graded;   // next to a touch that is not analytic; by the distance from one
+    int graded_order;        // that this asks for
     double turning;          // fastest rate of arm and wall [1/s]
     series_terms power;      // depth to the law's exponent
     series_terms damper;     // what the damper gives, times L^2 [N s2]
@@ -105,11 +106,17 @@ void chain_series_place(chain_series *s, const arm *a);
 // [1/s].
 double chain_series_rate(const arm *a, const double *q, const double *w);
 
-// How far a stride may go [s] by that rate, the wall's own or its face's [1/s], and by a touch that
-// is not analytic, from the gap and its rate [m], [m/s]. s->mode and s->gives are those of the
-// stride to come.
-double chain_series_wall_reach(chain_series *s, const arm *a, double own, double wall_rate,
-                               double gap, double gap_velocity);
+// An arm at its wall, where a stride begins.
+typedef struct wall_approach {
+    double own_rate, wall_rate; // chain_series_rate; the wall's own or its face's [1/s]
+    double depth;               // within a wall that gives, else 0 [m]
+    double speed, acceleration; // into the wall [m/s], [m/s2]
+    double compliance;          // acceleration by a unit force, in Hunt and Crossley's wall [1/kg]
+} wall_approach;
+
+// How far a stride may go [s] by those rates, and by a touch that is not analytic. s->mode and
+// s->gives are those of the stride to come.
+double chain_series_wall_reach(chain_series *s, const arm *a, const wall_approach *at);
 
 // Adds a face that swings on its own to the gap of the series computed. Returns what its velocity
 // lacks there [m/s]: a decay too fast to be more than rounding of its place.

@@ -262,7 +262,10 @@ static bool force_converges(const chain_series *s, double share)
     if (!s->mode.contact) {
         return true;
     }
-    const double first = fmax(fabs(f[0]), share * fmax(fabs(f[1]), share * fabs(f[2])));
+    double first = fmax(fabs(f[0]), share * fmax(fabs(f[1]), share * fabs(f[2])));
+    if (s->graded) { // next to what would stop the arm the force is small there
+        first = fmax(first, fabs(s->gap.term[1] / s->response));
+    }
     const double last = fabs(f[s->order - 2]) + share * fabs(f[s->order - 1]);
     const double least = LEAST_FORCE * s->length * s->length;
     return power(share, s->order - 2) * last <= FORCE_TERMS * fmax(first, least);
@@ -316,7 +319,10 @@ void chain_series_compute(chain_series *s, const arm *a, const double *q, const 
     const size_t size = (size_t)(r->blocks * SERIES_LANES) * sizeof(double);
     s->pinned = s->mode.contact && !s->gives && a->dof == 1;
     s->length = length;
-    s->order = s->graded ? SERIES_MOST : order_for(s->turning * length);
+    s->order = order_for(s->turning * length);
+    if (s->graded && s->order < s->graded_order) {
+        s->order = s->graded_order;
+    }
     s->damped = a->joint_damping > 0 || a->hub_joint_damping > 0;
 
     // what all orders share

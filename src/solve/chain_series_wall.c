@@ -7,16 +7,21 @@
 //
 //     n x_0 p_n = sum over i = 1..n of (e i - (n - i)) x_i p_(n-i).
 //
-// It is not analytic at the touch: strides are no longer than half the time to or from it, x/|v|,
-// and next to it, where the force does nothing to the motion but rounding, they go on without it. A
-// face with the mass M has f = M d2g/dt2 + k x + c v, where d2g/dt2 is what it were without the
-// force and the response to it.
+// It is not analytic at the touch: strides are no longer than a share of the time to or from it,
+// x/|v|, and next to it, where the force does nothing to the motion but rounding, they go on
+// without it. Where it does little, few orders of it are enough. A face with the mass M has f = M
+// d2g/dt2 + k x + c v, where d2g/dt2 is what it were without the force and the response to it.
 #include <math.h>
 
+#include "src/base/plain_math.h"
 #include "src/solve/chain_series_parts.h"
 
-#define NEXT_TO_TOUCH 1e-6 // in (fastest rate) x (time)
-#define GRADING       0.5  // of the time to or from a touch that is not analytic
+#define NEXT_TO_TOUCH  1e-3  // at most, in (fastest rate) x (time)
+#define NO_FORCE       1e-15 // share of the velocity that a force may do and be none
+#define LAST_ORDER     1e-13 // the same of its orders that are left out
+#define ORDERLESS_COST 200   // of a stride, in those of which its order squared are the rest
+
+enum { LEAST_GRADED = 8 };
 
 // The n-th coefficient of a product of two series, its factors' first `from` terms left out.
 static double product_term(const double *x, const double *y, int n, int from)
@@ -148,23 +153,80 @@ double chain_series_add_face(chain_series *s, const arm *a, wall_face face)
     return creeps ? fabs(face.velocity + wall_face_rate(w, face) * face.position) : 0;
 }
 
-double chain_series_wall_reach(chain_series *s, const arm *a, double own, double wall_rate,
-                               double gap, double gap_velocity)
+// What the wall's force may do to the velocity within a time from here, as a share of it: as deep
+// and as fast as the arm can be then.
+static double share_of_force(const wall_model *w, const wall_approach *at, double time)
 {
+    const double speed = fabs(at->speed) + fabs(at->acceleration) * time;
+    const double depth = at->depth + speed * time;
+    return at->compliance * wall_power(w, depth) * (w->stiffness + w->damping * speed) * time /
+           speed;
+}
+
+// The time from here in which the wall's force does nothing but rounding.
+static double forceless_time(const wall_model *w, const wall_approach *at, double longest)
+{
+    double time = longest;
+    while (time > 0 && share_of_force(w, at, time) > NO_FORCE) {
+        time /= 2;
+    }
+    return time;
+}
+
+// How far from a touch, or towards it, a stride goes as a share of the time to there: so that the
+// way is made in as few operations as may be. The power's coefficients shrink with that share's
+// powers, and with the square of their number at least, the velocity's with its cube; *order is
+// that from which on they are rounding of the velocity.
+static double choose_grading(const wall_model *w, const wall_approach *at, int *order)
+{
+    static const double shares[] = {0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+    const double time = at->depth / fabs(at->speed);
+    double best = shares[0], least = HUGE_VAL;
+    *order = SERIES_MOST;
+    for (size_t i = 0; i < sizeof shares / sizeof *shares; i++) {
+        double term = share_of_force(w, at, shares[i] * time);
+        int n = 0;
+        while (n < SERIES_MOST &&
+               (n < LEAST_GRADED || term > LAST_ORDER * (1 - shares[i]) * n * n * n)) {
+            term *= shares[i] * shares[i];
+            n += 2;
+        }
+        const double way = at->speed > 0 ? plain_log(1 + shares[i]) : -plain_log(1 - shares[i]);
+        const double cost = n == SERIES_MOST ? HUGE_VAL : (ORDERLESS_COST + n * n) / way;
+        if (cost < least) {
+            least = cost;
+            best = shares[i];
+            *order = n;
+        }
+    }
+    return best * time;
+}
+
+double chain_series_wall_reach(chain_series *s, const arm *a, const wall_approach *at)
+{
+    const wall_model *w = &a->wall;
     const bool within = s->gives && s->mode.contact;
-    const double rate = sqrt(own * own + wall_rate * wall_rate);
-    const double reach = SERIES_REACH / rate, depth = -gap, speed = fabs(gap_velocity);
+    const double rate = sqrt(at->own_rate * at->own_rate + at->wall_rate * at->wall_rate);
+    const double speed = fabs(at->speed);
+    double reach = SERIES_REACH / rate;
     s->turning = rate;
     s->at_touch = false;
-    s->graded = within && a->wall.law == WALL_HUNT_CROSSLEY && a->wall.exponent != 1;
+    s->graded = within && w->law == WALL_HUNT_CROSSLEY && w->exponent != 1;
+    s->graded_order = SERIES_MOST;
     if (!s->graded) {
         return reach;
     }
 
     // next to the touch, or so far from it
-    const double nearest = NEXT_TO_TOUCH / rate;
-    s->at_touch = depth <= nearest * speed || depth <= 0;
-    return s->at_touch ? fmin(reach, 2 * nearest)
-           : speed > 0 ? fmin(reach, GRADING * depth / speed)
-                       : reach;
+    const double longest = NEXT_TO_TOUCH / rate;
+    if (at->depth <= 0.5 * longest * speed) {
+        const double forceless = forceless_time(w, at, longest);
+        s->at_touch = at->depth <= 0.5 * forceless * speed;
+        reach = s->at_touch ? fmin(reach, forceless) : reach;
+    }
+    if (s->at_touch) {
+        s->graded_order = LEAST_GRADED;
+        return reach;
+    }
+    return speed > 0 ? fmin(reach, choose_grading(w, at, &s->graded_order)) : reach;
 }

@@ -286,17 +286,21 @@ double motion_decay_length(const arm *a, double reach, double since)
     return fmax(GRADING * since, reach / fmax(a->highest_frequency, a->fastest_decay));
 }
 
+double motion_wall_compliance(const arm *a, motion *m, double *state)
+{
+    double compliance;
+    const bool locked = contact_state_of(state).friction == HUB_STICK && m->dof > 1;
+    chain_contact_response(a, m->links, state_angles(m, state), locked, m->scratch, &compliance);
+    return compliance / (1 + a->wall.face_mass * compliance); // both masses on the spring
+}
+
 double motion_wall_rate(const arm *a, motion *m, double *state)
 {
-    const contact_state now = contact_state_of(state);
-    if (motion_wall_is_rigid(m) || !now.contact) {
+    if (motion_wall_is_rigid(m) || !contact_state_of(state).contact) {
         return m->wall_has_face ? wall_face_rate(&a->wall, state_face(state)) : 0;
     }
-    double compliance;
-    const bool locked = now.friction == HUB_STICK && m->dof > 1;
-    chain_contact_response(a, m->links, state_angles(m, state), locked, m->scratch, &compliance);
-    compliance /= 1 + a->wall.face_mass * compliance; // both masses on the spring
-    return wall_rate(&a->wall, compliance, fmax(-state[SLOT_GAP], 0), -state[SLOT_GAP_VELOCITY]);
+    return wall_rate(&a->wall, motion_wall_compliance(a, m, state), fmax(-state[SLOT_GAP], 0),
+                     -state[SLOT_GAP_VELOCITY]);
 }
 
 double motion_vibration(const arm *a, motion *m, double *state)

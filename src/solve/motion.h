@@ -337,6 +337,8 @@ static inline double motion_motor_work(const motion *m, double *state)
 // How fast a wall that gives and the arm on it in a state of this motion can move, or a face alone:
 // frequency or decay [1/s]; 0 of others.
 double motion_wall_rate(const arm *a, motion *m, double *state);
+// How much a unit force of that wall accelerates the gap in contact [1/kg].
+double motion_wall_compliance(const arm *a, motion *m, double *state);
 
 // How fast the force can change in a state of this motion, but for decays of the arm's [1/s]: by
 // its fastest vibration, that wall, a motor's inductance.

@@ -219,8 +219,15 @@ double series_stride_begin(series_stride *s, const arm *a, motion *m, double rem
 
     // as far as the arm's rates and the wall's allow
     const double own = chain_series_rate(a, q, w);
-    const double reach = chain_series_wall_reach(c, a, own, motion_wall_rate(a, m, m->state),
-                                                 m->state[SLOT_GAP], m->state[SLOT_GAP_VELOCITY]);
+    wall_approach approach = {.own_rate = own,
+                              .wall_rate = motion_wall_rate(a, m, m->state),
+                              .depth = fmax(-m->state[SLOT_GAP], 0),
+                              .speed = -m->state[SLOT_GAP_VELOCITY],
+                              .acceleration = -m->state[SLOT_GAP_ACCELERATION]};
+    if (m->wall_gives && c->mode.contact && a->wall.law == WALL_HUNT_CROSSLEY) {
+        approach.compliance = motion_wall_compliance(a, m, m->state);
+    }
+    const double reach = chain_series_wall_reach(c, a, &approach);
     const double length = fmin(remaining, reach);
     chain_series_compute(c, a, q, w, length, last_terms);
     double face_lacks = 0;
