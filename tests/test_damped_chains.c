@@ -20,6 +20,19 @@ static void a_chain_that_bends_keeps_its_strides(void **state)
     }
 }
 
+// 64 links that bounce with all but the slowest modes overdamped: after an impact strides are much
+// shorter than any of the slow decays take, and soon as long again as before.
+static void a_strongly_damped_chain_that_bounces_keeps_its_strides(void **state)
+{
+    (void)state;
+    const parameters p =
+        fixture_parameters(SETTINGS("arm.links=64", "arm.damping_ratio=0.3", "arm.hub_joint=spring",
+                                    "wall.restitution=0.8", "wall.angle=2.1", "motor.voltage=5"));
+    const passage all = passage_of(&p, 0, 0, 0.9, 400);
+    assert_true(all.impacts > 1);
+    check_below(all.open, 1e-7);
+}
+
 // Impacts of an arm in front of its wall, and the largest force of what follows them.
 typedef struct bounces {
     int impacts;
@@ -143,9 +156,11 @@ static void a_small_motion_slips_as_a_larger_one(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_chain_that_bends_keeps_its_strides),
-                                       cmocka_unit_test(low_bounces_are_those_of_the_series),
-                                       cmocka_unit_test(a_slow_arm_meets_its_wall_in_time),
-                                       cmocka_unit_test(a_small_motion_slips_as_a_larger_one)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_chain_that_bends_keeps_its_strides),
+        cmocka_unit_test(a_strongly_damped_chain_that_bounces_keeps_its_strides),
+        cmocka_unit_test(low_bounces_are_those_of_the_series),
+        cmocka_unit_test(a_slow_arm_meets_its_wall_in_time),
+        cmocka_unit_test(a_small_motion_slips_as_a_larger_one)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
