@@ -508,6 +508,27 @@ static void nodes_follow_the_links(void **state)
     }
 }
 
+// A list may be one digit long: it is that arm's only joint or link.
+static void a_list_of_one_digit_is_one(void **state)
+{
+    (void)state;
+    const double q[2] = {0.3, 0.7};
+    arm listed, plain;
+    parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.joint_stiffness=8"));
+    arm_init(&listed, &p);
+    p = fixture_parameters(SETTINGS("arm.links=2", "arm.k2=8"));
+    arm_init(&plain, &p);
+    check_relative(chain_strain_energy(&listed, q), 0.5 * 8 * 0.4 * 0.4, 1e-14);
+    check_relative(listed.highest_frequency, plain.highest_frequency, 1e-9);
+
+    double x, y;
+    p = fixture_parameters(SETTINGS("arm.links=1", "arm.link_lengths=2"));
+    arm_init(&listed, &p);
+    chain_node(&listed, q, 1, &x, &y);
+    check_close(x, 2 * cos(q[0]), 1e-14);
+    check_close(y, 2 * sin(q[0]), 1e-14);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -517,6 +538,7 @@ int main(void)
         cmocka_unit_test(satisfies_it_with_any_links_and_joints),
         cmocka_unit_test(rates_follow_from_the_penetration),
         cmocka_unit_test(a_turn_changes_the_penetration),
+        cmocka_unit_test(a_list_of_one_digit_is_one),
         cmocka_unit_test(penetration_of_two_links_is_equation_3_9),
         cmocka_unit_test(one_link_on_a_rigid_hub_is_held_by_the_wall),
         cmocka_unit_test(energies_match_the_dense_form),
