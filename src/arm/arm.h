@@ -45,9 +45,10 @@ typedef struct arm {
     wall_model wall;
     double highest_frequency; // upper estimate over the arm's free modes [rad/s]
     double fastest_decay;     // of overdamped modes and of the hub alone [1/s]
-    double fastest_rate;      // the same or, if faster, weighted decays: sets the steps [1/s]
+    double fastest_rate;      // of vibrations and, weighted, decays: sets the steps [1/s]
     link_table each;          // of an uneven arm
-    // row i gives the joints the torques g (g'(bend rates)); g[k] is of the joint before link k
+    // row i, g, gives the joints the torques g (g'(bend rates)); g[k] belongs to the joint before
+    // link k
     double modal_damping[PARAMETER_MODES_MOST][PARAMETER_LIST_MOST]; // [(N m s/rad)^(1/2)]
 } arm;
 

@@ -1,4 +1,4 @@
-// What an impact does to the velocities.
+// The impact law: jump of the velocities, impulse and energy loss.
 #pragma once
 
 #include "src/arm/chain.h"
@@ -15,9 +15,9 @@ typedef struct impact_result {
 //     M dw = -J^T p,      J (w + dw) = -e J w,
 //
 // which gives p = (1 + e) J w / (J M^-1 J^T). A hub behind a spring keeps its velocity, (4.10); a
-// rigid one jumps with the first link, sticking or not (errata B6). The energy lost is
-// p (1 - e) J w / 2, never negative. A wall's face of mass M gives way by p/M: then Jw less the
-// face's velocity is the speed, and 1/M stands beside J M^-1 J^T.
+// rigid one jumps with the first link, sticking or not (errata B6). The loss of energy is p (1 - e)
+// J w / 2, never negative. A wall's face of mass M_f gains the velocity p/M_f: J w is then replaced
+// by the relative speed (J w less the face's velocity), and J M^-1 J^T by J M^-1 J^T + 1/M_f.
 // q[dof], w[dof]: the state before; face: velocity of the wall's face [m/s], 0 without a mass;
 // work: links elements of scratch; increment[dof]: dw [rad/s].
 impact_result impact_velocity_increments(const arm *a, chain_link *work, const double *q,

@@ -1,5 +1,6 @@
 // The larger and the smaller of two numbers as one instruction each. The C library's fmax and fmin
-// answer for NaN, too, and are calls for it; these say what they say of two numbers that are none.
+// also handle NaN and are therefore function calls; for arguments that are not NaN these return the
+// same.
 #pragma once
 
 // y if one of them is NaN.

@@ -8,6 +8,6 @@
 void fourier_transform(double *real, double *imaginary, size_t n);
 
 // The amplitudes of sines in a series of n values, n a power of two: its mean is taken off, a Hann
-// window laid over it, and amplitude[k], k = 0 .. n/2 - 1, is that of k periods in the series; of a
-// sine of a whole number of periods it is the sine's own. `scratch` has 2 n numbers.
+// window laid over it, and amplitude[k], k = 0 .. n/2 - 1, is that of k periods in the series; for
+// a sine with a whole number of periods it equals the sine's amplitude. `scratch` has 2 n numbers.
 void fourier_amplitudes(const double *series, size_t n, double *scratch, double *amplitude);

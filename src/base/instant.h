@@ -7,7 +7,7 @@
 
 #include "src/base/extremes.h"
 
-// How far two instants, the same but for rounding, may lie apart near `time` [s].
+// How far apart two instants near `time` may lie that differ by rounding only [s].
 static inline double instant_tolerance(double time)
 {
     return 1e-12 * larger(fabs(time), 1);

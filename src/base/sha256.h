@@ -1,4 +1,4 @@
-// SHA-256 (FIPS 180-4): a fingerprint that nobody can find a second content for.
+// SHA-256 (FIPS 180-4): a fingerprint for which nobody can find a second content.
 #pragma once
 
 #include <stddef.h>

@@ -38,8 +38,8 @@ status whole_file_commit(whole_file *w, fault *f);
 // Gives up: the target stays as it was. Closes w.
 void whole_file_abandon(whole_file *w);
 
-// Commits w if what was written succeeded (`written` is STATUS_OK), otherwise abandons it and
-// returns `written`. Closes w in either case.
+// Commits w if writing succeeded (`written` is STATUS_OK), otherwise abandons it and returns
+// `written`. Closes w in either case.
 status whole_file_close(whole_file *w, status written, fault *f);
 
 // Removes what runs that were killed left in a folder. Opening a file does so by itself; this is

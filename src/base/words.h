@@ -29,8 +29,8 @@ void nearest_try(nearest_word *n, const char *candidate);
 // separator.
 bool is_unprintable(uint32_t character);
 
-// Length in bytes of the printable character that begins at `text`, which does not end there; 0 if
-// the byte stands in its way.
+// Length in bytes of the printable character that begins at `text`, which is not empty; 0 if no
+// printable character begins there.
 int printable_length(const char *text);
 
 // The one filter for texts from outside (titles, names of files and plug-ins, cells, complaints of

@@ -1,5 +1,5 @@
-// What no controller can do better: the least peak and the least settling time after an impact,
-// for a controller that knows the whole state at every instant and commands without delay.
+// Bounds for every controller: the least peak and the least settling time after an impact, for a
+// controller that knows the whole state at every instant and commands without delay.
 //
 // In contact the two-link arm has one degree of freedom, x = theta2 - theta_imp (docs/control.md):
 //

@@ -1,13 +1,13 @@
-// What no controller can do faster: the least time from rest until the arm presses with the wanted
+// A bound for every controller: the least time from rest until the arm presses with the wanted
 // force for good, with a limited voltage and a limited force.
 //
 // In flight the two-link arm is linear in the deviation q = (theta2, theta3) - theta_imp, and so is
-// what decides about the contact: whether the tip is at the wall, l (q2 + q3) = 0, and with
-// which K xi the impact leaves the arm (best_stop.c; K xi has to end in the band round the force,
-// and every way there takes at least the time of the largest or of no force). Of each time of touch
-// the K xi that can be had are an interval, whose ends are linear programs over the voltage with
-// one equation: of their solutions, full voltage either way, one multiplier is all that is to be
-// found.
+// what decides about the contact: whether the tip is at the wall, l (q2 + q3) = 0, and with which
+// K xi the impact leaves the arm (best_stop.c; K xi has to end in the band round the force, and
+// every way there takes at least the time of the largest or of no force). For each time of touch
+// the attainable values of K xi form an interval, whose ends are the optima of linear programs over
+// the voltage with one equality constraint: their solutions are bang-bang (full voltage either
+// way), so that only one multiplier is to be found.
 //
 // It is a bound: friction is taken as a torque that the controller may choose within its limits,
 // the tip may have passed the wall before, and the motor gives every force in contact.
@@ -35,7 +35,6 @@ typedef struct least_time {
 least_time least_time_of(const parameters *p, double force, double band, double peak);
 
 // Tip's distance from the wall's line [m] and K xi after a touch [N] that a torque, constant in
-// each step, brings about in `steps` steps from rest. For those who want to see that the bound is
-// had.
+// each step, brings about in `steps` steps from rest. For checks that the bound is attained.
 void least_time_follow(const parameters *p, const double *torque, int steps, double *tip,
                        double *press);

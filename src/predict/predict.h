@@ -36,7 +36,7 @@ typedef struct prediction {
     prediction_doubt doubt; // not DOUBT_NONE: force and delay are NaN, and it does not hold
 } prediction;
 
-// One that says nothing yet.
+// An empty prediction: it does not hold, and every number is NaN.
 static inline prediction prediction_none(void)
 {
     const double unknown = (double)NAN;

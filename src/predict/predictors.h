@@ -20,7 +20,7 @@ typedef enum predictor {
         PREDICTOR_COUNT
 } predictor;
 
-// What a predictor has to say of a state.
+// The outcome of asking a predictor about a state.
 #define PREDICTION_OUTCOME_LIST(X)                                                                 \
     X(PREDICTION_HOLDS, "the touch would hold")                                                    \
     X(PREDICTION_LOST, "the touch would not hold")                                                 \

@@ -17,7 +17,7 @@ typedef struct k2_table {
 
 // Reads "FORCE:K2 FORCE:K2 ...", forces in N growing, K2 in N m/rad above zero, separated by
 // blanks. An empty text gives a table without entries. STATUS_BAD_SCENARIO, with a sentence in f
-// that names control.k2_table, if it is none.
+// that names control.k2_table, if the text is no such table.
 status k2_table_read(k2_table *t, const char *text, fault *f);
 
 // Writes it in that form with four digits. False if it does not fit.

@@ -84,7 +84,8 @@ typedef struct method_parameters {
     double gamma;           // Newmark's gamma [-]
     double spectral_radius; // generalised-alpha's rho at infinite frequency [-]
     double rest_speed;      // approach speed below which an impact is plastic (rest rule) [m/s]
-    double residual_bound;  // share of the energy put in that the ledger may lack [-]
+    double residual_bound;  // largest residual of the energy balance, as a share of the energy put
+                            // in [-]
 } method_parameters;
 
 typedef struct printed_parameters {
@@ -114,15 +115,15 @@ typedef struct control_parameters {
     char command[PARAMETER_TEXT_SIZE];  // of a program, as a shell takes it
     double answer_time;                 // that the program has for each answer [s]
     char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
-    char lock[PARAMETER_TEXT_SIZE];     // mode that the law is held in, "none" if it is free
+    char lock[PARAMETER_TEXT_SIZE];     // mode in which the law is held, "none" if free
     double rate;                        // samples a second [Hz]
     double delay;                       // from sampling to the command's effect [s]
     double delay_periods;               // the same in sampling periods, on top of it
     double jitter;                      // of the sampling instants, whole width [s]
     int seed;                           // of every random number of the rig
     double force;                       // commanded force [N]
-    double force_rate;                  // of the commanded force on its way to it, 0: any [N/s]
-    double force_amplitude;             // of a sine on it [N]
+    double force_rate;                  // ramp when `force` changes, 0: a jump [N/s]
+    double force_amplitude;             // amplitude of a sine added to the commanded force [N]
     double force_frequency;             // of that sine [Hz]
     double approach_voltage;            // [V]
     double kp, kv;                      // gains of (5.24), (5.25), in N m/rad or V/rad, and s
@@ -211,8 +212,8 @@ typedef struct parameters {
     control_parameters control;
     belief_parameters belief;
     sensor_parameters sensor;
-    bool code_allowed;      // the user lets the scenario start a program or load a plug-in; no file
-                            // can say so
+    bool code_allowed; // the user allows the scenario to start a program or load a plug-in; no file
+                       // can allow it
     unsigned char set[160]; // set[i] is 1 if parameter i was given, 0 if it is a default
 } parameters;
 
@@ -276,7 +277,7 @@ int parameter_at(size_t offset);
 // Index of a path that the program itself names: an unknown one fails an assertion.
 int parameter_index(const char *path);
 
-// The path that a parameter has which was once called by this one, or NULL.
+// The present path of a parameter that was formerly called by this one, or NULL.
 const char *parameter_renamed(const char *path);
 
 // Index of a path as people write it; -1, with a sentence in f that names the nearest, if there is
@@ -290,7 +291,8 @@ const char *parameter_suggest(const char *path);
 // All defaults of the given model (arm_model_kind), nothing marked as set.
 void parameters_defaults(parameters *p, arm_model_kind model);
 
-// The defaults under p->arm.model of all parameters that are not marked as set, but that one.
+// Gives all parameters that are not marked as set, except arm.model itself, their defaults for
+// p->arm.model.
 void parameters_restore_defaults(parameters *p);
 
 // Parses text as a value of parameter `index` and stores it, marked as set. A trailing unit equal
@@ -315,8 +317,9 @@ void parameter_format(const parameters *p, int index, char *text, size_t size);
 // model with N != 2 ...). Call after the last parameter was set.
 status parameters_resolve(parameters *p, fault *f);
 
-// Whether a parameter may be given another value in resolved parameters: not what follows from
-// others there, arm.k1 of a beam's root, arm.k2 and arm.EI beside arm.joint_stiffness. f says why.
+// Whether a parameter of resolved parameters may be given another value. False, with the reason in
+// f, for one that follows from others there: arm.k1 of a beam's root, arm.k2 and arm.EI beside
+// arm.joint_stiffness.
 status parameter_may_change(const parameters *p, int index, fault *f);
 
 // Lets what depends on parameter `index` follow it in resolved parameters, as a change during a run

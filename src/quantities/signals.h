@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// One recorded row: the state at an instant and what belongs to that very state.
+// One recorded row: the state at an instant and the quantities that belong to exactly that state.
 typedef struct sample {
     double time;               // t [s]
     double hub_angle;          // theta1 [rad]
@@ -34,7 +34,7 @@ typedef struct sample {
     double friction_loss;      // Coulomb friction [J]
     double damping_loss;       // structural damping [J]
     double impact_loss;        // [J]
-    double energy_residual;    // what the ledger does not account for [J]
+    double energy_residual;    // residual of the energy balance [J]
     // on the rig, as of its last sample; NaN without one
     double encoder;          // hub angle as read [rad]
     double tachometer;       // hub velocity as read [rad/s]
@@ -43,7 +43,7 @@ typedef struct sample {
     double film;             // bending as the piezo film reads it [rad]
     double accelerometer;    // hub acceleration as read [rad/s2]
     double command;          // what the controller asked for [V]
-    double controller_mode;  // index of its mode
+    double controller_mode;  // index of the controller's mode
     double desired_angle;    // of the hub [rad]
     double desired_velocity; // of the hub [rad/s]
     double calculated_force; // what the controller takes the contact force to be [N]

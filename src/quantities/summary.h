@@ -1,5 +1,5 @@
-// What a run comes to: its results as numbers, and the one table that describes them. It feeds
-// `run` and its JSON, expectations of scenario files, sweeps, comparisons and the terminal.
+// The results of a run as numbers, and the one table that describes them. It feeds `run` and its
+// JSON, expectations of scenario files, sweeps, comparisons and the terminal.
 #pragma once
 
 #include <stdbool.h>
@@ -10,7 +10,7 @@
 // The results of a run. A quantity that did not occur is NaN (null in JSON).
 typedef struct summary {
     status status;
-    bool inaccurate;    // it came to its end, but the energy ledger lacks more than may be
+    bool inaccurate; // it came to its end, but the residual of the energy balance exceeds its bound
     const char *path;   // of the parameter that stopped the run, a literal; "" if none did
     char message[1024]; // what stopped the run, or a remark; "" if there is none
     char method[32];    // the method in fact used, "power series"
@@ -34,15 +34,16 @@ typedef struct summary {
     // on the rig only, else NaN
     double force_command_N;         // control.force
     double force_over_command_N;    // peak_force_N - force_command_N
-    double smoothed_over_command_N; // largest mean over 5 ms from 20 ms after contact on, likewise
+    double smoothed_over_command_N; // largest mean over 5 ms from 20 ms after contact on, less
+                                    // force_command_N
     double steady_error_N;          // steady_force_N - force_command_N
     double largest_command_V;       // in magnitude, of those that took effect
     double electrical_energy_J;     // that the amplifier fed into the motor
     double approach_speed_m_s;      // largest of the tip towards the wall before first contact
-    double return_speed_m_s;        // the same without contact after it, 0 if it is never lost
-    double steps;                   // time steps taken
-    double cpu_time_s;              // processor time of the run's own thread
-    double wall_time_s;             // time that passed meanwhile
+    double return_speed_m_s; // the same in flights after first contact, 0 if contact is never lost
+    double steps;            // time steps taken
+    double cpu_time_s;       // processor time of the run's own thread
+    double wall_time_s;      // time that passed meanwhile
 } summary;
 
 typedef struct summary_info {
@@ -52,7 +53,7 @@ typedef struct summary_info {
     const char *unit;        // "s", "" for a count
     const char *description; // one sentence without a full stop
     bool timing;             // depends on the machine, not on the scenario
-    bool special;            // there only with a control law, or with a wall that gives
+    bool special;            // present only with a control law, or with a wall that gives
 } summary_info;
 
 // The table, in the order of the numbers of struct summary and of `run --json`.

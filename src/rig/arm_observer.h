@@ -29,9 +29,9 @@ typedef struct arm_observer {
     // stiffness of the first mode in contact over what it is believed to be, the sums that it is
     // the quotient of, and what the belief adds to both [N2 s]
     double stiffness, stiff_force, stiff_bend, stiff_belief;
-    // by how much it has foretold wrongly what was read while the hub moved: -2 log likelihood of
-    // the readings, each with its own noise and Student's tails; less another model's is the
-    // evidence for this one
+    // misfit of its predictions to the readings while the hub moved: -2 log likelihood of the
+    // readings, each with its own noise and Student's tails; its difference from another model's
+    // misfit is the evidence for this one
     double missed;
     bool moves; // the hub, at the present sample
 } arm_observer;
@@ -43,7 +43,7 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup, do
 // Starts at rest where the encoder is.
 void arm_observer_start(arm_observer *o, const controller_input *in);
 
-// From the start on the wall's angle [rad] is known, but for what no touch is surer of.
+// Tells the observer, before the first touch, the wall's exact angle [rad].
 void arm_observer_know_wall(arm_observer *o, double angle);
 
 // One sample: the estimate follows the arm over the period before it and takes in all readings.

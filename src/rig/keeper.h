@@ -17,6 +17,7 @@ typedef struct kept_program {
 // Starts `command` by /bin/sh in a session of its own. 0, or what went wrong (errno).
 int kept_program_start(kept_program *program, const char *command);
 
-// Hangs up, kills what is left and waits for that. Returns the exit status of the program itself if
-// it had ended before (128 + the signal's number where one ended it), -1 if it had to be killed.
+// Closes the lifeline, kills all processes that are left and waits until they have ended. Returns
+// the exit status of the program itself if it had ended before (128 + the signal's number where one
+// ended it), -1 if it had to be killed.
 int kept_program_end(kept_program *program);

@@ -1,12 +1,13 @@
 // A program in any language as a controller: control.law = process, control.command.
 //
 // The program is started by a shell and answers each line on its standard input by one line on its
-// standard output, both JSON objects, in lock step with simulated time (docs/library.md). Nothing
-// waits longer for it than control.answer_time, or after the run was asked to end, and nothing of
-// it outlives the rig.
+// standard output, both JSON objects, in lock step with simulated time (docs/library.md). No answer
+// is waited for longer than control.answer_time, nor after the run was asked to end, and no process
+// of the program outlives the rig.
 //
-// With a tape the program is started only when it is asked what the tape does not know, and is then
-// asked all that leads there once more: it must answer as before, or the run fails with a sentence.
+// With a tape of recorded answers, the program is started only at the first question that the tape
+// does not hold, and all questions before it are repeated: the program must answer them as
+// recorded, or the run fails with a sentence.
 #pragma once
 
 #include <stdatomic.h>
@@ -17,7 +18,7 @@
 
 typedef struct process process;
 
-// Who may ask the run of a process to end: each becomes true from outside, or is NULL.
+// Flags by which the run of a process is asked to end: set from outside; each may be NULL.
 typedef struct process_ends {
     const atomic_bool *stop, *abandon;
 } process_ends;

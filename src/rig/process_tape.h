@@ -1,8 +1,8 @@
 // What a process was asked and what it answered: a run that asks the same again needs no process.
 //
-// The tape is a tree, as runs branch: each place is a question with its answer, below the place of
-// the question before it. A session or a loop keeps one for all runs of a scenario; it is used by
-// one run at a time.
+// The tape is a tree, because runs branch: each node (place) is a question with its answer, and a
+// child of the question before it. A session or a loop keeps one for all runs of a scenario; it is
+// used by one run at a time.
 #pragma once
 
 #include <stdbool.h>

@@ -45,5 +45,5 @@ typedef struct reduced_arm {
 const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup);
 extern const char reduced_arm_no_memory[];
 
-// By how much the hub turns at rest under a torque with the tip at the wall [rad/(N m)].
+// Static compliance: rotation of the hub per torque with the tip at the wall [rad/(N m)].
 double reduced_arm_compliance(const reduced_arm *r);

@@ -1,9 +1,9 @@
 // The rig: sensors, a controller that samples them, and the command it sends to the amplifier.
 //
-// The run's motion is the plant. It stops at rig_next_time, or, in flight, is looked at there while
-// it goes on (src/run/corrected_samples.h); where the time of a sample has come, sensors are read
-// and the controller is called, and `delay` later its command takes effect and holds (zero-order
-// hold) until the next one does.
+// The run's motion is the plant. It stops at rig_next_time or, in flight, is observed there without
+// stopping (src/run/corrected_samples.h); at the time of a sample sensors are read and the
+// controller is called, and `delay` later its command takes effect and holds (zero-order hold)
+// until the next one does.
 #pragma once
 
 #include "src/rig/controller.h"
@@ -42,11 +42,11 @@ typedef struct rig {
     double effect_time;           // when the pending command takes effect, HUGE_VAL if none [s]
     parameters told;              // what sensors and controller have been told so far
     double clock_start;           // nominal instant of sample clock_samples [s]
-    long clock_samples;           // the one that the clock of this rate counts from
-    double ramp;                  // where the commanded force is on its way to control.force [N]
+    long clock_samples;           // the sample from which the clock of the present rate counts
+    double ramp;                  // commanded force at present, on its ramp to control.force [N]
     double ramp_time;             // when it was there [s]
     double wanted_force;          // that the controller was told last [N]
-    double pending;               // that command, after the D/A [V]
+    double pending;               // the pending command, after the D/A [V]
     long samples;                 // taken so far
     random_generator clock;       // of the jitter
     double voltage;               // command in effect [V]
@@ -80,8 +80,8 @@ status rig_lock(rig *r, const char *lock, fault *f);
 enum { MODE_NAME_SIZE = 32 };
 int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, bool *lockable);
 
-// Takes over what has changed in control.*, belief.*, sensor.* and motor.voltage_limit at `time`
-// [s]: it holds from the next sample on. What is known of the arm stays as at the start.
+// Adopts changes of control.*, belief.*, sensor.* and motor.voltage_limit made at `time` [s]; they
+// hold from the next sample on. What the controller was told of the arm stays as at the start.
 // STATUS_BAD_SCENARIO, with a sentence in f, if the law takes its parameters at the start only.
 status rig_retune(rig *r, const parameters *p, double time, fault *f);
 // Whether a parameter may change during a run of these parameters, rather than from the start.
@@ -103,8 +103,8 @@ double rig_next_time(const rig *r);
 // run was asked to end while a process was to answer.
 status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f);
 
-// Takes the reading of the sample that is due at `time` [s] before the sample itself, which then
-// finds it taken. What is not due changes nothing.
+// Takes the sensors' reading of the sample that is due at `time` [s] ahead of the sample itself,
+// which then uses it. Does nothing if no sample is due.
 void rig_read(rig *r, double time, const sensed_motion *now);
 
 // The built-in controller of a law; NULL for LAW_NONE, LAW_PLUGIN and LAW_PROCESS.

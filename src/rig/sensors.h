@@ -27,8 +27,8 @@ typedef struct sensed_motion {
 typedef struct first_order_lag {
     double time_constant; // [s], 0 for a sensor without it
     double value;         // in the input's unit
-    // what a stretch of that length leaves of a transient: most are as long as the one before, but
-    // for rounding
+    // the factor by which a transient decays over a stretch of that length, kept because most
+    // stretches are, up to rounding, as long as the one before
     double stretch; // [s], 0: none
     double left;    // exp(-stretch/time_constant)
 } first_order_lag;
@@ -72,7 +72,8 @@ typedef struct sensors {
     first_order_lag acceleration;
     double seen_velocity; // of the hub when the accelerometer last looked [rad/s], NaN before
     // points of the FSR's curve that are known already, each a power that need not be raised again:
-    // a force that stays, and the few codes of the A/D that noise goes to and fro between
+    // cache for a constant force, and for the few codes of the A/D between which noise moves the
+    // reading
     fsr_point felt;
     fsr_point read[FSR_POINTS_READ];
     // the hub's angle last read, and what follows from it
@@ -94,7 +95,7 @@ typedef struct sensor_reading {
 
 // Starts sensors at rest, their noise from the seed; sensor.ideal takes every imperfection away.
 void sensors_init(sensors *s, const sensor_parameters *p, int seed);
-// Gives the sensors other properties; what they lag behind and their noise go on.
+// Gives the sensors other properties; the states of their lags and their noise continue.
 void sensors_retune(sensors *s, const sensor_parameters *p);
 
 // Whether sensors_follow over a flight, in which nothing presses, leaves the sensors as they are:
@@ -109,7 +110,7 @@ bool sensors_at_rest(const sensors *s);
 void sensors_follow(sensors *s, double h, const sensed_motion *first, const sensed_motion *last,
                     double mean_force);
 
-// The force sensors under an impulse [N s] of the wall.
+// Applies an impulse [N s] of the wall to the force sensors.
 void sensors_strike(sensors *s, double impulse);
 
 // Reads all sensors at once.

@@ -8,8 +8,9 @@
 //
 //     b'' + k2/m33 b = -(1 + m32/m33) w',    m33 = I + m l^2/4,  m32 = m l^2/2,
 //
-// driven by the hub's acceleration w'. With w straight between two readings of the tachometer its
-// solution is a turn about the bend that this acceleration holds; `damping_ratio` takes its share.
+// driven by the hub's acceleration w'. With w linear between two readings of the tachometer the
+// solution is a rotation in the phase plane about the bend in balance with this acceleration,
+// damped by `damping_ratio`.
 #pragma once
 
 #include "src/quantities/parameters.h"

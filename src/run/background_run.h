@@ -13,17 +13,17 @@ typedef struct background_options {
     bool at_once;              // the run is over when background_run_start returns
 } background_options;
 
-// Starts the run of a scenario, whose actions and texts must outlive it, with rows that stay where
-// they are. *begun: what run_resume prepared, taken over; NULL: from the start. It is over when
-// this returns where there is no thread to be had. NULL without memory; then *begun is the
-// caller's.
+// Starts the run of a scenario, whose actions and texts must outlive it; its rows never move in
+// memory. *begun is a result prepared by run_resume, which this takes over; NULL: from the start.
+// If no thread can be started, the run is complete when this returns. NULL without memory; then
+// *begun remains the caller's.
 background_run *background_run_start(const scenario *s, const background_options *how,
                                      run_result *begun);
 
 // Waits until the run is over, but not longer than `seconds`; true if it is over.
 bool background_run_wait(background_run *c, double seconds);
 
-// Lets *view have the rows and events computed so far, in their places; its summary is left alone.
+// Points *view at the rows and events computed so far, without a copy; its summary is left alone.
 // Returns how many rows there are. The view owns nothing and is good until background_run_finish.
 size_t background_run_look(background_run *c, run_result *view);
 

@@ -32,9 +32,9 @@ bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected);
 // the forces alone. STATUS_NO_MEMORY, with a sentence in f.
 status checkpoint_open_history(recording *r, const motion *m, fault *f);
 
-// Keeps the state at the beginning of a step, if the last checkpoint is some rows ago. Not right
-// after an event, which was at last_event [s]: how many come at once is not part of a checkpoint.
-// False without memory.
+// Keeps the state at the beginning of a step, if the last checkpoint is some rows ago. Does nothing
+// right after an event (the last one was at last_event [s]), because a checkpoint does not contain
+// the count of simultaneous events. False without memory.
 bool checkpoint_keep(recording *r, const motion *m, double last_event);
 
 // Goes back to the last checkpoint of a result that run_resume has prepared.

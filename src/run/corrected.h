@@ -11,16 +11,16 @@
 // NULL and is used up). Whatever it returns, corrected_close or corrected_finish is due.
 status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f);
 
-// Lets script and rig act where they are due, until a stride is next, to c->stop at most; *ended if
-// the run is through instead.
+// Carries out what is due of script and rig until the next thing to do is a stride, to c->stop at
+// most; *ended is true if the run is complete instead.
 status corrected_approach_stride(corrected_run *c, bool *ended, fault *f);
 
 // Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
 // then says so). What it has recorded is then that of a run that ended here.
 void corrected_sum_up(corrected_run *c, status failed);
 
-// The same of a run that goes on as if nothing had been asked; rows, events and recording.state are
-// to be kept by whoever asks.
+// The same for a run that afterwards continues unchanged; the caller has to save and restore rows,
+// events and recording.state.
 void corrected_sum_up_so_far(corrected_run *c, status failed);
 
 // Sums the run up and frees it; `failed` is what ended it.

@@ -17,13 +17,13 @@ void corrected_close_first_pulse(corrected_run *c);
 // Applies an event that the motion stopped at and records the rows on its both sides.
 status corrected_pass_event(corrected_run *c, motion_report *report);
 
-// Carries out one action now and records it as that of a number of the script (-1: of nobody's);
-// the rows on its both sides show what it changed.
+// Carries out one action now and records it as action `index` of the script (-1: of no script); the
+// rows on its both sides show what it changed.
 status corrected_act(corrected_run *c, const action *todo, int index, fault *f);
 
-// Carries out the script's actions that are due. What fails says why in f, or has a code only.
+// Carries out the script's actions that are due. A failure is explained in f, or has a code only.
 status corrected_run_script(corrected_run *c, fault *f);
 
-// Lets another command of the rig take effect: the torque jumps, and with it accelerations and
-// force. Records what comes of it.
+// Puts a new command of the rig into effect: the torque jumps, and with it accelerations and force.
+// Records the rows on both sides of the jump.
 status corrected_apply_command(corrected_run *c);

@@ -6,15 +6,15 @@
 // What the sensors are fixed to, in a state of the motion.
 sensed_motion corrected_sensed_motion(const corrected_run *c, double *state);
 
-// A way's point at an instant [s], in a state of the motion there.
+// The `way` for an instant [s], from the motion's state there.
 way corrected_way_at(const corrected_run *c, double time, double *state);
 
-// In how many pieces the force over a step of this length [s] is kept that the motion makes in
-// contact.
+// Into how many pieces the force over a step in contact of this length [s] is divided for
+// recording.
 int corrected_force_pieces(const corrected_run *c, double length);
 
 // Lets the sensors follow the arm within the step under way, which is in flight, to where it has
-// come to `to`. STATUS_NOT_FINITE if a state on the way cannot be had.
+// come to `to`. STATUS_NOT_FINITE if a state on the way cannot be computed.
 status corrected_follow_flight(corrected_run *c, const way *to);
 
 // Lets the sensors follow the arm over the step just made, or over what is left of it, and keeps

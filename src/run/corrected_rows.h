@@ -3,8 +3,8 @@
 
 #include "src/run/corrected_run.h"
 
-// Takes note of the energy that the ledger does not account for. STATUS_UNSTABLE if the run makes
-// energy, STATUS_NOT_FINITE if an energy is beyond all numbers.
+// Records the residual of the energy balance. STATUS_UNSTABLE if the run gains energy,
+// STATUS_NOT_FINITE if an energy is not finite.
 status corrected_audit(corrected_run *c);
 
 // The row of a state of the motion, at which an impulse [N s] acts or none.

@@ -5,16 +5,17 @@
 #include "src/solve/contact_machine.h"
 #include "src/solve/pace.h"
 
-// A way along a step: where it has come, and what it has met there.
+// A point on the way along a step: the instant, and what the sensors see there.
 typedef struct way {
     double time; // [s]
     sensed_motion at;
     double integral; // of the force [N s]
 } way;
 
-// A step that goes on beyond instants at which the run is looked at: samples of the rig that change
-// nothing, stops of a program. The motion has looked how far it goes and stands where it starts
-// (m->ahead; m->trial is a copy, as after a step); the run has come to an instant within it.
+// A step that continues beyond instants at which the run is observed: samples of the rig that
+// change nothing, stops of a program. The motion still stands at the step's start and knows how far
+// the step goes (m->ahead; m->trial is a copy, as after a step); the run has come to an instant
+// within it.
 typedef struct step_under_way {
     bool goes_on;     // there is one
     double begun_for; // the stop that it was begun for [s]

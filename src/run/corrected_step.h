@@ -1,6 +1,7 @@
 // A step of a run of the corrected arm, from where it is begun to what comes of its end. In flight
-// under a rig it goes on beyond the samples that change nothing and the stops of a program: they
-// read from it, and the run is the same wherever it is stopped.
+// under a rig it continues beyond samples that change nothing and beyond instants at which a
+// program stops: both read the state within the step, so the run is the same wherever it is
+// stopped.
 #pragma once
 
 #include "src/run/corrected_run.h"
@@ -22,5 +23,6 @@ double *corrected_present(const corrected_run *c);
 // What the sensors are fixed to at present.
 sensed_motion corrected_sensed_now(const corrected_run *c);
 
-// What would help where the ledger does not close: dense engines choose their strides themselves.
+// Advice to the user where the energy balance does not close: dense engines choose their strides
+// themselves.
 const char *corrected_advice(const motion *m);

@@ -1,5 +1,5 @@
-// What is asked of a step in free flight between its ends, too. The step is the one that
-// motion_step has just made.
+// Quantities of a step in free flight that depend on its whole course, not only on its ends. The
+// step is the one that motion_step has just made.
 #pragma once
 
 #include "src/solve/motion.h"

@@ -64,7 +64,7 @@ status force_history_add(force_history *h, force_step step);
 // Appends `count` steps that the caller fills in at once. NULL without memory.
 force_step *force_history_extend(force_history *h, size_t count);
 
-// The instant [s] after which the force stays within SETTLED_BAND round `final` [N] for good, each
-// step taken as the parabola through its ends that has its mean; NaN if the run ends outside, or
-// has no step.
+// The instant [s] after which the force stays for good within SETTLED_BAND (a share) of `final`
+// [N], each step taken as the parabola through its ends that has its mean; NaN if the run ends
+// outside, or has no step.
 double force_settled_since(const force_history *h, double final);

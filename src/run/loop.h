@@ -1,10 +1,11 @@
 // A run that a program steps: to an instant, with inputs in between, and back to a state it kept.
 //
-// It is a run like any other, looked at at the instants asked for; from sample to sample of the rig
-// it is that run to the last bit. No step is chosen for such an instant: one that goes beyond it is
-// cut or, in flight on the rig, goes on (corrected_step.h); the printed model, which knows nothing
-// between its steps, stops at the end of the first one that reaches it. What is due at an instant
-// (a sample of the rig, an action of the script) happens when the loop goes on from it.
+// It is a run like any other, observed at the requested instants; stepped from sample to sample of
+// the rig it equals the uninterrupted run to the last bit. Such instants do not influence the
+// choice of steps: a step that goes beyond one is cut there or, in flight on the rig, continues
+// (corrected_step.h); the printed model, which has no states between the ends of its steps, stops
+// at the end of the first step that reaches it. What is due at an instant (a sample of the rig, an
+// action of the script) happens when the loop goes on from it.
 #pragma once
 
 #include "src/rig/rig.h"
@@ -36,7 +37,7 @@ status loop_until(run_loop *l, double time, fault *f);
 // Goes on to the next sample of the rig, without one to the next multiple of method.step.
 status loop_step(run_loop *l, fault *f);
 
-// The volts that a commanded loop's next sample puts out, held until it is told others [V].
+// The command that a commanded loop puts out from its next sample on, until the next call [V].
 void loop_command(run_loop *l, double volts);
 // Gives a parameter that may change during a run another value, now.
 status loop_set_number(run_loop *l, int parameter, double value, fault *f);

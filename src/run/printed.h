@@ -23,7 +23,7 @@ typedef struct printed_run {
     sampled_peak peak;     // of the run
     sampled_peak first;    // of the first pulse
     double steady_sum;     // of the forces in the window of the steady force [N]
-    double steady_rows;    // that these are of
+    double steady_rows;    // number of rows in that sum
 } printed_run;
 
 // Step by step:
@@ -34,15 +34,15 @@ typedef struct printed_run {
 // script pushes the arm, which the printed model does not know; f says why.
 status printed_open(printed_run *p, recording *r, fault *f);
 
-// Lets script and rig act where they are due, once for each row; *ended if the run is through
-// instead.
+// Carries out what is due of script and rig, once for each row; *ended is true if the run is
+// complete instead.
 status printed_approach_step(printed_run *p, bool *ended, fault *f);
 
 // One step, recorded.
 status printed_step(printed_run *p, fault *f);
 
-// Sets a parameter now and records that as the action of a number of the script (-1: of nobody's);
-// it takes effect with the coming step.
+// Sets a parameter now and records that as action `index` of the script (-1: of no script); it
+// takes effect with the coming step.
 status printed_act(printed_run *p, const action *todo, int index, fault *f);
 
 // The present state as a row.

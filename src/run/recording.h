@@ -51,7 +51,7 @@ bool recording_is_abandoned(const recording *r);
 // Whether that, or whoever watches it wants it to stop.
 bool recording_asked_to_stop(const recording *r);
 
-// Tells those who look on how far the run is: what they count is complete.
+// Publishes how far the run is to observers: all rows and events counted there are complete.
 void recording_publish(const recording *r, double time);
 
 // Sets a parameter at an instant [s], which the rig is told, too. On failure f says why: a lock

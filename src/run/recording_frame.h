@@ -20,5 +20,5 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
 // Ends it: the rig is gone, and the summary says what stopped the run and what it took.
 void recording_end(recording *r, status code, const fault *f, time_used used);
 
-// Writes what stopped a run into its summary.
+// Writes into the summary what stopped the run.
 void recording_tell_fault(summary *s, status code, const fault *f);

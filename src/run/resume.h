@@ -1,13 +1,13 @@
-// Runs that begin with what another run has computed already, and runs that keep equal rows once.
+// Runs that reuse the beginning of another run, and runs that share equal rows in memory.
 #pragma once
 
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 
 // Lets `result` begin with what `from`, a run of the scenario `old`, has in common with a run of
-// `s`, up to its last checkpoint before they differ: without a copy and to the last bit. False if
-// there is nothing in common or no memory; then `result` is empty and the run is one from the
-// start. Only runs of the corrected model without a controller have checkpoints.
+// `s`, up to the last checkpoint before they differ: without a copy and to the last bit. False if
+// there is nothing in common or no memory; then `result` is empty and the run begins at the start.
+// Only runs of the corrected model without a controller have checkpoints.
 bool run_resume(const run_result *from, const scenario *old, const scenario *s,
                 size_t rows_expected, run_result *result);
 

@@ -1,4 +1,4 @@
-// What a run leaves behind: summary, rows and history; and what may be asked of it.
+// The result of a run: summary, rows and history; and the options of a run.
 #pragma once
 
 #include <stdatomic.h>

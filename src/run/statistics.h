@@ -1,4 +1,4 @@
-// What a signal comes to between two instants of a run.
+// Statistics of a signal between two instants of a run.
 #pragma once
 
 #include "src/run/trace.h"

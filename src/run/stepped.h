@@ -23,11 +23,11 @@ typedef struct stepped_model {
 
     double (*time)(const stepped_run *run); // where it is [s]
     bool (*at_end)(const stepped_run *run); // whether there is no stride left
-    // Lets script and rig act where they are due; *ended if the run is through instead.
+    // Carries out what is due of script and rig; *ended is true if the run is complete instead.
     status (*approach)(stepped_run *run, bool *ended, fault *f);
     // One stride, recorded, up to an instant [s] where it can be cut.
     status (*stride)(stepped_run *run, double until, fault *f);
-    // Carries out an action of nobody's script now.
+    // Carries out now an action that belongs to no script.
     status (*act)(stepped_run *run, const action *todo, fault *f);
 
     sensed_motion (*sensed)(stepped_run *run); // what the sensors are fixed to
@@ -35,7 +35,8 @@ typedef struct stepped_model {
     // Angles of all degrees of freedom [rad], then their velocities [rad/s], in place.
     const double *(*state)(const stepped_run *run, int *angle_count);
 
-    // All of it but the recording and the rig as bytes, and back, when these are.
+    // Everything except recording and rig as bytes; and back, after recording and rig were
+    // restored.
     size_t (*saved_size)(const stepped_run *run);
     void (*save)(const stepped_run *run, void *bytes);
     void (*restore)(stepped_run *run, const void *bytes);

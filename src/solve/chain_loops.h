@@ -3,9 +3,10 @@
 //
 // A chain is cut into SERIES_LANES stretches of as many links, which are taken side by side: link k
 // stands in lane k / blocks of block k % blocks, so that the link beyond stands in the same lane of
-// the next block. What is handed from link to link goes along all stretches at once as if each
-// began with nothing; what it began with is added afterwards, by the products of the matrices on
-// the way. Behind the last link stand links of no length, mass or motion.
+// the next block. Recurrences from link to link run along all stretches at once as if each started
+// from zero; the effect of the true starting values is added afterwards, by the products of the
+// matrices along the stretch. The chain is padded behind the last link with links of no length,
+// mass or motion.
 #pragma once
 
 #include <stddef.h>

@@ -15,18 +15,19 @@
 //
 // with l, m and I of link k; beyond the last one F is what a mass at the tip demands.
 //
-// Of the n-th coefficient of each equation all but a, A and F is known from the coefficients
-// before, products being Cauchy's. The rest is linear with the matrix of the stride's start: the
-// two sweeps of chain.h, F_k = P_k A_k + Q_k, with P_k the same for all orders. Since only Q and A
-// are handed from link to link, each by two multiplications, all else is done for many links at
-// once.
+// In the n-th coefficient of each equation, everything but a, A and F follows from earlier
+// coefficients (products of series are Cauchy products). For a, A and F the equations are linear,
+// with the matrix of the stride's start: the two sweeps of chain.h, F_k = P_k A_k + Q_k, with P_k
+// the same for all orders. Only Q and A pass from link to link, each by two multiplications;
+// everything else is computed for many links at once.
 //
 // On a plane the contact force pushes at the tip against a fixed direction e, so F_N = f e; on a
 // point it pushes across the last link at the distance D along it, so that F_(N-1) gains f e and
 // the last link's moment loses f (D - l/2), where e and D have series of their own. f_n follows
 // from the n-th coefficient of d2g/dt2 = 0.
 //
-// Operations have one order whatever the width of vectors: the same bits on every machine.
+// The order of operations does not depend on the width of vectors, so every machine gives the same
+// bits.
 #pragma once
 
 #include "src/arm/chain.h"
@@ -37,7 +38,8 @@ typedef struct series_terms {
     double term[SERIES_TERMS];
 } series_terms;
 
-// The square of such a polynomial, with all its terms: what vibrates turns twice as far in it.
+// The square of such a polynomial, with all its terms, since the square of a vibration has twice
+// its frequency.
 typedef struct series_square {
     double term[2 * SERIES_TERMS];
 } series_square;
@@ -49,7 +51,7 @@ typedef enum chain_drive {
     DRIVE_HELD     // nothing: it is at its limit
 } chain_drive;
 
-// Of the fastest mode, decay or wall in a stride.
+// Longest stride, as a multiple of one over the fastest rate of modes, decays and wall [-].
 #define SERIES_REACH 6.0
 
 typedef struct chain_series {
@@ -98,7 +100,7 @@ typedef struct chain_series {
     series_square motor_work;  // power of the torque, times L [J]
 } chain_series;
 
-// Bytes that the series of an arm want, and its arrays laid into so many behind it.
+// Bytes needed by the series of an arm, the arrays behind it included; places the arrays there.
 size_t chain_series_size(const arm *a);
 void chain_series_place(chain_series *s, const arm *a);
 
@@ -118,8 +120,9 @@ typedef struct wall_approach {
 // s->gives are those of the stride to come.
 double chain_series_wall_reach(chain_series *s, const arm *a, const wall_approach *at);
 
-// Adds a face that swings on its own to the gap of the series computed. Returns what its velocity
-// lacks there [m/s]: a decay too fast to be more than rounding of its place.
+// Adds a face that swings on its own to the gap of the series computed. Returns the part of its
+// velocity that the series leave out [m/s]: a decay so fast that it changes the face's position by
+// rounding only.
 double chain_series_add_face(chain_series *s, const arm *a, wall_face face);
 
 // Says what the current of an electric drive follows in the stride to come, from what it is where

@@ -40,8 +40,8 @@ void chain_series_add_drag(chain_series *s, int n);
 double chain_series_drive_torque(chain_series *s, const arm *a, int n);
 void chain_series_sum_drive(chain_series *s, const arm *a);
 
-// What the force's earlier coefficients do at a point wall, whose direction turns with the link:
-// on the link's base into push, and to its moment.
+// Effect of the force's earlier coefficients at a point wall, whose direction turns with the link:
+// the force on the link's base into push; returns the moment on the link.
 double chain_series_earlier_force(const chain_series *s, int n, double push[2]);
 
 // The n-th coefficient of the contact force, from the accelerations without it; where the wall
@@ -51,5 +51,5 @@ double chain_series_force_term(chain_series *s, const arm *a, int n);
 // The n-th coefficient of the gap, and of what chain_series_reach_point gives.
 void chain_series_gap_term(chain_series *s, const arm *a, int n);
 
-// What is lost, squares of the hub's velocity and of the joints', to the last terms of the squares.
+// The losses, from squares of the velocities of hub and joints, with all terms of the squares.
 void chain_series_sum_losses(chain_series *s, const arm *a);

@@ -3,18 +3,18 @@
 //
 //     free -> impact -> contact -> release -> free,      gap >= 0, f >= 0, gap f = 0
 //
-// A function that leaves its admissible side within a step is located by stepping again from the
-// start of the step with a shorter one, bracketed until the bracket is as narrow as time resolves,
-// and the far side is taken (locate.h). Impacts are jumps of the velocities; what holds afterwards
-// follows from the one combination of contact and hub friction that violates nothing. The state
-// diagram stands over contact_machine.c, which has the transitions; event_step.c has the way
-// between them.
+// Event location: where a watched function leaves its admissible side within a step, its root is
+// bracketed by shorter steps from the same start until the bracket is as narrow as time resolves,
+// and the end beyond the root is taken (locate.h). Impacts are jumps of the velocities; the contact
+// state after an event is the one combination of contact and hub friction that violates no
+// condition. The state diagram stands at the top of contact_machine.c, which has the transitions;
+// event_step.c has the steps between them.
 #pragma once
 
 #include "src/solve/motion.h"
 
-// Chatter rule: more flights than this in a row, each shorter than a hundredth of the arm's
-// shortest period, and the impact after them is plastic whatever the restitution.
+// Chatter rule: after more than this number of flights in a row, each shorter than a hundredth of
+// the arm's shortest period, the next impact is plastic whatever the coefficient of restitution.
 enum { MOTION_MOST_SHORT_FLIGHTS = 50 };
 
 // Kinds of event the machine meets.
@@ -44,26 +44,25 @@ void motion_start(const arm *a, motion *m, double angle, double velocity);
 bool motion_starts_in_contact(const motion *m);
 
 // Makes one step towards `until`, or to the first event if that comes first. The implicit methods
-// step by `step`, the event method by as many of them as its accuracy allows (a fraction of one, if
-// need be); an arm that contact and friction hold still goes to `until` at once. At an event the
-// state is on the event's far side, before its jump: let the caller look at it, then call
-// motion_apply.
+// take steps of `step`; the event method goes as far as its accuracy allows, many times `step` or a
+// fraction of it; an arm that contact and friction hold still goes to `until` at once. At an event
+// the state lies just beyond the event's root, before the event's jump: the caller may look at it
+// and then calls motion_apply.
 //
 // A step that would go beyond m->cut is first tried as if the cut were not there, and ends at the
-// cut only if no event comes before it. So what happens before the cut, to the last bit, is what
-// happens without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
+// cut only if no event comes before it. So everything before the cut is, to the last bit, what it
+// would be without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
 // state is then the last good one. STATUS_NO_MEMORY as motion_follow_arm says. STATUS_FOLDED on a
 // rigid flat wall that holds an arm folded over the hub's axis (chain_is_folded), or is about to:
-// the state is that one, and no step leads on.
+// the state is the folded one, and the motion cannot be continued.
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
 
-// Finds out how far the step will go that motion_step(a, m, until, step, ...) is to make next, in
-// m->ahead, and raises the recorded peak for it. For a dense engine and an arm that is not held
-// still; motion_step does it by itself where nobody has. An arm that is held folded has no step.
+// Determines in advance, in m->ahead, how far the next motion_step(a, m, until, step, ...) will go,
+// and updates the recorded peak force for that step. For a dense engine and an arm that is not held
+// still; motion_step does it itself if nobody has. An arm that is held folded has no step.
 void motion_look_ahead(const arm *a, motion *m, double until, double step);
-// The same where the step may go on to `far` [s] as long as its stride lasts, whose engine knows
-// the hub within it (engine.hub_at): what is made for the way to `until` is not to be made for
-// more.
+// The same, but the step may go on to `far` [s] while its stride lasts; the stride itself is chosen
+// for `until` only. For engines that know the hub within a stride (engine.hub_at).
 void motion_look_far(const arm *a, motion *m, double until, double far, double step);
 
 // Steps until `until` or the first event.

@@ -1,8 +1,8 @@
 // Events and peaks within the stride of a dense engine (engine.h), without another stride.
 //
-// What is guaranteed: a watched function that falls below zero by more than its tolerance (1e-12 m,
-// 1e-9 N, 1e-12 N m, 1e-12 rad/s) is found at the first such fall, and the fall's root to rounding;
-// a dip that stays above minus the tolerance may be passed over.
+// Guarantee: the first fall of a watched function below zero by more than its tolerance (1e-12 m,
+// 1e-9 N, 1e-12 N m, 1e-12 rad/s) is found, and its root is exact to rounding; a dip that stays
+// above minus the tolerance may be missed.
 #pragma once
 
 #include "src/solve/motion.h"
@@ -18,6 +18,7 @@ void dense_peak(const arm *a, motion *m, double h);
 // gives, or above a face that the arm has left and that is pushed in.
 void dense_deepest(const arm *a, motion *m, double h);
 
-// What these do where the engine has no way of its own, by its look, bend, clear and bounded.
+// The general search behind dense_first_event and dense_peak, for engines without one of their own:
+// by the engine's look, bend, clear and bounded.
 void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any);
 void dense_search_peak(const arm *a, motion *m, double h);

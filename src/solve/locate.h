@@ -7,7 +7,7 @@
 #define FORCE_TOLERANCE 1e-9  // tension that counts as a release [N]
 #define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
 
-// Whether the function says anything about the contact state that the motion is in.
+// Whether a fall of the watched function below zero would end the motion's present contact state.
 static inline bool watch_active(const arm *a, const motion *m, watch w)
 {
     bool contact = m->state[SLOT_CONTACT] != 0;
@@ -32,12 +32,12 @@ static inline bool watch_active(const arm *a, const motion *m, watch w)
     return false;
 }
 
-// How far below zero it may be without having left its admissible side, in its unit.
+// Tolerance of the watched function: how far below zero still counts as admissible, in its unit.
 double watch_tolerance(watch w);
 
 // Looks for the first function that leaves its admissible side within (0, *h], m->trial being the
 // state after a step *h. If there is one, *any is true, *first says which, and *h and m->trial move
-// to the far side of that instant. What a step could not be taken for is returned.
+// to the far side of that instant. Returns why, if a step fails.
 status locate_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
 
 // Records the largest force within the step from m->state to m->trial, located between its ends by

@@ -6,10 +6,10 @@
 // is 1 for each link and 1 + s/l for the last one, of length l, which the wall holds the distance s
 // beyond its end.
 //
-// What the exact constraint needs besides is one more vector e, which completes the basis. Of all
-// that the wall does not hold it is the one that moves no mode by springs or damping, V' K e = 0:
-// K e is a multiple of g. (Any other, as M0^-1 g, bends joints near the tip, and what the modes do
-// against that has to cancel it.) In M0 it is not across the modes, so that angles turn by
+// The exact constraint needs one more vector e, with g' e not zero, which completes the basis. It
+// is chosen so that springs and damping do not couple it to the modes, V' K e = 0: K e is a
+// multiple of g. (Any other choice, such as M0^-1 g, bends joints near the tip, and the modes'
+// response has to cancel that.) It is not orthogonal to the modes in M0, so that angles turn by
 // x = V x_k + e x_e and momenta P are
 //
 //     x_e = g' x / g' e,                     x_k = V_k' M0 (x - e x_e),

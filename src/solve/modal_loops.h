@@ -15,7 +15,7 @@ extern const double modal_to_powers[MODAL_NODES][MODAL_NODES];
 // t^(i+j+1) / ((i+j+1) i! j!).
 typedef double modal_weights[MODAL_NODES][MODAL_NODES];
 
-// What the losses until some instant are made of, by mode.
+// The ingredients of the losses until some instant, by mode.
 typedef struct modal_mode_losses {
     double time; // [s]
     modal_weights weights;
@@ -35,7 +35,8 @@ typedef struct modal_loops {
     // the polynomials of r and s from their values, and s->followed; returns the square of what
     // changed, as the momenta and, times their rates, coordinates that it makes in the stride
     double (*fit)(modal_stride *s);
-    // takes the vibrations of fast modes out of x and y at t: what is left follows the polynomials
+    // removes the vibrations of fast modes from x and y at t: what remains is the quasi-static
+    // response
     void (*leave_out)(const modal_stride *s, double t, double *x, double *y);
     // r and s of a point from x, y and what the sweeps say there, brought to the modes
     void (*take)(const modal_stride *s, int point, const double *x, const double *y,

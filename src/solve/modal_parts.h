@@ -11,7 +11,7 @@
 
 #include "src/solve/modal_stride.h"
 
-// Powers of time that are wanted at a point of collocation: all at the stride's end.
+// How many powers of time are needed at a collocation point: all of them at the stride's end.
 static inline int modal_kept_powers(int point)
 {
     return point < MODAL_NODES - 1 ? MODAL_NODES + 1 : MODAL_POWERS;

@@ -12,10 +12,10 @@
 //     s^2).
 //
 // Tip and hub give four equations for the four amplitudes; a mode is where their determinant is
-// zero. How many modes are slower than some w is counted by eliminating the angles one after the
-// other from the tip inwards: as many pivots are negative. So each is found between bounds that
-// hold no other. Modes so slow that they hardly bend, and those faster than phi = pi, which are
-// confined to the hub, follow from the same elimination instead.
+// zero. The number of modes slower than a given w is the number of negative pivots when the angles
+// are eliminated one after the other from the tip inwards. So each mode is bracketed separately.
+// Modes so slow that they hardly bend, and those faster than phi = pi, which are confined to the
+// hub, follow from the same elimination instead.
 #pragma once
 
 #include "src/arm/arm.h"
@@ -43,7 +43,6 @@ typedef struct modal_ends {
 // leave none that can be told apart.
 int modal_shapes(const arm *a, modal_ends ends, double *rate, double *shapes, double *scratch);
 
-// Angles of the straight chain that is moved across where a wall would hold it, and whose joints
-// want nothing but a force there: of a stuck hub the static deflection, else all the same. Of any
-// length.
+// Angles of the straight chain in static balance under a force where a wall would hold it: with a
+// stuck hub its static deflection, else equal angles. Not normalised.
 void modal_tip_shift(const arm *a, modal_ends ends, double *angles);

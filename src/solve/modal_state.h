@@ -5,10 +5,10 @@
 #include "src/solve/motion.h"
 
 // Angles, velocities, what depends on them and the quadratures at h in (0, length] into `state`,
-// whose slots of contact are set; in contact on the constraint. Returns what the ledger of the
-// stride until there leaves open: energy too much [J]. Losses being integrals of the modes' motion,
-// that says how exact the stride is.
+// whose slots of contact are set; in contact on the constraint. Returns the residual of the energy
+// balance of the stride up to there, positive for energy gained [J]. Since the losses are integrals
+// of the modes' motion itself, the residual measures the accuracy of the stride.
 double modal_state_at(modal_stride *s, const arm *a, motion *m, double h, double *state);
 
-// How much larger the gap is at h than at the stride's start [m], to its own digits.
+// Growth of the gap from the stride's start to h [m], to full relative precision.
 double modal_gap_change(modal_stride *s, const arm *a, motion *m, double h);

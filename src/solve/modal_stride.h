@@ -6,11 +6,13 @@
 //
 //     x' = y + r(t),      y' = -w^2 x - 2 a y + s(t),      2 a = c w^2 + kv V_0k^2,
 //
-// is exact. r and s, what the O(N) sweeps say beyond the straight chain's linear part, are slow
-// where the chain is nearly straight: what vibrates fast enters them undifferentiated, in products
-// of small quantities. They are taken as polynomials through their values at Lobatto's points of
-// the stride. The modes then answer exactly, however fast they are (modal_response.h), which gives
-// angles and momenta at those points, and r and s anew: Picard's sweeps, until nothing changes.
+// is exact. r and s are the remainders: what the O(N) sweeps give beyond the linear part of the
+// straight chain. They vary slowly where the chain is nearly straight, because fast vibrations
+// enter them undifferentiated and in products of small quantities. They are approximated by the
+// polynomials through their values at the Lobatto points of the stride. The response of a mode to a
+// polynomial is known in closed form, however fast the mode (modal_response.h); it gives angles and
+// momenta at those points, and these give r and s anew. Such collocation sweeps (Picard iteration)
+// are repeated until nothing changes.
 #pragma once
 
 #include "src/arm/chain_momentum.h"
@@ -100,10 +102,10 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
 
 // Fits r and s to a stride of the given length, s->start_energy being set.
 typedef struct modal_fit {
-    double left;   // that more sweeps would still change, as they have converged so far: a share of
-                   // the momenta that start_energy and the motor would give
+    double left;   // estimate of what further sweeps would change, from the convergence so far: a
+                   // share of the momenta that start_energy and the motor would give
     int sweeps;    // that were made
-    double defect; // what the last terms of the polynomials do at most, the same share: it shrinks
+    double defect; // largest effect of the polynomials' last terms, as the same share: it shrinks
                    // with the fifth power of the length
 } modal_fit;
 modal_fit modal_stride_fit(modal_stride *s, const arm *a, const double *q, double length);
@@ -112,16 +114,16 @@ modal_fit modal_stride_fit(modal_stride *s, const arm *a, const double *q, doubl
 void modal_polynomial(const double values[MODAL_NODES], double length, double out[MODAL_NODES]);
 
 // Angles and velocities at t within the stride, and the impulse of the contact force until then.
-// s->more_columns begins with the angles turned until then, to their own digits.
+// s->more_columns begins with the angles turned until then, to full relative precision.
 void modal_stride_state(modal_stride *s, const arm *a, chain_link *links, double t, const double *q,
                         double *qt, double *wt, double *impulse);
 
 // Rate of the fastest mode that vibrates, of those in hand [rad/s].
 double modal_stride_fastest(const modal_stride *s);
 
-// The fastest vibration that the points of a stride from here on have to show: all faster ones
-// together have less than `energy` [J] at its start, beyond what they follow without vibrating
-// [rad/s]. A number near zero if there is none.
+// Rate of the fastest vibration that the collocation points of a stride from here on must resolve
+// [rad/s]: all faster ones together have less than `energy` [J] at its start, their quasi-static
+// response not counted. A number near zero if there is none.
 double modal_stride_shown(const modal_stride *s, double energy);
 
 // Energy lost until the instant of the state last asked for [J]: to back EMF and viscous friction,

@@ -6,9 +6,9 @@
 // modes that turn little in the stride, and what the others follow without vibrating, are the
 // series; an overdamped mode is two decays.
 //
-// The amplitudes bound everything: from an instant on, the vibrations above some rate together move
-// f by no more than their amplitudes T, and bend the rest by no more than sum A rate^2. So a walk
-// leaps as far as f > 0 is certain,
+// The amplitudes give bounds. From an instant on, the vibrations above a chosen rate together
+// change f by no more than the sum T of their amplitudes, and the second derivative of the slower
+// ones is at most sum A rate^2. So a walk leaps as far as f > 0 is certain,
 //
 //     f_slow + f_slow' h - bend h^2 / 2 - T > 0,
 //
@@ -43,7 +43,7 @@ typedef struct modal_vibrations {
     int limit; // entries there is room for
 } modal_vibrations;
 
-// Doubles that the vibrations of n modes want, and their arrays laid into so many.
+// Doubles needed by the vibrations of n modes; places the arrays in such storage.
 size_t modal_vibrations_size(int n);
 void modal_vibrations_place(modal_vibrations *v, int n, double *storage);
 
@@ -71,7 +71,7 @@ glance modal_sum_at(const modal_sum *f, double t);
 void modal_sum_begin(modal_sum *f);
 void modal_sum_step(modal_sum *f, int level);
 
-// What the vibrations can do from here on, together [unit of f].
+// Bound on the change of f by all vibrations together from here on [unit of f].
 double modal_sum_reach(const modal_sum *f);
 
 // The level of the longest step after which sign * (f - edge) is certain to have been positive all

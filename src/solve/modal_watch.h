@@ -1,14 +1,14 @@
 // Watched functions within a stride of the chain's modes (modal_stride.h): what they are
 // (modal_function.c), events and peaks (modal_watch.c).
 //
-// A function is what it is at the start, a linear functional of the modes that its gradient there
-// gives, and a polynomial through what is left of its exact values at the points of collocation: a
-// sum of vibrations and a power series (modal_sum.h), along which a walk leaps as far as no event
-// is certain. Where the function comes near its edge the walk looks at it a few times in the
-// shortest period of all modes that matter, those left out being able to move it by less than
-// `slack`. There the exact function is asked, and a root is one of the exact function. So what can
-// be missed is a dip below the edge by less than `slack`: 1e-10 m of the gap, a thousandth of what
-// the modes do to the force.
+// A function is represented by three terms: its value at the start; a linear functional of the
+// modes, from its gradient there; and a polynomial through what remains of its exact values at the
+// collocation points. Together they are a sum of vibrations and a power series (modal_sum.h). A
+// walk along the stride leaps as far as an event can be excluded. Where the function comes near
+// zero the walk evaluates it a few times in the shortest period of all modes that matter; those
+// left out can move it by less than `slack`. There the exact function is evaluated as well, and a
+// root is one of the exact function. So only a dip below zero by less than `slack` can be missed:
+// 1e-10 m for the gap, a thousandth of the modes' contribution for the force.
 #pragma once
 
 #include "src/solve/modal_stride.h"
@@ -25,12 +25,13 @@ typedef struct modal_function {
     double edge; // its value at a start on its edge, where it counts as zero
 } modal_function;
 
-// A gap so small where a stride starts is none: the arm is on the wall and leaves it, unless the
-// gap closes. The function is then of what the gap grows by, to its own digits, since flights may
-// be lower than the rounding of the gap [m].
+// A gap smaller than this at a stride's start counts as zero: the arm is on the wall and leaves it,
+// unless the gap closes. The function is then the growth of the gap, computed to full relative
+// precision, since flights may be lower than the rounding of the gap itself [m].
 #define MODAL_ON_WALL 1e-11
 
-// Doubles that the arrays of a function want for n degrees of freedom, and those laid out.
+// Doubles needed by a function's arrays for n degrees of freedom; places the arrays in such
+// storage.
 size_t modal_function_size(int n);
 void modal_function_place(modal_function *f, int n, double *storage);
 

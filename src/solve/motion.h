@@ -1,8 +1,9 @@
 // The mutable side of a simulation: one contiguous state vector, its scratch, and a stride of its
 // smooth motion.
 //
-// Between events an engine (engine.h) advances the motion in one contact state. Events and what
-// they change are the contact machine's (contact_machine.h), which stands on this and on locate.h.
+// Between events an engine (engine.h) advances the motion in one contact state. Events and their
+// jumps belong to the contact machine (contact_machine.h), which is built on this module and on
+// locate.h.
 #pragma once
 
 #include <math.h>
@@ -11,11 +12,11 @@
 #include "src/base/status.h"
 #include "src/solve/engine.h"
 
-// Drift that is projected away in contact.
+// Drift from the contact constraint beyond which a state is projected back onto it.
 #define PROJECTION_GAP  1e-14 // [m]
 #define PROJECTION_RATE 1e-13 // [m/s]
 
-// So many states within a step are evaluated together.
+// The most states within a step that are evaluated together.
 enum { MOTION_TOGETHER = 8 };
 
 // Bookkeeping at the head of the state vector; angles, velocities and the rest follow.
@@ -30,18 +31,18 @@ enum motion_slot {
     SLOT_EXTERNAL_WORK,    // [J]
     SLOT_FRICTION_LOSS,    // [J]
     SLOT_IMPACT_LOSS,      // [J]
-    SLOT_GAP,              // [m]; to a face with a mass, but in contact minus the depth of both
+    SLOT_GAP,              // to a face with a mass; in contact minus the depth of arm and face [m]
     SLOT_GAP_VELOCITY,     // [m/s]
     SLOT_VISCOUS_POWER,    // at this state [W]
     SLOT_DAMPING_POWER,    // at this state [W]
     SLOT_JUMPED,           // 1 just after an event, before the first step
     SLOT_IMPULSE,          // of an unresolved impact, which the next step is to deliver [N s]
-    SLOT_PARTED,           // 1 within a wall that gives whose face no longer follows
+    SLOT_PARTED,           // 1 inside a wall that gives, whose face no longer follows the arm
     SLOT_MOTOR_TORQUE,     // of an electric drive's current, at this state [N m]
     SLOT_WALL_POWER,       // lost in a wall that gives, at this state [W]
     SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
-    SLOT_STRIDE,           // that the engine proposes, 0 if none [s]
+    SLOT_STRIDE,           // length of the next stride proposed by the engine, 0 if none [s]
     SLOT_FACE,             // how far a wall's face with a mass is pushed in [m]
     SLOT_FACE_VELOCITY,    // [m/s]
     SLOT_COUNT
@@ -59,18 +60,18 @@ enum motion_quadrature {
     QUADRATURE_COUNT
 };
 
-// No state's.
+// Marks energies that have not been computed; no state has negative ones.
 static const state_energy unknown_energy = {-1, -1};
 
-// The stride that a state lies in, behind everything else, of an engine whose strides outlive the
-// steps they are cut into: where it began and how much of it is used up. A motion that goes on from
-// a copy of its state goes on in that stride.
+// The last part of the state vector, for engines whose strides are longer than the steps taken of
+// them: where the present stride began and how much of it is used up. So a motion continued from a
+// copy of its state continues the same stride.
 enum motion_kept {
-    KEPT_LENGTH,                        // of the stride, 0 if there is none to go on with [s]
-    KEPT_USED,                          // of it, up to this state [s]
+    KEPT_LENGTH,                        // of the stride, 0 if there is none to continue [s]
+    KEPT_USED,                          // part of it before this state [s]
     KEPT_CHANGED,                       // instant at which torque or arm last changed [s]
-    KEPT_INTERVAL,                      // from the change before to that one [s]
-    KEPT_WANTED,                        // length that was asked for [s]
+    KEPT_INTERVAL,                      // between that change and the one before [s]
+    KEPT_WANTED,                        // length requested for the stride [s]
     KEPT_JUMPED,                        // 1 if it began just after an event
     KEPT_QUADRATURES,                   // at its start, up to QUADRATURE_FORCE
     KEPT_ANGLES = KEPT_QUADRATURES + 3, // [rad]
@@ -90,13 +91,13 @@ struct motion {
 
     // how the smooth motion is advanced
     const engine *engine;
-    bool chosen;         // it is not to follow the arm
+    bool chosen;         // by the caller: it stays when the arm changes
     double nominal_step; // method.step [s]
     bool wall_gives;     // contact is no constraint
     bool wall_has_face;  // contact ties the arm to a mass on a spring
     bool electric;       // the motor's current is followed
     bool starved;        // no memory for the engine that a changed arm asks for
-    double cut; // an instant at which a step ends without being made for it [s]; HUGE_VAL: none
+    double cut;          // where a step ends early, its course before unchanged [s]; HUGE_VAL: none
     double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
 
     // scratch, nothing of it outlives a step
@@ -106,16 +107,15 @@ struct motion {
     chain_link *links;
     void *sweeps; // the implicit solver's scratch, one element a link
     void *memory; // the engine's own: the stride it is in
-    bool forgets; // that stride may be another arm's: what is kept of it in the state is all to go
-                  // by
+    bool forgets; // that stride may be another arm's: only what the state keeps of it is valid
 
-    // what m->trial holds, and m->state as motion_step left it, where the engine has found it with
-    // the state, else unknown_energy
+    // energies of m->trial, and of m->state as motion_step left it, if the engine computed them
+    // with the state; else unknown_energy
     state_energy holds, reached;
 
-    double made; // length of the step that motion_step made, to its end as the engine met it [s]
+    double made; // length of the last step, up to its end as the engine located it [s]
 
-    // the stride to come, where motion_look_ahead has looked at it
+    // the coming step, if motion_look_ahead has examined it
     struct {
         bool known;
         bool begun;    // else it cannot be made
@@ -131,7 +131,7 @@ struct motion {
     double pulse_peak;          // largest f since the last impact or touch, -1 if none [N]
     double pulse_peak_time;     // [s]
     double largest_penetration; // [m]
-    double failure_time;        // where a step could not be taken [s]
+    double failure_time;        // instant from which a step failed [s]
 };
 
 // Views into a state vector.
@@ -192,36 +192,37 @@ static inline int smooth_length(const motion *m)
 // memory.
 motion *motion_create(const arm *a, const method_parameters *method);
 
-// The same by an engine of the event method that the caller chooses, whatever becomes of the arm,
-// so that engines can be compared. It has to be one for such arms.
+// The same with an engine of the event method chosen by the caller and kept even when the arm
+// changes, so that engines can be compared. The engine must suit the arm.
 motion *motion_create_by(const arm *a, const method_parameters *method, const engine *chosen);
 void motion_destroy(motion *m); // m may be NULL
 
-// A motion of the arm as motion_create gives it, in the storage of one that is over where that fits
-// (m may be NULL); m is used up. NULL if out of memory.
+// A motion as motion_create gives it, in the storage of a finished motion m if that fits (m may be
+// NULL). m must not be used afterwards. NULL if out of memory.
 motion *motion_renew(motion *m, const arm *a, const method_parameters *method);
 
-// To be called after the arm's constants changed: the event method takes the engine that is now
-// right, which is the one that motion_create would choose. It has no stride in hand then. Where
-// there is no memory for it, the next step fails with STATUS_NO_MEMORY.
+// To be called after the arm's constants changed: the event method switches to the engine that
+// motion_create would now choose, without a stride in hand. If there is no memory for it, the next
+// step fails with STATUS_NO_MEMORY.
 void motion_follow_arm(const arm *a, motion *m);
 
-// To be called after m->state became a copy of an earlier state, whatever the arm was in between.
+// To be called after m->state was overwritten by a copy of an earlier state, even if the arm
+// changed in between.
 static inline void motion_forget_stride(motion *m)
 {
     m->forgets = true;
     m->ahead.known = false;
 }
 
-// To be called after anything changed that a stride follows from and that is no jump: what comes
-// next is a stride of its own.
+// To be called after a change, other than a jump of the state, of anything that a stride depends
+// on: the motion then begins a new stride.
 static inline void motion_end_stride(motion *m)
 {
     state_kept(m, m->state)[KEPT_LENGTH] = 0;
 }
 
-// To be called where the motor's torque or the arm changes: strides learn how soon the next change
-// may come.
+// To be called where the motor's torque or the arm changes: the interval between changes tells
+// engines how soon the next one may come.
 static inline void motion_note_change(motion *m)
 {
     double *kept = state_kept(m, m->state);
@@ -235,7 +236,7 @@ static inline void motion_note_change(motion *m)
 // Forgets the recorded peak: the next one counts from the present state.
 void motion_watch(motion *m);
 
-// Takes note of a force [N] in contact at an instant [s]: the pulse's peak if none was larger.
+// Records a force [N] in contact at an instant [s] as the pulse's peak if none was larger.
 static inline void motion_note_force(motion *m, double time, double force)
 {
     if (force > m->pulse_peak) {
@@ -247,13 +248,13 @@ static inline void motion_note_force(motion *m, double time, double force)
 // Evaluates accelerations, reactions and gap of a state in its own contact state.
 void motion_evaluate(const arm *a, motion *m, double *state);
 
-// Whether contact holds the arm still in the wall's direction.
+// Whether contact constrains the arm rigidly: the wall does not give and its face has no mass.
 static inline bool motion_wall_is_rigid(const motion *m)
 {
     return !m->wall_gives && !m->wall_has_face;
 }
 
-// Whether contact and friction together leave the arm no way to move, and nothing else can change.
+// Whether contact and friction together lock the arm, and nothing else (face, current) can change.
 static inline bool state_is_held_still(const motion *m, const double *state)
 {
     // a sliding hub is the usual case
@@ -275,11 +276,12 @@ static inline bool motion_held_still(const motion *m)
 // has it. Returns its length [s]: all that remains for an arm that is held still.
 double motion_begin_stride(const arm *a, motion *m, double remaining, double step);
 
-// The state at h in the stride begun into m->trial, with the ledger booked and the result checked
-// for finiteness. Stepping engines need no stride: they step from m->state.
+// Computes the state at h in the stride in hand into m->trial, updates its energy ledger and checks
+// that it is finite. Stepping engines need no stride: they step from m->state.
 status motion_try_step(const arm *a, motion *m, double h);
 
-// Books in an evaluated state what motor and friction did since the hub was at an angle [rad].
+// Adds to the energy ledger of an evaluated state the work of motor and friction since the hub was
+// at an angle [rad].
 static inline void motion_book(const arm *a, const motion *m, double hub, double *state)
 {
     const double turned = state_angles(m, state)[0] - hub;
@@ -287,15 +289,14 @@ static inline void motion_book(const arm *a, const motion *m, double hub, double
     state[SLOT_FRICTION_LOSS] += state[SLOT_FRICTION] * a->motor.stiction * turned;
 }
 
-// The states at `count` instants [s] within the step just made, which left its start in m->trial,
-// and what each of them holds: count up to MOTION_TOGETHER, one after the other in m->between.
-// False if the engine has no such way; then motion_between of contact_machine.h gives them one by
-// one.
+// Computes the states at `count` instants [s], at most MOTION_TOGETHER, within the step just made,
+// which left its start in m->trial: one after the other into m->between, and the energy of each.
+// False if the engine cannot; then motion_between of contact_machine.h gives them one by one.
 bool motion_between_all(const arm *a, motion *m, const double *times, int count,
                         state_energy *energies);
 
-// Whether rounding has led a state in contact so far from its constraint, by a gap [m] and its rate
-// [m/s], that it has to be put back.
+// Whether a state in contact has drifted by rounding so far from its constraint, by a gap [m] and
+// its rate [m/s], that it must be projected back.
 static inline bool motion_drifted(double gap, double rate)
 {
     return !(fabs(gap) <= PROJECTION_GAP && fabs(rate) <= PROJECTION_RATE);
@@ -306,12 +307,13 @@ static inline bool motion_drifted(double gap, double rate)
 // that moved it, and says whether it did.
 bool motion_project(const arm *a, motion *m, double *state);
 
-// How many times more than in a slow soft arm rounding shows in accelerations, at least 1: a spring
-// of stiffness k between bodies of inertia I turns a last bit of an angle q into a change of
-// (k/I) q 2^-52, where k/I is the square of the arm's highest frequency at most, and what turns at
-// w has accelerations of w^2, to their last bit.
+// Amplification of rounding errors in accelerations, at least 1, the value of a slow soft arm: a
+// spring of stiffness k between bodies of inertia I turns an error in the last bit of an angle q
+// into an acceleration error of (k/I) q 2^-52, where k/I is at most the square of the arm's highest
+// frequency; and what turns at w has accelerations of w^2, with an error in their last bit.
 double motion_rounding(const arm *a, const motion *m);
-// The same of the gap's acceleration: a face answers the rounding of a force by one over its mass.
+// The same for the gap's acceleration: a rounding error of the force accelerates a face by that
+// error over the face's mass.
 double motion_gap_rounding(const arm *a, const motion *m);
 // motion_rounding for dof angles q [rad] and velocities w [rad/s].
 double motion_rounding_at(const arm *a, int dof, const double *q, const double *w);
@@ -322,7 +324,7 @@ static inline bool motion_is_implicit(const motion *m)
     return m->engine == &newmark_engine || m->engine == &generalized_alpha_engine;
 }
 
-// Whether the motion's steps are too long for the arm's fastest modes, as with many links.
+// Whether the motion's steps are too long to resolve the arm's fastest modes, as with many links.
 static inline bool motion_unresolved(const arm *a, const motion *m)
 {
     return motion_is_implicit(m) && m->nominal_step * a->fastest_rate > 1;
@@ -334,19 +336,19 @@ static inline double motion_motor_work(const motion *m, double *state)
     return state[SLOT_MOTOR_WORK] + state_quadratures(m, state)[QUADRATURE_MOTOR];
 }
 
-// How fast a wall that gives and the arm on it in a state of this motion can move, or a face alone:
-// frequency or decay [1/s]; 0 of others.
+// Fastest rate (frequency or decay) of the arm on a wall that gives, or of a face left alone, in a
+// state of this motion [1/s]; 0 for other walls.
 double motion_wall_rate(const arm *a, motion *m, double *state);
 // How much a unit force of that wall accelerates the gap in contact [1/kg].
 double motion_wall_compliance(const arm *a, motion *m, double *state);
 
-// How fast the force can change in a state of this motion, but for decays of the arm's [1/s]: by
-// its fastest vibration, that wall, a motor's inductance.
+// Fastest rate at which the force can change in a state of this motion [1/s]: by the arm's fastest
+// vibration, the wall (motion_wall_rate) or the motor's inductance. Decays of the arm are left out.
 double motion_vibration(const arm *a, motion *m, double *state);
 
-// How long [s] a parabola does for what decays of the force on a damped chain, `since` [s] after
-// the last event, which set it going: what is left of it changes in a share of that time, and
-// nothing before `reach` / (fastest decay).
+// Length [s] over which a parabola represents the decaying part of the force on a damped chain,
+// `since` [s] after the event that excited it. At least `reach` / (fastest rate of the arm), else
+// in proportion to `since`: what has not decayed by then changes slowly.
 double motion_decay_length(const arm *a, double reach, double since);
 
 // Energy that a wall that gives holds, with that of its face's motion; 0 in a rigid one [J].
@@ -355,8 +357,10 @@ double motion_wall_energy(const arm *a, const motion *m, const double *state);
 // Energy of motion and of bending in a state of this motion.
 state_energy motion_energy(const arm *a, const motion *m, double *state);
 
-// Energy that the ledger does not account for at a state of this motion [J].
+// Residual of the energy balance at a state of this motion [J]: what the ledger of works and losses
+// does not account for.
 double motion_energy_residual(const arm *a, const motion *m, double *state);
 
-// The same where what the state holds is known: kinetic and strain energy, and a giving wall's [J].
+// The same if the energy of the state is known already: kinetic and strain energy and that of a
+// wall that gives [J].
 double motion_unaccounted(const motion *m, double *state, double energy);

@@ -46,8 +46,7 @@ typedef struct printed_motion {
 // step.
 void printed_motion_start(printed_motion *m, const parameters *p);
 
-// Takes over parameters that a script has changed, for the coming steps; the command is
-// motor.voltage again.
+// Adopts parameters changed by a script for the coming steps; the command is motor.voltage again.
 void printed_motion_rebind(printed_motion *m, const parameters *p);
 
 // Puts another command [V] in force for the coming steps.

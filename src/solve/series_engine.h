@@ -5,7 +5,7 @@
 #include "src/solve/chain_series.h"
 #include "src/solve/motion.h"
 
-// A function of a stride as a polynomial in its share x = t/L.
+// A function over a stride as a polynomial in x = t/L, the share of the stride's length.
 typedef struct series_function {
     double term[SERIES_TERMS];
     int count;
@@ -21,11 +21,11 @@ typedef struct series_stride {
     chain_series *series;
 } series_stride;
 
-// Bytes that a stride wants, and its parts laid into so many behind it.
+// Bytes needed by a stride, its parts behind it included; places the parts there.
 size_t series_stride_size(const arm *a);
 void series_stride_place(series_stride *s, const arm *a);
 
-// What engine.h says of these, for a stride in s; last_terms as in chain_series.h.
+// The functions of engine.h for the stride in s; last_terms as in chain_series.h.
 double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining,
                            double last_terms);
 status series_stride_state(const series_stride *s, const arm *a, motion *m, double h);

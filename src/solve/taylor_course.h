@@ -23,8 +23,8 @@ KERNEL void add_term(four *sum, const four *u, real term)
 #endif
 }
 
-// That of a polynomial for times from 0 to t. From a chord of length h a function leaves by its
-// second derivative times h^2/8 at most. Rounding is allowed for.
+// That of a polynomial for times from 0 to t. A function deviates from its chord of length h by at
+// most h^2/8 times its largest second derivative. Rounding is allowed for.
 KERNEL course course_of(const real *terms, int count, real t)
 {
     const real zero = (real){0}, u = t * t, none = zero;
@@ -57,7 +57,7 @@ KERNEL real smaller_of(real x, real y)
     return choose(MASK(x < y), x, y);
 }
 
-// What it stays above and below.
+// Its lower and upper bound.
 KERNEL real lowest(const course *c, real first)
 {
     const real late = smaller_of(PART(c->ends, 2), PART(c->ends, 3)) - c->off;
@@ -77,9 +77,10 @@ typedef struct edge_limits {
     real value, rate, more;
 } edge_limits;
 
-// What sign times a function stays above in the first piece; where it has jumped to its edge and
-// leaves it, what it does divided by the time, or by its square: in that piece, of length h, p = p0
-// + p1 t + p2 t^2 + r has |p - p0 - p1 t| <= bend t^2/2, and |r| <= (bend - 2 |p2|) t^2/6 h/t_end.
+// Lower bound of sign times a function in the first piece; where an event has left it at zero and
+// it grows from there, the bound of the function divided by the time, or by its square: in that
+// piece, of length h, p = p0 + p1 t + p2 t^2 + r has |p - p0 - p1 t| <= bend t^2/2, and |r| <=
+// (bend - 2 |p2|) t^2/6 h/t_end.
 KERNEL real least_at_first(const course *c, const real *terms, real sign, real t, mask jumped,
                            const edge_limits *limits)
 {
@@ -95,7 +96,7 @@ KERNEL real least_at_first(const course *c, const real *terms, real sign, real t
     return choose(jumped, edge, first);
 }
 
-// What it stays above all the time, `first` being that of the first piece.
+// Its lower bound over the whole stride, `first` being that of the first piece.
 KERNEL real least_of(const course *c, real sign, real first)
 {
     course signed_one = *c;

@@ -40,8 +40,8 @@
 // where the series end before the highest order, those of the losses below this share of 1 J times
 // its square; the first one left out is about ten times smaller.
 #define LAST_TERMS 4e-12
-// The series end with the first even order, this or a later one, whose terms are so small at the
-// length that is wanted.
+// The lowest order at which the series may end: they end with the first even order from it on whose
+// terms are small enough at the wanted length.
 #define LEAST_ORDER 8
 // A stride that is too long for the highest order is shortened by this factor, at most so often.
 #define SHORTENING       0.875

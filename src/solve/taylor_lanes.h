@@ -1,6 +1,6 @@
-// Strides of several two-link arms side by side: what most of a run's work is, the series and the
-// states at the ends of strides, is computed for as many arms at once as the processor's vectors
-// hold. Every arm gets the bits that it gets alone.
+// Strides of several two-link arms side by side (SIMD): the series and the states at the ends of
+// strides, which are most of a run's work, are computed for as many arms at once as the processor's
+// vectors hold. Every arm gets the same bits as when it is computed alone.
 //
 //     taylor_prepare each motion
 //     taylor_compute those of one form
@@ -36,7 +36,8 @@ typedef struct taylor_lane {
 // [s]. NULL if that stride asks for no series: another engine, or an arm that is held still.
 taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining);
 
-// A number below TAYLOR_KINDS that strides have in common which can go side by side, and no others.
+// The kind of a stride, a number below TAYLOR_KINDS: strides can be computed side by side if and
+// only if their kinds are equal.
 enum { TAYLOR_KINDS = 16 };
 static inline int taylor_kind(taylor_form form)
 {

@@ -99,8 +99,8 @@ static inline double bend_of(const polynomial *p, double t)
     return all[0] + t * all[1];
 }
 
-// What the function stays above for times from 0 to t: its straight part is least at an end, what
-// bends it takes a little more than the sum of its terms' magnitudes at most.
+// Lower bound of the function for times from 0 to t: its linear part is least at an end, and the
+// higher terms subtract at most the sum of their magnitudes, with a margin for rounding.
 static inline double low_of(const polynomial *p, double t)
 {
     const double u = t * t, v = u * u, *terms = p->terms;
@@ -120,7 +120,7 @@ static inline double low_of(const polynomial *p, double t)
     return fmin(terms[0], straight) - ((bent + fabs(terms[0]) + fabs(terms[1]) * t) * 1e-12 + bent);
 }
 
-// Divides the function by the time as often as its first coefficients are nothing but rounding,
+// Divides the function by the time once for each of its first coefficients that is only rounding,
 // below the limits.
 static inline void leave_edge(polynomial *p, const double limits[3])
 {

@@ -61,10 +61,10 @@ KERNEL void look_at(const watched_course *f, real t, real *value, real *slope)
     *slope = f->sign * (odd + 2 * t * (even1 + t * odd1));
 }
 
-// The first instant at which it is zero and falls; -1 where that is not found here. Newton's
-// method, until what the next step leaves out is less than time resolves. From the piece's start to
-// a root a length l further on, the function stays above the chord there less bend l^2/8 halfway,
-// and above zero if it starts above bend l^2/2.
+// The first instant at which it falls through zero; -1 if it is not found here. Newton's method,
+// until the error of the next step is below the resolution of time. Between the piece's start and a
+// root at a distance l from it the function lies at most bend l^2/8 below its chord, and stays
+// above zero if it starts above bend l^2/2.
 static __attribute__((noinline)) real first_root(const watched_course *f)
 {
     const real zero = (real){0};

@@ -20,8 +20,9 @@ static const double falling[TAYLOR_MOST + 2] = {0,   0,   2,   6,   12,  20,  30
                                                 72,  90,  110, 132, 156, 182, 210, 240, 272,
                                                 306, 342, 380, 420, 462, 506, 552, 600};
 
-// A block holds what the series of an arm start from and the series themselves: one number per
-// lane and place, lanes side by side. An array of places begins at the constant of its name.
+// A block holds the inputs of the series of an arm and the coefficients computed from them: one
+// number per lane and place, lanes side by side. An array of places begins at the constant of its
+// name.
 enum taylor_place {
     // constants of the arm
     AT_MASS,      // of a link [kg]
@@ -42,14 +43,16 @@ enum taylor_place {
     AT_START_ANGLE,                         // hub (with a spring), first, second link [rad]
     AT_START_VELOCITY = AT_START_ANGLE + 3, // [rad/s]
     AT_WANTED = AT_START_VELOCITY + 3,      // length of the stride that is wanted [s]
-    // just after an event: below it the acceleration of a hub at rest is rounding; else -1 [rad/s2]
+    // just after an event: the acceleration of a hub at rest below which it is only rounding; else
+    // -1 [rad/s2]
     AT_EDGE_RATE,
     AT_INPUTS, // how many of the above
     // what comes of it: powers of the time, from the zeroth
     AT_ALLOWED = AT_INPUTS, // length that the series are good for [s]
-    // within it no less than this: the gap [m], or in contact the force [N]; the hub's velocity in
-    // the direction it slides [rad/s], or what friction has left for a stuck hub [N m]; just after
-    // an event less what is rounding at the edge, or, on it, divided by the time or its square
+    // lower bounds within that length: of the gap [m], or in contact of the force [N]; of the hub's
+    // velocity in the direction it slides [rad/s], or of a stuck hub's margin to break-away [N m];
+    // just after an event without the rounding at its start, and, where the function starts at
+    // zero, divided by the time or its square
     AT_WALL_LEAST,
     AT_HUB_LEAST,
     // where the wall's function, or the sliding hub's, first falls below zero; -1 where the pieces
@@ -71,10 +74,10 @@ enum taylor_place {
     TAYLOR_PLACES = AT_DISSIPATION + TAYLOR_MOST
 };
 
-// What is nothing but rounding in the first coefficients of a watched function at its edge just
-// after an event: of the value and of its derivatives, over which nothing is known but that they
-// are small. The hub's acceleration: EDGE_RATE times motion_rounding_at; the gap's: LEFT_OUT times
-// as much of what that is beyond 1, as the series leave more out of it than rounding does.
+// Limits below which the first coefficients of a watched function that starts at zero just after an
+// event count as rounding: its value and its derivatives, which are only known to be small. For the
+// hub's acceleration: EDGE_RATE times motion_rounding_at; for the gap's: LEFT_OUT times as much of
+// the part of motion_rounding_at beyond 1, because the series' truncation of it exceeds rounding.
 #define LEFT_OUT   1000.0
 #define EDGE_VALUE 1e-9
 #define EDGE_RATE  1e-9
@@ -91,10 +94,9 @@ typedef struct taylor_form {
 } taylor_form;
 
 // Computes the series of as many arms as the name says; block: TAYLOR_PLACES times so many, aligned
-// to their vectors. Returns their order, which is even: where an arm has enough with a lower one,
-// its terms beyond are zero, which changes no bit of what is made of them. The widest two are for
-// processors with AVX2 and AVX-512; that with a name of its own for one arm has AVX2's vectors,
-// too.
+// to their vectors. Returns their order, which is even: where an arm needs a lower order only, its
+// further terms are zero, which changes no bit of the results. The widest two are for processors
+// with AVX2 and AVX-512; that with a name of its own for one arm has AVX2's vectors, too.
 int taylor_series_1(double *block, taylor_form form);
 int taylor_series_1_avx2(double *block, taylor_form form);
 int taylor_series_2(double *block, taylor_form form);
@@ -107,7 +109,7 @@ void taylor_inputs_2(double *block, const double *const *own);
 void taylor_inputs_4(double *block, const double *const *own);
 void taylor_inputs_8(double *block, const double *const *own);
 
-// What series come to at instants of their strides, side by side. Bodies are the hub (with a
+// Values of the series at instants of their strides, side by side. Bodies are the hub (with a
 // spring), the first and the second link.
 typedef struct taylor_instants {
     double time[TAYLOR_WIDEST];             // given: since its start [s]

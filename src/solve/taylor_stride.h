@@ -1,5 +1,5 @@
-// The stride of a two-link arm as its engine has it in hand (taylor_engine.c), what it comes to at
-// an instant (taylor_states.c) and what the contact machine asks of it (taylor_events.c).
+// The stride in hand of the two-link engine (taylor_engine.c), its states (taylor_states.c) and the
+// answers to the contact machine's questions about it (taylor_events.c).
 #pragma once
 
 #include "src/solve/motion.h"

@@ -42,15 +42,16 @@ double bench_computing_time(void);
 double bench_seconds_per_call(status (*work)(void *context), void *context, double least,
                               status *failed);
 
-// Measures BENCH_REPETITIONS times after a first time that only warms the caches. Where that would
-// take long less has to do: three times after one second, one after twenty.
+// Measures BENCH_REPETITIONS times after a first time that only warms the caches. Long work is
+// measured less often: three times in all if one second is exceeded, once if twenty are.
 status bench_run(const benchmark *b, bench_result *result, fault *f);
 
 // The object of `bench --json`: {"bench": [{"name", "unit", "median", "min", "max",
 // "wall_per_cpu"}]}.
 json_t *bench_export(const bench_result *results, int count);
 
-// Reads such a file. *results is to be freed. STATUS_CANNOT_READ if there is none or it is none.
+// Reads such a file. *results is to be freed. STATUS_CANNOT_READ if the file cannot be read or
+// holds no benchmarks.
 status bench_read(const char *path, bench_result **results, int *count, fault *f);
 
 // How many times slower `now` is than `before` by the medians; below 1: faster.

@@ -54,7 +54,7 @@ compare_row compare_row_of(const scenario *s, const run_result *result);
 bool compare_differs(double value, double reference, double tolerance);
 
 // Hides all columns but those named in "KEY,KEY...". STATUS_BAD_ARGUMENT, with a sentence in f, for
-// a key that is none.
+// an unknown key.
 status compare_choose(compare_table *t, const char *keys, fault *f);
 
 // Table for people; what differs from the reference is marked with *.

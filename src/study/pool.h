@@ -25,8 +25,8 @@ typedef struct pool_work {
     // pieces in hand are finished, and nothing more is collected.
     status (*collect)(void *context, size_t i, const void *result, fault *f);
 
-    // Called on the calling thread about ten times a second, and once at the end; NULL if nobody
-    // wants to know. Fails as collect does.
+    // Called on the calling thread about ten times a second, and once at the end; may be NULL.
+    // Fails as collect does.
     status (*tick)(void *context, bool over, fault *f);
 
     // Frees what compute keeps in a thread's scratch; NULL if that is nothing.

@@ -1,5 +1,5 @@
-// How a control law stands what it was not told: many runs over a set of beliefs, sensors, walls
-// and starts, and their distribution.
+// Robustness of a control law against what it was not told: many runs over a set of beliefs,
+// sensors, walls and starts, and the distribution of their results.
 #pragma once
 
 #include <jansson.h>
@@ -27,11 +27,11 @@ typedef struct robust_law {
     double settling[ROBUST_QUANTILES];   // from first contact, or the last push after it [s]
     double from_start[ROBUST_QUANTILES]; // until it has settled, from the run's start;
                                          // NaN where the tip is pushed [s]
-    double against;                      // worst of from_start over that of another law; NaN: none
-    double error[ROBUST_QUANTILES];      // steady error either way, of the command [%]
-    double back[ROBUST_QUANTILES]; // largest speed of the tip towards the wall in the air after
-                                   // first contact over that before; 0 where it stays
-    double *overshoots;            // of all runs, ascending, NaN last; owned [%]
+    double against; // ratio of its worst from_start to that of another law; NaN: none
+    double error[ROBUST_QUANTILES]; // steady error either way, of the command [%]
+    double back[ROBUST_QUANTILES];  // largest speed of the tip towards the wall in the air after
+                                    // first contact over that before; 0 where it stays
+    double *overshoots;             // of all runs, ascending, NaN last; owned [%]
 } robust_law;
 
 // Judges the runs of a law in a store of its sweep, all of which are there. STATUS_NO_MEMORY or

@@ -3,7 +3,7 @@
 //     PATH=a:b  PATH=v1,v2             drawn for every run, as a sweep takes them
 //     case TITLE: PATH=VALUE; ...      what differs in a case; push=IMPULSE@TIME [N s]@[s] too
 //
-// Empty lines and those that begin with # say nothing. Without cases the runs are drawn over the
+// Empty lines and those that begin with # are ignored. Without cases the runs are drawn over the
 // scenario as it is, with cases over the scenario of each of them.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a force sensor would make of the contact: a first-order lag over forces and impulses.
+// What a force sensor would read of the contact: a first-order lag over forces and impulses.
 //
 // The force of a rigid point contact is a finite force f(t) plus impulses p at instants. A sensor
 // with time constant tau shows y with

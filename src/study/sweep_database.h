@@ -18,9 +18,8 @@ typedef struct sweep_store {
     bool in_transaction;
 } sweep_store;
 
-// Opens the database file store->path, or memory where it is NULL, with SQLite's open flags. What a
-// file from elsewhere could bring along to be carried out (triggers, views, functions in a schema)
-// is off.
+// Opens the database file store->path, or memory where it is NULL, with SQLite's open flags.
+// Whatever an untrusted file could execute (triggers, views, functions in a schema) is disabled.
 status database_open(sweep_store *store, int flags, fault *f);
 
 // True in *empty if the database holds nothing; STATUS_BAD_ARGUMENT if what it holds is no sweep of

@@ -38,9 +38,9 @@ typedef struct sweep_options {
 
 // Computes the runs that are missing in the store, runs of two links side by side in the
 // processor's vectors (run_together): what each gives does not depend on that. Rows are committed
-// at least every second (as soon as the runs themselves let it). If *stop becomes true the runs in
-// hand are finished, but for *abandon, and committed, and STATUS_OK is returned with
-// progress->done < progress->total.
-// On failure of the store, or without memory, what was committed stays and f says why.
+// at least every second, or, with longer runs, as each finishes. If *stop becomes true the runs in
+// hand are finished and committed, unless *abandon is true, and STATUS_OK is returned with
+// progress->done < progress->total. On failure of the store, or without memory, what was committed
+// stays and f says why.
 status sweep_run(const sweep *s, sweep_store *store, const sweep_options *options,
                  sweep_progress *progress, fault *f);

@@ -25,9 +25,9 @@ typedef struct thesis_tables {
 // Computes all rows, for both models.
 status tables_compute(thesis_tables *t, fault *f);
 
-// What comes nearest to the delays of the tables, three rows of the model "fitted" for each of them
-// (docs/thesis.md): force and delay of the simulation with seven numbers and switches of the
-// printed model fitted to its 24 cells, the delay counted from the step before contact; and the
+// The closest reproduction of the delays in the tables, three rows of the model "fitted" for each
+// of them (docs/thesis.md): force and delay of the simulation with seven numbers and switches of
+// the printed model fitted to its 24 cells, the delay counted from the step before contact; and the
 // printed model's delay of the impact dynamics times sqrt(3)/2, by the integral that belongs to
 // (4.19).
 void tables_compute_fitted(thesis_tables *t);
