@@ -1,5 +1,5 @@
 #!/bin/bash
-# The house as the includes show it: every arrow points down, no module stands in a circle, and
+# The architecture as the includes show it: every arrow points down, no module stands in a circle, and
 # every place that the manual names is there.
 #
 #   test_architecture.sh SOURCE_ROOT
