@@ -24,11 +24,11 @@
 //
 // It is this only while the motor gives every force from 0 to P. It does not always, so the ways
 // are integrated with the force that it gives; and inside the band it must be able to stay, which
-// is tried out. A weak motor may have to go about it otherwise: coast on beyond the near edge,
-// since it presses the harder the further the beam is bent, or stop braking early, since it cannot
-// catch the arm that comes back. So the least time is looked for over all ways that go to one
-// extreme for a while and then to the other. (Within the tenths of a second that this takes a
-// torque that raises xi' now raises xi at the end too, the arm's own vibration taking 0.28 s.)
+// is tried out. A weak motor may need another way: coast on beyond the near edge, since the arm
+// presses harder the further the beam is bent, or stop braking early, since it cannot stop the arm
+// that comes back. So the least time is looked for over all ways that go to one extreme for a while
+// and then to the other. (Within the tenths of a second that this takes a torque that raises xi'
+// now raises xi at the end too, the arm's own vibration taking 0.28 s.)
 #include "src/predict/best_stop.h"
 
 #include <assert.h>
@@ -83,8 +83,8 @@ static double force_under(const pressed_arm_model *m, pressed_state s, double to
     return m->spring_force * s.x - m->mass_force * sum / m->inertia;
 }
 
-// What a way wants of the force: as large as `highest` allows, as small as `lowest` does, or K xi
-// as far as it lies between them. The motor has the last word.
+// The force that a way asks for: the largest that `highest` allows, the smallest that `lowest`
+// allows, or K xi limited to between them. The motor then limits it further.
 typedef enum press_rule { PRESS_HARD, PRESS_SOFT, PRESS_KEEP } press_rule;
 typedef struct way {
     press_rule rule;
@@ -191,8 +191,8 @@ static double near_edge(const way *on, const way *band)
     return on->rule == PRESS_HARD ? band->highest : band->lowest;
 }
 
-// Whether a way leads nowhere from K xi = `xi` on: away from the wall, away under any force up to
-// the peak, or out of the band on its far side.
+// Whether a way fails from K xi = `xi` on: the arm leaves the wall, runs away under any force up to
+// the peak, or leaves the band on its far side.
 static bool is_lost(const way *on, const way *band, double xi, double force)
 {
     bool hard = on->rule == PRESS_HARD;

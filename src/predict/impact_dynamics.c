@@ -119,7 +119,7 @@ static double polynomial(const double *c, int degree, double x)
     return sum;
 }
 
-// The root of a polynomial that is monotonic between low and high and changes sign there.
+// The root of a polynomial that is monotonic and changes sign between low and high, by bisection.
 static double bisect(const double *c, int degree, double low, double high)
 {
     bool rising = polynomial(c, degree, high) > 0;

@@ -98,14 +98,14 @@ static double press_of(const flight *f, const flight_state *s)
     return f->press * s->q[0] + f->per_rate * velocity;
 }
 
-// What one step of unit torque comes to k steps after its beginning, k from 1: tip [1/N], K xi
-// [1/m].
+// The impulse response to one step of unit torque, k steps after its beginning, k from 1: tip
+// [1/N], K xi [1/m].
 typedef struct responses {
     double tip[MOST_STEPS + 1], press[MOST_STEPS + 1];
     int count; // of the steps that are filled in
 } responses;
 
-// The end of the interval of K xi that can be had with a touch after n steps.
+// The end of the interval of K xi that is attainable with a touch after n steps.
 typedef struct edge {
     double press, weight, slack;
 } edge;
@@ -181,7 +181,7 @@ least_time least_time_of(const parameters *p, double force, double band, double 
     const double a = force * (1 - band), b = force * (1 + band), most = fmax(peak, b);
     const double s = f.press / f.per_rate;
 
-    // later and later touches, until the touch alone takes longer than the best
+    // tries later and later touches, until the touch alone takes longer than the best total
     flight_state kicked = {{0, 0}, {0, 0}};
     for (int n = 1; n <= MOST_STEPS && !(n * LEAST_TIME_STEP >= best.total); n++) {
         edge edges[2];

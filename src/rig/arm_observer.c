@@ -258,7 +258,7 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
         noise[n + i] = share * kick * kick;
     }
 
-    // what wanders
+    // process noise of the states that drift
     noise[arm_observer_torque_index(o)] = TORQUE_DRIFT * TORQUE_DRIFT * h;
     if (o->touches) {
         // a stiffness believed wrongly shows as a wall that moves with the hub
@@ -281,7 +281,8 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
     estimator_predict(e, &now, net, noise);
 }
 
-// A reading that is far off is worth less: an impact is no noise. Returns its worth, at most 1.
+// Down-weights a reading that is far from its expectation, as an impact is no noise. Returns its
+// weight, at most 1.
 static double take_reading(arm_observer *o, const double *row, double offset, double reading,
                            double deviation)
 {
@@ -296,11 +297,11 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
         }
     }
 
-    // beyond the limit, the farther off the less it is believed
+    // beyond the limit the weight falls with the distance
     double off = fabs(reading - expected) / sqrt(variance);
     double doubt = off > OUTLIER ? off / OUTLIER : 1;
 
-    // the estimate's own variance is left out: a model that claims less of it is no better
+    // the estimate's own variance is left out: a model is no better for claiming less of it
     if (o->moves) {
         double miss = (reading - expected) / deviation;
         o->missed += (TAILS + 1) * plain_log(1 + miss * miss / TAILS);

@@ -226,7 +226,7 @@ static bool exchange(process *p, const char *text)
             {.fd = sent < length ? p->program.input : -1, .events = POLLOUT},
         };
 
-        // an end may be ready, and yet too late
+        // a stream may be ready, but after the deadline
         int ready = poll(ends, 3, left_until(deadline));
         if (now() >= deadline) {
             return fail(p, "gave no answer within control.answer_time = %g s", p->answer_time);
@@ -312,9 +312,9 @@ static bool same_answer(const controller_output *a, const controller_output *b)
     return memcmp(x, y, sizeof x) == 0;
 }
 
-// Lets the program come to the run's place on the tape: it is started if it does not run or is
-// somewhere else, and asked once more all that leads there. False, with a failure, if it answers
-// otherwise than then, or the way there is not known.
+// Brings the program to the run's place on the tape: it is started if it does not run or is at
+// another place, and all questions that lead there are repeated. False, with a failure, if it
+// answers otherwise than then, or the way there is not known.
 static bool catch_up(process *p, const process_memory *m, double time)
 {
     const bool runs = p->program.keeper != 0;

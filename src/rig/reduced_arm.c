@@ -33,7 +33,8 @@ static void believed_arm(arm *a, const controller_setup *setup)
     arm_init(a, &p);
 }
 
-// Modes of one state with what is asked of them; shapes come in with any scale and leave with M's.
+// The modes of one state with the quantities of mode_set; shapes come with any scale and leave
+// normalised by M.
 static void take_modes(mode_set *set, const arm *a, const double *mass, double highest, int found,
                        const double *frequencies, double *shapes)
 {
@@ -107,7 +108,7 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
         return "the arm it believes in does not bend";
     }
 
-    // what a touch keeps
+    // the projection of a touch
     r->inertia = 0;
     for (int i = 0; i < n * n; i++) {
         r->inertia += work->mass[i];

@@ -11,8 +11,7 @@
 // 10 % to 90 % of a first-order lag takes ln 9 time constants.
 #define RISE_OVER_TIME_CONSTANT 2.1972245773362196
 
-// A stride that differs from none by rounding gains no velocity: its difference is rounding too
-// [s].
+// A stride no longer than this [s] counts as none: its gain of velocity would be rounding only.
 #define SHORTEST_GAIN 1e-9
 
 static const double turn = 2 * 3.14159265358979323846; // [rad]

@@ -31,8 +31,8 @@ static double next_stop(const recording *r)
     return r->rig != NULL ? smaller(rig_next_time(r->rig), stop) : stop;
 }
 
-// The next instant at which steps are cut without being made for it: an action, the start of the
-// window over which the steady force is taken. What comes before does not depend on it.
+// The next instant at which steps are cut without being planned for it: an action, or the start of
+// the window of the steady force. The motion before it does not depend on it.
 static double next_cut(const recording *r, double window, double now)
 {
     const scenario *s = r->scenario;
@@ -176,9 +176,9 @@ static double turn_of_energy(const arm *a, double energy, double duration)
     return sqrt(energy / (beam > 0 ? beam : inertia / (duration * duration)));
 }
 
-// Says so where the motion as a whole is so small that the tolerances of events, which are lengths,
-// speeds and torques of their own, are too large a share of it. An arm that has not moved is held
-// by friction, or by the wall with more than that.
+// Adds a remark where the whole motion is so small that the tolerances of events (absolute lengths,
+// speeds and torques) are too large a share of it. An arm that has not moved is held by friction,
+// or by the wall with more than that.
 static void judge_size(const corrected_run *c, double energy)
 {
     const arm *a = &c->arm;
@@ -199,7 +199,7 @@ static void judge_size(const corrected_run *c, double energy)
     }
 }
 
-// Whether the numbers may be relied on, and what the motion was spared.
+// Judges whether the numbers can be relied on, and remarks on what the run left out.
 static void judge(const corrected_run *c)
 {
     const recording *r = c->recording;
@@ -239,7 +239,7 @@ void corrected_sum_up(corrected_run *c, status failed)
     motion *m = c->motion;
     summary *s = &r->result->summary;
 
-    // as if the run ended where it is; what a step fails with there is not its end
+    // as if the run ended here; a step that fails in this does not end the run
     fault none;
     corrected_end_step(c, &none);
     s->steps = (double)m->steps;
@@ -250,7 +250,7 @@ void corrected_sum_up(corrected_run *c, status failed)
     }
     s->separations += r->state.separated;
 
-    // what contact came to
+    // results of the contact
     if (!isnan(s->first_contact_s)) {
         if (r->state.pulse_open) {
             corrected_close_first_pulse(c);
@@ -262,7 +262,7 @@ void corrected_sum_up(corrected_run *c, status failed)
         }
     }
 
-    // what only a whole run has
+    // results that only a complete run has
     if (failed == STATUS_OK) {
         double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         recording_finish_summary(r, integral - r->state.integral_at_window);

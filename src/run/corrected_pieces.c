@@ -7,12 +7,13 @@
 
 #define SHORTEST_MEAN 1e-9 // a step shorter than this has the mean of its ends [s]
 
-// A parabola is right to 1e-4 of the fastest mode's force, and of what sensors with a lag see of it
-// to 1e-5, over so much of (fastest rate) x (time).
+// Largest (fastest rate) x (time) of a piece: over it a parabola is exact to 1e-4 of the fastest
+// mode's force, and to 1e-5 of what sensors with a lag see of it.
 #define FORCE_REACH  0.25
 #define SENSOR_REACH 0.5
 
-// A slope that promises so many times what a piece shows otherwise is that of a decay.
+// A slope at the start that predicts this many times the change found over a piece belongs to a
+// decay.
 #define FALLS_AT_ONCE 4
 
 enum { MOST_PIECES = 64 };
@@ -47,8 +48,8 @@ static force_step force_over_step(const motion *m)
                         .mean = length > SHORTEST_MEAN ? integral / length : ends};
 }
 
-// In how many pieces a step that goes far in (fastest rate) x (length) is taken where parabolas
-// have to do for what happens within it. Only a dense engine goes so far.
+// Number of pieces for a step of large (fastest rate) x (length), so that a parabola is accurate in
+// each. Only dense engines make such steps.
 static int pieces_of_step(const corrected_run *c, double length, double reach)
 {
     motion *m = c->motion;
@@ -63,7 +64,7 @@ static int pieces_of_step(const corrected_run *c, double length, double reach)
     return whole < MOST_PIECES ? whole + (whole < pieces) : MOST_PIECES;
 }
 
-// Whether what an event sets going decays faster than the arm vibrates.
+// Whether the decays that an event excites are faster than the arm's vibrations.
 static bool decays_outrun(const arm *a)
 {
     return a->fastest_decay > a->highest_frequency;
@@ -123,8 +124,8 @@ static status take_piece(corrected_run *c, way *w, double time, double length, p
                              : STATUS_NOT_FINITE;
 }
 
-// Goes along what an event set going and decays at once, piece by piece, up to where equal pieces
-// do for the rest of the step, which ends at `end` [s].
+// Follows, piece by piece, the fast decay that an event has excited, up to where equal pieces are
+// enough for the rest of the step, which ends at `end` [s].
 static status follow_decay(corrected_run *c, way *w, double end, double reach, piece_taker take)
 {
     status s = STATUS_OK;
@@ -135,8 +136,8 @@ static status follow_decay(corrected_run *c, way *w, double end, double reach, p
     return s;
 }
 
-// Whether a force falls at once from where it begins: what is left of it shows in its slope there
-// alone, which then says nothing of its mean.
+// Whether a force begins with a decay that is over at once: it shows in the slope at the start
+// only, which then says nothing about the mean.
 static bool falls_at_once(glance first, glance last, double width)
 {
     const double shown = fabs(last.value - first.value) + fabs(last.slope) * width;
@@ -201,7 +202,7 @@ static status keep_force(corrected_run *c, const way *from, const way *to, doubl
                                                          .mean = mean});
 }
 
-// Keeps the force over the step just made, in pieces that are parabolas to sight.
+// Keeps the force over the step just made, in pieces over which it is nearly a parabola.
 static status record_force(corrected_run *c, const force_step *whole)
 {
     recording *r = c->recording;

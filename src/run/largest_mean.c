@@ -120,9 +120,10 @@ static double largest_between(const run_result *r, const window_end *front, cons
     return largest;
 }
 
-// How far no window that ends in the front's step or a later one holds more than `largest` [N s],
-// an instant [s]; before the front's step if its own may: from the back's step on, as far as no
-// event is and no force by which a window could. Steps before *bounded are known to have none.
+// The instant [s] up to which no window that ends in the front's step or a later one can hold more
+// than `largest` [N s]; -HUGE_VAL if one that ends in the front's step can. It goes from the back's
+// step on over steps without an event and without a force large enough for more. Steps before
+// *bounded were checked already.
 static double holds_no_more(const run_result *r, const window_end *front, const window_end *back,
                             double window, double largest, size_t *bounded)
 {

@@ -254,8 +254,8 @@ static double power(double x, int n)
 }
 
 // Whether the last terms of the contact force are small at a share of the stride. On a flat wall
-// the force has a pole where the arm is folded over the hub's axis, of which the velocities know
-// nothing: their terms would be small beyond it.
+// the force has a pole where the arm is folded over the hub's axis, which does not show in the
+// velocities: their terms would be small even beyond it.
 static bool force_converges(const chain_series *s, double share)
 {
     const double *f = s->force.term;

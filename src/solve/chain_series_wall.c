@@ -7,10 +7,10 @@
 //
 //     n x_0 p_n = sum over i = 1..n of (e i - (n - i)) x_i p_(n-i).
 //
-// It is not analytic at the touch: strides are no longer than a share of the time to or from it,
-// x/|v|, and next to it, where the force does nothing to the motion but rounding, they go on
-// without it. Where it does little, few orders of it are enough. A face with the mass M has f = M
-// d2g/dt2 + k x + c v, where d2g/dt2 is what it were without the force and the response to it.
+// It is not analytic at the touch: strides are limited to a share of the time to or from it, x/|v|;
+// and next to it, where the force changes the motion by rounding only, strides leave it out. Where
+// its effect is small, few orders of it are enough. A face with the mass M has f = M d2g/dt2 + k x
+// + c v, where d2g/dt2 is its value without the force plus the response to the force.
 #include <math.h>
 
 #include "src/base/plain_math.h"
@@ -153,8 +153,8 @@ double chain_series_add_face(chain_series *s, const arm *a, wall_face face)
     return creeps ? fabs(face.velocity + wall_face_rate(w, face) * face.position) : 0;
 }
 
-// What the wall's force may do to the velocity within a time from here, as a share of it: as deep
-// and as fast as the arm can be then.
+// Bound on the relative change of velocity by the wall's force within a time from here, from the
+// greatest depth and speed that the arm can have then.
 static double share_of_force(const wall_model *w, const wall_approach *at, double time)
 {
     const double speed = fabs(at->speed) + fabs(at->acceleration) * time;
@@ -163,7 +163,7 @@ static double share_of_force(const wall_model *w, const wall_approach *at, doubl
            speed;
 }
 
-// The time from here in which the wall's force does nothing but rounding.
+// The time from here in which the wall's force changes the velocity by rounding only.
 static double forceless_time(const wall_model *w, const wall_approach *at, double longest)
 {
     double time = longest;

@@ -1,7 +1,7 @@
 // The contact machine: an arm in free flight or on its wall, its hub stuck or sliding.
 //
 // Between events motion_step() moves the arm in one contact state; it ends a step at the first
-// event, on its far side. motion_apply() then takes the transition:
+// event, just beyond it. motion_apply() then takes the transition:
 //
 //                   gap closes:  impact() at a speed,  touch() without
 //     motion_start  +--------+ --------------------------> +---------+
@@ -21,16 +21,17 @@
 //       nothing holds it
 //
 // The two are coupled: an impact may set a stuck hub sliding, a hub that sticks may lift the arm
-// off. So each transition says only what the event itself fixes (a velocity, that the wall is
-// touched) and leaves the rest to resolve(), which finds the one pair of states that violates
-// nothing. From outside motion_push(), motion_retorque() and motion_rebind() end there too.
-// Where steps do not resolve the fastest modes, accelerations at an instant are no information:
-// release(), stick() and slip() then take what the event says, and the next step corrects it.
+// off. So each transition sets only what the event itself determines (a velocity, that the wall is
+// touched) and leaves the rest to resolve(), which finds the one pair of states that violates no
+// condition. The calls from outside, motion_push(), motion_retorque() and motion_rebind(), end in
+// resolve() too. Where steps do not resolve the fastest modes, accelerations at an instant carry no
+// information: release(), stick() and slip() then take the state that the event suggests, and the
+// next step corrects it.
 //
-// A wall that gives knows no constraint and no impact. There touch() begins the contact at any
-// speed, and release() ends it where the law's force falls to zero: in front of the wall, or still
-// behind it, if a damped face cannot follow. PARTED is free flight behind the face, until the face
-// is touched again or passed:
+// A wall that gives imposes no constraint and causes no impact. There touch() begins the contact at
+// any speed, and release() ends it where the law's force falls to zero: in front of the wall, or
+// still behind it, if a damped face cannot follow. PARTED is free flight behind the face, until the
+// face is touched again or passed:
 //
 //     +------+  gap closes: touch()  +---------+  force falls to zero:  +--------+
 //     | FREE | --------------------> | CONTACT | --- release() -------> | PARTED |
@@ -50,9 +51,9 @@
 //   4  a stuck hub does not turn
 //   5  a hub with friction does not slide against the direction its friction is for
 //   6  an arm that contact and friction hold still is at rest
-//   7  an impact takes energy or leaves it, it gives none
+//   7  an impact never increases the energy
 //
-// 4 to 6 wait where an impact is yet to be delivered by the next step (SLOT_IMPULSE).
+// 4 to 6 need not hold while an impact is yet to be delivered by the next step (SLOT_IMPULSE).
 #include "src/solve/contact_machine.h"
 
 #include <assert.h>
@@ -68,7 +69,7 @@
 
 // --- what holds at an instant -----------------------------------------------------------------
 
-// The numbered invariants, once an event.
+// Checks the numbered invariants, once after each event.
 static void check_invariants(const arm *a, const motion *m)
 {
     const double *state = m->state;
@@ -85,8 +86,8 @@ static void check_invariants(const arm *a, const motion *m)
     (void)a, (void)friction, (void)hub_velocity, (void)contact, (void)settled;
 }
 
-// How far the state violates what its contact state promises: tension in contact, penetration to
-// come in a released touch, friction beyond its limit, sliding against the chosen direction.
+// By how much the state violates the conditions of its contact state: tension in contact, imminent
+// penetration of a released touch, friction beyond its limit, sliding against the chosen direction.
 static double violation(const arm *a, const motion *m, const double *state, bool touching,
                         bool hub_rests)
 {
@@ -99,7 +100,7 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     } else if (now.contact) {
         worst = fmax(worst, -state[SLOT_FORCE]);
     } else if (touching) {
-        // of a light face the force that it takes: it answers the rounding of one by far more
+        // of a light face the force that moves it: its acceleration amplifies the force's rounding
         const double mass = m->wall_has_face ? fmin(a->wall.face_mass, 1) : 1;
         worst = fmax(worst, -state[SLOT_GAP_ACCELERATION] * mass);
     }
@@ -116,8 +117,9 @@ static double violation(const arm *a, const motion *m, const double *state, bool
 // Finds the one combination of contact and hub friction that violates nothing and evaluates the
 // state under it. Gauss's principle makes the problem a strictly convex one, since the friction
 // torque is bounded independently of the contact force: there is exactly one solution. At an event
-// two combinations agree to rounding; `event` says which of them the motion has just left. A wall
-// that gives leaves no choice: it is touched if `touching`, and friction alone is to be found.
+// two combinations satisfy the conditions to rounding; `event` tells which of them the motion has
+// just left. A wall that gives leaves no choice: it is touched if `touching`, and friction alone is
+// to be found.
 static void resolve(const arm *a, motion *m, bool touching, motion_event event)
 {
     static const hub_friction sticking_first[] = {HUB_STICK, HUB_FORWARD, HUB_BACKWARD};
@@ -130,8 +132,8 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
 
     int choices = hub_rests ? 3 : 1, ways = touching && !m->wall_gives ? 2 : 1;
 
-    // what the event itself has ended would violate something an instant later: what it left for is
-    // taken although rounding speaks against it
+    // the state that the event has ended would be violated an instant later: its successor is taken
+    // even if rounding makes it look worse
     const bool accelerates = event == MOTION_RELEASE || event == MOTION_SLIP;
     const int preferred = event == MOTION_RELEASE || event == MOTION_TOUCH ? choices
                           : event == MOTION_SLIP                           ? 2
@@ -197,9 +199,8 @@ static bool face_follows(const arm *a, motion *m)
 
 // --- the transitions -----------------------------------------------------------------------------
 
-// Counts flights that are too short for arm or face to change in them. Whether the chatter rule
-// says that they are over: where more than MOTION_MOST_SHORT_FLIGHTS come in a row, the arm presses
-// on the wall.
+// Counts flights that are too short for arm or face to change in them. Returns whether the chatter
+// rule applies: after more than MOTION_MOST_SHORT_FLIGHTS in a row the arm stays on the wall.
 static bool chatters(const arm *a, motion *m)
 {
     double *state = m->state;
@@ -213,15 +214,15 @@ static bool chatters(const arm *a, motion *m)
     return state[SLOT_SHORT_FLIGHTS] > MOTION_MOST_SHORT_FLIGHTS;
 }
 
-// The jump of an impact, and what holds after it. Slower than the rest speed, or after too many
-// short flights, it is plastic: a sequence of ever smaller bounces ends in contact.
+// The jump of an impact, and the contact state after it. Slower than the rest speed, or after too
+// many short flights, it is plastic: a sequence of ever smaller bounces ends in contact.
 static void impact(const arm *a, motion *m, motion_report *report)
 {
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     double *increment = m->scratch;
     const double face = m->state[SLOT_FACE_VELOCITY];
 
-    // what the wall gives
+    // the wall's coefficient of restitution
     double e = wall_restitution(&a->wall, chain_penetration_rate(a, q, w) - face);
     if (chatters(a, m)) {
         m->state[SLOT_SHORT_FLIGHTS] = 0;
@@ -229,7 +230,7 @@ static void impact(const arm *a, motion *m, motion_report *report)
         e = 0;
     }
 
-    // the jump it would be in an instant
+    // the jump of an instantaneous impact
     impact_result result = impact_velocity_increments(a, m->links, q, w, face, e, increment);
     report->speed = result.speed;
     report->impulse = result.impulse;
@@ -355,7 +356,8 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
 
     double g, rate;
     chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
-    // on a rigid wall and going into it, the arm is free until the impact that comes at once
+    // an arm on a rigid wall that moves into it counts as free until the impact that follows at
+    // once
     const bool touching = g >= 0 && (motion_wall_is_rigid(m) ? rate == 0 : rate >= 0);
     resolve(a, m, touching, MOTION_REACHED);
     m->start_energy += motion_wall_energy(a, m, m->state); // of a face that starts with the arm
@@ -383,7 +385,7 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
     }
     m->state[SLOT_EXTERNAL_WORK] += chain_kinetic_energy(a, q, w) - before;
 
-    // in contact the wall answers what goes into it
+    // in contact the wall takes up the part of the push that is directed into it
     if (m->wall_gives) {
         resolve(a, m, face_follows(a, m), MOTION_REACHED);
     } else {
@@ -392,7 +394,7 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
             report->event = MOTION_IMPACT;
             impact(a, m, report);
         } else {
-            // what rounding leaves of a speed neither strikes nor lifts off
+            // a speed that is only rounding causes neither an impact nor a release
             resolve(a, m, contact && speed >= -TOUCH_SPEED, MOTION_REACHED);
         }
     }
@@ -418,7 +420,7 @@ void motion_retorque(const arm *a, motion *m, double before)
         return;
     }
 
-    // a hub that moves goes on as it did, unless the contact is lost
+    // a moving hub keeps sliding in its direction, unless the contact is lost
     bool moves = !sticks && state_velocities(m, state)[0] != 0;
     if (moves && m->engine->retorque != NULL) {
         m->engine->retorque(a, m, a->motor.torque - before);

@@ -49,8 +49,8 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
             to = t;
         }
 
-        // it has settled, the step after this one would be shorter than time resolves, or the
-        // bracket has closed
+        // end where the estimate has settled, the next correction would be below the resolution of
+        // time, or the bracket has closed
         double next = t - g.value / g.slope;
         const double step = fabs(next - t), resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
         if (step <= resolution || bend * step * step <= resolution * fabs(g.slope) ||
@@ -78,9 +78,9 @@ static double bend_between(const arm *a, const motion *m, watch w, point lo, poi
 }
 
 // The first fall below zero from `lo` to `hi`, both known; negative if there is none. Intervals in
-// which the bound on the second derivative leaves no room for one are passed, those in which it
-// leaves none for a slope upwards have one root, and all others are cut in two. In what is not
-// finite nothing is to be found: the state at its end says so.
+// which the bound on the second derivative excludes a fall are skipped; those in which it excludes
+// a rising slope have exactly one root; all others are bisected. Where the function is not finite
+// nothing is found: the state at the step's end reports that.
 static double first_fall(const arm *a, const motion *m, watch w, point lo, point hi, int cuts,
                          double known)
 {
@@ -91,7 +91,7 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
         return -1;
     }
 
-    // one root at most, or none that matters
+    // at most one root, or no dip deeper than the tolerance
     const bool falls = hi.at.value < 0;
     const bool steady = fmax(lo.at.slope, hi.at.slope) + bend * length / 2 < 0;
     const bool flat = cuts == 0 || room <= watch_tolerance(w);
@@ -175,7 +175,7 @@ static point summit(const arm *a, const motion *m, point lo, point hi)
 
 static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, double known)
 {
-    // no room for a larger force, or a slope that keeps its sign
+    // no larger force is possible here, or the slope keeps its sign
     const double length = hi.time - lo.time;
     const double bend = bend_between(a, m, WATCH_FORCE, lo, hi, known);
     const double most = fmax(lo.at.value, hi.at.value) + bend * length * length / 8;

@@ -12,12 +12,12 @@
 
 #define MOST_HALVINGS   8    // of a step that does not converge or makes energy
 #define LEAST_AFTER_CUT 1e-9 // share of a step; what is left of one before a cut is longer
-// Angles, velocities and accelerations below this are zero [rad, rad/s, rad/s2]. The square of what
-// is left is a normal number: a motion that dies away never computes with denormal ones, which some
-// processors do many times more slowly.
+// Angles, velocities and accelerations below this are set to zero [rad, rad/s, rad/s2]. Squares of
+// larger ones are normal numbers: so a motion that dies away never computes with denormal numbers,
+// which are many times slower on some processors.
 #define FADED 1e-150
 
-// Counts a step over so much time [s].
+// Counts a step of this length [s].
 static void count_step(motion *m, double passed, double step)
 {
     const double steps = passed / step - 1e-6;
@@ -38,8 +38,8 @@ static void accept(motion *m, double step)
     }
 }
 
-// A motion that dies away comes to rest: what has faded becomes exactly zero. A velocity that has
-// gives it away.
+// Brings a motion that dies away to rest: what has faded below the limit becomes exactly zero. A
+// faded velocity is the sign of such a motion.
 static void come_to_rest(motion *m)
 {
     const double *w = state_velocities(m, m->state);
@@ -109,8 +109,8 @@ static status cut_step(const arm *a, motion *m, double step, status tried, doubl
     return s == STATUS_OK ? s : step_to_event(a, m, h, first, any);
 }
 
-// An arm that is held still lets time pass, to the cut or as far as is wanted, h [s]. Its force
-// stays what it is.
+// A step of an arm that is held still: time passes up to the cut or by h [s], and its force stays
+// the same.
 static status rest(const arm *a, motion *m, double wanted, double *h)
 {
     *h = smaller(m->cut - m->state[SLOT_TIME], wanted);
@@ -120,7 +120,7 @@ static status rest(const arm *a, motion *m, double wanted, double *h)
     return motion_try_step(a, m, *h);
 }
 
-// A step of a stepping engine, which steps again for all that may be within.
+// A step of a stepping engine, which locates events and peaks by further, shorter steps.
 static status tried_step(const arm *a, motion *m, double step, double wanted, double *h,
                          watch *first, bool *any)
 {
@@ -132,7 +132,8 @@ static status tried_step(const arm *a, motion *m, double step, double wanted, do
     return s;
 }
 
-// Whether a rigid wall holds the arm where it cannot: folded over the hub's axis.
+// Whether a rigid wall holds the arm where the contact equations are singular: folded over the
+// hub's axis.
 static bool held_folded(const arm *a, motion *m)
 {
     return m->state[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
@@ -163,14 +164,14 @@ static bool face_moves(const arm *a, const motion *m)
     return m->wall_has_face && wall_face_rate(&a->wall, state_face(m->state)) > 0;
 }
 
-// What is left of the stride that the state keeps [s].
+// Unused length of the stride that the state keeps [s].
 static double left_of_stride(motion *m)
 {
     const double *kept = state_kept(m, m->state);
     return kept[KEPT_LENGTH] - kept[KEPT_USED];
 }
 
-// What motion_look_far finds out, of an arm that can go on.
+// The body of motion_look_far, for an arm that can move on.
 static void look_ahead(const arm *a, motion *m, double until, double far, double step)
 {
     const double now = m->state[SLOT_TIME];
@@ -233,7 +234,7 @@ static status dense_stride(const arm *a, motion *m, double until, double step, d
     return m->ahead.begun ? motion_try_step(a, m, *h) : STATUS_NO_PROGRESS;
 }
 
-// An instant that was meant is met to the last bit.
+// A requested instant is reached to the last bit.
 static void meet_stop(motion *m, double until)
 {
     const double stop = smaller(until, m->cut);
@@ -243,7 +244,7 @@ static void meet_stop(motion *m, double until)
 }
 
 // The stride of a dense engine where no event ends it and the engine can move the state in place;
-// m->trial gets its start. False, and nothing done, where that is not so.
+// m->trial gets its start. Otherwise returns false and does nothing.
 static bool glide(const arm *a, motion *m, double until, double step)
 {
     if (m->engine->move_to == NULL || !motion_wall_is_rigid(m)) {
@@ -281,7 +282,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     assert(a != NULL && m != NULL && report != NULL && step > 0);
     *report = (motion_report){.event = MOTION_REACHED};
 
-    // what motion_look_ahead has looked at can go on
+    // a step examined by motion_look_ahead needs no search any more
     if (!m->ahead.known && (m->starved || held_folded(a, m))) {
         m->failure_time = m->state[SLOT_TIME];
         return m->starved ? STATUS_NO_MEMORY : STATUS_FOLDED;

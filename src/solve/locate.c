@@ -22,8 +22,8 @@ static double law_slope_at(const arm *a, const double *state)
 }
 
 // Whether the arm is behind the face of a wall that gives: -1 with the face on it, 1 parted from
-// it, 0 if it is not. Within, what is watched of the gap is the depth, and of the force what the
-// law says: positive while the face follows the arm, negative while it does not.
+// it, 0 if it is not. Inside, the watched gap is the depth, and the watched force is the force of
+// the law: positive while the face follows the arm, negative while it does not.
 static int within_wall(const motion *m, const double *state)
 {
     if (!m->wall_gives) {
@@ -82,7 +82,8 @@ static bool watch_slopes(const arm *a, const motion *m, double h, watch w, doubl
 
     const int within = within_wall(m, state);
 
-    // the states carry the slopes of gap and hub velocity, a giving wall's law has its own
+    // states contain the slopes of gap and hub velocity; the law of a wall that gives has its own
+    // slope
     if (w == WATCH_GAP) {
         double sign = within != 0 ? -1 : 1;
         *d0 = sign * state[SLOT_GAP_VELOCITY] * h;
@@ -113,14 +114,14 @@ static double cubic(double s, double v0, double v1, double d0, double d1)
     return t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 - s * s * t * d1;
 }
 
-// Fraction of the step at which a function, admissible at both ends, may have been violated in
-// between; -1 if there is no sign of that.
+// Fraction of the step at which a function that is admissible at both ends may dip below zero in
+// between; -1 if there is no sign of a dip.
 static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
 {
     double d0, d1;
 
     if (!watch_slopes(a, m, h, w, &d0, &d1)) {
-        // near the limit of friction the middle of the step is worth a look
+        // near the limit of friction the middle of the step is checked
         return fmin(v0, v1) < 0.2 * a->motor.stiction ? 0.5 : -1;
     }
 
@@ -227,8 +228,8 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
         guess = 0.5 * hi;
     }
 
-    // it starts on the edge (a release, a breakaway): find where it is well admissible, and on the
-    // way where a gap is first seen closed beyond rounding
+    // it starts at zero (a release, a break-away): find where it is clearly admissible, and on the
+    // way where a gap is first found closed beyond rounding
     const double beyond = fmin(v0, 0) - GAP_ROUNDING;
     double closed = hi, v_closed = v1;
     if (v0 <= tolerance) {
@@ -255,8 +256,8 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
     }
 
     // narrowed to the width that time resolves; a gap that was nowhere found open closes where it
-    // has passed its rounding: flights too low for that to tell (after an impact that leaves the
-    // arm with hardly any force) end there
+    // exceeds its rounding: this ends flights too low to be told from rounding (after an impact
+    // that leaves the arm with hardly any force)
     double edge = 0;
     if (w == WATCH_GAP && !(v0 > 0) && !m->wall_gives) {
         edge = beyond;

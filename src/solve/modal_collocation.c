@@ -41,9 +41,9 @@ void modal_polynomial(const double values[MODAL_NODES], double length, double ou
     }
 }
 
-// What the last Legendre polynomials that r and s are made of would do to momenta and, times their
-// rates, coordinates, were they constant: to what a mode forgets soon, only while it lasts. Across
-// a constraint s is the contact force, which moves nothing.
+// Effect of the last Legendre coefficients of r and s on momenta and (times the modes' rates)
+// coordinates, as if these terms were constant; in a mode that decays fast only for as long as it
+// remembers. Across a constraint s is the contact force, which moves nothing.
 static double last_terms(const modal_stride *s, double h)
 {
     static const double leading = 252; // coefficient of x^5 in the fifth one on [0, 1]
@@ -64,7 +64,8 @@ static double last_terms(const modal_stride *s, double h)
     return sqrt(square) / leading;
 }
 
-// Whether a mode vibrates too fast in the stride to be seen in r and s.
+// Whether a mode vibrates too fast for the collocation points of the stride to resolve it in r and
+// s.
 static bool is_fast(const modal_stride *s, int k)
 {
     const double rate = s->modes->rate[k];
@@ -95,8 +96,8 @@ static void take_tables(modal_stride *s, double length)
     }
 }
 
-// The first point at which r and s are to be found anew: what the start says holds in every sweep,
-// unless vibrations are left out of it.
+// The first point at which sweeps compute r and s anew: those of the start hold in every sweep,
+// unless vibrations are left out of them.
 static int first_point(modal_stride *s)
 {
     for (int k = 0; k < s->count && s->start_holds; k++) {

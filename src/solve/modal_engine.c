@@ -3,13 +3,13 @@
 // engine.
 //
 // A stride of the modes is LONGEST at most, and so short that its points show all vibrations but
-// those that have next to no energy (modal_stride_shown). Its defect (modal_fit) says whether it
-// may pass, how long the next try is where it may not, and the next stride where it may. It is
-// halved where Picard's sweeps do not converge, its ledger does not close or its first event is
-// none of the exact functions. Where that leaves it shorter than ADVANTAGE strides of the series,
-// which are exact and cost a fraction, the series go on, and the modes are asked again after
-// PATIENCE of their strides. What happens within a stride is found as modal_watch.h or
-// dense_location.h says.
+// those that have next to no energy (modal_stride_shown). Its defect (modal_fit) decides whether
+// the stride is accepted, and how long the next attempt or the next stride is. The stride is halved
+// where the collocation sweeps do not converge, the energy balance does not close, or the first
+// event found is not one of the exact functions. Where the stride becomes shorter than ADVANTAGE
+// strides of the series, which are exact and cost a fraction, the series take over, and the modes
+// are tried again after PATIENCE of their strides. What happens within a stride is found as
+// modal_watch.h or dense_location.h says.
 #include <math.h>
 #include <string.h>
 
@@ -30,8 +30,8 @@
 #define TURN       0.05   // of the fastest link in a stride [rad]
 #define LAST_TERMS 1e-9   // of the series between the modes' strides
 
-// Turn up to which a stride's points show a vibration [rad], and the defect (modal_fit) of a stride
-// that is let pass. An arm that bounces passes on what is lost a thousand times enlarged, and more.
+// Phase up to which a stride's points resolve a vibration [rad], and the largest defect (modal_fit)
+// of an accepted stride. Bounces amplify errors a thousandfold and more.
 #define SHOWN           12
 #define SHOWN_BOUNCING  6
 #define DEFECT          3e-7
@@ -130,8 +130,8 @@ static double trusted(const motion *m, watch w)
     return w == WATCH_GAP ? TRUSTED_GAP : w == WATCH_HUB ? TRUSTED_RATE * (1 + fastest) : HUGE_VAL;
 }
 
-// Looks for the first event in the stride in hand, up to h. False where the exact functions deny
-// what was found or was not: the modes do not follow what happens here.
+// Looks for the first event in the stride in hand, up to h. False where the exact functions
+// contradict the result: then the modes do not represent this stride.
 static bool find_event(const arm *a, motion *m, double h)
 {
     modal_memory *memory = m->memory;
@@ -189,7 +189,7 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
     }
     longest = fmin(longest, s->shown_turn / modal_stride_shown(s, FAINT * s->start_energy));
 
-    // beyond what remains the last one is of no interest, and it says little of the next one
+    // a stride beyond what remains is not needed, and says little about the next one
     const double most_defect = bounces ? DEFECT_BOUNCING : DEFECT;
     const double least_next = 2 * remaining < longest ? longest : 0;
     double h = round_length(fmin(longest, 2 * remaining));
@@ -238,7 +238,7 @@ static double begin(const arm *a, motion *m, double remaining, double step)
     return series_stride_begin(memory->series, a, m, remaining, LAST_TERMS);
 }
 
-// What the next stride has to know of this one.
+// Keeps what the next stride needs from this one.
 static double proposal(const motion *m)
 {
     const modal_memory *memory = m->memory;
@@ -312,7 +312,7 @@ static glance force_at(const arm *a, const motion *m, double h)
                              : (glance){0, 0};
 }
 
-// Of strides of the series, which alone are asked so.
+// Called for strides of the series only.
 static glance look(const arm *a, const motion *m, watch w, double h)
 {
     const modal_memory *memory = m->memory;

@@ -112,7 +112,7 @@ static double exact_at(watch kind, const arm *a, motion *m, contact_state mode, 
     return kind == WATCH_FORCE ? r.force : r.friction;
 }
 
-// The functional without what it is at the start.
+// The functional less its value at the start.
 static double functional(const modal_function *f, const modal_stride *s, const double *x,
                          const double *y, const double *drift, const double *drift0)
 {
@@ -278,7 +278,7 @@ void modal_function_fit(modal_function *f, watch kind, modal_stride *s, const ar
                         (int)pair);
     }
 
-    // what the modes leave over there
+    // what the modes leave unexplained there
     double values[MODAL_NODES] = {0};
     for (int i = 1; i < MODAL_NODES; i++) {
         const double *x = s->modal + (size_t)i * pair, *turn = s->more_columns + (size_t)i * pair;

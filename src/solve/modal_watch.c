@@ -122,8 +122,8 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
         t = next;
     }
 
-    // what the functional leaves out moves the root by little; a slope that steepens, as from the
-    // top of a flight of some 1e-14 m, would take it far beyond
+    // the functional's error moves the root only a little; a slope that steepens, as from the top
+    // of a flight of some 1e-14 m, would take Newton's step far beyond
     double target = far_side[f->kind], above = -1, below = HUGE_VAL;
     target = brief ? fmin(target, SHARE_BEYOND * fabs(slope) * t) : target;
     target = f->kind == WATCH_GAP ? fmin(target, TIME_BEYOND * fabs(slope)) : target;
@@ -150,8 +150,8 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
     return t;
 }
 
-// A function that starts at its edge and is below it at `hi`: where it leaves it. If it is nowhere
-// above in between, a gap has left its edge where that is beyond rounding.
+// The root of a function that starts at zero and is below zero at `hi`. If it is nowhere above zero
+// in between, a gap counts as closed where it is below zero by more than rounding.
 static double root_from_edge(modal_function *f, modal_stride *s, const arm *a, motion *m,
                              look_at hi)
 {
@@ -234,7 +234,7 @@ bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, moti
     f->slack = f->kind == WATCH_GAP ? SLACK_GAP
                                     : fmax(SLACK_OTHER, SLACK_SHARE * modal_sum_reach(&f->sum));
 
-    // leaps where no event is certain, else a few samples as fine as the modes ask for
+    // leaps where an event is excluded, else a few samples as close as the modes require
     const double length = *h;
     while (lo.time < length) {
         int fine, far = leap(f, a, &fine);

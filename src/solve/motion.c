@@ -11,20 +11,22 @@
 // The event method takes the modes of the straight chain where the arm's fastest rate or decay is
 // beyond this [1/s]: a stride of theirs then replaces dozens of the series.
 #define STIFF 3e4
-// The two-link series are so cheap (half a million strides in a third of a second) that decays,
-// which alone can be fast there, pay from here on; in fast rotation the modes are dearer.
+// The two-link series are so cheap (half a million strides in a third of a second) that the modes
+// pay only beyond this rate of decays, which alone can be so fast there; in fast rotation the modes
+// cost more.
 #define STIFF_PAIR 2e6
 
-// Share of the time since an event in which what is left of decays changes little.
+// The remainders of decays change little within this share of the time since the event.
 #define GRADING    0.2
 
 #define CACHE_LINE 64 // [bytes]
 
-// Some last bits of an acceleration, as a share of 1e-9, which counts as zero in a slow soft arm.
+// A few units in the last place of an acceleration, relative to 1e-9, which counts as zero in a
+// slow soft arm.
 #define LAST_BITS 4e-4
 
 // The event method's engine: series of the two-link arm, modes of stiff plain chains, series of all
-// others. The time step has no say.
+// others. It does not depend on the time step.
 static const engine *event_engine(const arm *a)
 {
     if (taylor_engine_suits(a) && a->fastest_decay <= STIFF_PAIR) {
@@ -34,8 +36,8 @@ static const engine *event_engine(const arm *a)
         return &series_engine;
     }
 
-    // an arm that bounces passes errors on enlarged, a thousand times and more: unless decays make
-    // it stiff, it goes by what is exact all along
+    // bounces amplify errors a thousandfold and more: unless decays make such an arm stiff, it uses
+    // an engine that is exact to rounding
     const bool bounces = a->wall.restitution > 0 && a->fastest_decay <= a->highest_frequency;
     const bool stiff = fmax(a->highest_frequency, a->fastest_decay) > STIFF;
     return stiff && !bounces ? &modal_engine : &series_engine;
@@ -67,8 +69,8 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     }
 }
 
-// Parts of one block of memory, each on cache lines of its own: as many as are added while there is
-// no block say how long it is to be.
+// Divides one block of memory into parts, each on cache lines of its own. Adding parts without a
+// block first gives the size that the block needs.
 typedef struct layout {
     char *block;   // NULL: there is none yet
     size_t length; // [bytes]
@@ -104,7 +106,7 @@ static void lay_out_engine(const arm *a, motion *m, layout *l)
     m->sweeps = add_part(l, links * e->link_scratch);
 }
 
-// And the rest.
+// Lays out everything else.
 static void lay_out_motion(const arm *a, motion *m, layout *l)
 {
     const size_t state = (size_t)m->size * sizeof(double);
@@ -114,7 +116,7 @@ static void lay_out_motion(const arm *a, motion *m, layout *l)
     m->links = add_part(l, (size_t)a->links * sizeof(chain_link));
 }
 
-// The engine's storage; false, and none of it, if out of memory.
+// Allocates the engine's storage; false, with nothing allocated, if out of memory.
 static bool open_engine(const arm *a, motion *m)
 {
     layout l = {0};
@@ -173,7 +175,7 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
         return motion_create(a, method);
     }
 
-    // storage whose length depends on nothing else may be used again as it is
+    // storage of the same sizes can be reused as it is
     motion next = {.state = m->state,
                    .size = m->size,
                    .dof = m->dof,
@@ -376,7 +378,7 @@ double motion_begin_stride(const arm *a, motion *m, double remaining, double ste
     return motion_held_still(m) ? remaining : m->engine->begin(a, m, remaining, step);
 }
 
-// Time passes over an arm that is held still.
+// A step of an arm that is held still: only time passes.
 static void let_time_pass(motion *m, double h)
 {
     memcpy(m->trial, m->state, (size_t)m->size * sizeof(double));
@@ -390,7 +392,7 @@ static bool face_swings(const motion *m, const double *state)
     return m->wall_has_face && state[SLOT_CONTACT] == 0;
 }
 
-// What a state `h` after another one has without being evaluated.
+// The parts of a state, `h` after another one, that need no evaluation.
 static void set_slots(const arm *a, const motion *m, double *from, double h, double *state)
 {
     static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR};
@@ -407,7 +409,7 @@ static void set_slots(const arm *a, const motion *m, double *from, double h, dou
     }
 }
 
-// The ledger of an evaluated state, from that of another one.
+// Updates the energy ledger of an evaluated state from that of an earlier one.
 static void book(const arm *a, const motion *m, double *from, double *state)
 {
     if (face_swings(m, from)) {

@@ -7,9 +7,9 @@
 
 // A run is given up where its strides are shorter than this, as a share of its duration or of a
 // second, whichever is less: it would take ten million of them, hours with many links. Where the
-// motor's current is the fastest, and in contact with a wall whose damper has its say in each of
-// them, a million are enough: they follow a decay that is long over. Steps that method.step asks
-// for are none of these.
+// motor's current is the fastest, and in contact with a wall whose damper shortens each of them, a
+// million are enough: such strides follow a decay that is long over. Steps requested by method.step
+// do not count.
 #define SLOWEST_PACE 1e-7
 #define DAMPED_PACE  1e-6
 #define ASKED_FOR    1e-3 // share of method.step

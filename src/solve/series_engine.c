@@ -5,14 +5,15 @@
 
 #include "src/solve/locate.h"
 
-// What is nothing but rounding in the first coefficients of a watched function at its edge: of the
-// value and of its derivatives, over which nothing is known but that they are small.
+// Limits below which the first coefficients of a watched function that starts at zero count as
+// rounding: its value and its derivatives, which are only known to be small.
 #define EDGE_VALUE   1e-9
 #define EDGE_RATE    1e-9
 #define EDGE_MORE    1e-7
 #define EDGE_GAP     1e-12 // [m]
 #define EDGE_CURRENT 1e-10 // of its limit
-// As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
+// Depth in the wall, by truncation of the preceding series, at which an arm may still be found that
+// leaves it.
 #define EDGE_DEPTH 1e-6 // [m]
 
 // The series' last terms where nothing but rounding is to be left.
@@ -236,7 +237,7 @@ double series_stride_begin(series_stride *s, const arm *a, motion *m, double rem
     }
     s->force_until = -1;
 
-    // nothing is to be found in what is not finite: its end says so
+    // in a stride that is not finite nothing is searched: the state at its end reports it
     if (!(s->series->allowed > 0)) {
         static const double one = 1;
         for (int i = WATCH_GAP; i < WATCHES; i++) {

@@ -20,7 +20,8 @@
 
 // Strides stay below this over the fastest rate and the angular velocities.
 #define LONGEST_REACH 2.0
-// A decay over a stride: the series of the highest order is stable on the negative axis beyond 7.
+// Limit of (decay rate) x (stride): the series of the highest order is stable on the negative real
+// axis to beyond 7.
 #define LONGEST_DECAY 4.0
 // On a flat wall the first link turns by no more than this share of what is left to a fold.
 #define LONGEST_TURN 0.1
@@ -85,7 +86,7 @@ static double wanted_stride(const arm *a, const double *w, double most)
     return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay : wanted;
 }
 
-// Notes down in the state the stride that begins there, to be as long as `most` [s] if it may.
+// Records in the state the stride that begins there, at most `most` [s] long.
 static void keep(motion *m, double most)
 {
     double *kept = state_kept(m, m->state);
@@ -107,7 +108,7 @@ static void keep(motion *m, double most)
     }
 }
 
-// What the series of the stride that the state keeps start from.
+// Fills in the inputs of the series of the stride that the state keeps.
 static void prepare(const arm *a, motion *m)
 {
     taylor_stride *s = m->memory;
@@ -163,8 +164,8 @@ static void take_up(const arm *a, motion *m)
 }
 
 // The length of the stride whose series are computed: what they allow, but on a flat wall clear of
-// the fold over the hub's axis. There the force has a pole that the velocities know nothing of:
-// series of theirs go through it with small terms, while those of the force do not converge.
+// the fold over the hub's axis. There the force has a pole that does not show in the velocities:
+// the velocities' series pass it with small terms, while the force's series diverge.
 static double length_of_stride(const arm *a, const taylor_lane *lane)
 {
     const double allowed = lane->block[AT_ALLOWED];

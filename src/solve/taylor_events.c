@@ -5,7 +5,8 @@
 #include "src/solve/dense_location.h"
 #include "src/solve/taylor_stride.h"
 
-// As deep in the wall an arm that leaves it may be by the truncation of the series that led there.
+// Depth in the wall, by truncation of the preceding series, at which an arm may still be found that
+// leaves it.
 #define EDGE_DEPTH 1e-6 // [m]
 
 static double rounding_of(const arm *a, const motion *m, const taylor_stride *s)
@@ -136,8 +137,8 @@ glance taylor_gap_at(const arm *a, const motion *m, double h)
     return glance_at(taylor_terms(&s->lane, AT_GAP, count), count, s->used + h);
 }
 
-// Whether the watched function is off its edge, or leaves it, from the start, and stays above zero
-// all over the stride.
+// Whether the watched function is above zero from the start, or rises from it, and stays above zero
+// over the whole stride.
 static bool clear_throughout(const motion *m, watch w)
 {
     const taylor_stride *s = m->memory;

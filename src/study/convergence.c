@@ -62,7 +62,7 @@ status convergence_compute(const scenario *s, run_monitor *monitor, convergence_
         run_monitor_count(monitor);
     }
 
-    // and what the results of those that there are tell
+    // and the orders that their results show
     panel->row_count = PANEL_KEYS;
     for (int k = 0; k < PANEL_KEYS; k++) {
         convergence_row *row = &panel->rows[k];

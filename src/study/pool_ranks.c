@@ -73,7 +73,7 @@ static status follow(const pool_work *w, const rank_group *g, const char *identi
     status code = scratch != NULL && answer != NULL ? STATUS_OK : fault_no_memory(f);
     bool over = code != STATUS_OK || *g->dismissed;
 
-    // one that cannot work does not begin: the leader sees it end
+    // a rank that cannot work ends before it begins, which the leader notices
     if (!over) {
         memcpy(begins, &head, sizeof head);
         memcpy(begins + sizeof head, identity, RANK_IDENTITY);
@@ -168,7 +168,7 @@ static void collect(leader *l, size_t piece, const void *result)
     }
 }
 
-// What is wrong with a rank, unless something is already.
+// Records what is wrong with a rank, unless a fault is recorded already.
 static void note_fault(leader *l, int rank, const char *what)
 {
     if (l->code == STATUS_OK) {

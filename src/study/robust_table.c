@@ -1,4 +1,4 @@
-// Tables of what control laws make of what they were not told.
+// Tables of the robustness of control laws against what they were not told.
 #include <assert.h>
 #include <math.h>
 #include <string.h>

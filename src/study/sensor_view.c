@@ -63,8 +63,8 @@ void sensor_lag_force(sensor_lag *s, double length, double first, double last, d
         return;
     }
 
-    // in a small share of the time constant the polynomials below cancel: mean and tilt are enough,
-    // with an error of the cube of the share
+    // over a small share of the time constant the polynomials below suffer cancellation: mean and
+    // tilt are enough, with an error of the cube of that share
     const double share = length / s->time_constant;
     if (share < BRIEF_SHARE) {
         const double gained = share * (1 - share / 2 * (1 - share / 3 * (1 - share / 4)));
@@ -338,7 +338,7 @@ status sensor_study_compute(const scenario *s, run_monitor *monitor, sensor_stud
     assert(s != NULL && study != NULL);
     *study = (sensor_study){0};
 
-    // the longest one tells beforehand whether it can be done
+    // the chain with the most links decides beforehand whether the study is feasible
     parameters longest;
     arm a;
     status possible = change_links(s, links[SENSOR_LENGTHS - 1], &longest, &a, f);

@@ -80,7 +80,7 @@ static void compute_piece(void *context, size_t piece, void *scratch, void *resu
         run_finish(&own->results[i]);
     }
 
-    // nobody can say whose time it was
+    // the time cannot be attributed to single runs
     const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
     const double wall = clock_seconds(CLOCK_MONOTONIC) - start;
     for (size_t i = 0; i < length; i++) {
@@ -175,8 +175,8 @@ static void keep_to_share(const sweep_execution *e, unsigned char *present)
     }
 }
 
-// Whether every run of the sweep is one of those that gain by company, and as short as most of its
-// kind: two links, by the event method, under no law from outside the program.
+// Whether every run of the sweep is of a kind that gains by being computed side by side, and short:
+// two links, by the event method, under no law from outside the program.
 static bool runs_are_light(const sweep *s)
 {
     static const char *const decisive[] = {"arm.model",    "arm.links",      "method.name",
