@@ -41,7 +41,7 @@ void sensor_lag_impulse(sensor_lag *s, double impulse)
     look(s, s->time, s->value);
 }
 
-// y(t) = a + b t + c t^2 + d plain_exp(-t / tau), the response to a parabola.
+// y(t) = a + b t + c t^2 + d exp(-t / tau), the response to a parabola.
 typedef struct response {
     double a, b, c, d, rate;
 } response;

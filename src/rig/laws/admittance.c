@@ -4,9 +4,10 @@
 //     m_a v' + d_a v = f - reading,    theta_a' = v,
 //     T = kp (theta_a - theta) + kv (v - w) + D v + friction + 2 l reading
 //
-// In flight the reading is nothing and the mass comes to the speed f/d_a; in contact it comes to
-// rest where the reading is f, whatever wall and stiffness are. One law for both, without a switch.
-// The last term carries what the beam presses, so that the position control has its error only.
+// In flight the reading is zero and the mass approaches the speed f/d_a; in contact it comes to
+// rest where the reading is f, whatever the wall's place and the stiffness are. One law for both,
+// without a switch. The last term balances the force with which the beam presses, so that the
+// position control acts on its error only.
 #include <string.h>
 
 #include "src/rig/laws/laws.h"

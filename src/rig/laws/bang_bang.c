@@ -16,7 +16,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
         m->start_angle = in->encoder;
     }
 
-    // on its last part against the motion until the arm stands, then gently on
+    // on the last part the command brakes until the arm stands, then it is the plain approach
     double gone = in->encoder - m->start_angle, way = m->rig.wall_angle - m->start_angle;
     if (gone >= m->own * way) {
         m->reversed = m->reversed || in->tachometer <= 0;

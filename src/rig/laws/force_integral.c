@@ -12,7 +12,7 @@ static void sample(void *memory, const controller_input *in, controller_output *
 
     // the integral is the command itself, so that modes join without a jump
     if (m->mode == APPROACH) {
-        // a release goes on from the command there is
+        // after a release the present command continues
         m->integral = m->p[APPROACH_VOLTAGE];
     } else {
         double error = m->p[FORCE_WANTED] - in->force, limit = m->rig.voltage_limit;

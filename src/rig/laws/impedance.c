@@ -8,9 +8,10 @@
 //
 //     theta_e = theta_f + 2 f l/k,      theta_f = theta_imp + f l/(2 k2) (5.23)
 //
-// where spring and beam balance with the wanted force f. It looks at no force: what a wrong wall or
-// stiffness makes of f is what k is made for, k/(k + 4 k2) of a hard position control's error. The
-// damper makes the arm in contact critical, d = 2 sqrt(M (k + 4 k2)) with M = I1 + 2 I + m l^2/2.
+// where spring and beam balance with the wanted force f. It uses no force reading: k sets how much
+// a wrong wall or stiffness changes f, namely by k/(k + 4 k2) of the error under a hard position
+// control. The damper makes the arm in contact critical, d = 2 sqrt(M (k + 4 k2)) with M = I1 + 2 I
+// + m l^2/2.
 #include <math.h>
 #include <string.h>
 

@@ -17,16 +17,17 @@
 // and the second gives the torque. (+-s are the zeros of the transfer function from torque to tip:
 // one of them unstable, since a tip that is pushed through a bend first goes the other way.)
 //
-// The inverse. At every frequency (a) is a division: a part U plain_exp(iwt) of u takes
-// d = -U plain_exp(iwt)/(w^2 + s^2), which is bounded though (a) integrated forwards is not. The
+// The inverse. At every frequency (a) is a division: a part U exp(iwt) of u takes
+// d = -U exp(iwt)/(w^2 + s^2), which is bounded though (a) integrated forwards is not. The
 // plan consists of three pieces with few frequencies each,
 //
-//     travel   y'' = A inline_sin(wt) + B (1 - inline_cos(wt)),     w = 2 pi/travel_time,    to the
-//     wall rise     f = F/2 (1 - inline_cos(pi t/transition_time)), y at the wall hold     f = F
+//     travel   y'' = A sin(wt) + B (1 - cos(wt)),     w = 2 pi/travel_time,    to the wall
+//     rise     f = F/2 (1 - cos(pi t/transition_time)),  y at the wall
+//     hold     f = F
 //
 // so that neither a discrete transform nor its padding is needed: summed over all frequencies, the
 // transform of a piece gives the piece's own within it and, from the poles at w = +-is,
-// plain_exp(-s |t - t_k|) before and after each joint t_k of two pieces, with the heights that make
+// exp(-s |t - t_k|) before and after each joint t_k of two pieces, with the heights that make
 // d continuous. What runs ahead of a joint is why the method is not causal: the hub starts before
 // the tip, bends the beam for it, and turns on into the press before the tip has arrived.
 //
@@ -214,9 +215,9 @@ static void plan(inverse_memory *m, const controller_input *in)
     join_pieces(m);
 }
 
-// Playback. A touch well before its time moves the plan on to the touch; nothing else is fed back.
-// (Just before its time the hub is turning into the press already, and the plan is better left
-// alone.) A command holds for a period, whence the torque of the period's middle.
+// Playback. A touch well before the planned time advances the plan to the touch; nothing else is
+// fed back. (Just before that time the hub already turns into the press, and the plan is better
+// left unchanged.) Since a command holds for a period, it is the torque at the period's middle.
 static void sample(void *memory, const controller_input *in, controller_output *out)
 {
     inverse_memory *m = memory;

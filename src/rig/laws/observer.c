@@ -134,7 +134,7 @@ static double travel(observer_memory *m, const estimator *e)
     return limited(m, torque / m->rig.torque_per_volt + feedback);
 }
 
-// Comes to the wall in the least time; as otherwise where there is no way.
+// Comes to the wall in the least time; by the usual approach where no such plan exists.
 static double hurry(observer_memory *m, const estimator *e)
 {
     const controller_setup *r = &m->rig;
@@ -169,9 +169,9 @@ static double stopping_force(const observer_memory *m, const estimator *e)
     return arm_observer_square(o, 0) * coordinate / (set->hub[0] * o->arm.length);
 }
 
-// Limits a command so that the force it makes at once stays within what is allowed, where the force
-// follows a torque at once: behind a spring at the hub it does not. What does not stop with the
-// allowed force takes more: only braking lowers it, and braking presses.
+// Limits a command so that the force it causes at once stays within the limit. This applies where
+// the force follows a torque at once, which it does not behind a spring at the hub. A motion that
+// the allowed force cannot stop gets more: only braking reduces it, and braking presses.
 static double within_force(const observer_memory *m, const estimator *e, double command)
 {
     const arm_observer *o = observer_of(m);
@@ -219,9 +219,8 @@ static double resting_force(const observer_memory *m, const estimator *e)
     return (arm_observer_holding_torque(o, e) + e->z[arm_observer_torque_index(o)]) / o->arm.length;
 }
 
-// Friction to overcome in contact. At rest it is what the force wanted there asks for, in
-// proportion within what would be held: its full step would move the force by several per cent at
-// once.
+// Friction to overcome in contact. At rest it is proportional to the force wanted there, within the
+// band that friction holds: its full step would change the force by several per cent at once.
 static double friction_pressing(const observer_memory *m, const estimator *e, double aim,
                                 double hub_rate, bool moves)
 {
@@ -265,7 +264,7 @@ static double press(const observer_memory *m, const estimator *e, double time)
 
 // --- modes ------------------------------------------------------------------------------------
 
-// Where the readings speak for another arm, what is under way begins anew for that one.
+// Where the readings favour another arm, the present mode starts again for that one.
 static void change_arm(observer_memory *m, double time)
 {
     if (observer_of(m)->touches) {
@@ -309,9 +308,9 @@ static void follow_contact(observer_memory *m, const controller_input *in)
     }
 }
 
-// What the estimated force is above the reading, averaged, is added to the force aimed at once the
-// rise is over: what model errors leave. It is bounded, and cannot wind up, being no integral of
-// the way to go.
+// Corrects model errors: once the rise is over, the averaged difference between estimated force and
+// reading is added to the force aimed at. It is bounded and cannot wind up, since it does not
+// integrate the control error.
 static void correct_aim(observer_memory *m, const controller_input *in)
 {
     const arm_observer *o = observer_of(m);
@@ -334,8 +333,8 @@ static void follow_reading(observer_memory *m, double reading)
     m->swing += share * (off * off - m->swing);
 }
 
-// Whether what is held is still right: a reading counts as at most five standard deviations off, as
-// the sensor shows a blow on the tip which the hub does not feel.
+// Whether the held command is still right. A reading counts as at most five standard deviations
+// off, because the sensor also shows blows on the tip that the hub does not feel.
 static bool holds_right(observer_memory *m, double reading, double rate)
 {
     double force = m->p[FORCE_WANTED], off = reading - m->held_force;

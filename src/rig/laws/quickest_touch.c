@@ -76,7 +76,7 @@ typedef struct two_equations {
     double x, y;
 } two_equations;
 
-// The dual function, which x and y make least: convex, quadratic between the bounds.
+// The dual function, which is minimised over x and y: convex, quadratic between the bounds.
 typedef struct dual {
     double value, slope[2], bend[3]; // bend: second derivatives xx, xy, yy
 } dual;
@@ -121,14 +121,14 @@ static bool solve(const quickest_touch *q, two_equations *e)
             return true;
         }
 
-        // Newton's step, which exists where all torques are at their bounds too
+        // Newton's step, regularised so that it exists even with all torques at their bounds
         const double a = d.bend[0] + DAMPED * whole.bend[0], b = d.bend[1];
         const double c = d.bend[2] + DAMPED * whole.bend[2], determinant = a * c - b * b;
         const double dx = (b * d.slope[1] - c * d.slope[0]) / determinant;
         const double dy = (b * d.slope[0] - a * d.slope[1]) / determinant;
         const double descent = dx * d.slope[0] + dy * d.slope[1];
 
-        // as much of it as goes down
+        // as much of it as lowers the function
         two_equations next = *e;
         dual there = d;
         double share = 1;
@@ -155,7 +155,7 @@ bool quickest_touch_plan(quickest_touch *q, const quickest_task *task)
         return true;
     }
 
-    // torques are counted from the middle of what can be had
+    // torques are measured from the middle of the attainable range
     const double middle = (task->low + task->high) / 2, half = (task->high - task->low) / 2;
     const double most = q->planned ? half : (1 - RESERVE) * half;
     const int first = q->planned ? q->left : FIXED + 1;

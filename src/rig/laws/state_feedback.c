@@ -192,7 +192,7 @@ static double force_of_touch(const optimal_memory *m)
 }
 
 // The command of the approach; with a limit on the force, as fast as it allows: the speed that
-// there is, kept up, and the rest in proportion to the force that is left.
+// there is, kept up, and the rest in proportion to the remaining margin of force.
 static double approach(const optimal_memory *m)
 {
     if (m->force_limit == HUGE_VAL) {
@@ -264,7 +264,7 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
         linear += row[i] * e->z[i];
     }
 
-    // the sensor is worth less the harder it is pressed
+    // the sensor is less accurate the harder it is pressed
     double deviation = 0.02 + 0.02 * in->force; // [N]
     estimator_correct(e, 4, row, contact_force(m, e->z, drive) - linear, in->force,
                       deviation * deviation);
@@ -322,7 +322,8 @@ static double hold(optimal_memory *m, const controller_input *in)
     const double smoothing = 0.05;
     m->held_force += smoothing * (in->force - m->held_force);
 
-    // off the command: press again, the wall being where this force puts it
+    // the held force differs from the command: press again, with the wall's angle that this force
+    // implies
     bool wanted = in->wanted_mode == HOLD;
     if (!wanted && fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
         m->mode = PRESS;
@@ -352,7 +353,7 @@ static double press(optimal_memory *m, const controller_input *in)
         predict_contact(m, &m->during_delay, &ahead, motor_torque(m, in->voltage));
     }
 
-    // at rest within the tolerance there is nothing left to do but to hold
+    // at rest within the tolerance the force is held
     const double *z = ahead.z;
     double shortfall = fmin(SHORTFALL * m->force, MOST_SHORTFALL);
     double aim = m->force * (1 - shortfall) / m->spring_force,
@@ -384,7 +385,7 @@ static bool contact_is_lost(optimal_memory *m, const controller_input *in)
     return true;
 }
 
-// The observer's turn, and the law's own choice where the flight ends.
+// Updates the observer; the law itself decides where the flight ends.
 static void observe(optimal_memory *m, const controller_input *in)
 {
     bool locked = in->wanted_mode >= 0;
