@@ -24,7 +24,7 @@ static int scenario_parameter(const char *name)
     return -1;
 }
 
-// A controller that says nothing of a parameter but its name leaves the rest to the table.
+// Where a controller gives only the name of a parameter, the rest comes from the table.
 static bool has_only_a_name(const controller_parameter *c)
 {
     return c->unit == NULL && c->description == NULL;

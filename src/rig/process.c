@@ -20,7 +20,7 @@
 enum {
     MOST_LINE = 65536,  // of an answer [bytes]
     LAST_ERRORS = 160,  // of what the program wrote to its standard error last [bytes]
-    SHOWN_OF_LINE = 60, // of an answer that is none [bytes]
+    SHOWN_OF_LINE = 60, // of a line that is no answer [bytes]
     READ_AT_ONCE = 4096,
     LOOK_UP = 100 // from waiting for an answer, whether the run is to end [ms]
 };

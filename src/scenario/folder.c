@@ -297,7 +297,7 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
         return report_no_memory(report, context);
     }
 
-    // the nearest of those that ship; without a folder there is none
+    // the nearest of the shipped scenarios, if their folder can be read
     nearest_word near = nearest_begin(stem);
     for (int i = 0; i < count; i++) {
         nearest_try(&near, names[i]);

@@ -165,7 +165,7 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
     step->value = parameter_get(&scratch, step->parameter);
 }
 
-// Reads what has to be so; false if the key says nothing of that kind.
+// Reads a condition that a step requires; false if the key is no such condition.
 static bool read_check(reader *r, const char *key, const tree_node *node, lesson_step *step)
 {
     static const char *const kinds[] = {"number", "choice", "cursor", "value", "ratio", "pinned"};

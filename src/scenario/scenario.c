@@ -59,7 +59,7 @@ status scenario_copy(scenario *copy, const scenario *s)
     copy->actions = actions;
     copy->expectations = expectations;
 
-    // half a copy is none
+    // an incomplete copy is discarded
     if (!good) {
         scenario_finish(copy);
     }

@@ -14,12 +14,12 @@
 // Where the step resolves the fastest mode, a1 and f are then evaluated again from q1, w1 and
 // d2g/dt2 = 0: the strategy of section 3.1.3, which keeps the oscillation of the constraint's force
 // out of the results. Where it does not (many links), accelerations of modes faster than the step
-// are no information: a1 and f stay those of the step's own balance, and in contact and just after
-// a jump the step is backward Euler's, beta = gamma = 1, which asks nothing of the accelerations
-// before it, with dg/dt = 0 for a constraint, on which the force does no work; what g drifts is
-// bent away along a smooth shape that costs next to no strain. It is of first order, but loses
-// energy whatever the step; generalised-alpha, started from the jumps of a thousand links, was seen
-// to make some.
+// carry no information: a1 and f stay those of the step's own balance. In contact and just after a
+// jump the step is then one of backward Euler, beta = gamma = 1, which does not use the
+// accelerations before it, with dg/dt = 0 as the constraint, on which the force does no work; the
+// drift of g is removed by bending along a smooth shape that costs next to no strain. It is of
+// first order, but loses energy whatever the step, whereas generalised-alpha, started from the
+// jumps of a thousand links, was seen to gain energy.
 #include <math.h>
 #include <string.h>
 
@@ -124,7 +124,7 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
     double g, rate, power = 0;
     chain_penetration(a, q, w, &g, &rate);
 
-    // the impulse of an impact within the step is none of the force's
+    // the impulse of an impact within the step is not part of the force's impulse
     double impulsive = m->state[SLOT_IMPULSE] / (trial[SLOT_TIME] - m->state[SLOT_TIME]);
     trial[SLOT_FORCE] = it->contact ? it->force : 0;
     if (it->contact && it->force > 0 && m->state[SLOT_IMPULSE] > 0) {
@@ -145,8 +145,8 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
     trial[SLOT_DAMPING_POWER] = power;
 }
 
-// Bends a drift of the constraint away: angles c x (2 - x) with x from 0 at the hub to 1 at the
-// tip, like a beam under a load at its tip.
+// Removes the drift of the constraint by bending the arm: angles c x (2 - x) with x from 0 at the
+// hub to 1 at the tip, like a beam under a load at its tip.
 static void bend_to_wall(const arm *a, motion *m)
 {
     double *q = state_angles(m, m->trial), *shape = m->scratch;

@@ -245,7 +245,7 @@ status printed_motion_step(printed_motion *m, fault *f)
                                                    : "have a residual that is not finite");
     }
 
-    // an overflow, told before it becomes the next step's start
+    // an overflow, reported before the next step starts from it
     const char *name = not_finite(&r, m->force);
     if (name != NULL) {
         return fault_set(f, STATUS_NOT_FINITE,

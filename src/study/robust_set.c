@@ -52,7 +52,7 @@ static char *trimmed(char *text)
     return text;
 }
 
-// Reads IMPULSE@TIME, both finite. False if it is none.
+// Reads IMPULSE@TIME, both finite. False if the text is something else.
 static bool read_push(robust_case *c, const char *text)
 {
     const char *rest;

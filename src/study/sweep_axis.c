@@ -311,7 +311,8 @@ static status read_list(sweep_axis *axis, char *text, fault *f)
 status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f)
 {
     assert(axis != NULL && text != NULL);
-    // a list of ranges is none: the comma wins, and the value with the colon is complained about
+    // a list cannot hold ranges: with a comma it is read as a list, and a value with a colon is
+    // refused
     bool range = strchr(text, ':') != NULL && strchr(text, ',') == NULL;
     return range ? read_range(axis, text, drawn, f) : read_list(axis, text, f);
 }
