@@ -222,10 +222,10 @@ bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, moti
     look_at lo = {0, walked(f, a)};
 
     // it starts on its edge or a little beyond, or is still to come there, however little is left;
-    // a gap so small is one of an arm that leaves the wall, unless it closes
-    const bool gap = f->kind == WATCH_GAP, closes = lo.at.slope < 0;
+    // just after an event a gap so small is one of an arm that leaves the wall, unless it closes
+    const bool gap = f->kind == WATCH_GAP, leaves = m->state[SLOT_JUMPED] != 0 && lo.at.slope >= 0;
     const double edge = gap ? MODAL_ON_WALL : far_side[f->kind] * ON_EDGE;
-    const double within = !gap ? 0 : closes ? GAP_ROUNDING : MODAL_ON_WALL;
+    const double within = !gap ? 0 : leaves ? MODAL_ON_WALL : GAP_ROUNDING;
     bool armed = lo.at.value > within || lo.at.value < -edge;
     if (!armed) {
         f->edge = lo.at.value;

@@ -25,9 +25,10 @@ typedef struct modal_function {
     double edge; // its value at a start on its edge, where it counts as zero
 } modal_function;
 
-// A gap smaller than this at a stride's start counts as zero: the arm is on the wall and leaves it,
-// unless the gap closes. The function is then the growth of the gap, computed to full relative
-// precision, since flights may be lower than the rounding of the gap itself [m].
+// From a gap smaller than this at a stride's start on, the function is the growth of the gap,
+// computed to full relative precision, since flights may be lower than the rounding of the gap
+// itself [m]. Just after an event such a gap counts as zero: the arm is on the wall and leaves it,
+// unless the gap closes.
 #define MODAL_ON_WALL 1e-11
 
 // Doubles needed by a function's arrays for n degrees of freedom; places the arrays in such
