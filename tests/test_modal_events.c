@@ -133,6 +133,22 @@ static void bounces_end_where_no_engine_tells_them(void **state)
     check_close(modes.peak, series.peak, 1e-4 * series.peak);
 }
 
+// An arm that strikes at 3e-7 m/s and comes to rest in some microseconds: an impact that is a
+// nanosecond late would leave another force.
+static void slow_impacts_are_in_time(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(SETTINGS(
+        "arm.links=14", "arm.hub_joint=spring", "arm.damping_ratio=0.769416",
+        "wall.restitution=0.600972", "wall.angle=1.0272161409848381e-7", "motor.voltage=2.00084e-6",
+        "arm.k2=6.35355", "arm.mass=0.290645", "arm.k1=230.417", "arm.hub_inertia=2.04816e-4",
+        "motor.stiction=8.7131e-9", "method.rest_speed=1e-13"));
+    const meetings modes = meetings_by(&p, &modal_engine, 1.02316e-7, 3.07823e-7, 0.003);
+    const meetings series = meetings_by(&p, &series_engine, 1.02316e-7, 3.07823e-7, 0.003);
+    assert_int_equal(modes.count, series.count);
+    check_close(modes.peak, series.peak, 1e-5 * series.peak);
+}
+
 // An arm that comes to the wall at 7e-9 m/s: first contact is no later for the tolerance of the
 // gap, which is a length.
 static void a_slow_arm_touches_in_time(void **state)
@@ -262,6 +278,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(events_within_a_stride_are_the_formulas),
                                        cmocka_unit_test(bounces_end_where_no_engine_tells_them),
+                                       cmocka_unit_test(slow_impacts_are_in_time),
                                        cmocka_unit_test(a_slow_arm_touches_in_time),
                                        cmocka_unit_test(bounces_lower_than_rounding_do_not_gain),
                                        cmocka_unit_test(a_step_that_ends_in_a_flight_is_no_bounce),

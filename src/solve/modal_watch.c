@@ -11,7 +11,7 @@
 #define SLACK_OTHER  1e-9  // and at least so much, in its unit
 #define GAP_ROUNDING 4e-15 // [m]
 #define SHARE_BEYOND 1e-9  // of a flight's height, to which it ends on the wall's far side
-#define TIME_BEYOND  1e-9  // after which it does at the latest, however slow it is [s]
+#define TIME_BEYOND  1e-12 // after which it does at the latest, however slow it is [s]
 
 enum { SAMPLES_A_BLOCK = 4, MOST_HALVINGS = 40, MOST_ROOT_STEPS = 60, MOST_POLISHING = 12 };
 
