@@ -129,6 +129,11 @@ expect 0 robust compare/least-time --laws impedance --runs 2 --set control.setti
 grep -q ^impedance stiff.csv || fail "robust has no row for impedance"
 grep ^impedance mixed.csv | cmp - <(grep ^impedance stiff.csv) || fail "impedance does not get its settings"
 expect 1 robust compare/least-time --laws hybrid --runs 2 --set control.settings=nonsense=1 --quiet
+expect 0 robust compare/observer --laws observer,impedance --runs 2 --set control.settings=stiffness=20
+says err "observer runs without 'stiffness=20'"
+expect 0 robust compare/observer --laws hybrid,process --runs 2 --set control.settings=of_its_own=1 \
+    --set control.command=true --allow-code
+says err "hybrid runs without 'of_its_own=1'"
 
 # --- a plot without a name of its own has its recipe's
 expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --vary arm.k2=4:6:2 --db map.sqlite --quiet

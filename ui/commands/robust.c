@@ -191,18 +191,15 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     return result;
 }
 
-// Whether a word of control.settings, "NAME=VALUE", is of the scenario's own law or of another one
-// that is judged. A plug-in's and a program's are known to them alone.
+// Whether a word of control.settings, "NAME=VALUE", is of the scenario's own law or of one that is
+// judged. Which settings a plug-in or a program has it alone knows: any may be of it.
 static bool is_setting_of_others(const robustness *r, const char *word, size_t length)
 {
     const int own = r->scenario.parameters.control.law, laws = r->count + (r->against == r->count);
-    if (own != LAW_NONE && controller_of(own) == NULL) {
-        return true;
-    }
-    bool known = own != LAW_NONE && controller_takes_setting(controller_of(own), word, length);
-    for (int i = 0; i < laws && !known; i++) {
-        const controller *law = controller_of(r->laws[i]);
-        known = law != NULL && controller_takes_setting(law, word, length);
+    bool known = false;
+    for (int i = own == LAW_NONE ? 0 : -1; i < laws && !known; i++) {
+        const controller *law = controller_of(i < 0 ? own : r->laws[i]);
+        known = law == NULL || controller_takes_setting(law, word, length);
     }
     return known;
 }
@@ -213,7 +210,7 @@ static void fit_settings(const robustness *r, int law, control_parameters *contr
 {
     const controller *known = controller_of(law);
     char kept[sizeof control->settings] = "", left[sizeof control->settings] = "";
-    if (law == r->scenario.parameters.control.law || known == NULL) {
+    if (known == NULL) {
         return;
     }
 
