@@ -179,6 +179,15 @@ static void test_values_that_have_no_room_are_cut_visibly(void **state)
     text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
     assert_non_null(strstr(text, "law          inverse-dynamics"));
     free(text);
+
+    explorer_finish(&ex);
+
+    // between characters, and right-aligned, whatever number of bytes they have
+    open_explorer(&ex, "compare/inverse-dynamics");
+    press(&ex, ":set control.command ./xééééééééééééééééééé<Enter>/command<Enter>");
+    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "command  ./xééééééééééééééé.. │"));
+    free(text);
     explorer_finish(&ex);
 }
 

@@ -181,6 +181,10 @@ static void test_a_sweep_gives_what_single_runs_give(void **state)
     text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
     assert_non_null(strstr(text, "─ viscous_friction, 3 of 3 ─"));
     free(text);
+    press(&ex, ":sweep sensor.accelerometer_rise_time=0.001:0.002:3<Enter>");
+    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "─ accelerometer_rise.., 3 of 3 ─"));
+    free(text);
     press(&ex, ":sweep motor.volts=1:2:4<Enter>");
     assert_shows(&ex, "did you mean");
     explorer_finish(&ex);

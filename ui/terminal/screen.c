@@ -75,6 +75,17 @@ uint32_t glyph_decode(const char **text)
     return stray || is_unprintable(glyph) ? '?' : glyph;
 }
 
+int text_cells(const char *text)
+{
+    assert(text != NULL);
+    int count = 0;
+    while (*text != '\0') {
+        glyph_decode(&text);
+        count++;
+    }
+    return count;
+}
+
 int screen_text(screen *s, int x, int y, int room, ink colour, const char *text)
 {
     int taken = 0;

@@ -101,6 +101,8 @@ int text_wrap(const char *text, int width, text_line *lines, int most, bool *spl
 uint32_t glyph_in_set(uint32_t glyph, glyph_set set);
 // Takes one character off UTF-8 text; '?' for a byte that is none and for control characters.
 uint32_t glyph_decode(const char **text);
+// The cells that a UTF-8 text takes.
+int text_cells(const char *text);
 // Writes a glyph as UTF-8 with a zero at its end; text has 5 bytes.
 void glyph_encode(uint32_t glyph, char *text);
 

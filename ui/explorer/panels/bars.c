@@ -4,17 +4,6 @@
 
 #include "ui/explorer/panels/layout.h"
 
-// Cells of a UTF-8 text.
-static int cells_of(const char *text)
-{
-    int count = 0;
-    while (*text != '\0') {
-        glyph_decode(&text);
-        count++;
-    }
-    return count;
-}
-
 void draw_title(const explorer_state *st, screen *s)
 {
     const session *e = &st->session;
@@ -32,12 +21,12 @@ void draw_title(const explorer_state *st, screen *s)
 
     // the name and the changes go before the title
     const char *title = e->base.title ? e->base.title : "";
-    int room = s->width - 2 - (changes[0] ? cells_of(changes) + 2 : 0), x = 1;
-    if (12 + cells_of(e->base.name) <= room) {
+    int room = s->width - 2 - (changes[0] ? text_cells(changes) + 2 : 0), x = 1;
+    if (12 + text_cells(e->base.name) <= room) {
         x += screen_text(s, x, 0, room, INK_TITLE, "impactlab  ");
     }
     x += screen_text(s, x, 0, room - x + 1, INK_TITLE, e->base.name);
-    if (x + 2 + cells_of(title) <= room + 1) {
+    if (x + 2 + text_cells(title) <= room + 1) {
         x += 2 + screen_text(s, x + 2, 0, room - x, INK_TEXT, title);
     }
     screen_text(s, x + 2, 0, s->width - x - 3, INK_EVENT, changes);
@@ -119,7 +108,7 @@ void draw_status(const explorer_state *st, screen *s, int y)
     // the most important ones first, as long as there is room
     for (int rank = 0, used = 1; rank < 8; rank++) {
         for (int i = 0; i < count; i++) {
-            int length = cells_of(items[i].text);
+            int length = text_cells(items[i].text);
             if (items[i].rank == rank && (rank < 2 || used + length <= s->width)) {
                 shown[i] = true;
                 used += length + 2;
@@ -155,7 +144,7 @@ static void blank_row(screen *s, int y)
 // The end of the prompt if it is wider than the screen, and what was said about it.
 static int draw_prompt(const explorer_state *st, screen *s)
 {
-    int y = s->height - 1, room = s->width - 2, over = cells_of(st->prompt.text) - (room - 1);
+    int y = s->height - 1, room = s->width - 2, over = text_cells(st->prompt.text) - (room - 1);
     const char *text = st->prompt.text;
     int rows = 1;
     for (int i = 0; i < over; i++) {
@@ -168,10 +157,10 @@ static int draw_prompt(const explorer_state *st, screen *s)
 
     // a value that typing replaces looks selected
     if (st->prompt.replaces) {
-        int value = cells_of(st->prompt.text + st->prompt.fixed);
+        int value = text_cells(st->prompt.text + st->prompt.fixed);
         screen_tint(s, x - value, y, value, 1, INK_SELECTED);
     }
-    if (st->message.text[0] != '\0' && x + 4 + cells_of(st->message.text) <= s->width) {
+    if (st->message.text[0] != '\0' && x + 4 + text_cells(st->message.text) <= s->width) {
         screen_text(s, x + 3, y, s->width - x - 3, INK_DIM, st->message.text);
     } else if (st->message.text[0] != '\0') {
         // above the prompt
@@ -221,7 +210,7 @@ static void draw_hints(const explorer_state *st, screen *s)
     // the most wanted ones first
     for (int rank = 0, used = 1; rank < HINTS; rank++) {
         for (int i = 0; i < HINTS; i++) {
-            int length = cells_of(texts[i]);
+            int length = text_cells(texts[i]);
             if (hints[i].rank == rank && length > 0 && used + length < s->width) {
                 shown[i] = true;
                 used += length + 2;

@@ -55,16 +55,25 @@ static void draw_wide_slider(layout *lay, screen *s, area a, const track *k)
 }
 
 // Value and unit as far as `most` cells have room for them: where they have not, the unit goes,
-// then the value's end, which two points stand for. Returns the length.
+// then the value's end, which two points stand for. Returns the cells it takes.
 static int fit_value(char *shown, size_t size, int most, const char *value,
                      const parameter_info *info)
 {
-    int length = snprintf(shown, size, "%s%s%s", value, info->unit[0] ? " " : "", info->unit);
+    snprintf(shown, size, "%s%s%s", value, info->unit[0] ? " " : "", info->unit);
     most = most > LEAST_VALUE ? most : LEAST_VALUE;
-    if (length > most) {
-        length = snprintf(shown, size, "%s", value);
+    if (text_cells(shown) > most) {
+        snprintf(shown, size, "%s", value);
     }
-    return length <= most ? length : snprintf(shown, size, "%.*s..", most - 2, value);
+
+    // cut between characters, not within one
+    if (text_cells(shown) > most) {
+        const char *end = value;
+        for (int cells = 0; cells < most - 2; cells++) {
+            glyph_decode(&end);
+        }
+        snprintf(shown, size, "%.*s..", (int)(end - value), value);
+    }
+    return text_cells(shown);
 }
 
 // Name, value and unit in a line, with a slider behind them where there is room.

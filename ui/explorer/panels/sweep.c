@@ -108,6 +108,25 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
     }
 }
 
+// What is varied and how many runs there are: the last part of the path where the whole has no
+// room, and of that what `most` cells have room for.
+static void write_title(char *title, size_t size, const lab_sweep *sweep, int most)
+{
+    char count[64];
+    const char *path = parameter_table[sweep->axis.parameter].path;
+    const char *last = strrchr(path, '.') + 1;
+    const int room =
+        most - snprintf(count, sizeof count, ", %d of %zu", sweep->count, sweep->axis.count);
+
+    if ((int)(strlen("sweep ") + strlen(path)) <= room) {
+        snprintf(title, size, "sweep %s%s", path, count);
+    } else if ((int)strlen(last) <= room) {
+        snprintf(title, size, "%s%s", last, count);
+    } else {
+        snprintf(title, size, "%.*s..%s", room > 2 ? room - 2 : 0, last, count);
+    }
+}
+
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
     const lab_sweep *sweep = &st->sweep;
@@ -116,14 +135,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "no sweep (:sweep begins one)");
         return;
     }
-    // the last part of the path where the whole has no room
-    const char *path = parameter_table[sweep->axis.parameter].path;
-    const int length = snprintf(title, sizeof title, "sweep %.60s, %d of %zu", path, sweep->count,
-                                sweep->axis.count);
-    if (length > a.width - FRAME_OF_TITLE) {
-        snprintf(title, sizeof title, "%.60s, %d of %zu", strrchr(path, '.') + 1, sweep->count,
-                 sweep->axis.count);
-    }
+    write_title(title, sizeof title, sweep, a.width - FRAME_OF_TITLE);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s (M: next)",
                  summary_table[sweep->metric].label);
