@@ -1,8 +1,8 @@
 // Hamilton's side of the chain: momenta, and the velocities and forces that belong to them, in a
 // time that grows linearly with N.
 //
-//     p = M(q) w,      p' = dT/dq + tau(q, w) - J^T f,      dT/dq_i = -sum_j A_ij sin(q_i - q_j)
-//     w_i w_j
+//     p = M(q) w,      p' = dT/dq + tau(q, w) - J^T f,
+//     dT/dq_i = -sum_j A_ij sin(q_i - q_j) w_i w_j
 //
 // With the impulse of the contact force from some instant on, L' = f, the sum P = p + J^T L obeys
 //

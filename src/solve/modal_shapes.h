@@ -8,8 +8,8 @@
 // with d2 u_i = u_(i-1) - 2 u_i + u_(i+1). A mode's u is therefore a sum of cos(phi j), sin(phi j),
 // e^(-psi j) and e^(-psi i), j = N - i links from the tip, with
 //
-//     w = 4 sqrt(kappa) s^2 / sqrt(1 - 4 c s^2),     s = sin(phi/2) = sinh(psi/2) sqrt(1 - 4 c
-//     s^2).
+//     w = 4 sqrt(kappa) s^2 / sqrt(1 - 4 c s^2),
+//     s = sin(phi/2) = sinh(psi/2) sqrt(1 - 4 c s^2).
 //
 // Tip and hub give four equations for the four amplitudes; a mode is where their determinant is
 // zero. The number of modes slower than a given w is the number of negative pivots when the angles

@@ -44,19 +44,19 @@ typedef enum impactlab_status {
     IMPACTLAB_NEWTON_FAILED = 5,       // an iteration did not converge
     IMPACTLAB_NO_PROGRESS = 6,         // events or strides follow each other without time passing
     IMPACTLAB_SINGULAR = 7,            // equations without a single solution
-    IMPACTLAB_NO_MEMORY = 8,           //
-    IMPACTLAB_CANNOT_WRITE = 9,        //
-    IMPACTLAB_CANNOT_READ = 10,        // a file that is not there, or cannot be read
-    IMPACTLAB_EXPECTATION_FAILED = 11, //
-    IMPACTLAB_STOPPED = 12,            // before its end
+    IMPACTLAB_NO_MEMORY = 8,           // an allocation failed
+    IMPACTLAB_CANNOT_WRITE = 9,        // a file or stream cannot be written
+    IMPACTLAB_CANNOT_READ = 10,        // a file does not exist or cannot be read
+    IMPACTLAB_EXPECTATION_FAILED = 11, // the result is not what the scenario expects
+    IMPACTLAB_STOPPED = 12,            // stopped before its end
     IMPACTLAB_FOLDED = 13,             // the arm is folded across the hub's axis on a flat wall
-    IMPACTLAB_CONTROLLER_FAILED = 14,  // a process that is the controller died, hung or babbled
+    IMPACTLAB_CONTROLLER_FAILED = 14,  // a controller process died, hung or broke the protocol
     IMPACTLAB_NOT_ALLOWED = 15         // a program or plug-in was not allowed to run
 } impactlab_status;
 
 typedef struct impactlab_error {
     int status;          // impactlab_status
-    int line, column;    // where it stands in the file that was read, from 1; 0 if there is none
+    int line, column;    // of the fault in the file that was read, from 1; 0 if there is none
     char parameter[64];  // path of the parameter at fault, "" if there is none
     char sentence[1024]; // for people: what was wrong, where, and what was expected
 } impactlab_error;
@@ -67,7 +67,7 @@ IMPACTLAB_EXPORT const char *impactlab_version(void);
 // The general text of a status, never NULL.
 IMPACTLAB_EXPORT const char *impactlab_status_text(int status);
 
-// --- tables of what there is ------------------------------------------------------------------
+// --- tables of parameters, signals and quantities ---------------------------------------------
 
 // A parameter of a scenario. Rows are constants of the library.
 typedef struct impactlab_parameter {
@@ -89,7 +89,7 @@ typedef struct impactlab_signal {
     const char *description; // one sentence without a full stop
 } impactlab_signal;
 
-// A number that a run comes to.
+// A number of the summary of a run.
 typedef struct impactlab_quantity {
     const char *key;         // "peak_force_N"
     const char *label;       // "peak force"
@@ -98,7 +98,7 @@ typedef struct impactlab_quantity {
     int timing;              // 1 if it depends on the machine, not on the scenario
 } impactlab_quantity;
 
-// The row of an index; NULL behind the last one.
+// The row at an index from 0 on; NULL past the last one.
 IMPACTLAB_EXPORT const impactlab_parameter *impactlab_parameter_at(size_t index);
 IMPACTLAB_EXPORT const impactlab_signal *impactlab_signal_at(size_t index);
 IMPACTLAB_EXPORT const impactlab_quantity *impactlab_quantity_at(size_t index);
@@ -107,13 +107,13 @@ IMPACTLAB_EXPORT const impactlab_quantity *impactlab_quantity_at(size_t index);
 
 typedef struct impactlab_scenario impactlab_scenario;
 
-// The names of all scenarios that ship and of those in the folders of IMPACTLAB_SCENARIOS, sorted;
-// to be freed by impactlab_names_free.
+// The sorted names of all shipped scenarios and of those in the folders of IMPACTLAB_SCENARIOS;
+// impactlab_names_free frees them.
 IMPACTLAB_EXPORT int impactlab_scenario_names(char ***names, size_t *count, impactlab_error *error);
 IMPACTLAB_EXPORT void impactlab_names_free(char **names, size_t count);
 
-// Opens a scenario by its name or file; reads one from a text (`length` bytes of YAML); makes one
-// of defaults. The error says the first fault.
+// Opens a scenario by its name or file; reads one from a text (`length` bytes of YAML); creates one
+// with all defaults; copies one. The error describes the first fault found.
 IMPACTLAB_EXPORT int impactlab_scenario_open(impactlab_scenario **scenario,
                                              const char *name_or_file, impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_scenario_parse(impactlab_scenario **scenario, const char *text,
@@ -125,43 +125,45 @@ IMPACTLAB_EXPORT int impactlab_scenario_copy(impactlab_scenario **scenario,
                                              impactlab_error *error);
 IMPACTLAB_EXPORT void impactlab_scenario_destroy(impactlab_scenario *scenario);
 
-// Its name, title and description: good until it is destroyed.
+// Name, title and description, valid until the scenario is destroyed.
 IMPACTLAB_EXPORT const char *impactlab_scenario_name(const impactlab_scenario *scenario);
 IMPACTLAB_EXPORT const char *impactlab_scenario_title(const impactlab_scenario *scenario);
 IMPACTLAB_EXPORT const char *impactlab_scenario_description(const impactlab_scenario *scenario);
 
-// Gives a parameter another value, as a text ("2 V", "plane") or as a number (of a choice its
-// index, of a boolean 0 or 1). What follows from it is resolved anew; on failure nothing changes.
+// Sets a parameter, from a text ("2 V", "plane") or a number (for a choice, its index; for a
+// boolean, 0 or 1). Parameters derived from it are updated; on failure nothing changes.
 IMPACTLAB_EXPORT int impactlab_scenario_set(impactlab_scenario *scenario, const char *path,
                                             const char *text, impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_scenario_set_number(impactlab_scenario *scenario, const char *path,
                                                    double value, impactlab_error *error);
-// Several of them as "PATH=VALUE", in any order that makes sense together.
+// Sets several, each given as "PATH=VALUE"; only together, not one by one, do they have to be
+// valid.
 IMPACTLAB_EXPORT int impactlab_scenario_set_all(impactlab_scenario *scenario,
                                                 const char *const *assignments, size_t count,
                                                 impactlab_error *error);
 
-// The value of a parameter, as a number (NaN where an optional one has none, 0 of a text) or as a
-// text of at most `size` bytes with its end.
+// The value of a parameter, as a number (NaN for an optional one without a value, 0 for a text) or
+// as a text of at most `size` bytes including the terminating null.
 IMPACTLAB_EXPORT int impactlab_scenario_number(const impactlab_scenario *scenario, const char *path,
                                                double *value, impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_scenario_text(const impactlab_scenario *scenario, const char *path,
                                              char *text, size_t size, impactlab_error *error);
-// 1 if the parameter was given, 0 if it has its default.
+// 1 if the parameter was given a value, 0 if it has its default.
 IMPACTLAB_EXPORT int impactlab_scenario_is_set(const impactlab_scenario *scenario,
                                                const char *path);
 
-// Adds to its script: at `time` [s] a parameter gets another value, the tip a push [N s].
+// Adds an entry to the scenario's script: at `time` [s] the parameter gets another value, or the
+// tip receives an impulse [N s].
 IMPACTLAB_EXPORT int impactlab_scenario_add_change(impactlab_scenario *scenario, double time,
                                                    const char *path, const char *text,
                                                    impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_scenario_add_push(impactlab_scenario *scenario, double time,
                                                  double impulse, impactlab_error *error);
 
-// Lets the scenario start the program or load the plug-in that it names (0: not, as at first).
+// Whether the scenario may start the program or load the plug-in that it names: 1 or 0 (default).
 IMPACTLAB_EXPORT void impactlab_scenario_allow_code(impactlab_scenario *scenario, int allowed);
 
-// The scenario as a file would have it, without what it expects; impactlab_text_free frees it.
+// The scenario as the text of a YAML file, without its expectations; impactlab_text_free frees it.
 IMPACTLAB_EXPORT int impactlab_scenario_yaml(const impactlab_scenario *scenario, char **yaml,
                                              impactlab_error *error);
 IMPACTLAB_EXPORT void impactlab_text_free(char *text);
@@ -173,17 +175,17 @@ struct controller; // of <impactlab/controller.h>
 
 enum {
     IMPACTLAB_KEEP_ROWS = 1, // rows of signals are kept, not only events and summary
-    IMPACTLAB_COMMAND = 2    // of a loop: the rig puts out what impactlab_loop_command says
+    IMPACTLAB_COMMAND = 2    // for a loop: the motor gets the command of impactlab_loop_command
 };
 
-// Numbers that lie `stride` bytes apart, in memory that belongs to their handle.
+// Numbers `stride` bytes apart, in memory owned by the handle that returned them.
 typedef struct impactlab_series {
     const double *values;
     size_t count;
     size_t stride; // [bytes]
 } impactlab_series;
 
-// The same for several numbers a row, which lie beside one another.
+// Rows of adjacent numbers, row after row, in memory owned by the handle that returned them.
 typedef struct impactlab_table {
     const double *values;
     size_t rows, columns;
@@ -198,31 +200,31 @@ typedef struct impactlab_event {
     double loss;      // of energy at an impact [J], else 0
 } impactlab_event;
 
-// Runs the scenario to its end. A run that was stopped on the way has what it came to until then,
-// and returns why; only where *run is NULL there is none.
+// Runs the scenario to its end. If the run is stopped before, the reason is returned and *run holds
+// the results up to that instant; *run is NULL if the run could not be started.
 IMPACTLAB_EXPORT int impactlab_run_create(impactlab_run **run, const impactlab_scenario *scenario,
                                           int flags, impactlab_error *error);
-// The same with a controller in the place of control.law. The rig gives the controller memory of
-// law->memory_size bytes, at least a pointer's, in whose beginning `context` stands.
+// The same with a controller instead of control.law. The rig gives the controller law->memory_size
+// bytes of memory (at least the size of a pointer), which begin with the pointer `context`.
 IMPACTLAB_EXPORT int impactlab_run_create_with(impactlab_run **run,
                                                const impactlab_scenario *scenario, int flags,
                                                const struct controller *law, void *context,
                                                impactlab_error *error);
 IMPACTLAB_EXPORT void impactlab_run_destroy(impactlab_run *run);
 
-// "ok", "inaccurate" (the energy ledger lacks more than method.residual_bound) or "failed", and
-// what stopped the run or a remark.
+// "ok", "inaccurate" (the energy balance is open by more than method.residual_bound allows) or
+// "failed"; and the message: what stopped the run, or a remark on its results ("" if none).
 IMPACTLAB_EXPORT const char *impactlab_run_status(const impactlab_run *run);
 IMPACTLAB_EXPORT const char *impactlab_run_message(const impactlab_run *run);
 
-// A number by its key, NaN if it did not occur; all of them in the order of their table: at most
-// `count` are written, and how many there are is returned.
+// A number of the summary by its key, NaN if what it describes did not occur; or all of them, in
+// the order of impactlab_quantity_at: at most `count` are written, and their number is returned.
 IMPACTLAB_EXPORT int impactlab_run_quantity(const impactlab_run *run, const char *key,
                                             double *value, impactlab_error *error);
 IMPACTLAB_EXPORT size_t impactlab_run_quantities(const impactlab_run *run, double *values,
                                                  size_t count);
 
-// A signal by its name ("time", "force"), without a copy; NaN where it was not recorded.
+// A recorded signal by its name ("time", "force"), not copied; NaN where it was not recorded.
 // Angles [rad] and velocities [rad/s] of all degrees of freedom, the hub's first if it has one.
 IMPACTLAB_EXPORT int impactlab_run_signal(const impactlab_run *run, const char *name,
                                           impactlab_series *series, impactlab_error *error);
@@ -231,12 +233,13 @@ IMPACTLAB_EXPORT int impactlab_run_angles(const impactlab_run *run, impactlab_ta
 IMPACTLAB_EXPORT int impactlab_run_velocities(const impactlab_run *run, impactlab_table *table,
                                               impactlab_error *error);
 
-// Its events in their order: how many, and one of them (1; 0 behind the last).
+// The events of the run in the order of time: their number; and event `index`, which returns 1, or
+// 0 if there is none.
 IMPACTLAB_EXPORT size_t impactlab_run_event_count(const impactlab_run *run);
 IMPACTLAB_EXPORT int impactlab_run_event(const impactlab_run *run, size_t index,
                                          impactlab_event *event);
 
-// What `impactlab run --json` and `--csv` write; impactlab_text_free frees it.
+// The texts that `impactlab run --json` and `--csv` write; impactlab_text_free frees them.
 IMPACTLAB_EXPORT int impactlab_run_json(const impactlab_run *run, char **json,
                                         impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_run_csv(const impactlab_run *run, char **csv,
@@ -246,7 +249,7 @@ IMPACTLAB_EXPORT int impactlab_run_csv(const impactlab_run *run, char **csv,
 
 typedef struct impactlab_loop impactlab_loop;
 
-// What the sensors read, in the units of the recorded signals; NaN where one is not fitted.
+// Readings of the sensors, in the units of the recorded signals; NaN for a sensor not fitted.
 typedef struct impactlab_reading {
     double time;          // of the present instant [s]
     double encoder;       // hub angle [rad]
@@ -257,33 +260,33 @@ typedef struct impactlab_reading {
     double accelerometer; // hub acceleration [rad/s2]
 } impactlab_reading;
 
-// A run that stands at its start. With IMPACTLAB_COMMAND the caller is the
-// controller on the rig; else control.law is, or, where it is none, the bare arm moves under
+// A run at its start, to be advanced step by step. With IMPACTLAB_COMMAND the caller is the
+// controller; otherwise control.law is, or, if that is none, the bare arm moves under
 // motor.voltage.
 IMPACTLAB_EXPORT int impactlab_loop_create(impactlab_loop **loop,
                                            const impactlab_scenario *scenario, int flags,
                                            impactlab_error *error);
 IMPACTLAB_EXPORT void impactlab_loop_destroy(impactlab_loop *loop);
 
-// Goes on: to the next sample of the rig (without a rig by method.step), or to an instant [s]; at
-// most to run.duration. The printed model knows nothing between its steps and ends each call with
-// the first one that reaches the instant. What stopped a run stays, every further step returns it
-// again.
+// Advances to the next sample of the rig (without a rig, by method.step), or to an instant [s], but
+// not beyond run.duration. The printed model has no states between its steps: it advances to the
+// first step at or after the instant. An error that stopped the run is returned by every further
+// call.
 IMPACTLAB_EXPORT int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_loop_step_until(impactlab_loop *loop, double time,
                                                impactlab_error *error);
 
-// Where it is [s], and 1 if that is the end.
+// The present instant of the run [s]; and whether it is at its end (1 or 0).
 IMPACTLAB_EXPORT double impactlab_loop_time(const impactlab_loop *loop);
 IMPACTLAB_EXPORT int impactlab_loop_ended(const impactlab_loop *loop);
 
-// The command [V] that goes out at the sample due now or next, and is held until another one is
-// given. IMPACTLAB_BAD_ARGUMENT without IMPACTLAB_COMMAND.
+// Sets the command [V] for the sample due now or, between samples, for the next; it is held until
+// another one is set. IMPACTLAB_BAD_ARGUMENT without IMPACTLAB_COMMAND.
 IMPACTLAB_EXPORT int impactlab_loop_command(impactlab_loop *loop, double volts,
                                             impactlab_error *error);
-// Gives a parameter that may change during a run another value now, as a number (of a choice its
-// index) or as a text ("2 V", "impact" for control.lock); pushes the tip now [N s], which the
-// printed model does not take (IMPACTLAB_BAD_ARGUMENT). What is refused changes nothing.
+// Changes, now, a parameter that may change during a run: to a number (for a choice, its index) or
+// to a text ("2 V", "impact" for control.lock); or gives the tip an impulse [N s], which the
+// printed model refuses (IMPACTLAB_BAD_ARGUMENT). A call that fails changes nothing.
 IMPACTLAB_EXPORT int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double value,
                                               impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_loop_set_text(impactlab_loop *loop, const char *path,
@@ -291,36 +294,36 @@ IMPACTLAB_EXPORT int impactlab_loop_set_text(impactlab_loop *loop, const char *p
 IMPACTLAB_EXPORT int impactlab_loop_push(impactlab_loop *loop, double impulse,
                                          impactlab_error *error);
 
-// What the sensors read: of the sample due now, else of the last one. IMPACTLAB_BAD_ARGUMENT
-// without a rig (control.law is none and no IMPACTLAB_COMMAND).
+// The readings of the sample due now or, between samples, of the last one. IMPACTLAB_BAD_ARGUMENT
+// without a rig (control.law is none and IMPACTLAB_COMMAND is not set).
 IMPACTLAB_EXPORT int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading,
                                                  impactlab_error *error);
 
-// The true value of a signal now; angles and then velocities of all degrees of freedom, as a table
-// of two rows, good until the loop goes on.
+// The true (unmeasured) value of a signal now; and the state as a table of two rows, angles and
+// velocities of all degrees of freedom, valid until the loop advances.
 IMPACTLAB_EXPORT int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
                                            impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table,
                                           impactlab_error *error);
 
-// The whole state as one block of bytes: how many, writing them, and going back (or forth) to them
-// to the last bit. They are good for loops of the same scenario made by the same version on the
-// same kind of machine; of a plug-in's or a process's controller only for the loop itself, and not
-// at all where a process would have to go on from its own past. Rows are not part of a state: going
-// back drops those that are later. Bytes must come from impactlab_loop_save_state.
+// The whole state of the loop as a block of bytes: its size, saving it, and restoring it exactly
+// (to the last bit). A block fits any loop of the same scenario and version on the same kind of
+// machine. With a plug-in or a process as the controller it fits only the loop that saved it, and
+// not at all if the process has a state of its own. Recorded rows are not part of the state:
+// restoring drops those that are later. Only bytes of impactlab_loop_save_state may be restored.
 IMPACTLAB_EXPORT size_t impactlab_loop_state_size(const impactlab_loop *loop);
 IMPACTLAB_EXPORT int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t size,
                                                impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_loop_restore_state(impactlab_loop *loop, const void *bytes,
                                                   size_t size, impactlab_error *error);
 
-// What the loop has come to so far, as a run of its own (rows are copied).
+// The results of the loop so far, as a run of its own (rows are copied).
 IMPACTLAB_EXPORT int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run,
                                         impactlab_error *error);
 
 // --- many runs --------------------------------------------------------------------------------
 
-// How one run of a batch went; good during the call.
+// The outcome of one run of a batch, valid during the call.
 typedef struct impactlab_outcome {
     size_t index;             // of the run
     int status;               // impactlab_status
@@ -330,13 +333,14 @@ typedef struct impactlab_outcome {
     size_t quantity_count;
 } impactlab_outcome;
 
-// Takes an outcome, in the order of the runs, on the calling thread. Anything but 0 ends the batch.
+// Receives each outcome, in the order of the runs, on the calling thread. A result other than 0
+// ends the batch.
 typedef int (*impactlab_outcome_taker)(void *context, const impactlab_outcome *outcome);
 
 // Runs the scenario `count` times on `jobs` threads (0: as many as there are processors): in run i
 // parameter paths[k] has the value values[i * path_count + k]. Each outcome is the same to the last
 // bit as that of a run by itself, whatever the number of threads. IMPACTLAB_STOPPED if `take` ended
-// it. Values are looked at before anything is run.
+// it. All values are checked before the first run.
 IMPACTLAB_EXPORT int impactlab_batch(const impactlab_scenario *scenario, const char *const *paths,
                                      size_t path_count, const double *values, size_t count,
                                      int jobs, impactlab_outcome_taker take, void *context,
@@ -344,11 +348,11 @@ IMPACTLAB_EXPORT int impactlab_batch(const impactlab_scenario *scenario, const c
 
 // --- predictors and modes ---------------------------------------------------------------------
 
-// What a predictor says of the instant before the first contact.
+// What a predictor says about the first impact, from the state just before it.
 typedef struct impactlab_prediction {
     const char *method;  // "energy", "impact_dynamics", "impact_quadratic" or "linearised"
     int known;           // 1 if it has an answer
-    int holds;           // 1 if the touch would hold
+    int holds;           // 1 if the tip would stay in contact
     double peak;         // of the first pulse [N], NaN if there is none
     double time_to_peak; // from contact on [s], NaN where the method gives none
     double impulse;      // of the impact [N s], NaN where the method gives none

@@ -5,8 +5,8 @@
 // In contact the arm has one degree of freedom, theta, with the wall at theta_imp
 // (docs/control.md):
 //
-//     M theta'' = K u - D theta' - k_st sign(theta') + 4 k2 (theta_imp - theta)       (5.13),
-//     (5.21) M = I1 + 2 I + m l^2/2
+//     M theta'' = K u - D theta' - k_st sign(theta') + 4 k2 (theta_imp - theta)       (5.13)
+//     M = I1 + 2 I + m l^2/2                                                         (5.21)
 //
 // APPROACH sends the constant command. IMPACT follows the quintic (5.15) from the state at contact
 // to rest at the angle at which the beam presses with the wanted force f,
