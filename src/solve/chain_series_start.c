@@ -1,4 +1,3 @@
-
 #include "src/base/sincos.h"
 #include "src/solve/chain_series_parts.h"
 
