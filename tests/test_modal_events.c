@@ -166,6 +166,27 @@ static void a_slow_arm_touches_in_time(void **state)
     check_close(modes.time[0], series.time[0], 1e-7);
 }
 
+// An arm that presses with 5e-7 N leaves the wall where the force is zero to a share of what it
+// was: a fixed tolerance of 1e-9 N would be 1e-4 s late.
+static void a_slow_arm_leaves_in_time(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=24", "arm.hub_joint=spring", "arm.damping_ratio=0.00164715",
+                 "wall.angle=5.1124406976777767e-8", "motor.voltage=1.6161e-6", "arm.k2=3.51557",
+                 "arm.k1=19.0639", "arm.mass=0.10088", "arm.hub_inertia=0.0012667",
+                 "motor.stiction=4.1505e-8", "method.rest_speed=9.31e-10"));
+    const meetings modes = meetings_by(&p, &modal_engine, 5.1118e-8, 2.19239e-9, 0.0065);
+    const meetings series = meetings_by(&p, &series_engine, 5.1118e-8, 2.19239e-9, 0.0065);
+    assert_int_equal(modes.count, series.count);
+    assert_int_equal(modes.event[modes.count - 1], MOTION_RELEASE);
+    for (int i = 0; i < modes.count; i++) {
+        assert_int_equal(modes.event[i], series.event[i]);
+        check_close(modes.time[i], series.time[i], 1e-9);
+    }
+    check_close(modes.peak, series.peak, 1e-6 * series.peak);
+}
+
 // Between bounces of some 1e-9 s the tip flies 1e-13 m high, and the motor presses: no impact is
 // faster than the one before, but for what it falls beyond the wall within 2e-14 m.
 static void bounces_lower_than_rounding_do_not_gain(void **state)
@@ -280,6 +301,7 @@ int main(void)
                                        cmocka_unit_test(bounces_end_where_no_engine_tells_them),
                                        cmocka_unit_test(slow_impacts_are_in_time),
                                        cmocka_unit_test(a_slow_arm_touches_in_time),
+                                       cmocka_unit_test(a_slow_arm_leaves_in_time),
                                        cmocka_unit_test(bounces_lower_than_rounding_do_not_gain),
                                        cmocka_unit_test(a_step_that_ends_in_a_flight_is_no_bounce),
                                        cmocka_unit_test(a_graze_within_a_stride_is_found)};

@@ -10,8 +10,8 @@
 #define SLACK_SHARE  1e-3  // of what all modes can do to any other function
 #define SLACK_OTHER  1e-9  // and at least so much, in its unit
 #define GAP_ROUNDING 4e-15 // [m]
-#define SHARE_BEYOND 1e-9  // of a flight's height, to which it ends on the wall's far side
-#define TIME_BEYOND  1e-12 // after which it does at the latest, however slow it is [s]
+#define SHARE_BEYOND 1e-9  // of a flight's height or a force, by which an event is beyond its edge
+#define TIME_BEYOND  1e-12 // by which the end of a flight is late at most, however slow it is [s]
 
 enum { SAMPLES_A_BLOCK = 4, MOST_HALVINGS = 40, MOST_ROOT_STEPS = 60, MOST_POLISHING = 12 };
 
@@ -126,7 +126,7 @@ static double root_of(const modal_function *f, modal_stride *s, const arm *a, mo
     // of a flight of some 1e-14 m, would take Newton's step far beyond
     double target = far_side[f->kind], above = -1, below = HUGE_VAL;
     target = brief ? fmin(target, SHARE_BEYOND * fabs(slope) * t) : target;
-    target = f->kind == WATCH_GAP ? fmin(target, TIME_BEYOND * fabs(slope)) : target;
+    target = fmin(target, f->kind == WATCH_GAP ? TIME_BEYOND * fabs(slope) : f->most_beyond);
     for (int i = 0; i < MOST_POLISHING && slope < 0; i++) {
         const double value = modal_function_exact(f, s, a, m, t);
         if (value <= 0 && value >= -2 * target) {
@@ -215,6 +215,16 @@ static int leap(const modal_function *f, const arm *a, int *fine)
     return up > down ? up : down;
 }
 
+// A bound on the function's magnitude within its stride.
+static double most_of(const modal_sum *f)
+{
+    double most = modal_sum_reach(f);
+    for (int i = 0; i < f->terms; i++) {
+        most += fabs(f->series[i]);
+    }
+    return most;
+}
+
 bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, motion *m, double *h)
 {
     modal_sum_begin(&f->sum);
@@ -231,8 +241,8 @@ bool modal_function_falls(modal_function *f, modal_stride *s, const arm *a, moti
         f->edge = lo.at.value;
         lo.at.value = 0;
     }
-    f->slack = f->kind == WATCH_GAP ? SLACK_GAP
-                                    : fmax(SLACK_OTHER, SLACK_SHARE * modal_sum_reach(&f->sum));
+    f->slack = gap ? SLACK_GAP : fmax(SLACK_OTHER, SLACK_SHARE * modal_sum_reach(&f->sum));
+    f->most_beyond = SHARE_BEYOND * most_of(&f->sum);
 
     // leaps where an event is excluded, else a few samples as close as the modes require
     const double length = *h;

@@ -22,7 +22,8 @@ typedef struct modal_function {
     double rest[MODAL_NODES]; // polynomial sum rest[j] t^j / j!
     modal_sum sum;            // all of it
     double slack;
-    double edge; // its value at a start on its edge, where it counts as zero
+    double most_beyond; // how far beyond its edge an event may be, where it is no gap
+    double edge;        // its value at a start on its edge, where it counts as zero
 } modal_function;
 
 // From a gap smaller than this at a stride's start on, the function is the growth of the gap,
