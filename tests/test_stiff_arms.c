@@ -174,6 +174,48 @@ static void a_run_that_could_not_end_says_why(void **state)
     }
 }
 
+// An arm that a wall throws off and meets again by turns, with no time between, or next to none:
+// the run says that it is the wall, also where it ends in flight.
+static void a_run_that_stands_still_at_a_wall_says_so(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *settings[6];
+        const char *cause;
+    } cases[] = {
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e15"}, "wall.damping"},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e15", "arm.links=8"}, "wall.damping"},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e15", "wall.mass=1e-9"}, "wall.mass"},
+        {{"wall.contact=kelvin-voigt", "wall.damping=0", "wall.stiffness=1e15", "wall.mass=1e-9",
+          "wall.restitution=1"},
+         "smaller wall.stiffness"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        scenario s = {.parameters = fixture_parameters(cases[i].settings)};
+        s.parameters.initial.angle = 0.099;
+        s.parameters.initial.velocity = 0.7;
+        run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
+        if (strstr(r.summary.message, cases[i].cause) == NULL) {
+            fail_msg("case %zu, '%s': %s", i, cases[i].cause, r.summary.message);
+        }
+        run_finish(&r);
+    }
+
+    // strides half of which end in contact, and a look in flight
+    parameters p = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt"));
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    assert_non_null(m);
+    motion_start(&a, m, 0, 0);
+    pace looked = {.strides = PACE_STRIDES, .touching = PACE_STRIDES / 2};
+    fault f = {.text = ""};
+    assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
+    assert_non_null(strstr(f.text, "wall.damping"));
+    motion_destroy(m);
+}
+
 // Strides of a quarter of a microsecond: a run that a mode keeps so short goes on, one that follows
 // the motor's current, which has long settled, is given up.
 static void a_current_that_leads_is_given_up_sooner(void **state)
@@ -388,6 +430,7 @@ int main(void)
         cmocka_unit_test(a_stride_that_begins_does_not_unsettle_the_force),
         cmocka_unit_test(a_run_that_could_not_end_says_so),
         cmocka_unit_test(a_run_that_could_not_end_says_why),
+        cmocka_unit_test(a_run_that_stands_still_at_a_wall_says_so),
         cmocka_unit_test(a_current_that_leads_is_given_up_sooner),
         cmocka_unit_test(an_arm_without_damping_loses_nothing_to_it),
         cmocka_unit_test(a_loop_makes_as_many_strides_as_are_asked_for),

@@ -45,12 +45,25 @@ static status explain_fold(const corrected_run *c, fault *f)
                      m->state[SLOT_TIME], q[c->arm.first], q[c->arm.dof - 1], CHAIN_FOLDED);
 }
 
+// Says that the run no longer passes time after that event, and what makes it so.
+static status explain_standstill(const corrected_run *c, motion_event last, fault *f)
+{
+    const motion *m = c->motion;
+    char cause[PACE_CAUSE_SIZE];
+    pace_tell_cause(&c->arm, m, last, cause, sizeof cause);
+    return fault_set(f, STATUS_NO_PROGRESS, "at t = %.9g s: %s; the method was %s: %s",
+                     m->state[SLOT_TIME], status_text(STATUS_NO_PROGRESS), m->engine->name, cause);
+}
+
 // Why the motion could not make a step.
 static status explain_step(const corrected_run *c, status s, fault *f)
 {
     const motion *m = c->motion;
     if (s == STATUS_FOLDED) {
         return explain_fold(c, f);
+    }
+    if (s == STATUS_NO_PROGRESS) {
+        return explain_standstill(c, MOTION_REACHED, f);
     }
     return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
                      m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
@@ -166,13 +179,13 @@ static status make_step(corrected_run *c, double until, fault *f)
     s = record_step(c, &report);
 
     // reasons to end here
-    if (s == STATUS_OK && c->at_once > MOST_EVENTS_AT_ONCE) {
-        s = STATUS_NO_PROGRESS;
-    }
     if (s == STATUS_OK && recording_asked_to_stop(r)) {
         s = STATUS_STOPPED;
     }
     recording_publish(r, m->state[SLOT_TIME]);
+    if (s == STATUS_OK && c->at_once > MOST_EVENTS_AT_ONCE) {
+        return explain_standstill(c, report.event, f);
+    }
     if (s != STATUS_OK) {
         return explain(c, s, f);
     }

@@ -14,6 +14,9 @@
 #define DAMPED_PACE  1e-6
 #define ASKED_FOR    1e-3 // share of method.step
 
+// The wall makes strides short where more than one in so many ends in contact.
+enum { FEW_TOUCHING = 8 };
+
 // Whether the arm is in contact with a wall that gives.
 static bool is_within(const motion *m)
 {
@@ -39,9 +42,15 @@ static bool current_leads(const arm *a, const motion *m)
     return rate > 0 && rate >= a->fastest_rate;
 }
 
-// Says what of the arm or the wall makes strides short, and what would make them longer.
-static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
+// Whether an event is one of the wall.
+static bool is_of_wall(motion_event event)
 {
+    return event == MOTION_IMPACT || event == MOTION_TOUCH || event == MOTION_RELEASE;
+}
+
+void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *text, size_t size)
+{
+    assert(a != NULL && m != NULL && text != NULL);
     const double *w = state_velocities(m, m->state);
     int fastest = 0;
     for (int i = 1; i < m->dof; i++) {
@@ -51,10 +60,20 @@ static void tell_cause(const arm *a, const motion *m, char *text, size_t size)
     if (fabs(w[fastest]) >= a->fastest_rate) {
         decimal_print(text, size, "its angle %d turns at %.3g rad/s, too fast to follow",
                       fastest + 1, w[fastest]);
-    } else if (is_within(m)) {
+    } else if (is_within(m) || (is_of_wall(last) && !motion_wall_is_rigid(m))) {
         decimal_print(text, size,
-                      "it is in contact with a wall that gives, and a smaller wall.damping or "
-                      "wall.stiffness has longer strides");
+                      "it is in contact with a wall that gives, and a smaller %swall.stiffness%s "
+                      "has longer strides",
+                      a->wall.damping > 0 ? "wall.damping or " : "",
+                      m->wall_has_face ? ", or a larger wall.mass," : "");
+    } else if (is_of_wall(last) && a->wall.restitution > 0) {
+        decimal_print(text, size,
+                      "it bounces off the wall, which a smaller wall.restitution or a larger "
+                      "method.rest_speed ends sooner");
+    } else if (last == MOTION_STICK || last == MOTION_SLIP) {
+        decimal_print(text, size,
+                      "the hub comes to rest and breaks away by turns, and another motor.stiction, "
+                      "or none, has longer strides");
     } else if (current_leads(a, m)) {
         decimal_print(text, size,
                       "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "
@@ -94,14 +113,15 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
     const double slowest = decays ? DAMPED_PACE : SLOWEST_PACE;
     const double least = PACE_STRIDES * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;
-    p->strides = 0;
+    const bool meets_wall = p->touching * FEW_TOUCHING > p->strides;
+    p->strides = p->touching = 0;
     p->looked_from = now;
     if (passes) {
         return STATUS_OK;
     }
 
-    char cause[240];
-    tell_cause(a, m, cause, sizeof cause);
+    char cause[PACE_CAUSE_SIZE];
+    pace_tell_cause(a, m, meets_wall ? MOTION_TOUCH : MOTION_REACHED, cause, sizeof cause);
     return fault_set(f, STATUS_NO_PROGRESS,
                      "at t = %.9g s of %g s: %d strides by %s passed %.3g s, at which the run is "
                      "given up: %s",

@@ -2,12 +2,16 @@
 #pragma once
 
 #include "src/base/fault.h"
-#include "src/solve/motion.h"
+#include "src/solve/contact_machine.h"
 
-enum { PACE_STRIDES = 1 << 16 }; // between two checks; more than any short phase takes
+enum {
+    PACE_STRIDES = 1 << 16, // between two checks; more than any short phase takes
+    PACE_CAUSE_SIZE = 240   // characters that pace_tell_cause writes at most
+};
 
 typedef struct pace {
     long strides;       // since the last look
+    long touching;      // of them, those that ended in contact
     double looked_from; // instant of the last look, -1 before the first stride [s]
 } pace;
 
@@ -20,11 +24,17 @@ pace pace_begin(void);
 // thousand strides is always accepted.
 status pace_look(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f);
 
+// Writes into `text` what of the arm or the wall makes strides short, or lets events follow one
+// another without time passing, and which parameter to change. `last` is the event that the motion
+// has just had, MOTION_REACHED if none.
+void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *text, size_t size);
+
 // Counts a stride that was just made, and checks the pace every PACE_STRIDES of them.
 static inline status pace_keep(pace *p, const arm *a, const motion *m, double duration,
                                double asked, fault *f)
 {
     p->strides++;
+    p->touching += m->state[SLOT_CONTACT] != 0;
     const bool looks = p->looked_from < 0 || p->strides >= PACE_STRIDES;
     return looks ? pace_look(p, a, m, duration, asked, f) : STATUS_OK;
 }
