@@ -2,9 +2,8 @@
 // 1 s against the wall, again and again. tests/bench/instructions.sh and in_turns.sh run it.
 //
 //   whole_runs single|rows|rig PASSES      one run a pass: bare, with its rows, under a control law
-//   whole_runs batch PASSES [WIDTH]        256 a pass, 0.5 to 1.5 V, on one thread, so many arms
-//   side
-//                                          by side at most
+//   whole_runs batch PASSES [WIDTH]        256 a pass, 0.5 to 1.5 V, on one thread, WIDTH arms at
+//                                          most side by side
 //
 // Prints the number of runs and the microseconds of computing each took. Compiled with -DBEFORE it
 // knows batches only and fits commit 57dad42, whose folders had other names.
