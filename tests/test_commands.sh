@@ -134,6 +134,9 @@ says err "observer runs without 'stiffness=20'"
 expect 0 robust compare/observer --laws hybrid,process --runs 2 --set control.settings=of_its_own=1 \
     --set control.command=true --allow-code
 says err "hybrid runs without 'of_its_own=1'"
+printf 'control.seed=1,2\ncase a: arm.k2=4\ncase b: control.settings=stiffness=20\n' >settings.set
+expect 0 robust compare/observer --laws hybrid,impedance --runs 2 --over settings.set
+says err "hybrid runs without 'stiffness=20'"
 
 # --- a plot without a name of its own has its recipe's
 expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --vary arm.k2=4:6:2 --db map.sqlite --quiet

@@ -246,7 +246,12 @@ static int run_law(robustness *r, const scenario *base, int which, int k)
                              .seed = r->arguments->seed};
     under.parameters.control.law = r->laws[which];
     under.parameters.set[PARAMETER_INDEX(control.law)] = 1;
-    fit_settings(r, r->laws[which], &under.parameters.control, k <= 0 && !r->arguments->quiet);
+
+    // said once, and where a case has settings of its own
+    const bool own =
+        strcmp(under.parameters.control.settings, r->scenario.parameters.control.settings) != 0;
+    fit_settings(r, r->laws[which], &under.parameters.control,
+                 (k <= 0 || own) && !r->arguments->quiet);
     if (parameters_resolve(&under.parameters, &f) != STATUS_OK ||
         sweep_init(&s, &under, &request, &f) != STATUS_OK) {
         return complain_fault(&f);
