@@ -5,6 +5,13 @@
 #
 #   tests/bench/where.sh single|rows|rig|batch [WIDTH [BUILD-FOLDER]]
 set -euo pipefail
+case ${1-} in
+single | rows | rig | batch) ;;
+*)
+    echo "usage: tests/bench/where.sh single|rows|rig|batch [WIDTH [BUILD-FOLDER]]" >&2
+    exit 2
+    ;;
+esac
 root=$(readlink -f -- "$(dirname -- "${BASH_SOURCE[0]}")/../..")
 build=$(readlink -f -- "${3:-$root/build}")
 work=$(mktemp -d)
