@@ -6,7 +6,7 @@
 //     chain_series_loads.c   joints that stiffen, damping by mode, air
 //     chain_series_drive.c   the current of an electric drive
 //     chain_series_wall.c    the gap, the contact force
-//     chain_loops.c          loops over all links
+//     chain_loops_kernel.h   loops over all links
 #pragma once
 
 #include "src/solve/chain_series.h"

@@ -5,7 +5,7 @@
 //     modal_parts.c        bases, the start, the modes' own answer, states
 //     modal_collocation.c  r and s by Picard's sweeps
 //     modal_points.c       the chain at all points of a stride side by side (modal_points.h)
-//     modal_loops.c        all modes in the lanes of vectors (modal_loops.h)
+//     modal_loops_kernel.h all modes in the lanes of vectors (modal_loops.h)
 //     modal_losses.c       walks along the stride, energy lost in it
 #pragma once
 

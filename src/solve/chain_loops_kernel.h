@@ -1,4 +1,7 @@
-// Built once for each width of the processor's vectors, which is WIDTH (by_width.h).
+// The loops over links, built once for each width of the processor's vectors (loops_wide_1.c and
+// its like), which is WIDTH.
+#pragma once
+
 #include "src/solve/chain_loops.h"
 
 #include "src/solve/by_width.h"
