@@ -16,6 +16,7 @@
 
 #define SMALL_FLIGHT   1e-10 // motions of this size are followed to 1e-5 of it [rad, m, N m]
 #define SMALL_CONTACT  1e-7  // the same of those that meet the wall
+#define SMALL_BY_MODES 1e-6  // and of those whose events the modes locate
 #define GRID_TOLERANCE 1e-9  // of a step: the end so near a row of the grid has that row
 
 // Whether the stretch between two stops is through.
@@ -189,7 +190,10 @@ static void judge_size(const corrected_run *c, double energy)
     const double torque = turn > 0 ? energy / turn : fabs(a->motor.torque) - a->motor.stiction;
 
     const double size = turn > 0 ? smaller(smaller(turn, travel), torque) : torque;
-    if (size > 0 && size < (isnan(s->first_contact_s) ? SMALL_FLIGHT : SMALL_CONTACT)) {
+    const double least = isnan(s->first_contact_s)            ? SMALL_FLIGHT
+                         : c->motion->engine == &modal_engine ? SMALL_BY_MODES
+                                                              : SMALL_CONTACT;
+    if (size > 0 && size < least) {
         s->inaccurate = true;
         remark(s,
                "the %.3g J put in %s by some %.2g rad only (%.2g m at the tip, with torques of "
