@@ -111,11 +111,12 @@ static void a_program_is_led_back_and_on(void **state)
     loop_destroy(l);
 }
 
-// A program that answers otherwise when it is asked again cannot be led back.
+// A program that answers otherwise when it is asked again cannot be led back. Its answers, from its
+// process number, are 1 to 2 V: enough to move the arm, whose stiffness then shows in the readings.
 static void a_program_that_answers_otherwise_is_said(void **state)
 {
     (void)state;
-    const scenario s = under("n=$$; while read -r l; do echo \"{\\\"command\\\": 0.$n}\"; done");
+    const scenario s = under("n=$$; while read -r l; do echo \"{\\\"command\\\": 1.$n}\"; done");
     const loop_options options = {.keep_trace = false};
     run_loop *l;
     fault f = {.text = ""};
