@@ -2,10 +2,13 @@
 // with and without structural damping, on both walls, with plastic impacts and with bounces; by the
 // engine that a run takes, and of few links by the explicit formula too.
 //
-//   test_reference_chain [LINKS[:KIND]...]     default: 8, all kinds
+//   test_reference_chain [--from FOLDER | --into FOLDER] [LINKS[:KIND]...]     default: 8, all
+//   kinds
 //
 // KIND is the sum of 1 (beam root, else rigid), 2 (plane wall, else point), 4 (e = 0.5, else 0) and
-// 8 (1 % damping, else none).
+// 8 (1 % damping, else none). --into keeps the simulation's answers in FOLDER, --from compares with
+// those kept there: 64 links take it many minutes a case.
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,6 +58,68 @@ static chain_outcome reference_outcome(const reference_case *c)
     return o;
 }
 
+// --- answers that are kept --------------------------------------------------------------------
+
+static const char *from, *into; // folders of kept answers; NULL: none
+static char said[200];          // of the case: kept answers are of no other one
+
+// What the answer is of, and the file that keeps it.
+static void describe(const reference_case *c, const char *folder, char path[static 512])
+{
+    snprintf(path, 512, "%s/%d-%d.csv", folder, c->links,
+             c->beam_root + 2 * c->plane_wall + 4 * (c->restitution > 0) + 8 * (c->damping > 0));
+    snprintf(said, sizeof said,
+             "%s, from %g rad and %g rad/s at %g V for %g s, tolerance %g, "
+             "looks %g s apart",
+             c->name, c->angle, c->velocity, c->voltage, c->duration, c->tolerance,
+             c->longest_step);
+}
+
+static void keep(const reference_case *c, const chain_outcome *o)
+{
+    char path[512];
+    describe(c, into, path);
+    FILE *file = fopen(path, "w");
+    if (file == NULL) {
+        fail_msg("%s: %s", path, strerror(errno));
+    }
+    fprintf(file, "# %s\n%.15g,%.15g,%.15g,%.15g,%d,%d\n", said, o->first_contact, o->first_impulse,
+            o->motor_work, o->residual, o->impacts, o->samples);
+    for (int k = 0; k < o->samples; k++) {
+        fprintf(file, "%.15g\n", o->momentum[k]);
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+static chain_outcome kept(const reference_case *c)
+{
+    char path[512], head[256] = "";
+    describe(c, from, path);
+    FILE *file = fopen(path, "r");
+    if (file == NULL) {
+        fail_msg("%s: %s", path, strerror(errno));
+    }
+
+    // of this case
+    assert_non_null(fgets(head, sizeof head, file));
+    head[strcspn(head, "\n")] = '\0';
+    assert_int_equal(strncmp(head, "# ", 2), 0);
+    assert_string_equal(head + 2, said);
+
+    // its numbers
+    chain_outcome o = {0};
+    int read = fscanf(file, "%lf,%lf,%lf,%lf,%d,%d", &o.first_contact, &o.first_impulse,
+                      &o.motor_work, &o.residual, &o.impacts, &o.samples);
+    assert_true(read == 6 && o.samples >= 0 && o.samples <= REFERENCE_SAMPLES);
+    for (int k = 0; k < o.samples; k++) {
+        assert_int_equal(fscanf(file, "%lf", &o.momentum[k]), 1);
+    }
+    fclose(file);
+    return o;
+}
+
+// --- comparing --------------------------------------------------------------------------------
+
 static bool within(const char *what, double difference, double bound)
 {
     bool close = fabs(difference) <= bound;
@@ -82,7 +147,10 @@ static bool compare(const reference_case *c, const chain_outcome *r, bool by_for
 static void library_agrees(void **state)
 {
     const reference_case *c = *state;
-    chain_outcome r = reference_outcome(c);
+    chain_outcome r = from != NULL ? kept(c) : reference_outcome(c);
+    if (into != NULL) {
+        keep(c, &r);
+    }
     printf("%s: contact %.9g s, impulse %.9g N s, %d impacts, after 50 ms %.9g N s, reference's "
            "residual %.2g J\n",
            c->name, r.first_contact, r.first_impulse, r.impacts, r.momentum[REFERENCE_SAMPLES - 1],
@@ -100,6 +168,11 @@ int main(int argc, char **argv)
     static reference_case cases[MOST * KINDS];
     static char names[MOST * KINDS][80];
     static struct CMUnitTest tests[MOST * KINDS];
+    if (argc > 2 && (strcmp(argv[1], "--from") == 0 || strcmp(argv[1], "--into") == 0)) {
+        *(argv[1][2] == 'f' ? &from : &into) = argv[2];
+        argc -= 2;
+        argv += 2;
+    }
     const char *defaults[] = {"", "8"};
     char **given = argc > 1 ? argv : (char **)defaults;
     int numbers = argc > 1 ? argc - 1 : 1, count = 0;
