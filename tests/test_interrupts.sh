@@ -102,7 +102,7 @@ interrupted_asleep predict sleeper.yaml
 says err "stopped before its end"
 interrupted_asleep study methods sleeper.yaml
 says err "0 of 40 runs"
-interrupted_asleep animate sleeper.yaml -o film.webm
+interrupted_asleep animate sleeper.yaml -o frames
 interrupted_asleep sweep sleeper.yaml --vary motor.voltage=1:2:4 --db asleep.sqlite
 says err "0 of 4 runs"
 interrupted_asleep robust sleeper.yaml
