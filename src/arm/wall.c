@@ -8,7 +8,7 @@
 // A face that swings less than this is at rest [m].
 #define FACE_AT_REST 1e-15
 // A bounce slower than this counts as no bounce [m/s]: half of it is what the series take for
-// rounding of a rate just after an impact (EDGE_RATE in series_engine.c and taylor_series.h).
+// rounding of a rate just after an impact (EDGE_RATE in edge_limits.h).
 #define LEAST_REBOUND 2e-9
 // Below this square of a phase or decay sine and its kin are their series, to the last bit.
 #define SMALL_SQUARE 1e-4

@@ -3,19 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/solve/edge_limits.h"
 #include "src/solve/locate.h"
 
-// Limits below which the first coefficients of a watched function that starts at zero count as
-// rounding: its value and its derivatives, which are only known to be small.
-#define EDGE_VALUE   1e-9
-#define EDGE_RATE    1e-9
-#define EDGE_MORE    1e-7
-#define EDGE_GAP     1e-12 // [m]
-#define EDGE_CURRENT 1e-10 // of its limit
-// Depth in the wall, by truncation of the preceding series, at which an arm may still be found that
-// leaves it.
-#define EDGE_DEPTH 1e-6 // [m]
-
+// Share of a limit of the current below which its margin counts as rounding (edge_limits.h).
+#define EDGE_CURRENT 1e-10
 // The series' last terms where nothing but rounding is to be left.
 #define EXACT 1e-13
 
@@ -74,25 +66,13 @@ static void set_function(series_function *p, const double *term, int count, doub
     }
 }
 
-// Divides the function by the time as often as its first coefficients are nothing but rounding,
-// below the limits on value and derivatives by time.
+// Divides the function by the time once for each of its first coefficients that is only rounding.
 static void leave_edge(series_function *p, const double limits[3], double length)
 {
-    int edge = 0;
-    double scale = 1;
-    while (edge < 3 && fabs(p->term[edge]) <= limits[edge] * scale) {
-        edge++;
-        scale *= length;
-    }
-
-    // falling to its edge rather than from it, it is left as it is: its root is what matters; nor
-    // is a rate or an acceleration rounding that speaks against falling at once
-    if (edge > 0 && p->term[edge] < 0) {
-        edge = p->term[0] > 0 ? 0 : p->term[edge - 1] > 0 ? edge - 1 : edge;
-    }
-    if (edge > 0) {
-        memmove(p->term, p->term + edge, (size_t)(p->count - edge) * sizeof(double));
-        p->count -= edge;
+    const int powers = edge_powers(p->term, limits, length);
+    if (powers > 0) {
+        memmove(p->term, p->term + powers, (size_t)(p->count - powers) * sizeof(double));
+        p->count -= powers;
         p->divided = true;
     }
 }

@@ -5,10 +5,6 @@
 #include "src/solve/dense_location.h"
 #include "src/solve/taylor_stride.h"
 
-// Depth in the wall, by truncation of the preceding series, at which an arm may still be found that
-// leaves it.
-#define EDGE_DEPTH 1e-6 // [m]
-
 static double rounding_of(const arm *a, const motion *m, const taylor_stride *s)
 {
     return motion_rounding_at(a, m->dof, s->kept + KEPT_ANGLES, s->kept + KEPT_VELOCITIES);

@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "src/solve/edge_limits.h"
 #include "src/solve/engine.h"
 #include "src/solve/taylor_series.h"
 
@@ -120,24 +121,13 @@ static inline double low_of(const polynomial *p, double t)
     return fmin(terms[0], straight) - ((bent + fabs(terms[0]) + fabs(terms[1]) * t) * 1e-12 + bent);
 }
 
-// Divides the function by the time once for each of its first coefficients that is only rounding,
-// below the limits.
+// Divides the function by the time once for each of its first coefficients that is only rounding.
 static inline void leave_edge(polynomial *p, const double limits[3])
 {
-    int edge = 0;
-    while (edge < 3 && fabs(p->terms[edge]) <= limits[edge]) {
-        edge++;
-    }
-
-    // falling to its edge rather than from it, it is left as it is: its root is what matters; nor
-    // is a rate or an acceleration rounding that speaks against falling at once
-    if (edge > 0 && p->terms[edge] < 0) {
-        edge = p->terms[0] > 0 ? 0 : p->terms[edge - 1] > 0 ? edge - 1 : edge;
-    }
-
-    if (edge > 0) {
-        memmove(p->terms, p->terms + edge, (size_t)(p->count - edge) * sizeof(double));
-        memset(p->terms + p->count - edge, 0, (size_t)edge * sizeof(double));
+    const int powers = edge_powers(p->terms, limits, 1);
+    if (powers > 0) {
+        memmove(p->terms, p->terms + powers, (size_t)(p->count - powers) * sizeof(double));
+        memset(p->terms + p->count - powers, 0, (size_t)powers * sizeof(double));
         p->divided = true;
     }
 }

@@ -6,6 +6,8 @@
 
 #include <stdbool.h>
 
+#include "src/solve/edge_limits.h"
+
 // Highest order of the velocities' series, even; strides that something cuts short take less.
 enum { TAYLOR_MOST = 24, TAYLOR_WIDEST = 8 };
 
@@ -74,15 +76,10 @@ enum taylor_place {
     TAYLOR_PLACES = AT_DISSIPATION + TAYLOR_MOST
 };
 
-// Limits below which the first coefficients of a watched function that starts at zero just after an
-// event count as rounding: its value and its derivatives, which are only known to be small. For the
-// hub's acceleration: EDGE_RATE times motion_rounding_at; for the gap's: LEFT_OUT times as much of
-// the part of motion_rounding_at beyond 1, because the series' truncation of it exceeds rounding.
-#define LEFT_OUT   1000.0
-#define EDGE_VALUE 1e-9
-#define EDGE_RATE  1e-9
-#define EDGE_MORE  1e-7
-#define EDGE_GAP   1e-12 // [m]
+// Just after an event (edge_limits.h) the limit on the hub's acceleration is EDGE_RATE times
+// motion_rounding_at; that on the gap's is LEFT_OUT times as much of the part of motion_rounding_at
+// beyond 1, because the series' truncation of it exceeds rounding.
+#define LEFT_OUT 1000.0
 
 // Which equations a block is for, the same in all its lanes.
 typedef struct taylor_form {
