@@ -61,73 +61,67 @@ static double scenario_value(const controller_parameter *own, const parameters *
 
 // --- control.settings -----------------------------------------------------------------------
 
-// One word of control.settings, NAME=VALUE, where it stands in the text.
-typedef struct setting {
-    const char *word;
-    size_t length, name_length; // without '=' the name is the whole word
-} setting;
-
-static setting setting_of(const char *word, size_t length)
+bool controller_next_setting(const char **rest, controller_setting *setting)
 {
-    setting s = {.word = word, .length = length};
-    const char *equals = memchr(word, '=', s.length);
-    s.name_length = equals != NULL ? (size_t)(equals - word) : s.length;
-    return s;
+    assert(rest != NULL && *rest != NULL && setting != NULL);
+    const char *word = *rest + strspn(*rest, " ");
+    const size_t length = strcspn(word, " "), name_length = strcspn(word, " =");
+    assert(length < PARAMETER_TEXT_SIZE);
+    *rest = word + length;
+    *setting = (controller_setting){.word = word, .length = length};
+
+    memcpy(setting->name, word, name_length);
+    if (name_length < length) {
+        memcpy(setting->value, word + name_length + 1, length - name_length - 1);
+    }
+    return length > 0;
 }
 
-// Index of the parameter that a setting names, -1 if the controller has none of that name.
-static int find_named(const controller *law, setting s)
+// Index of the controller's parameter of that name, -1 if it has none.
+static int find_named(const controller *law, const char *name)
 {
     for (int i = 0; i < law->parameter_count; i++) {
-        const char *name = law->parameters[i].name;
-        if (strlen(name) == s.name_length && strncmp(name, s.word, s.name_length) == 0) {
+        if (strcmp(law->parameters[i].name, name) == 0) {
             return i;
         }
     }
     return -1;
 }
 
-bool controller_takes_setting(const controller *law, const char *word, size_t length)
+bool controller_has_parameter(const controller *law, const char *name)
 {
-    assert(law != NULL && word != NULL);
-    return find_named(law, setting_of(word, length)) >= 0;
+    assert(law != NULL && name != NULL);
+    return find_named(law, name) >= 0;
 }
 
-static status refuse_name(const controller *law, setting s, fault *f)
+static status refuse_name(const controller *law, const char *name, fault *f)
 {
-    char written[PARAMETER_TEXT_SIZE] = "";
-    memcpy(written, s.word, s.name_length);
-    nearest_word near = nearest_begin(written);
+    nearest_word near = nearest_begin(name);
     for (int i = 0; i < law->parameter_count; i++) {
         nearest_try(&near, law->parameters[i].name);
     }
     return fault_set(f, STATUS_BAD_SCENARIO,
                      "control.settings: the controller '%s' has no parameter '%s'%s%s%s", law->name,
-                     written, near.best ? ", did you mean '" : "", near.best ? near.best : "",
+                     name, near.best ? ", did you mean '" : "", near.best ? near.best : "",
                      near.best ? "'?" : "");
 }
 
-static status read_setting(const controller *law, setting s, double *values, fault *f)
+static status read_setting(const controller *law, const controller_setting *s, double *values,
+                           fault *f)
 {
-    int index = find_named(law, s);
+    int index = find_named(law, s->name);
     if (index < 0) {
-        return refuse_name(law, s, f);
-    }
-
-    // what stands behind '=', as a text of its own
-    char text[PARAMETER_TEXT_SIZE] = "";
-    if (s.name_length < s.length) {
-        memcpy(text, s.word + s.name_length + 1, s.length - s.name_length - 1);
+        return refuse_name(law, s->name, f);
     }
 
     controller_parameter wanted = controller_parameter_at(law, index);
-    const char *end = text;
+    const char *end = s->value;
     double value = 0;
-    if (!decimal_read(text, &value, &end) || *end != '\0' ||
+    if (!decimal_read(s->value, &value, &end) || *end != '\0' ||
         !(value >= wanted.minimum && value <= wanted.maximum)) {
         return fault_set(f, STATUS_BAD_SCENARIO,
                          "control.settings: '%.*s' is wrong, expected %s=NUMBER from %g to %g%s%s",
-                         (int)s.length, s.word, wanted.name, wanted.minimum, wanted.maximum,
+                         (int)s->length, s->word, wanted.name, wanted.minimum, wanted.maximum,
                          wanted.unit != NULL && wanted.unit[0] ? " " : "",
                          wanted.unit != NULL ? wanted.unit : "");
     }
@@ -152,14 +146,12 @@ status controller_values(const controller *law, const parameters *p, double *val
         values[i] = scenario_value(&law->parameters[i], p, index);
     }
 
-    // those that control.settings replaces
-    // a process reads its settings itself
+    // those that control.settings replaces; a process reads its settings itself
     status code = STATUS_OK;
     const char *rest = p->control.law == LAW_PROCESS ? "" : p->control.settings;
-    while (code == STATUS_OK && *(rest += strspn(rest, " ")) != '\0') {
-        setting s = setting_of(rest, strcspn(rest, " "));
-        code = read_setting(law, s, values, f);
-        rest += s.length;
+    controller_setting setting;
+    while (code == STATUS_OK && controller_next_setting(&rest, &setting)) {
+        code = read_setting(law, &setting, values, f);
     }
     return code;
 }

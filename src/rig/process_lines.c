@@ -9,6 +9,7 @@
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
+#include "src/rig/controller_values.h"
 
 enum { PROTOCOL = 1 }; // of the lines, told in the first one
 
@@ -70,20 +71,13 @@ static json_t *control_object(const control_parameters *control, const controlle
 static json_t *settings_object(const control_parameters *control)
 {
     json_t *object = json_object();
-    const char *word = control->settings;
-    while (*(word += strspn(word, " ")) != '\0') {
-        char name[PARAMETER_TEXT_SIZE] = "", text[PARAMETER_TEXT_SIZE] = "";
-        size_t length = strcspn(word, " "), name_length = strcspn(word, " =");
-        memcpy(name, word, name_length);
-        if (name_length < length) {
-            memcpy(text, word + name_length + 1, length - name_length - 1);
-        }
-
+    const char *rest = control->settings;
+    controller_setting s;
+    while (controller_next_setting(&rest, &s)) {
         double value;
-        const char *rest;
-        bool number = decimal_read(text, &value, &rest) && *rest == '\0';
-        json_put(object, name, number ? json_number(value) : json_text(text));
-        word += length;
+        const char *end;
+        bool number = decimal_read(s.value, &value, &end) && *end == '\0';
+        json_put(object, s.name, number ? json_number(value) : json_text(s.value));
     }
     return object;
 }

@@ -191,15 +191,15 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     return result;
 }
 
-// Whether a word of control.settings, "NAME=VALUE", is of the scenario's own law or of one that is
-// judged. Which settings a plug-in or a program has it alone knows: any may be of it.
-static bool is_setting_of_others(const robustness *r, const char *word, size_t length)
+// Whether the scenario's own law or one that is judged has a parameter of that name. The parameters
+// of a plug-in or a program are not known here: it may have any.
+static bool others_have_parameter(const robustness *r, const char *name)
 {
     const int own = r->scenario.parameters.control.law, laws = r->count + (r->against == r->count);
     bool known = false;
     for (int i = own == LAW_NONE ? 0 : -1; i < laws && !known; i++) {
         const controller *law = controller_of(i < 0 ? own : r->laws[i]);
-        known = law == NULL || controller_takes_setting(law, word, length);
+        known = law == NULL || controller_has_parameter(law, name);
     }
     return known;
 }
@@ -215,15 +215,15 @@ static void fit_settings(const robustness *r, int law, control_parameters *contr
     }
 
     // word by word
-    size_t length;
-    for (const char *word = control->settings; *(word += strspn(word, " ")) != '\0';
-         word += length) {
-        length = strcspn(word, " ");
-        bool stays =
-            controller_takes_setting(known, word, length) || !is_setting_of_others(r, word, length);
+    const char *rest = control->settings;
+    controller_setting setting;
+    while (controller_next_setting(&rest, &setting)) {
+        bool stays = controller_has_parameter(known, setting.name) ||
+                     !others_have_parameter(r, setting.name);
         char *list = stays ? kept : left;
         size_t used = strlen(list);
-        snprintf(list + used, sizeof kept - used, "%s%.*s", used > 0 ? " " : "", (int)length, word);
+        snprintf(list + used, sizeof kept - used, "%s%.*s", used > 0 ? " " : "",
+                 (int)setting.length, setting.word);
     }
 
     memcpy(control->settings, kept, sizeof kept);
