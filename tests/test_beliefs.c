@@ -11,7 +11,7 @@ static controller_setup told(const char *const *settings)
     fault f;
     parameters p = rig_parameters(settings);
     p.control.law = LAW_HYBRID;
-    if (rig_create(&r, &p, &f) != STATUS_OK) {
+    if (rig_create(&r, &p, NULL, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
     controller_setup setup = ((const hybrid_memory *)r->memory)->rig;

@@ -72,7 +72,7 @@ static status start_rig(scenario *s, FILE *out)
 {
     rig *made = NULL;
     fault f = {0};
-    const status code = rig_create(&made, &s->parameters, &f);
+    const status code = rig_create(&made, &s->parameters, NULL, &f);
     rig_destroy(made);
     fprintf(out, "%d", code);
     return code;

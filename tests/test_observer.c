@@ -252,7 +252,7 @@ static controller_setup setup_of(const parameters *p)
     fault f;
     parameters as_hybrid = *p;
     as_hybrid.control.law = LAW_HYBRID;
-    assert_int_equal(rig_create(&r, &as_hybrid, &f), STATUS_OK);
+    assert_int_equal(rig_create(&r, &as_hybrid, NULL, &f), STATUS_OK);
     controller_setup setup = ((const hybrid_memory *)r->memory)->rig;
     rig_destroy(r);
     return setup;

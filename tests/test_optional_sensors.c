@@ -462,7 +462,7 @@ static void see(const char *const *settings)
     bool changed;
     parameters p = rig_parameters(settings);
     const sensed_motion m = {.acceleration = 30, .bending = -0.2, .force = 1.5};
-    assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
     r->law = &spying;
     sensors_follow(&r->sensors, 5, &m, &m, 1.5);
     assert_int_equal(rig_act(r, 0, &m, &changed, &f), STATUS_OK);

@@ -72,7 +72,7 @@ static void a_command_a_period_late_goes_out_with_the_next_sample(void **state)
         double latest = 0;
         parameters p = rig_parameters(SETTINGS("control.law=force-pd", "control.delay_periods=1",
                                                jitters[k], "sensor.ideal=true"));
-        assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+        assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
         for (int i = 0; i < 300; i++) {
             // forces that never repeat, so that every command is another one
             sensed_motion now = {.force = 0.5 + 0.003 * i};
@@ -107,7 +107,7 @@ static void jitter_stays_within_its_width(void **state)
     bool changed;
     double widest = 0;
     parameters p = rig_parameters(SETTINGS("control.law=open-loop", "control.jitter=0.001"));
-    assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
     for (int i = 0; i < 500; i++) {
         double time = rig_next_time(r), off = time - i * 0.005;
         check_below(fabs(off), 0.0005 + 1e-12);

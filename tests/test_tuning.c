@@ -102,7 +102,7 @@ static void test_rates_that_change_again_and_again(void **state)
     parameters p = rig_parameters(SETTINGS("control.law=hybrid", "sensor.ideal=true"));
     rig *r;
     fault f = {0};
-    assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
     const sensed_motion at_rest = {.angle = -0.1};
 
     // the first sample is at the start
@@ -179,7 +179,7 @@ static void test_a_controller_is_told_what_changed_for_it(void **state)
     parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
     rig *r;
     fault f = {0};
-    assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
     controller counting = *r->law;
     counting.tune = count_telling;
     r->law = &counting;
@@ -245,7 +245,7 @@ static void test_the_wanted_force_is_its_ramp_and_its_wave(void **state)
         p.control.force_amplitude = amplitude;
         rig *r;
         fault f = {0};
-        assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+        assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
         double ramp = 1;
         check_close(r->wanted_force, 1, 0);
         for (int k = 0; k < 300; k++) {
@@ -276,7 +276,7 @@ static void test_delays_and_limits_follow_a_change(void **state)
                                            "control.delay_periods=0.25", "control.rate=200"));
     rig *r;
     fault f = {0};
-    assert_int_equal(rig_create(&r, &p, &f), STATUS_OK);
+    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
     check_close(r->delay, 1e-3 + 0.25 / 200, 1e-15);
     check_close(r->period, 5e-3, 1e-17);
     p.control.delay = 2e-3;

@@ -175,15 +175,11 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
     return r->process != NULL ? STATUS_OK : fault_no_memory(f);
 }
 
-status rig_create(rig **created, const parameters *p, fault *f)
+status rig_create(rig **created, const parameters *p, const rig_options *o, fault *f)
 {
-    const rig_options none = {.law = NULL};
-    return rig_create_with(created, p, &none, f);
-}
-
-status rig_create_with(rig **created, const parameters *p, const rig_options *o, fault *f)
-{
-    assert(created != NULL && p != NULL && o != NULL && p->control.rate > 0);
+    static const rig_options none = {.law = NULL};
+    o = o != NULL ? o : &none;
+    assert(created != NULL && p != NULL && p->control.rate > 0);
     const given_law *given = o->law;
     assert(given != NULL || p->control.law != LAW_NONE);
     rig *r = calloc(1, sizeof *r);

@@ -59,13 +59,12 @@ typedef struct rig {
     int lock;                     // mode that the controller is to be in, -1 if it chooses
 } rig;
 
-// Sets up the rig of resolved parameters with control.law other than none. On failure (a plug-in
-// that cannot be loaded, a setting that is not known, a controller that refuses) f says why and
-// nothing is to be freed. A plug-in or program that the user has not allowed (code_allowed) is
-// withheld: the rig is there, and its first sample fails with STATUS_NOT_ALLOWED.
-status rig_create(rig **created, const parameters *p, fault *f);
-// The same with what the run gives.
-status rig_create_with(rig **created, const parameters *p, const rig_options *o, fault *f);
+// Sets up the rig of resolved parameters with control.law other than none, or with the law of the
+// options; o may be NULL. On failure (a plug-in that cannot be loaded, a setting that is not known,
+// a controller that refuses) f says why and nothing is to be freed. A plug-in or program that the
+// user has not allowed (code_allowed) is withheld: the rig is there, and its first sample fails
+// with STATUS_NOT_ALLOWED.
+status rig_create(rig **created, const parameters *p, const rig_options *o, fault *f);
 void rig_destroy(rig *r); // r may be NULL
 
 // The index of the mode that a value of control.lock names, -1 for "none". STATUS_BAD_SCENARIO,

@@ -30,7 +30,7 @@ status recording_start_rig(recording *r, fault *f)
         .tape = o->tape,
         .ends = {o->monitor != NULL ? &o->monitor->stop : NULL, o->abandon},
     };
-    status s = rig_create_with(&r->rig, p, &given, f);
+    status s = rig_create(&r->rig, p, &given, f);
     return s == STATUS_OK && !r->rig->withheld ? scenario_check_locks(r->scenario, r->rig->law, f)
                                                : s;
 }
