@@ -23,9 +23,8 @@ typedef struct labelling {
 
 // What ticks are wanted for.
 typedef struct wish {
-    double low, high; // of the data
+    double low, high; // ends of the axis
     int count;
-    bool inside; // no tick beyond low and high
 } wish;
 
 static double step_unit(const labelling *l)
@@ -89,9 +88,9 @@ static void try_starts(labelling l, const wish *w, labelling *best)
 {
     double unit = step_unit(&l), step = unit * l.j;
     double from = (floor(w->high / step) - (l.count - 1)) * l.j, to = ceil(w->low / step) * l.j;
-    double slack = w->inside ? 1e-9 * (w->high - w->low) : (double)INFINITY;
-    // whole multiples of the step alone: 0.04, 0.05 and never 0.045, 0.055
+    double slack = 1e-9 * (w->high - w->low);
 
+    // only whole multiples of the step: 0.04, 0.05 and never 0.045, 0.055
     for (l.start = from; l.start <= to; l.start += l.j) {
         double first = l.start * unit, last = first + step * (l.count - 1);
         l.score = combined(simplicity(&l), coverage(w->low, w->high, first, last),
@@ -216,23 +215,10 @@ static void fill(ticks *t, const labelling *l, double first, int count)
     choose_format(t);
 }
 
-void ticks_extended(ticks *t, double low, double high, int wanted)
-{
-    assert(t != NULL);
-    wish w = {low, high, wanted, false};
-    memset(t, 0, sizeof *t);
-    t->minor = 1;
-
-    if (straighten(&w)) {
-        labelling best = best_labelling(&w);
-        fill(t, &best, best.start, best.count);
-    }
-}
-
 void ticks_between(ticks *t, double low, double high, int wanted)
 {
     assert(t != NULL);
-    wish w = {low, high, wanted, true};
+    wish w = {low, high, wanted};
     memset(t, 0, sizeof *t);
     t->minor = 1;
 
@@ -244,7 +230,8 @@ void ticks_between(ticks *t, double low, double high, int wanted)
     labelling best = best_labelling(&w);
     double unit = step_unit(&best), slack = 1e-9 * (w.high - w.low);
     double first = best.start;
-    // whatever else lies on a whole step inside
+
+    // and every other multiple of its step on the axis
     while ((first - best.j) * unit >= w.low - slack) {
         first -= best.j;
     }

@@ -17,14 +17,11 @@ typedef struct ticks {
     int minor;                // parts into which minor ticks divide a step, 1 if there are none
 } ticks;
 
-// Extended Wilkinson ticks for data from low to high with about `wanted` of them: among the steps
-// {1, 5, 2, 2.5, 4, 3} times j and a power of ten the one with the best mean of simplicity,
-// coverage, density and legibility (weights 0.25, 0.2, 0.5, 0.05). The outermost ticks may lie
-// outside or inside the data. Talbot, Lin, Hanrahan 2010. Limits in wrong order are swapped, equal
-// ones are widened; limits that are not finite give no ticks.
-void ticks_extended(ticks *t, double low, double high, int wanted);
-
-// The same for an axis that ends at low and high: no tick lies outside, and none is missing inside.
+// Extended Wilkinson ticks for an axis from low to high, about `wanted` of them, all within its
+// ends: among the steps {1, 5, 2, 2.5, 4, 3} times j and a power of ten the one with the best mean
+// of simplicity, coverage, density and legibility (weights 0.25, 0.2, 0.5, 0.05), and then every
+// multiple of that step on the axis. Talbot, Lin, Hanrahan 2010. Limits in wrong order are swapped,
+// equal ones are widened; limits that are not finite give no ticks.
 void ticks_between(ticks *t, double low, double high, int wanted);
 
 // The label of tick `index` with a true minus sign (U+2212) and no needless digits.
