@@ -2,6 +2,7 @@
 // instead of fading through denormal numbers, on which processors compute slowly.
 #include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
+#include "tests/motion_advance.h"
 
 #define LEAST 1.5e-154 // what is nonzero is larger, so that its square is a normal number
 

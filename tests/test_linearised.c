@@ -6,6 +6,7 @@
 #include "src/predict/pulse.h"
 #include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
+#include "tests/motion_advance.h"
 
 static const double stiffness[] = {492, 49.2, 4.92};
 static const double voltage[] = {1, 2, 5, 10};

@@ -6,6 +6,7 @@
 #include "src/arm/modes.h"
 #include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
+#include "tests/motion_advance.h"
 
 enum { MOST = 9 }; // bodies
 

@@ -1,5 +1,6 @@
 // The drive's constants from its nameplate, the limit of its command, and its energy.
 #include "tests/arm_fixture.h"
+#include "tests/motion_advance.h"
 
 #include "src/arm/motor.h"
 #include "src/solve/contact_machine.h"

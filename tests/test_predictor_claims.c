@@ -10,6 +10,7 @@
 #include "src/predict/pulse.h"
 #include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
+#include "tests/motion_advance.h"
 
 static long cases = 100;
 static uint64_t seed = 20261122;

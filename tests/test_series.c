@@ -9,6 +9,7 @@
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
 #include "tests/explicit_stepper.h"
+#include "tests/motion_advance.h"
 
 #define DURATION    0.05
 #define START_ANGLE 0.095

@@ -8,6 +8,7 @@
 #include "src/solve/series_engine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
+#include "tests/motion_advance.h"
 
 #define SPEED 0.1 // of the single mass at the wall [m/s]
 

@@ -4,6 +4,7 @@
 #include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
+#include "tests/motion_advance.h"
 
 // One link on a spring whose hub never lets go: a linear oscillator,
 // (I + m l^2/4) a + k1 theta = 0. k1 is chosen for the wanted frequency.

@@ -23,8 +23,6 @@
 #include "src/arm/motor.h"
 #include "src/arm/wall.h"
 
-enum { PRINTED_BODIES = 3, PRINTED_EQUATIONS = 4 };
-
 typedef struct printed_arm {
     double link_length;  // l [m]
     double centre;       // e, from a link's joint to its centre of mass [m]

@@ -102,7 +102,6 @@ static double press_of(const flight *f, const flight_state *s)
 // [1/N], K xi [1/m].
 typedef struct responses {
     double tip[MOST_STEPS + 1], press[MOST_STEPS + 1];
-    int count; // of the steps that are filled in
 } responses;
 
 // The end of the interval of K xi that is attainable with a touch after n steps.
@@ -174,7 +173,7 @@ least_time least_time_of(const parameters *p, double force, double band, double 
     assert(p != NULL && band > 0);
     least_time best = {.total = (double)NAN};
     flight f;
-    responses r = {.count = 0};
+    responses r; // filled in up to the step that is tried
     if (!(force > 0) || !flight_of(p, &f)) {
         return best;
     }

@@ -28,14 +28,15 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define OUTLIER     4.0  // readings further off, in standard deviations, are worth less
 #define REST        0.01 // a slower hub counts as at rest [rad/s]
 
-static int count_of(const arm_observer *o)
-{
-    return arm_observer_modes(o)->count;
-}
-
-const mode_set *arm_observer_modes(const arm_observer *o)
+// The modes of the present state.
+static const mode_set *modes_of(const arm_observer *o)
 {
     return o->touches ? &o->arm.contact : &o->arm.free;
+}
+
+static int count_of(const arm_observer *o)
+{
+    return modes_of(o)->count;
 }
 
 int arm_observer_torque_index(const arm_observer *o)
@@ -55,7 +56,7 @@ static int state_count(const arm_observer *o)
 
 double arm_observer_square(const arm_observer *o, int i)
 {
-    return arm_observer_modes(o)->square[i] * (o->touches && i == 0 ? o->stiffness : 1);
+    return modes_of(o)->square[i] * (o->touches && i == 0 ? o->stiffness : 1);
 }
 
 // --- the model --------------------------------------------------------------------------------
@@ -139,9 +140,10 @@ void arm_observer_know_wall(arm_observer *o, double angle)
 
 // --- what an estimate says --------------------------------------------------------------------
 
-double arm_observer_hub(const arm_observer *o, const estimator *e)
+// The hub's angle [rad].
+static double hub_angle(const arm_observer *o, const estimator *e)
 {
-    const mode_set *set = arm_observer_modes(o);
+    const mode_set *set = modes_of(o);
     double angle = o->touches ? e->z[wall_index(o)] : 0;
     for (int i = 0; i < set->count; i++) {
         angle += set->hub[i] * e->z[i];
@@ -151,7 +153,7 @@ double arm_observer_hub(const arm_observer *o, const estimator *e)
 
 double arm_observer_tip(const arm_observer *o, const estimator *e)
 {
-    const mode_set *set = arm_observer_modes(o);
+    const mode_set *set = modes_of(o);
     double angle = o->touches ? e->z[wall_index(o)] : 0;
     for (int i = 0; i < set->count; i++) {
         angle += set->tip[i] * e->z[i];
@@ -161,7 +163,7 @@ double arm_observer_tip(const arm_observer *o, const estimator *e)
 
 double arm_observer_rate(const arm_observer *o, const estimator *e)
 {
-    const mode_set *set = arm_observer_modes(o);
+    const mode_set *set = modes_of(o);
     double rate = 0;
     for (int i = 0; i < set->count; i++) {
         rate += set->hub[i] * e->z[set->count + i];
@@ -182,7 +184,7 @@ static double hub_mobility(const mode_set *set)
 // Torque on the hub under which it keeps its velocity [N m].
 static double balancing_torque(const arm_observer *o, const estimator *e)
 {
-    const mode_set *set = arm_observer_modes(o);
+    const mode_set *set = modes_of(o);
     double sum = 0;
     for (int i = 0; i < set->count; i++) {
         sum += set->hub[i] *
@@ -196,7 +198,8 @@ double arm_observer_holding_torque(const arm_observer *o, const estimator *e)
     return balancing_torque(o, e) - e->z[arm_observer_torque_index(o)];
 }
 
-double arm_observer_friction(const arm_observer *o, const estimator *e, double drive)
+// Friction on the hub under a motor torque [N m], against the motion, or what holds at rest.
+static double friction_under(const arm_observer *o, const estimator *e, double drive)
 {
     double rate = arm_observer_rate(o, e), limit = o->stiction;
     if (fabs(rate) > REST) {
@@ -205,7 +208,7 @@ double arm_observer_friction(const arm_observer *o, const estimator *e, double d
     // what brings it to rest and holds it there
     double net =
         drive + e->z[arm_observer_torque_index(o)] - o->hub_damping * rate - balancing_torque(o, e);
-    double stop = rate / (hub_mobility(arm_observer_modes(o)) * o->period);
+    double stop = rate / (hub_mobility(modes_of(o)) * o->period);
     return fmax(-limit, fmin(net + stop, limit));
 }
 
@@ -238,7 +241,7 @@ double arm_observer_force(const arm_observer *o, const estimator *e, double driv
 {
     double row[N];
     force_row(o, row);
-    double force = arm_observer_force_per_torque(o) * (drive - arm_observer_friction(o, e, drive));
+    double force = arm_observer_force_per_torque(o) * (drive - friction_under(o, e, drive));
     for (int i = 0; i < state_count(o); i++) {
         force += row[i] * e->z[i];
     }
@@ -250,7 +253,7 @@ double arm_observer_force(const arm_observer *o, const estimator *e, double driv
 static void predict(const arm_observer *o, estimator *e, const sampled_model *model, double h,
                     double voltage)
 {
-    const mode_set *set = arm_observer_modes(o);
+    const mode_set *set = modes_of(o);
     const int n = set->count;
     double noise[N] = {0}, drive = o->torque_per_volt * voltage, share = h / o->period;
     for (int i = 0; i < n; i++) {
@@ -262,12 +265,12 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
     noise[arm_observer_torque_index(o)] = TORQUE_DRIFT * TORQUE_DRIFT * h;
     if (o->touches) {
         // a stiffness believed wrongly shows as a wall that moves with the hub
-        double bend = arm_observer_hub(o, e) - e->z[wall_index(o)];
+        double bend = hub_angle(o, e) - e->z[wall_index(o)];
         double wandering = 2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
         noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
     }
 
-    double net = drive - arm_observer_friction(o, e, drive);
+    double net = drive - friction_under(o, e, drive);
     if (!o->touches) {
         estimator_predict(e, model, net, noise);
         return;
@@ -313,7 +316,7 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
 // Hub and beam: encoder, tachometer, and film and accelerometer where they are fitted.
 static void take_motion(arm_observer *o, const controller_input *in)
 {
-    const mode_set *set = arm_observer_modes(o);
+    const mode_set *set = modes_of(o);
     const int n = set->count;
     double angle[N] = {0}, rate[N] = {0}, bending[N] = {0};
     for (int i = 0; i < n; i++) {
@@ -338,7 +341,7 @@ static void take_motion(arm_observer *o, const controller_input *in)
             row[n + i] = -set->hub[i] * set->damping[i] - mobility * o->hub_damping * set->hub[i];
         }
         row[arm_observer_torque_index(o)] = mobility;
-        double offset = mobility * (drive - arm_observer_friction(o, &o->e, drive));
+        double offset = mobility * (drive - friction_under(o, &o->e, drive));
         take_reading(o, row, offset, in->accelerometer, ACCELERATION);
     }
 }

@@ -57,8 +57,7 @@ void arm_observer_leave(arm_observer *o, double time);
 // The estimate when a command given now takes effect.
 estimator arm_observer_ahead(const arm_observer *o, double voltage);
 
-// The modes of the present state, and the index of the torque among the states.
-const mode_set *arm_observer_modes(const arm_observer *o);
+// The index of the torque among the states.
 int arm_observer_torque_index(const arm_observer *o);
 
 // Square of the frequency of mode i of the present state [1/s2], of the first in contact with the
@@ -66,17 +65,13 @@ int arm_observer_torque_index(const arm_observer *o);
 // believed come to at rest.
 double arm_observer_square(const arm_observer *o, int i);
 
-// Of an estimate: hub angle and tip angle [rad], hub velocity [rad/s].
-double arm_observer_hub(const arm_observer *o, const estimator *e);
+// Of an estimate: tip angle [rad], hub velocity [rad/s].
 double arm_observer_tip(const arm_observer *o, const estimator *e);
 double arm_observer_rate(const arm_observer *o, const estimator *e);
 
 // Torque that holds the hub where the estimate has it, without friction, that of the unknown torque
 // included [N m].
 double arm_observer_holding_torque(const arm_observer *o, const estimator *e);
-
-// Friction on the hub under a motor torque [N m], against the motion, or what holds at rest.
-double arm_observer_friction(const arm_observer *o, const estimator *e, double drive);
 
 // Contact force of an estimate in contact under a motor torque on the hub [N].
 double arm_observer_force(const arm_observer *o, const estimator *e, double drive);

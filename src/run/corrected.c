@@ -236,9 +236,10 @@ static void judge(const corrected_run *c)
     judge_size(c, energy);
 }
 
-void corrected_sum_up(corrected_run *c, status failed)
+// Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
+// then says so). What it has recorded is then that of a run that ended here.
+static void sum_up(corrected_run *c, status failed)
 {
-    assert(c != NULL && c->motion != NULL);
     recording *r = c->recording;
     motion *m = c->motion;
     summary *s = &r->result->summary;
@@ -275,12 +276,12 @@ void corrected_sum_up(corrected_run *c, status failed)
     }
 }
 
-void corrected_sum_up_so_far(corrected_run *c, status failed)
+void corrected_sum_up(corrected_run *c, status failed)
 {
     assert(c != NULL && c->motion != NULL);
     rig *on = c->recording->rig;
     if (!c->under_way.goes_on) {
-        corrected_sum_up(c, failed);
+        sum_up(c, failed);
         return;
     }
 
@@ -291,7 +292,7 @@ void corrected_sum_up_so_far(corrected_run *c, status failed)
     const sensors felt = on->sensors;
     size_t *forces = &c->recording->result->history.forces.count;
     const size_t kept = *forces;
-    corrected_sum_up(c, failed);
+    sum_up(c, failed);
 
     // and back to where the step started, which is where it left that
     const double *start = c->motion->trial;
@@ -332,7 +333,7 @@ motion *corrected_finish(corrected_run *c, status failed)
 {
     motion *m = c->motion;
     if (m != NULL) {
-        corrected_sum_up(c, failed);
+        sum_up(c, failed);
     }
     return m;
 }

@@ -15,13 +15,10 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f);
 // most; *ended is true if the run is complete instead.
 status corrected_approach_stride(corrected_run *c, bool *ended, fault *f);
 
-// Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
-// then says so). What it has recorded is then that of a run that ended here.
+// Sums up what is known of a run that has not come to its end (`failed` says if it failed) and that
+// afterwards continues unchanged; the caller has to save and restore rows, events and
+// recording.state.
 void corrected_sum_up(corrected_run *c, status failed);
-
-// The same for a run that afterwards continues unchanged; the caller has to save and restore rows,
-// events and recording.state.
-void corrected_sum_up_so_far(corrected_run *c, status failed);
 
 // Sums the run up and frees it; `failed` is what ended it.
 void corrected_close(corrected_run *c, status failed);

@@ -22,7 +22,7 @@ static void corrected_end(stepped_run *run, status failed)
 
 static void corrected_summary(stepped_run *run, status failed)
 {
-    corrected_sum_up_so_far(&run->corrected, failed);
+    corrected_sum_up(&run->corrected, failed);
 }
 
 static double corrected_time(const stepped_run *run)
@@ -139,22 +139,22 @@ static void corrected_restore(stepped_run *run, const void *bytes)
     c->stop = saved.stop;
 }
 
-const stepped_model stepped_corrected = {.stops_anywhere = true,
-                                         .takes_pushes = true,
-                                         .open = corrected_begin,
-                                         .close = corrected_end,
-                                         .sum_up = corrected_summary,
-                                         .time = corrected_time,
-                                         .at_end = corrected_at_end,
-                                         .approach = corrected_approach,
-                                         .stride = corrected_stride_until,
-                                         .act = corrected_act_now,
-                                         .sensed = corrected_sensed,
-                                         .row = corrected_row_now,
-                                         .state = corrected_state,
-                                         .saved_size = corrected_saved_size,
-                                         .save = corrected_save,
-                                         .restore = corrected_restore};
+static const stepped_model corrected_model = {.stops_anywhere = true,
+                                              .takes_pushes = true,
+                                              .open = corrected_begin,
+                                              .close = corrected_end,
+                                              .sum_up = corrected_summary,
+                                              .time = corrected_time,
+                                              .at_end = corrected_at_end,
+                                              .approach = corrected_approach,
+                                              .stride = corrected_stride_until,
+                                              .act = corrected_act_now,
+                                              .sensed = corrected_sensed,
+                                              .row = corrected_row_now,
+                                              .state = corrected_state,
+                                              .saved_size = corrected_saved_size,
+                                              .save = corrected_save,
+                                              .restore = corrected_restore};
 
 // --- the printed arm --------------------------------------------------------------------------
 
@@ -234,27 +234,27 @@ static void printed_restore(stepped_run *run, const void *bytes)
     run->printed.recording = own;
 }
 
-const stepped_model stepped_printed = {.open = printed_begin,
-                                       .close = printed_end,
-                                       .sum_up = printed_summary,
-                                       .time = printed_time,
-                                       .at_end = printed_at_end,
-                                       .approach = printed_approach,
-                                       .stride = printed_stride,
-                                       .act = printed_act_now,
-                                       .sensed = printed_sensed,
-                                       .row = printed_row_now,
-                                       .state = printed_state,
-                                       .saved_size = printed_saved_size,
-                                       .save = printed_save,
-                                       .restore = printed_restore};
+static const stepped_model printed_model = {.open = printed_begin,
+                                            .close = printed_end,
+                                            .sum_up = printed_summary,
+                                            .time = printed_time,
+                                            .at_end = printed_at_end,
+                                            .approach = printed_approach,
+                                            .stride = printed_stride,
+                                            .act = printed_act_now,
+                                            .sensed = printed_sensed,
+                                            .row = printed_row_now,
+                                            .state = printed_state,
+                                            .saved_size = printed_saved_size,
+                                            .save = printed_save,
+                                            .restore = printed_restore};
 
 // --- either -----------------------------------------------------------------------------------
 
 const stepped_model *stepped_model_of(const parameters *p)
 {
     assert(p != NULL);
-    return p->arm.model == ARM_PRINTED ? &stepped_printed : &stepped_corrected;
+    return p->arm.model == ARM_PRINTED ? &printed_model : &corrected_model;
 }
 
 status stepped_run_whole(recording *r, fault *f)

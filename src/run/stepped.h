@@ -50,8 +50,6 @@ struct stepped_run {
     };
 };
 
-extern const stepped_model stepped_corrected, stepped_printed;
-
 // The one of a scenario's arm.model.
 const stepped_model *stepped_model_of(const parameters *p);
 

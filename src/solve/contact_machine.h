@@ -65,15 +65,12 @@ void motion_look_ahead(const arm *a, motion *m, double until, double step);
 // for `until` only. For engines that know the hub within a stride (engine.hub_at).
 void motion_look_far(const arm *a, motion *m, double until, double far, double step);
 
-// Steps until `until` or the first event.
-status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report);
-
 // The state at `time` within the last step, by stepping again from its start; a pointer that is
 // good until the next call of any function here. To be called before motion_apply. NULL if the step
 // fails.
 double *motion_between(const arm *a, motion *m, double time);
 
-// Takes the transition of the event that motion_step or motion_advance reported; completes *report.
+// Takes the transition of the event that motion_step reported; completes *report.
 void motion_apply(const arm *a, motion *m, motion_report *report);
 
 // A push: an impulse [N s] at the tip, across the last link, towards growing angle. In contact the

@@ -329,17 +329,6 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     return STATUS_OK;
 }
 
-status motion_advance(const arm *a, motion *m, double until, double step, motion_report *report)
-{
-    assert(a != NULL && m != NULL && report != NULL && !isnan(until));
-    status s = STATUS_OK;
-    *report = (motion_report){.event = MOTION_REACHED};
-    while (s == STATUS_OK && report->event == MOTION_REACHED && m->state[SLOT_TIME] < until) {
-        s = motion_step(a, m, until, step, report);
-    }
-    return s;
-}
-
 double *motion_between(const arm *a, motion *m, double time)
 {
     assert(a != NULL && m != NULL && isfinite(time));

@@ -194,24 +194,25 @@ static bool take_basis(modal_stride *s, const arm *a, contact_state mode, const 
     return true;
 }
 
-void modal_prepare_remainders(modal_stride *s, const arm *a, int point, const double *w,
-                              double *columns)
+// What modal_take_remainders wants of the start, still to be brought to the modes, into
+// s->columns[2 row], from the velocities w[dof] and dT/dq + J'^T L in s->rates.
+static void prepare_remainders(modal_stride *s, const arm *a, const double *w)
 {
     // velocities without what is across the constraint
     const int e = s->modes->across;
-    double *along = columns + s->row;
+    double *along = s->columns + s->row;
     memcpy(along, w, (size_t)s->dof * sizeof *w);
     if (e >= 0) {
         const double *shift = s->modes->by_mode + (ptrdiff_t)e * s->dof;
-        s->drifts[point][e] = modal_basis_across(s->modes, a, w) / s->modes->reach;
+        s->drifts[0][e] = modal_basis_across(s->modes, a, w) / s->modes->reach;
         for (int k = 0; k < s->dof; k++) {
-            along[k] -= s->drifts[point][e] * shift[k];
+            along[k] -= s->drifts[0][e] * shift[k];
         }
     }
 
     // their momenta, and the forces
-    modal_mass_times(a, along, columns);
-    straight_forces_left(a, modal_hub_torque(s, a), s->angles, w, s->rates, columns + s->row);
+    modal_mass_times(a, along, s->columns);
+    straight_forces_left(a, modal_hub_torque(s, a), s->angles, w, s->rates, along);
 }
 
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
@@ -242,7 +243,7 @@ status modal_stride_start(modal_stride *s, const arm *a, chain_link *links, cont
     double impulse;
     chain_from_momentum(a, links, mode, q, s->momentum, s->velocities, s->rates, &impulse);
     memcpy(s->angles, q, (size_t)n * sizeof *q);
-    modal_prepare_remainders(s, a, 0, w, s->columns);
+    prepare_remainders(s, a, w);
     memcpy(s->columns + 2 * s->row, s->momentum, (size_t)n * sizeof *q);
     modal_from_angles(s->modes, n, 3, s->columns, s->more_columns, s->row);
 

@@ -28,11 +28,8 @@ void modal_momenta_at(const modal_stride *s, const modal_table *at, double *x, d
 // that of lambda (modal_basis.h) [N m s].
 double modal_to_momenta(const modal_stride *s, const arm *a, const double *x, double *y);
 
-// r and s of one instant from x, y, the velocities w[dof] there and dT/dq + J'^T L in s->rates:
-// what is to be brought to the modes into columns[2 row], and, brought there as modal[2 row], into
-// s->drifts[point] and s->forces[point].
-void modal_prepare_remainders(modal_stride *s, const arm *a, int point, const double *w,
-                              double *columns);
+// r and s of one instant, into s->drifts[point] and s->forces[point]. x, y: of the modes; modal[2
+// row]: the velocities' momenta there and the forces that are left, brought to the modes.
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
                            const double *modal);
 

@@ -182,12 +182,6 @@ static inline double state_rest_gap_velocity(const double *state)
     return state[SLOT_GAP_VELOCITY] - (state[SLOT_CONTACT] != 0 ? 0 : state[SLOT_FACE_VELOCITY]);
 }
 
-// Length of the smooth part of the state: angles, velocities, quadratures.
-static inline int smooth_length(const motion *m)
-{
-    return 2 * m->dof + QUADRATURE_COUNT;
-}
-
 // Prepares a motion of the arm with the given method; all storage is allocated here. NULL if out of
 // memory.
 motion *motion_create(const arm *a, const method_parameters *method);
