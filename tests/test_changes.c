@@ -102,6 +102,8 @@ static void test_what_has_no_effect_says_why(void **state)
     press(&ex, ":set motor.voltage 2<Enter>");
     assert_shows(&ex, "without effect: the control law commands the voltage");
     assert_true(ex.state.message.warning);
+    press(&ex, ":set<Enter>");
+    assert_shows(&ex, "set takes a parameter and a value, such as arm.k2 10");
     press(&ex, ":set sensor.film_gain<Enter>");
     assert_shows(&ex, "no piezo film is fitted (sensor.film)");
     press(&ex, ":open corrected/first-impact<Enter>");

@@ -24,6 +24,14 @@ static void test_a_spectrum_names_the_highest_line(void **state)
     assert_non_null(strstr(text, "highest at "));
     assert_null(strstr(text, "highest at 0 Hz"));
     free(text);
+
+    // a constant has none at all, rounding aside
+    press(&ex,
+          ":set control.law none<Enter>:set motor.voltage 0.1<Enter>:spectrum command<Enter>e");
+    text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "constant, to [Hz]"));
+    assert_null(strstr(text, "highest at "));
+    free(text);
     press(&ex, ":spectrum<Enter>");
     assert_true(ex.state.message.warning);
     press(&ex, ":spectrum force gap<Enter>");

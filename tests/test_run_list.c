@@ -38,6 +38,28 @@ static void test_runs_are_pinned_with_what_was_changed(void **state)
     explorer_finish(&ex);
 }
 
+// A number that is cut reads like another one.
+static void test_names_are_cut_between_words(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.1234<Enter>:set motor.voltage 0.25<Enter>b");
+    const char name[] = "voltage 0.25 from 0.1234 s";
+    assert_string_equal(ex.state.pinned.runs[0].name, name);
+    char *text = picture(&ex, 100, 40, GLYPHS_BRAILLE);
+    assert_non_null(strstr(text, "voltage 0.25 from.. "));
+    assert_null(strstr(text, name));
+    free(text);
+
+    // where there is room it is whole, also one that is long
+    press(&ex, "B:pin of the second series, with 12345678901234567890 samples<Enter>R");
+    assert_shows(&ex, "of the second series, with.. ");
+    press(&ex, "r");
+    assert_shows(&ex, "with 12345678901234567890 samples");
+    explorer_finish(&ex);
+}
+
 static void test_no_more_than_seven_and_none_is_lost(void **state)
 {
     (void)state;
@@ -194,6 +216,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_runs_are_pinned_with_what_was_changed),
+        cmocka_unit_test(test_names_are_cut_between_words),
         cmocka_unit_test(test_no_more_than_seven_and_none_is_lost),
         cmocka_unit_test(test_taking_a_run_brings_all_of_it_back),
         cmocka_unit_test(test_hidden_runs_are_not_drawn),

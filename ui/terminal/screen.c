@@ -136,6 +136,19 @@ int text_wrap(const char *text, int width, text_line *lines, int most, bool *spl
     return count;
 }
 
+void screen_words(screen *s, int x, int y, int room, ink colour, const char *text)
+{
+    static const char left_out[] = "..";
+    const int mark = (int)strlen(left_out);
+    text_line words = {text, 0};
+    assert(s != NULL && text != NULL);
+    if (text_cells(text) <= room) {
+        screen_text(s, x, y, room, colour, text);
+    } else if (room > mark && text_wrap(text, room - mark, &words, 1, NULL) > 0) {
+        screen_print(s, x, y, room, colour, "%.*s%s", words.bytes, words.start, left_out);
+    }
+}
+
 void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title)
 {
     int right = x + width - 1, bottom = y + height - 1;

@@ -98,6 +98,9 @@ action_result act_set(explorer_state *st, const char *argument)
     char path[LINE_TEXT];
     int parameter;
     size_t length = strcspn(argument, " =");
+    if (length == 0) {
+        return result_refused("set takes a parameter and a value, such as arm.k2 10");
+    }
     snprintf(path, sizeof path, "%.*s", (int)length, argument);
     const char *value = argument + length + strspn(argument + length, " =");
     const action_result found = find_parameter(path, &parameter);

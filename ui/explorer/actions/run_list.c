@@ -170,7 +170,7 @@ action_result act_rename_run(explorer_state *st, const char *argument)
         prompt_open_value(&st->prompt, line, p->name);
         return result_done();
     }
-    snprintf(p->name, sizeof p->name, "%.*s", RUN_NAME - 1, name);
+    snprintf(p->name, sizeof p->name, "%s", name);
     return result_done();
 }
 

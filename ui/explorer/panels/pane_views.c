@@ -150,6 +150,9 @@ static int lines_that_matter(const double *amplitude)
     return lines < SERIES / 2 ? lines : SERIES / 2;
 }
 
+// Below this share of a signal's largest value, the amplitudes of its spectrum are rounding.
+#define ROUNDING 1e-12
+
 // The amplitudes of the visible part, as far as it has been seen, up to where there is anything.
 static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, area a,
                           value_range *axis)
@@ -157,7 +160,7 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
     static double series[SERIES], scratch[2 * SERIES], amplitude[SERIES / 2];
     const trace *t = state_run(st, 0).trace;
     char name[64];
-    double from, to, highest = 0;
+    double from, to, highest = 0, largest = 0;
     int peak = 0;
     state_window(st, &from, &to);
     to = fmin(to, st->session.seen);
@@ -165,6 +168,9 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
         return false;
     }
     sample_evenly(t, of->signals[0], from, to, series);
+    for (int i = 0; i < SERIES; i++) {
+        largest = fmax(largest, fabs(series[i]));
+    }
     fourier_amplitudes(series, SERIES, scratch, amplitude);
     const int lines = lines_that_matter(amplitude);
     for (int k = 1; k < lines; k++) {
@@ -172,13 +178,17 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
         highest = fmax(highest, amplitude[k]);
     }
 
-    // the highest line is named
+    // the highest line is named, if there is any
+    const bool constant = highest <= ROUNDING * largest;
     const plane p = {{s, a.x, a.y, a.width, a.height},
                      {0, lines / (to - from)},
-                     opened((value_range){0, highest})};
+                     opened((value_range){0, constant ? 0 : highest})};
     *axis = p.y;
-    snprintf(name, sizeof name, "highest at %.3g Hz, to [Hz]", peak / (to - from));
-    for (int k = 2; k < lines; k++) {
+    snprintf(name, sizeof name, "constant, to [Hz]");
+    if (!constant) {
+        snprintf(name, sizeof name, "highest at %.3g Hz, to [Hz]", peak / (to - from));
+    }
+    for (int k = 2; k < lines && !constant; k++) {
         canvas_line(&p.canvas, dot_x(&p, (k - 1) / (to - from)), dot_y(&p, amplitude[k - 1]),
                     dot_x(&p, k / (to - from)), dot_y(&p, amplitude[k]), INK_SERIES_0);
     }

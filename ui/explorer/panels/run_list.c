@@ -18,9 +18,9 @@ static void draw_run(const explorer_state *st, screen *s, area a, int index)
     screen_print(s, a.x, a.y, 3, INK_DIM, "%s%d", index == st->pinned.baseline ? "\u25b8" : " ",
                  index + 1);
     draw_line_sample(s, a.x + 3, a.y, SAMPLE, p->hidden ? 0 : run_pattern(index), INK_TEXT);
-    screen_text(s, a.x + 8, a.y, name - 1, p->hidden ? INK_DIM : INK_TITLE, p->name);
+    screen_words(s, a.x + 8, a.y, name - 1, p->hidden ? INK_DIM : INK_TITLE, p->name);
     screen_print(s, a.x + 8 + name, a.y, NUMBER, INK_FORCE, "%7s N", peak);
-    screen_text(s, a.x + 8 + name + NUMBER, a.y, a.width - 8 - name - NUMBER, INK_TEXT, differs);
+    screen_words(s, a.x + 8 + name + NUMBER, a.y, a.width - 8 - name - NUMBER, INK_TEXT, differs);
     if (index == st->pinned.selected) {
         screen_tint(s, a.x - 1, a.y, a.width + 2, 1, INK_SELECTED);
     }

@@ -16,7 +16,7 @@ static void draw_run(screen *s, area a, const char *name, double peak, unsigned 
     char text[32];
     draw_number(text, sizeof text, peak);
     draw_line_sample(s, a.x, a.y, SAMPLE, pattern, colour);
-    screen_text(s, a.x + SAMPLE + 1, a.y, a.width - SAMPLE - 1 - PEAK, INK_TEXT, name);
+    screen_words(s, a.x + SAMPLE + 1, a.y, a.width - SAMPLE - 1 - PEAK, INK_TEXT, name);
     screen_print(s, a.x + a.width - PEAK, a.y, PEAK, INK_FORCE, "%8s N", text);
 }
 

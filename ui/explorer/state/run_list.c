@@ -90,7 +90,7 @@ static void propose_name(const run_list *list, const session *s, char name[RUN_N
     }
 
     // a number follows where that name is taken
-    snprintf(name, RUN_NAME, "%.40s", text);
+    snprintf(name, RUN_NAME, "%s", text);
     for (int n = 2; n < 100; n++) {
         bool taken = false;
         for (int i = 0; i < list->count; i++) {
@@ -99,7 +99,7 @@ static void propose_name(const run_list *list, const session *s, char name[RUN_N
         if (!taken) {
             return;
         }
-        snprintf(name, RUN_NAME, "%.40s (%d)", text, n);
+        snprintf(name, RUN_NAME, "%s (%d)", text, n);
     }
 }
 
@@ -124,7 +124,7 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
 
     // the rows are shared, the changes are copied
     if (name[0] != '\0') {
-        snprintf(p.name, sizeof p.name, "%.*s", RUN_NAME - 1, name);
+        snprintf(p.name, sizeof p.name, "%s", name);
     } else {
         propose_name(list, s, p.name);
     }

@@ -3,8 +3,9 @@
 #pragma once
 
 #include "src/session/session.h"
+#include "ui/explorer/state/prompt.h"
 
-enum { PINNED_RUNS = LESSON_PINNED_RUNS, RUN_NAME = 48 };
+enum { PINNED_RUNS = LESSON_PINNED_RUNS, RUN_NAME = LINE_TEXT };
 
 typedef struct pinned_run {
     char name[RUN_NAME];
