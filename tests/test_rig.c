@@ -132,6 +132,58 @@ static void rig_changes_the_bare_arm_only_by_its_converter(void **state)
     assert_true(isnan(bare.force_command_N));
 }
 
+// What the amplifier feeds in is what the rows say, before and after a script lowers its limit.
+static void energy_under_a_limit_that_changes(void **state)
+{
+    (void)state;
+    static const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
+    for (int i = 0; i < 2; i++) {
+        action lower = {.time = 0.5,
+                        .kind = ACTION_SET,
+                        .parameter = PARAMETER_INDEX(motor.voltage_limit),
+                        .value = 1};
+        scenario s = {.parameters = rig_parameters(SETTINGS(models[i], "control.law=open-loop",
+                                                            "control.approach_voltage=5")),
+                      .actions = &lower,
+                      .action_count = 1};
+        run_result r;
+        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+
+        // the printed arm's row has the voltage of the step before it
+        const motor_parameters *m = &s.parameters.motor;
+        double energy = 0;
+        for (size_t k = 1; k < r.trace.row_count; k++) {
+            const sample *to = &r.trace.rows[k], *from = to - 1;
+            const double volts = m->amplifier_gain * (i ? to : from)->voltage;
+            const double turn = to->hub_angle - from->hub_angle;
+            energy +=
+                volts / m->resistance * (volts * (to->time - from->time) - m->back_emf * turn);
+        }
+        check_relative(r.summary.electrical_energy_J, energy, 1e-10);
+        run_finish(&r);
+    }
+}
+
+// Errors are those from the force that is commanded at the end.
+static void errors_are_from_the_last_command(void **state)
+{
+    (void)state;
+    action raise = {
+        .time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(control.force), .value = 2};
+    scenario s = {.parameters = rig_parameters(SETTINGS("control.law=force-pd", "run.duration=3")),
+                  .actions = &raise,
+                  .action_count = 1};
+    run_result r;
+    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    const summary *m = &r.summary;
+    check_close(m->force_command_N, 2, 0);
+    check_close(m->steady_error_N, 0, 0.05);
+    check_close(m->steady_error_N, m->steady_force_N - 2, 0);
+    check_close(m->force_over_command_N, m->peak_force_N - 2, 0);
+    check_close(m->smoothed_over_command_N, m->force_over_command_N, 0.02);
+    run_finish(&r);
+}
+
 static void same_seed_same_bytes(void **state)
 {
     (void)state;
@@ -324,6 +376,8 @@ int main(void)
         cmocka_unit_test(jitter_stays_within_its_width),
         cmocka_unit_test(sensors_feel_the_spike_of_a_damped_chain),
         cmocka_unit_test(rig_changes_the_bare_arm_only_by_its_converter),
+        cmocka_unit_test(energy_under_a_limit_that_changes),
+        cmocka_unit_test(errors_are_from_the_last_command),
         cmocka_unit_test(same_seed_same_bytes),
         cmocka_unit_test(many_links_want_their_own_stiffness),
         cmocka_unit_test(instants_apart_by_rounding_are_one),

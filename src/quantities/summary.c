@@ -38,7 +38,7 @@ const summary_info summary_table[] = {
            "largest energy that the ledger does not account for"),
     NUMBER(wall_loss_J, "wall_loss", "wall loss", "J", "energy lost in a wall that gives", SPECIAL),
     NUMBER(force_command_N, "force_command", "force command", "N",
-           "force that the controller is to hold", SPECIAL),
+           "force that the controller is to hold at the end", SPECIAL),
     NUMBER(force_over_command_N, "force_over_command", "force over command", "N",
            "largest force minus the commanded one", SPECIAL),
     NUMBER(smoothed_over_command_N, "smoothed_over_command", "smoothed over command", "N",

@@ -212,6 +212,7 @@ status printed_act(printed_run *p, const action *todo, int index, fault *f)
     recording *r = p->recording;
     const double time = p->motion.row.time;
 
+    recording_before_change(r, todo, time, p->sensed.angle);
     status failed = recording_set(r, todo, time, f);
     if (failed == STATUS_OK) {
         failed = record_event(r, time, EVENT_CHANGE, index);

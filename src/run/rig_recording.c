@@ -66,6 +66,14 @@ void recording_change_command(recording *r, double time, double hub_angle)
     r->command = (recorded_command){r->rig->voltage, time, hub_angle};
 }
 
+void recording_before_change(recording *r, const action *todo, double time, double hub_angle)
+{
+    assert(r != NULL && todo != NULL);
+    if (r->rig != NULL && todo->parameter == PARAMETER_INDEX(motor.voltage_limit)) {
+        recording_change_command(r, time, hub_angle);
+    }
+}
+
 void recording_follow_flight(recording *r, double closing_speed)
 {
     assert(r != NULL && r->rig != NULL);
@@ -79,6 +87,7 @@ void recording_finish_rig_summary(recording *r, double hub_angle)
     assert(r != NULL);
     summary *s = &r->result->summary;
     const parameters *p = &r->scenario->parameters;
+    const double command = r->now.control.force; // the script may have changed it
     if (r->rig == NULL) {
         return;
     }
@@ -86,12 +95,12 @@ void recording_finish_rig_summary(recording *r, double hub_angle)
     // energy up to the end, and what the controller made of its task
     recording_change_command(r, p->run.duration, hub_angle);
     s->largest_command_V = r->rig->largest_command;
-    s->force_command_N = p->control.force;
-    s->force_over_command_N = s->peak_force_N - p->control.force;
+    s->force_command_N = command;
+    s->force_over_command_N = s->peak_force_N - command;
     if (!isnan(s->first_contact_s)) {
         s->smoothed_over_command_N =
             force_largest_mean(r->result, s->first_contact_s + SMOOTHED_AFTER, SMOOTHING_WINDOW) -
-            p->control.force;
+            command;
     }
-    s->steady_error_N = s->steady_force_N - p->control.force;
+    s->steady_error_N = s->steady_force_N - command;
 }

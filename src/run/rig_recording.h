@@ -13,6 +13,10 @@ void recording_add_rig_signals(const recording *r, sample *row);
 // amplifier fed in under the one before is booked.
 void recording_change_command(recording *r, double time, double hub_angle);
 
+// A parameter is about to change at `time` [s], with the hub at hub_angle [rad]: what the amplifier
+// fed in under another limit is booked.
+void recording_before_change(recording *r, const action *todo, double time, double hub_angle);
+
 // The tip moves in the air towards the wall, at most with closing_speed [m/s] since the last call.
 void recording_follow_flight(recording *r, double closing_speed);
 
