@@ -280,6 +280,32 @@ static void an_arm_that_starts_on_the_wall_is_in_contact(void **state)
         run_result r = run(SETTINGS("arm.links=2", walls[i], "wall.angle=0"));
         assert_true(r.summary.first_contact_s > 0.05);
         run_finish(&r);
+
+        // behind a spring the tip swings off as the fourth power of the time
+        r = run(SETTINGS("arm.hub_joint=spring", "arm.k1=276", "arm.k2=64", "motor.voltage=2",
+                         walls[i], "wall.angle=0"));
+        check_close(r.summary.first_contact_s, 0.0262512050, 1e-9);
+        assert_true(r.summary.first_pulse_peak_N > 1);
+        run_finish(&r);
+    }
+}
+
+// The gap of an arm that starts on the wall is zero, whatever rounding makes of it.
+static void an_arm_on_the_wall_does_not_strike_it(void **state)
+{
+    (void)state;
+    static const char *const arms[] = {"arm.links=3", "arm.link_lengths=0.294,0.386,0.314"};
+    static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
+    for (int i = 0; i < 400; i++) {
+        scenario s = {.parameters = fixture_parameters(SETTINGS(
+                          "arm.links=3", arms[i & 1], walls[i >> 1 & 1], "run.duration=1e-3"))};
+        s.parameters.wall.kind = i & 4 ? WALL_PLANE : WALL_POINT;
+        s.parameters.wall.angle = s.parameters.initial.angle = 0.01 * (i / 2 - 100);
+        run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        check_close(r.summary.first_contact_s, 0, 0);
+        check_close(r.summary.impacts, 0, 0);
+        run_finish(&r);
     }
 }
 
@@ -452,6 +478,7 @@ int main(void)
         cmocka_unit_test(without_a_trace_the_summary_is_the_same),
         cmocka_unit_test(script_acts_at_its_time_and_is_booked),
         cmocka_unit_test(an_arm_that_starts_on_the_wall_is_in_contact),
+        cmocka_unit_test(an_arm_on_the_wall_does_not_strike_it),
         cmocka_unit_test(a_push_of_nothing_changes_nothing),
         cmocka_unit_test(a_run_that_makes_energy_from_nothing_is_stopped),
         cmocka_unit_test(a_ledger_that_does_not_close_makes_a_run_inaccurate),

@@ -68,6 +68,15 @@ void corrected_close_first_pulse(corrected_run *c)
     }
 }
 
+// An arm that starts on the wall and swings off in the same instant has not touched it.
+static void forget_first_contact(corrected_run *c)
+{
+    recording *r = c->recording;
+    r->state.pulse_open = false;
+    r->result->summary.first_contact_s = (double)NAN;
+    r->result->summary.contact_impulse_Ns = (double)NAN;
+}
+
 // What the trace calls the event.
 static event_kind kind_of(const motion *m, const motion_report *report)
 {
@@ -127,7 +136,9 @@ static status record_applied_event(corrected_run *c, const motion_report *report
 
     // it opens again, for the first time the pulse ends
     bool apart = m->state[SLOT_CONTACT] == 0 && (closes || report->event == MOTION_RELEASE);
-    if (apart && r->state.pulse_open) {
+    if (apart && r->state.pulse_open && !closes && m->state[SLOT_TIME] == 0) {
+        forget_first_contact(c);
+    } else if (apart && r->state.pulse_open) {
         corrected_close_first_pulse(c);
     }
     return failed;

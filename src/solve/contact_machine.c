@@ -64,8 +64,9 @@
 #include "src/base/extremes.h"
 #include "src/solve/locate.h"
 
-#define SHORT_FLIGHT 0.01  // of the arm's shortest period, a flight that says nothing by itself
-#define PARTED_DEPTH 1e-12 // less of it left behind at a release is rounding [m]
+#define SHORT_FLIGHT   0.01  // of the arm's shortest period, a flight that says nothing by itself
+#define PARTED_DEPTH   1e-12 // less of it left behind at a release is rounding [m]
+#define START_ROUNDING 1e-15 // gap of an arm that starts on the wall, as a share of its length
 
 // --- what holds at an instant -----------------------------------------------------------------
 
@@ -357,8 +358,9 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
     double g, rate;
     chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
     // an arm on a rigid wall that moves into it counts as free until the impact that follows at
-    // once
-    const bool touching = g >= 0 && (motion_wall_is_rigid(m) ? rate == 0 : rate >= 0);
+    // once; a gap of rounding is none
+    const bool closed = g >= -START_ROUNDING * a->links * a->link_length;
+    const bool touching = closed && (motion_wall_is_rigid(m) ? rate == 0 : rate >= 0);
     resolve(a, m, touching, MOTION_REACHED);
     m->start_energy += motion_wall_energy(a, m, m->state); // of a face that starts with the arm
     check_invariants(a, m);
