@@ -58,6 +58,12 @@ static void the_largest_entry_is_the_pivot(void **state)
     assert_true(dense_solve(2, tiny, y));
     check_close(y[0], 1, 1e-15);
     check_close(y[1], 1, 1e-15);
+
+    // in the last columns of more, too
+    double late[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1e-20, 1, 0, 0, 1, 1}, z[4] = {3, 4, 1, 2};
+    assert_true(dense_solve(4, late, z));
+    check_close(z[2], 1, 1e-15);
+    check_close(z[3], 1, 1e-15);
 }
 
 static void a_singular_matrix_is_refused(void **state)

@@ -25,6 +25,11 @@ static void between_entries_lie_straight_lines(void **state)
     check_close(k2_table_at(&t, 1), 5, 0);
     check_close(k2_table_at(&t, 2.5), 2.75, 1e-15);
     check_close(k2_table_at(&t, 4), 0.5, 0);
+
+    // an entry's own force gives its own stiffness, to the last bit
+    const k2_table exact = read("0:4.9 1:0.1 2:3");
+    check_close(k2_table_at(&exact, 0), 4.9, 0);
+    check_close(k2_table_at(&exact, 1), 0.1, 0);
 }
 
 static void beyond_the_ends_stay_the_last_values(void **state)

@@ -2,7 +2,9 @@
 // leave less take longer.
 #include <stdlib.h>
 
+#include "src/arm/modes.h"
 #include "src/base/random.h"
+#include "src/predict/exponential.h"
 #include "src/predict/least_time.h"
 #include "tests/arm_fixture.h"
 
@@ -238,6 +240,54 @@ static void it_is_the_best_of_all_touches(void **state)
     }
 }
 
+// Before it touches, the arm moves as M q'' + C q' + K q = T e says, with the matrices that its
+// modes are computed from; of its momentum the touch leaves what the constraint allows.
+static void the_flight_is_that_of_the_straight_arm(void **state)
+{
+    (void)state;
+    enum { SIZE = 5, STEPS = 400 }; // q, q', 1
+    const parameters p = fixture_parameters(SETTINGS(START));
+    arm a;
+    double m[4] = {0}, k[4] = {0};
+    arm_init(&a, &p);
+    modes_matrices(&a, m, k);
+    const double damping = motor_damping(&p.motor), determinant = m[0] * m[3] - m[1] * m[2];
+    const double inverse[4] = {m[3] / determinant, -m[1] / determinant, -m[2] / determinant,
+                               m[0] / determinant};
+
+    // the propagator of a step under a torque of 0.7 N m
+    double matrix[SIZE * SIZE] = {0}, step[SIZE * SIZE], power[SIZE * SIZE], product[SIZE * SIZE];
+    for (int i = 0; i < 2; i++) {
+        matrix[i * SIZE + 2 + i] = 1;
+        for (int j = 0; j < 2; j++) {
+            matrix[(2 + i) * SIZE + j] = -(inverse[2 * i] * k[j] + inverse[2 * i + 1] * k[2 + j]);
+        }
+        matrix[(2 + i) * SIZE + 2] = -inverse[2 * i] * damping;
+        matrix[(2 + i) * SIZE + 4] = inverse[2 * i] * 0.7;
+    }
+    matrix_exponential(matrix, SIZE, LEAST_TIME_STEP, step, power, product);
+
+    // what is left of a velocity along (1, -1), the motion on the wall
+    pressed_arm_model on_wall;
+    assert_true(pressed_arm_model_of(&p, &on_wall));
+    const double mass = m[0] - m[1] - m[2] + m[3],
+                 s = sqrt(on_wall.spring_force / on_wall.mass_force);
+
+    double z[SIZE] = {-0.1, -0.1, 0, 0, 1}, torque[STEPS], tip, press;
+    for (int n = 0; n < STEPS; n++) {
+        double next[SIZE] = {0};
+        torque[n] = 0.7;
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            next[i / SIZE] += step[i] * z[i % SIZE];
+        }
+        memcpy(z, next, sizeof z);
+        least_time_follow(&p, torque, n + 1, &tip, &press);
+        const double x = ((m[0] - m[2]) * z[2] + (m[1] - m[3]) * z[3]) / mass;
+        check_close(tip, p.arm.length / 2 * (z[0] + z[1]), 1e-9);
+        check_close(press, on_wall.spring_force * (z[0] + x / s), 1e-7);
+    }
+}
+
 static void where_there_is_no_way_it_says_so(void **state)
 {
     (void)state;
@@ -256,6 +306,7 @@ int main(void)
         cmocka_unit_test(it_is_the_best_of_all_touches),
         cmocka_unit_test(less_voltage_and_less_force_take_longer),
         cmocka_unit_test(a_stiff_arm_goes_as_a_rod),
+        cmocka_unit_test(the_flight_is_that_of_the_straight_arm),
         cmocka_unit_test(where_there_is_no_way_it_says_so),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

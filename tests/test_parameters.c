@@ -218,6 +218,19 @@ static void an_endless_value_is_refused(void **state)
     text[sizeof text - 1] = '\0';
     check_refused("arm.k2", text, "127");
     check_refused("control.plugin", text, "127");
+
+    // 127 characters are no more than 127, blanks around them not counted
+    parameters p = fresh(ARM_CORRECTED);
+    memset(text, '0', PARAMETER_TEXT_SIZE);
+    text[PARAMETER_TEXT_SIZE] = '\0';
+    check_refused("arm.k2", text, "127");
+    check_refused("control.plugin", text, "127");
+    memcpy(text, "5.0", 3);
+    strcpy(text + PARAMETER_TEXT_SIZE - 1, "  ");
+    give(&p, "arm.k2", text);
+    check_close(p.arm.k2, 5, 0);
+    give(&p, "control.plugin", text);
+    assert_int_equal(strlen(p.control.plugin), PARAMETER_TEXT_SIZE - 1);
 }
 
 static void numbers_are_checked_too(void **state)

@@ -248,8 +248,10 @@ static void sign_has_a_dead_band_of_1e_5_either_way_as_listed_too(void **state)
     (void)state;
     for (int listed = 0; listed <= 1; listed++) {
         assert_true(printed_sign(1e-4, listed) == 1);
+        assert_true(printed_sign(1e-5, listed) == 0);
         assert_true(printed_sign(5e-6, listed) == 0);
         assert_true(printed_sign(-5e-6, listed) == 0);
+        assert_true(printed_sign(-1e-5, listed) == 0);
         assert_true(printed_sign(-1e-4, listed) == -1);
         assert_true(printed_sign(-1, listed) == -1);
     }

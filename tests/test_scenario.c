@@ -63,6 +63,11 @@ static void what_is_left_out_has_a_default(void **state)
     assert_int_equal(s.expectation_count, 0);
     scenario_finish(&s);
     scenario_finish(&s); // a finished one may be finished again
+
+    // a list without numbers is none
+    s = good("arm: {link_lengths: []}");
+    assert_string_equal(s.parameters.arm.link_lengths, "");
+    scenario_finish(&s);
 }
 
 static void the_order_of_groups_does_not_matter(void **state)

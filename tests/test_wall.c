@@ -96,6 +96,7 @@ static void slow_impacts_are_plastic(void **state)
     (void)state;
     wall_model w = wall_of(SETTINGS("wall.restitution=0.6", "method.rest_speed=0.01"));
     check_close(wall_restitution(&w, 0.5), 0.6, 0);
+    check_close(wall_restitution(&w, 0.01), 0.6, 0);
     check_close(wall_restitution(&w, 0.0099), 0, 0);
 
     // nor of what no engine can tell from rest
@@ -175,6 +176,27 @@ static void the_rate_is_that_at_the_deepest_point(void **state)
     check_relative(wall_rate(&damped, 1 / mass, 0, 1), 500 / mass, 1e-12);
 }
 
+// Where a damper that grows with the depth stops the mass, the rate is that of the damper there,
+// whether the mass has just met the wall or is in it already.
+static void a_damper_that_grows_stops_the_mass(void **state)
+{
+    (void)state;
+    const double mass = 0.04, speed = 0.7, begins[] = {0, 1e-3};
+    const wall_model w =
+        wall_of(SETTINGS("wall.contact=hunt-crossley", "wall.stiffness=1", "wall.damping=1e6"));
+    for (int i = 0; i < 2; i++) {
+        // the mass loses damping * depth^exponent of its momentum on each part of its way
+        double depth = begins[i], left = mass * speed;
+        const double part = 1e-8;
+        for (; left > 0; depth += part) {
+            left -=
+                part * (wall_force(&w, depth + part / 2, 1) - wall_force(&w, depth + part / 2, 0));
+        }
+        const double damping = wall_force(&w, depth, 1) - wall_force(&w, depth, 0);
+        check_relative(wall_rate(&w, 1 / mass, begins[i], speed), damping / mass, 1e-4);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -185,6 +207,7 @@ int main(void)
         cmocka_unit_test(a_face_at_rest_has_no_rate),
         cmocka_unit_test(slow_impacts_are_plastic),
         cmocka_unit_test(the_rate_is_that_at_the_deepest_point),
+        cmocka_unit_test(a_damper_that_grows_stops_the_mass),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

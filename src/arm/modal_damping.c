@@ -13,7 +13,9 @@ enum { MOST_BODIES = PARAMETER_LIST_MOST + 1 };
 // the sum of the bends up to its own.
 static void scaled_mass(const arm *a, int first, double *scaled)
 {
+    enum { EDGE = MOST_BODIES + 1 };
     double mass[MOST_BODIES * MOST_BODIES] = {0}, stiffness[MOST_BODIES * MOST_BODIES] = {0};
+    double common[EDGE * EDGE] = {0}; // with a row and a column of zeros behind the last
     const int n = a->dof, size = n - first;
     assert(n <= (int)MOST_BODIES);
     modes_matrices(a, mass, stiffness);
@@ -21,13 +23,12 @@ static void scaled_mass(const arm *a, int first, double *scaled)
     // what the bodies from i and from j on have in common, less the roots of both stiffnesses
     for (int i = n - 1; i >= first; i--) {
         for (int j = n - 1; j >= first; j--) {
-            const double below = i + 1 < n ? mass[(i + 1) * n + j] : 0;
-            const double right = j + 1 < n ? mass[i * n + j + 1] : 0;
-            const double both = i + 1 < n && j + 1 < n ? mass[(i + 1) * n + j + 1] : 0;
-            const double sum = mass[i * n + j] += below + right - both;
+            double *here = common + i * EDGE + j;
+            const double below = here[EDGE], right = here[1], both = here[EDGE + 1];
+            *here = mass[i * n + j] + (below + right - both);
             const double own = arm_joint_stiffness(a, i - a->first);
             const double other = arm_joint_stiffness(a, j - a->first);
-            scaled[(i - first) * size + j - first] = sum / sqrt(own * other);
+            scaled[(i - first) * size + j - first] = *here / sqrt(own * other);
         }
     }
 }

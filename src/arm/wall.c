@@ -62,11 +62,11 @@ double wall_rate(const wall_model *w, double compliance, double depth, double ra
     assert(w != NULL && compliance > 0);
     // without its damper the wall stops the mass at the deepest point, and so does a damper that
     // grows with the depth without the wall's spring
-    double n = w->exponent, energy = 0.5 * rate * rate / compliance;
-    energy = (rate > 0 ? energy : 0) + wall_stored_energy(w, depth);
+    const double n = w->exponent, inward = fmax(rate, 0);
+    const double energy = 0.5 * inward * inward / compliance + wall_stored_energy(w, depth);
     double deepest = plain_pow((n + 1) * energy / w->stiffness, 1 / (n + 1));
     if (w->law == WALL_HUNT_CROSSLEY && w->damping > 0) {
-        const double way = fmax(rate, 0) * (n + 1) / (w->damping * compliance);
+        const double way = inward * (n + 1) / (w->damping * compliance);
         const double held = plain_pow(plain_pow(fmax(depth, 0), n + 1) + way, 1 / (n + 1));
         deepest = fmin(deepest, held);
     }

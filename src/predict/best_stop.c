@@ -231,7 +231,7 @@ static double time_on_both(const pressed_arm_model *m, const way *first, const w
 {
     for (double t = 0; t < best; t += STEP) {
         double more = time_on(m, second, band, s, best - t), share;
-        best = t + more < best ? t + more : best;
+        best = fmin(t + more, best);
 
         if (is_lost(first, band, runaway(m, s), force_on(m, first, s))) {
             break;
@@ -243,7 +243,7 @@ static double time_on_both(const pressed_arm_model *m, const way *first, const w
         if (share >= 0) {
             double at = t + share * STEP;
             more = time_on(m, second, band, edge, best - at);
-            best = at + more < best ? at + more : best;
+            best = fmin(at + more, best);
         }
         s = next;
     }

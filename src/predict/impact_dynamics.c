@@ -291,8 +291,8 @@ static double earliest_delay(const double c[3])
     double sum = -(c[1] + copysign(sqrt(discriminant), c[1])) / 2;
     double roots[2] = {sum / c[2], c[0] / sum};
     for (int i = 0; i < 2; i++) {
-        if (isfinite(roots[i]) && roots[i] > 0 && !(roots[i] >= earliest)) {
-            earliest = roots[i];
+        if (isfinite(roots[i]) && roots[i] > 0) {
+            earliest = fmin(roots[i], earliest);
         }
     }
     return earliest;

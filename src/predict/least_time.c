@@ -171,18 +171,19 @@ static double time_to_band(double xi, double a, double b, double most, double s)
 least_time least_time_of(const parameters *p, double force, double band, double peak)
 {
     assert(p != NULL && band > 0);
-    least_time best = {.total = (double)NAN};
+    const least_time none = {.total = (double)NAN};
+    least_time best = {.total = HUGE_VAL};
     flight f;
     responses r; // filled in up to the step that is tried
     if (!(force > 0) || !flight_of(p, &f)) {
-        return best;
+        return none;
     }
     const double a = force * (1 - band), b = force * (1 + band), most = fmax(peak, b);
     const double s = f.press / f.per_rate;
 
     // tries later and later touches, until the touch alone takes longer than the best total
     flight_state kicked = {{0, 0}, {0, 0}};
-    for (int n = 1; n <= MOST_STEPS && !(n * LEAST_TIME_STEP >= best.total); n++) {
+    for (int n = 1; n <= MOST_STEPS && n * LEAST_TIME_STEP < best.total; n++) {
         edge edges[2];
         kicked = advance(&f, kicked, n == 1 ? 1 : 0);
         r.tip[n] = tip_of(&f, &kicked);
@@ -196,7 +197,7 @@ least_time least_time_of(const parameters *p, double force, double band, double 
         const edge *e = &edges[largest];
         double press = largest ? e->press : fmax(e->press, a);
         double total = n * LEAST_TIME_STEP + time_to_band(press, a, b, most, s);
-        if (total < best.total || (isnan(best.total) && !isnan(total))) {
+        if (total < best.total) {
             best = (least_time){.total = total,
                                 .touch = n * LEAST_TIME_STEP,
                                 .press = e->press,
@@ -205,7 +206,7 @@ least_time least_time_of(const parameters *p, double force, double band, double 
                                 .slack = e->slack};
         }
     }
-    return best;
+    return isfinite(best.total) ? best : none;
 }
 
 void least_time_follow(const parameters *p, const double *torque, int steps, double *tip,
