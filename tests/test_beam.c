@@ -252,6 +252,37 @@ static void whatever_decays_faster_is_followed(void **state)
     check_relative(a.fastest_decay, a.motor.damping / (mass * l * l / 12), 1e-12);
 }
 
+// Of the one mode of two links, its damping goes to the springs of an arm whose hub is free: it
+// decays by 2 zeta of the held arm's frequency, as much more as the free arm is faster squared.
+static void damping_by_mode_is_followed(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.modal_ratios=0.9"));
+    arm a;
+    arm_init(&a, &p);
+    int count;
+    double held, free[2], shapes[4];
+    assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, &held, shapes), STATUS_OK);
+    assert_int_equal(count, 1);
+    assert_int_equal(modes_compute(&a, HUB_FREE, TIP_FREE, &count, free, shapes), STATUS_OK);
+    check_relative(a.fastest_decay, 1.05 * 2 * 0.9 * free[1] * free[1] / held, 1e-5);
+}
+
+// The longest chain is as good as a beam: w1 = 1.8751^2 sqrt(EI / (m L^3)), with EI = k2 L / 2.
+static void the_longest_chain_has_the_damping_of_a_beam(void **state)
+{
+    (void)state;
+    const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
+    for (int i = 0; i < 2; i++) {
+        const parameters p =
+            fixture_parameters(SETTINGS("arm.links=1024", "arm.damping_ratio=0.03", hubs[i]));
+        arm a;
+        arm_init(&a, &p);
+        const double w = 1.8751 * 1.8751 * sqrt(p.arm.k2 / (2 * p.arm.mass)) / p.arm.length;
+        check_relative(a.joint_damping, 2 * 0.03 / w * a.joint_stiffness, 0.01);
+    }
+}
+
 // beta L of the first mode of the clamped beam with a mass [kg] at its tip, mu its share of the
 // beam's mass: 1 + cos cosh + mu x (cos sinh - sin cosh) = 0.
 static double beam_with_mass(double mass)
@@ -380,6 +411,8 @@ int main(void)
         cmocka_unit_test(first_mode_has_the_damping_asked_for),
         cmocka_unit_test(any_arm_has_the_damping_asked_for),
         cmocka_unit_test(whatever_decays_faster_is_followed),
+        cmocka_unit_test(damping_by_mode_is_followed),
+        cmocka_unit_test(the_longest_chain_has_the_damping_of_a_beam),
         cmocka_unit_test(the_highest_frequency_bounds_the_modes),
         cmocka_unit_test(an_overdamped_mode_decays_by_the_roots_of_its_equation),
         cmocka_unit_test(a_mass_at_the_tip_lowers_the_frequencies),

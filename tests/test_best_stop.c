@@ -90,6 +90,22 @@ static void the_gentlest_touch_has_a_best_force_too(void **state)
     }
 }
 
+// A hub that is braked hard presses at once, whatever the motor does: no peak is below that.
+static void no_peak_is_below_the_force_of_the_damping(void **state)
+{
+    (void)state;
+    pressed_arm_model m = model_of(NULL);
+    for (int i = 1; i <= 4; i++) {
+        m.damping = 5.0 * i;
+        const pressed_state at = {0, 1};
+        const double drive = m.torque_limit - m.stiction - m.damping * at.velocity;
+        const double least = -m.mass_force * drive / m.inertia;
+        const double peak = best_peak(&m, at), runaway = m.spring_force / divergence(&m);
+        check_below(fmax(least, runaway) * (1 - 1e-4), peak);
+        check_below(peak, 1.0001 * fmax(least, runaway) + 0.3);
+    }
+}
+
 // A motor holds what its largest torque and stiction together carry, and no more.
 static void stiction_helps_to_hold(void **state)
 {
@@ -239,6 +255,7 @@ int main(void)
         cmocka_unit_test(an_impact_throws_both_links_onto_one_motion),
         cmocka_unit_test(a_strong_motor_leaves_the_closed_forms),
         cmocka_unit_test(the_gentlest_touch_has_a_best_force_too),
+        cmocka_unit_test(no_peak_is_below_the_force_of_the_damping),
         cmocka_unit_test(stiction_helps_to_hold),
         cmocka_unit_test(what_cannot_be_is_said),
         cmocka_unit_test(no_controller_tried_is_better),

@@ -304,9 +304,10 @@ static void a_turn_changes_the_penetration(void **state)
 {
     (void)state;
     for (int links = 1; links <= 5; links++) {
-        for (int kind = 0; kind < 4; kind++) {
-            const arm a =
-                make_arm(links, kind & 1 ? "spring" : "rigid", kind & 2 ? "plane" : "point");
+        for (int kind = 0; kind < (links > 1 ? 8 : 4); kind++) {
+            const char *const wall = kind & 2 ? "plane" : "point";
+            const arm a = kind < 4 ? make_arm(links, kind & 1 ? "spring" : "rigid", wall)
+                                   : make_uneven_arm(links, wall, kind & 1);
             const size_t size = (size_t)a.dof * sizeof(double);
             double *q = malloc(size), *turn = malloc(size), *turned = malloc(size), before, after;
             assert_true(q != NULL && turn != NULL && turned != NULL);
@@ -411,6 +412,22 @@ static void energies_match_with_any_links_and_joints(void **state)
                         -spring_torque(&a, q, still, links - 1), 1e-7);
         }
     }
+}
+
+// A joint that stiffens vibrates as much faster as half as much again of its own stiffness, which
+// is 1 + 3 s b^2 at the bend b of the joint that is bent most; a root stands for twice its bend.
+static void bends_make_it_vibrate_faster(void **state)
+{
+    (void)state;
+    arm a = make_stiffening_arm(4, "none"), even = make_arm(4, "rigid", "none");
+    const double q[4] = {0.3, 0.35, 0.15, 0.25}, s = 2.5 * 4 * 4 / 4;
+    check_relative(chain_stiffened(&a, q), sqrt(1 + 1.5 * 3 * s * 0.2 * 0.2), 1e-14);
+    check_close(chain_stiffened(&even, q), 1, 0);
+    a.first = 1;
+    a.hub_spring = true;
+    a.links = 3;
+    const double root[4] = {0.3, 0.15, 0.35, 0.25};
+    check_relative(chain_stiffened(&a, root), sqrt(1 + 1.5 * 3 * s * 0.3 * 0.3), 1e-14);
 }
 
 // m v^2 / 2 of the tip, whose velocity is the sum over the links.
@@ -533,6 +550,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nodes_follow_the_links),
+        cmocka_unit_test(bends_make_it_vibrate_faster),
         cmocka_unit_test(a_mass_at_the_tip_adds_its_own_energy),
         cmocka_unit_test(satisfies_the_lagrangian),
         cmocka_unit_test(satisfies_it_with_any_links_and_joints),

@@ -38,9 +38,10 @@ static void json_is_what_jansson_reads(void **state)
 static void text_without_utf8_is_made_readable(void **state)
 {
     (void)state;
-    char *text = written(json_text("a\xff"
+    char *text = written(json_text("a\xff\x80\x7f"
                                    "b"));
-    assert_string_equal(text, "\"a?b\"\n");
+    assert_string_equal(text, "\"a??\x7f"
+                              "b\"\n");
     free(text);
     text = written(json_text("\u00e9"));
     assert_string_equal(text, "\"\u00e9\"\n");
@@ -100,6 +101,25 @@ static void what_cannot_be_put_is_noted_once(void **state)
     json_decref(array);
 }
 
+// A member that there is no memory for leaves its place empty, and that is noted.
+static void a_member_that_is_lost_is_noted(void **state)
+{
+    (void)state;
+    char text[32] = "";
+    FILE *stream = fmemopen(text, sizeof text, "w");
+    assert_non_null(stream);
+    json_t *value = json_real(1.5);
+    json_lost_something();
+    json_write_member(stream, value, 1);
+    assert_false(json_lost_something());
+    json_write_member(stream, NULL, 1);
+    assert_true(json_lost_something());
+    assert_false(json_lost_something());
+    fclose(stream);
+    assert_string_equal(text, "1.5");
+    json_decref(value);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -109,6 +129,7 @@ int main(void)
         cmocka_unit_test(json_is_what_jansson_reads),
         cmocka_unit_test(text_without_utf8_is_made_readable),
         cmocka_unit_test(numbers_that_are_missing_are_null),
+        cmocka_unit_test(a_member_that_is_lost_is_noted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

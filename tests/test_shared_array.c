@@ -43,10 +43,17 @@ static void plain_arrays_keep_their_elements_as_they_grow(void **state)
     (void)state;
     shared_array a;
     shared_array_init(&a, sizeof(uint64_t));
+    int moves = 0;
     for (size_t count = 1; count < 5000; count++) {
+        const size_t room = a.capacity;
         fill(&a, count - 1, count);
+        moves += a.capacity != room;
+        assert_int_equal(a.capacity != room, count > room);
     }
     check_numbers(&a, 4999);
+
+    // twice as much each time, so that an element is moved a few times only
+    assert_in_range(moves, 1, 8);
     shared_array_finish(&a);
 }
 
@@ -58,6 +65,39 @@ static void shared_arrays_keep_their_place_as_they_grow(void **state)
     fill(&a, 1, MANY);
     assert_ptr_equal(a.base, place);
     check_numbers(&a, MANY);
+
+    // what it has room for takes no memory
+    const size_t memory = shared_array_memory(), room = a.capacity;
+    assert_true(shared_array_grow(&a, room));
+    assert_int_equal(shared_array_memory(), memory);
+    assert_true(shared_array_grow(&a, room + 1));
+    assert_int_equal(shared_array_memory(), memory + ARRAY_CHUNK);
+    shared_array_finish(&a);
+}
+
+// Of elements of another size nothing is the same, whatever the bytes.
+static void arrays_of_other_elements_are_not_the_same(void **state)
+{
+    (void)state;
+    shared_array a = filled(MANY), pairs;
+    assert_true(shared_array_reserve(&pairs, 2 * sizeof(uint64_t), MANY, MANY));
+    assert_true(shared_array_grow(&pairs, MANY / 2));
+    memcpy(pairs.base, a.base, 2 * ARRAY_CHUNK);
+    assert_int_equal(shared_array_same_chunks(&a, &pairs, MANY / 2), 0);
+    shared_array_finish(&a);
+    shared_array_finish(&pairs);
+}
+
+// An array of many chunks.
+static void a_long_array_keeps_its_elements(void **state)
+{
+    (void)state;
+    shared_array a;
+    const size_t many = 40 * PER_CHUNK;
+    assert_true(shared_array_reserve(&a, sizeof(uint64_t), many, many));
+    fill(&a, 0, many);
+    check_numbers(&a, many);
+    assert_int_equal(a.chunk_count, 40);
     shared_array_finish(&a);
 }
 
@@ -250,6 +290,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plain_arrays_keep_their_elements_as_they_grow),
         cmocka_unit_test(shared_arrays_keep_their_place_as_they_grow),
+        cmocka_unit_test(arrays_of_other_elements_are_not_the_same),
+        cmocka_unit_test(a_long_array_keeps_its_elements),
         cmocka_unit_test(growing_beyond_the_address_space_fails_and_changes_nothing),
         cmocka_unit_test(a_beginning_is_shared_and_the_rest_is_each_ones_own),
         cmocka_unit_test(the_beginning_of_a_plain_array_is_copied),

@@ -247,6 +247,22 @@ static void all_short_words_have_their_distance(void **state)
     }
 }
 
+// What is printed is filtered, and a stream that takes nothing says so.
+static void what_cannot_be_printed_is_said(void **state)
+{
+    (void)state;
+    char text[64] = "";
+    FILE *into = fmemopen(text, sizeof text, "w"), *full = fopen("/dev/full", "w");
+    assert_non_null(into);
+    assert_non_null(full);
+    assert_true(print_printable(into, "%d\x1b lines\n", 2));
+    fclose(into);
+    assert_string_equal(text, "2? lines\n");
+    setvbuf(full, NULL, _IONBF, 0);
+    assert_false(print_printable(full, "%d lines\n", 2));
+    fclose(full);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -262,6 +278,7 @@ int main(void)
         cmocka_unit_test(control_characters_and_broken_text_become_question_marks),
         cmocka_unit_test(what_turns_the_direction_of_text_becomes_question_marks),
         cmocka_unit_test(lines_keep_their_ends),
+        cmocka_unit_test(what_cannot_be_printed_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -183,7 +183,7 @@ static void set_links(arm *a, const arm_parameters *p)
 
     // rods of one beam
     const double density = p->mass / p->length;
-    for (int k = 0; k < a->links; k++) {
+    for (int k = 0; k < p->links; k++) {
         const double l = each->length[k];
         each->mass[k] = density * l;
         each->inertia[k] = each->mass[k] * l * l / 12;

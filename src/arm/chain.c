@@ -215,10 +215,13 @@ double chain_strain_energy(const arm *a, const double *q)
 
 double chain_stiffened(const arm *a, const double *q)
 {
+    if (a->stiffening == 0) {
+        return 1;
+    }
     double most = 0;
-    for (int i = 1; i < a->dof && a->stiffening > 0; i++) {
+    for (int i = 1; i < a->dof; i++) {
         const double bend = (i == a->first ? 2 : 1) * (q[i] - q[i - 1]);
         most = fmax(most, bend * bend);
     }
-    return a->stiffening > 0 ? sqrt(1 + 4.5 * a->stiffening * most) : 1;
+    return sqrt(1 + 4.5 * a->stiffening * most);
 }

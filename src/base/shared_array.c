@@ -235,10 +235,10 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, size_t count)
 {
     assert(a != NULL && b != NULL);
-    size_t most = a->size == b->size && b->reserved > 0 ? count * a->size / ARRAY_CHUNK : 0;
+    size_t most = a->size == b->size ? count * a->size / ARRAY_CHUNK : 0;
     size_t same = 0;
 
-    // the same chunk needs no look
+    // the same chunk needs no look; a plain array has none
     while (same < most && same < a->chunk_count && same < b->chunk_count) {
         size_t at = same * ARRAY_CHUNK;
         bool equal =

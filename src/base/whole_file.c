@@ -153,7 +153,7 @@ static bool is_temporary_name(const char *name)
     long process;
     int number;
     return sscanf(name, ".impactlab-%ld-%d.part%n", &process, &number, &length) == 2 &&
-           length > 0 && name[length] == '\0';
+           name[length] == '\0';
 }
 
 // Removes a temporary of the user's that nobody holds a lock on.

@@ -161,18 +161,22 @@ double best_peak(const pressed_arm_model *m, pressed_state s)
     return high;
 }
 
+// How far a force is outside the band, negative within [N].
+static double beyond(const way *band, double force)
+{
+    return fmax(band->lowest - force, force - band->highest);
+}
+
 // Whether the force is in the band and can stay there.
 static bool stays(const pressed_arm_model *m, const way *band, pressed_state s)
 {
     for (double t = 0; t < HOLDING; t += COARSE_STEP) {
-        double force = force_on(m, band, s), slack = 1e-9 * band->highest;
-        if (force < band->lowest - slack || force > band->highest + slack) {
+        if (beyond(band, force_on(m, band, s)) > 1e-9 * band->highest) {
             return false;
         }
         s = advance(m, band, s, COARSE_STEP);
     }
-    double xi = runaway(m, s), slack = 1e-6 * band->highest;
-    return xi > band->lowest - slack && xi < band->highest + slack;
+    return beyond(band, runaway(m, s)) < 1e-6 * band->highest;
 }
 
 // The state at which K xi comes to `edge` within the step from `s` to `next`, a little beyond it;
@@ -209,7 +213,7 @@ static double time_on(const pressed_arm_model *m, const way *on, const way *band
         if (is_lost(on, band, xi, force_on(m, on, s))) {
             break;
         }
-        if (xi >= band->lowest && xi <= band->highest && stays(m, band, s)) {
+        if (beyond(band, xi) <= 0 && stays(m, band, s)) {
             return t;
         }
 

@@ -115,7 +115,8 @@ typedef struct pressed_arm {
 static void pressed_evaluate(pressed_arm *p, double x, double v)
 {
     const arm *a = p->a;
-    double l = a->link_length, q[2] = {x, 0}, w[2], alpha[2], cx, sx, lever, along;
+    double l = a->link_length, q[2] = {x, 0}, w[2], alpha[2], cx, sx;
+    double turn; // of the second link back, for one of the first
     chain_reaction r;
 
     // the constraint: angle and velocity of the second link
@@ -124,15 +125,14 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
         // the second link points from the joint to the contact point, (3.9)
         double dx = a->wall.x - l * cx, dy = a->wall.y - l * sx, d = sqrt(dx * dx + dy * dy);
         q[1] = plain_atan2(dy, dx);
-        lever = d;
-        along = l * (cx * dx + sx * dy) / d;
+        turn = l * (cx * dx + sx * dy) / d / d; // (3.12)
     } else {
         // both links lean away from the wall alike
         q[1] = 2 * plain_atan2(a->wall.sine, a->wall.cosine) - x;
-        lever = along = l * (cx * a->wall.cosine + sx * a->wall.sine);
+        turn = 1;
     }
     w[0] = v;
-    w[1] = -along / lever * v; // (3.12)
+    w[1] = -turn * v;
 
     // the equations of motion there
     chain_sweep(a, 2, false, true, false, p->links, q, w, p->mode, alpha, &r);
