@@ -256,6 +256,7 @@ static void what_cannot_be_printed_is_said(void **state)
     assert_non_null(into);
     assert_non_null(full);
     assert_true(print_printable(into, "%d\x1b lines\n", 2));
+    assert_true(print_printable(into, "%s", ""));
     fclose(into);
     assert_string_equal(text, "2? lines\n");
     setvbuf(full, NULL, _IONBF, 0);
